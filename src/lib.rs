@@ -1,0 +1,8 @@
+//! pnaen: loads a mesh, tessellates it in compute passes, and shows what the tessellation did.
+//!
+//! The way through the crate: [`mesh`] (what a file becomes) -> [`tessellate`] (the mathematics, on the CPU: the
+//! reference) -> `gpu` (the same mathematics as compute passes) -> `render` (one indirect draw into a texture).
+//! `app` (the window) and `cli` (the commands) are two thin faces of all that, and hold no mathematics.
+
+pub mod mesh;
+pub mod tessellate;

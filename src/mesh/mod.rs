@@ -1,0 +1,50 @@
+//! What a file becomes: triangles with corners ([`Mesh`]), then welded points, edges and their sides ([`Topology`]).
+
+use std::ops::Range;
+
+use glam::{Vec2, Vec3};
+
+/// A triangle's vertex: a position in object units, a unit normal and a texture coordinate (uv, in texture widths and
+/// heights, v downwards as in glTF).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    pub position: Vec3,
+    pub normal: Vec3,
+    pub uv: Vec2,
+}
+
+/// Triangles ready for topology: every corner once, triangles grouped by material.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// The file's or shape's name, for people.
+    pub name: String,
+    /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0).
+    pub corners: Vec<Corner>,
+    /// Indices into `corners`, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Each owns one contiguous range of `triangles`; the ranges follow one another and cover all of them.
+    pub materials: Vec<Material>,
+    /// What was left out or repaired, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+/// What a patch looks like.
+#[derive(Clone, Debug)]
+pub struct Material {
+    pub name: String,
+    /// Linear RGBA, 0 to 1.
+    pub base_color: [f32; 4],
+    /// Index into no list: the pixels themselves, shared between materials that use one image.
+    pub texture: Option<std::sync::Arc<Texture>>,
+    /// The triangles of the mesh that wear it.
+    pub triangles: Range<u32>,
+}
+
+/// An 8-bit sRGB image with straight alpha, rows from the top.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// Width and height in px.
+    pub size: [u32; 2],
+    /// 4 bytes a px.
+    pub rgba: Vec<u8>,
+}

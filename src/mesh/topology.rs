@@ -1,0 +1,1 @@
+//! From triangles to patches, points, edges and sides.
