@@ -1,8 +1,17 @@
 //! pnaen: loads a mesh, tessellates it in compute passes, and shows what the tessellation did.
 //!
 //! The way through the crate: [`mesh`] (what a file becomes) -> [`tessellate`] (the mathematics, on the CPU: the
-//! reference) -> `gpu` (the same mathematics as compute passes) -> `render` (one indirect draw into a texture).
-//! `app` (the window) and `cli` (the commands) are two thin faces of all that, and hold no mathematics.
+//! reference) -> [`gpu`] (the same mathematics as compute passes) -> [`render`] (one indirect draw into a texture).
+//! [`measure`] looks at what came out, [`export`] writes it to files, [`engine`] puts them together. [`app`] (the
+//! window) and [`cli`] (the commands) are two thin faces of all that, and hold no mathematics.
 
+pub mod app;
+pub mod cli;
+pub mod engine;
+pub mod export;
+pub mod gpu;
+pub mod measure;
 pub mod mesh;
+pub mod render;
+pub mod settings;
 pub mod tessellate;

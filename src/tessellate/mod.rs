@@ -1,1 +1,22 @@
-//! The mathematics on the CPU: the reference that the shaders are held against. `shaders/X.wgsl` is the twin of `X.rs`.
+//! The mathematics on the CPU: the reference that the shaders are held against. `shaders/X.wgsl` is the twin of `X.rs`;
+//! `mesh.rs` has none of its own: it does for a whole mesh what the passes do.
+
+mod cull;
+mod domain;
+mod factors;
+mod lod;
+mod mesh;
+mod surface;
+
+pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped};
+pub use domain::{domain_point, domain_triangle};
+pub use factors::{
+    FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count, process, round_pow2,
+    segments, triangle_count,
+};
+pub use lod::{Lod, LodView, paper_edge_factor, project_and_scale};
+pub use mesh::{Inputs, Tessellated, Vertex, pack_key, sharing, tessellate};
+pub use surface::{
+    ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv, patch_position,
+    straight_control_point,
+};

@@ -1,0 +1,137 @@
+// Draws patches: the emitted triangles (indexed, or pulled one corner at a time so that each knows its own
+// barycentric coordinates), or the input triangles as they are.
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> corners: array<Corner>;
+@group(0) @binding(3) var<storage, read> patches: array<Patch>;
+@group(0) @binding(4) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(5) var<storage, read> indices: array<u32>;
+@group(1) @binding(0) var<uniform> material: Material;
+@group(1) @binding(1) var base_texture: texture_2d<f32>;
+@group(1) @binding(2) var base_sampler: sampler;
+
+struct Varyings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) position: vec3<f32>,
+    @location(1) normal: vec3<f32>,
+    @location(2) uv: vec2<f32>,
+    // Domain coordinates in the patch.
+    @location(3) domain: vec3<f32>,
+    // Barycentric coordinates in the drawn triangle; all 1 where they are not known.
+    @location(4) corner: vec3<f32>,
+    @location(5) @interpolate(flat) edge_kinds: vec3<u32>,
+}
+
+fn varyings(position: vec3<f32>, patch_index: u32, u: u32, v: u32, corner: vec3<f32>) -> Varyings {
+    let p = patches[patch_index];
+    let a = corners[p.corners[0]];
+    let b = corners[p.corners[1]];
+    let c = corners[p.corners[2]];
+    var out: Varyings;
+    out.clip = frame.clip_from_object * vec4<f32>(position, 1.0);
+    out.position = position;
+    out.normal = linear_normal(array<vec3<f32>, 3>(a.normal, b.normal, c.normal), u, v);
+    out.uv = linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v);
+    out.domain = vec3<f32>(f32(u), f32(v), f32(FIXED_ONE - u - v)) * UNIT;
+    out.corner = corner;
+    // Kind of the edge where u, v, w is 0: opposite corner 0, 1, 2, which is side 1, 2, 0.
+    out.edge_kinds = vec3<u32>(p.edges[1] & 7u, p.edges[2] & 7u, p.edges[0] & 7u);
+    return out;
+}
+
+fn unit_corner(k: u32) -> vec3<f32> {
+    return vec3<f32>(f32(k == 0u), f32(k == 1u), f32(k == 2u));
+}
+
+@vertex
+fn indexed_vertex(@location(0) position: vec3<f32>, @location(1) key: vec2<u32>) -> Varyings {
+    let uv = key_uv(key);
+    return varyings(position, key_patch(key), uv.x, uv.y, vec3<f32>(1.0));
+}
+
+@vertex
+fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
+    let vertex = vertices[indices[index]];
+    let key = vec2<u32>(vertex.key0, vertex.key1);
+    let uv = key_uv(key);
+    let position = vec3<f32>(vertex.x, vertex.y, vertex.z);
+    return varyings(position, key_patch(key), uv.x, uv.y, unit_corner(index % 3u));
+}
+
+@vertex
+fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
+    let k = index % 3u;
+    let position = points[patches[index / 3u].points[k]].xyz;
+    let u = select(0u, FIXED_ONE, k == 0u);
+    let v = select(0u, FIXED_ONE, k == 1u);
+    return varyings(position, index / 3u, u, v, unit_corner(k));
+}
+
+// Colours of edge kinds, as the window's legend has them: src/render/layout.rs.
+fn edge_color(kind: u32) -> vec3<f32> {
+    var color = vec3<f32>(0.40, 0.43, 0.47);
+    if kind == 1u {
+        color = vec3<f32>(0.791, 0.347, 0.0);
+    } else if kind == 2u {
+        color = vec3<f32>(0.0, 0.342, 0.171);
+    } else if kind == 3u {
+        color = vec3<f32>(0.093, 0.456, 0.815);
+    } else if kind == 4u {
+        color = vec3<f32>(0.604, 0.191, 0.386);
+    }
+    return color;
+}
+
+// Distance in px to where each coordinate is 0.
+fn pixels_to_zero(coordinates: vec3<f32>) -> vec3<f32> {
+    let dx = dpdx(coordinates);
+    let dy = dpdy(coordinates);
+    return coordinates / max(sqrt(dx * dx + dy * dy), vec3<f32>(1e-12));
+}
+
+// How much of a line `half_width` px to either side covers a pixel `distance` px away.
+fn line_coverage(distance: f32, half_width: f32) -> f32 {
+    return 1.0 - smoothstep(half_width - 0.5, half_width + 0.5, distance);
+}
+
+fn shade(base: vec3<f32>, normal: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
+    let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
+    let key = max(dot(normal, frame.key_light.xyz), 0.0);
+    let fill = 0.5 + 0.5 * dot(normal, frame.fill_light.xyz);
+    let half_way = normalize(frame.key_light.xyz + to_eye);
+    let gloss = pow(max(dot(normal, half_way), 0.0), 48.0) * 0.12;
+    return base * (0.72 * key + 0.26 * fill + 0.05) + vec3<f32>(gloss);
+}
+
+@fragment
+fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    // Derivatives and samples first: both need uniform control flow.
+    let to_edges = pixels_to_zero(in.domain);
+    let to_sides = pixels_to_zero(in.corner);
+    let texel = textureSample(base_texture, base_sampler, in.uv);
+    var base = material.base_color.rgb * texel.rgb;
+    if (frame.overlays & OVERLAY_BARYCENTRIC) != 0u {
+        base = pow(clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0)), vec3<f32>(2.2));
+    }
+    let normal = normalize(select(-in.normal, in.normal, front));
+    var color = shade(base, normal, in.position);
+    if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
+        let nearest = min(min(to_sides.x, to_sides.y), to_sides.z);
+        color = mix(color, vec3<f32>(0.008, 0.010, 0.014), 0.75 * line_coverage(nearest, 0.5));
+    }
+    let nearest_edge = min(min(to_edges.x, to_edges.y), to_edges.z);
+    if (frame.overlays & OVERLAY_PATCHES) != 0u {
+        color = mix(color, vec3<f32>(0.93, 0.94, 0.96), line_coverage(nearest_edge, 0.9));
+    }
+    if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
+        var kind = in.edge_kinds.z;
+        if to_edges.x <= nearest_edge {
+            kind = in.edge_kinds.x;
+        } else if to_edges.y <= nearest_edge {
+            kind = in.edge_kinds.y;
+        }
+        color = mix(color, edge_color(kind), line_coverage(nearest_edge, 1.75));
+    }
+    return vec4<f32>(color, 1.0);
+}

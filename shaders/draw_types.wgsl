@@ -1,0 +1,24 @@
+// What the draws share. Twin: src/render/layout.rs.
+
+struct Frame {
+    clip_from_object: mat4x4<f32>,
+    // Unit directions in object space, towards the lights that travel with the camera.
+    key_light: vec4<f32>,
+    fill_light: vec4<f32>,
+    // The eye's position (w = 1), or the direction towards it when the projection is orthographic (w = 0).
+    eye: vec4<f32>,
+    // Width and height in px.
+    viewport: vec2<f32>,
+    // Bits of OVERLAY_*.
+    overlays: u32,
+}
+
+struct Material {
+    // Linear RGBA.
+    base_color: vec4<f32>,
+}
+
+const OVERLAY_WIREFRAME: u32 = 1u;
+const OVERLAY_PATCHES: u32 = 2u;
+const OVERLAY_BARYCENTRIC: u32 = 4u;
+const OVERLAY_ADJACENCY: u32 = 8u;

@@ -1,0 +1,31 @@
+// How many segments an edge gets. Twin: src/tessellate/lod.rs.
+
+const LOD_UNIFORM: u32 = 0u;
+const LOD_PAPER: u32 = 1u;
+
+struct LodView {
+    clip_from_object: mat4x4<f32>,
+    half_viewport: vec2<f32>,
+}
+
+// Divides by w as the paper does, so points behind the eye land on the wrong side.
+fn project_and_scale(view: LodView, pixels_per_segment: f32, position: vec3<f32>) -> vec2<f32> {
+    let clip = view.clip_from_object * vec4<f32>(position, 1.0);
+    return clip.xy / clip.w * view.half_viewport / pixels_per_segment;
+}
+
+// ComputeEdgeLOD of the PN-AEN white paper, in the edge's own direction.
+fn paper_edge_factor(
+    view: LodView,
+    pixels_per_segment: f32,
+    a: vec3<f32>,
+    ab: vec3<f32>,
+    ba: vec3<f32>,
+    b: vec3<f32>,
+) -> f32 {
+    let pa = project_and_scale(view, pixels_per_segment, a);
+    let pab = project_and_scale(view, pixels_per_segment, ab);
+    let pba = project_and_scale(view, pixels_per_segment, ba);
+    let pb = project_and_scale(view, pixels_per_segment, b);
+    return max(distance(pa, pab) + distance(pab, pba) + distance(pba, pb), 1.0);
+}

@@ -1,0 +1,59 @@
+// Cuts a slab into chunks of patches that fit the arena, and writes the indirect arguments of every later pass.
+
+@group(0) @binding(0) var<uniform> slab: Slab;
+@group(0) @binding(1) var<storage, read> offsets: array<vec2<u32>>;
+@group(0) @binding(2) var<storage, read> material_patches: array<vec2<u32>>;
+@group(0) @binding(3) var<storage, read_write> chunks: array<Chunk>;
+@group(0) @binding(4) var<storage, read_write> emit_args: array<EmitArgs>;
+@group(0) @binding(5) var<storage, read_write> draw_args: array<DrawArgs>;
+
+// The last patch boundary (from the slab's start) up to which everything from `first` on fits the arena.
+fn chunk_end(first: u32) -> u32 {
+    let base = offsets[first];
+    var low = first;
+    var high = slab.patch_count;
+    while low < high {
+        let middle = (low + high + 1u) / 2u;
+        let size = offsets[middle] - base;
+        if size.x <= slab.vertex_capacity && size.y <= slab.triangle_capacity {
+            low = middle;
+        } else {
+            high = middle - 1u;
+        }
+    }
+    return low;
+}
+
+fn write_chunk(index: u32, first: u32, end: u32) {
+    let base = offsets[first];
+    let size = offsets[end] - base;
+    chunks[index] = Chunk(slab.first_patch + first, slab.first_patch + end, base.x, base.y, size.x, size.y);
+    emit_args[index] = EmitArgs(grid(size.x), grid(size.y));
+}
+
+fn write_draw(chunk_index: u32, material: u32) {
+    let chunk = chunks[chunk_index];
+    let range = material_patches[material];
+    let first = clamp(range.x, chunk.first_patch, chunk.patch_end) - slab.first_patch;
+    let end = max(clamp(range.y, chunk.first_patch, chunk.patch_end) - slab.first_patch, first);
+    let first_index = (offsets[first].y - chunk.first_triangle) * 3u;
+    let count = (offsets[end].y - offsets[first].y) * 3u;
+    let index = chunk_index * slab.material_count + material;
+    draw_args[index] = DrawArgs(count, 1u, first_index, 0, 0u, count, 1u, first_index, 0u);
+}
+
+@compute @workgroup_size(256)
+fn chunks_main(@builtin(local_invocation_index) local: u32) {
+    if local == 0u {
+        var first = 0u;
+        for (var index = 0u; index < slab.chunk_capacity; index++) {
+            let end = chunk_end(first);
+            write_chunk(index, first, end);
+            first = end;
+        }
+    }
+    storageBarrier();
+    for (var i = local; i < slab.chunk_capacity * slab.material_count; i += WORKGROUP) {
+        write_draw(i / slab.material_count, i % slab.material_count);
+    }
+}

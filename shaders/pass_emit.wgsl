@@ -1,0 +1,131 @@
+// The domain shader and the tessellator's output of one chunk: a vertex an invocation, a triangle an invocation.
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<uniform> slab: Slab;
+@group(0) @binding(2) var<storage, read> chunks: array<Chunk>;
+@group(0) @binding(3) var<storage, read> offsets: array<vec2<u32>>;
+@group(0) @binding(4) var<storage, read> patch_factors: array<PatchFactors>;
+@group(0) @binding(5) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> patches: array<Patch>;
+@group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
+@group(0) @binding(8) var<storage, read> centers: array<vec4<f32>>;
+@group(0) @binding(9) var<storage, read_write> vertices: array<Vertex>;
+@group(0) @binding(10) var<storage, read_write> indices: array<u32>;
+@group(1) @binding(0) var<uniform> chunk_index: u32;
+
+// Entry of `offsets` (from the slab's start) whose patch emits item `item`, in [low, high). Component 0 counts
+// vertices, 1 triangles. Patches that emit nothing are skipped.
+fn find_patch(component: u32, item: u32, first: u32, end: u32) -> u32 {
+    var low = first;
+    var high = end;
+    while low + 1u < high {
+        let middle = (low + high) / 2u;
+        if offsets[middle][component] <= item {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+// The patches of a workgroup's first and last item bound every other item's search.
+var<workgroup> bounds: array<u32, 2>;
+
+fn find_patch_in_workgroup(component: u32, item: u32, first_item: u32, last_item: u32, local: u32) -> u32 {
+    let chunk = chunks[chunk_index];
+    let first = chunk.first_patch - slab.first_patch;
+    let end = chunk.patch_end - slab.first_patch;
+    if local < 2u {
+        bounds[local] = find_patch(component, select(first_item, last_item, local == 1u), first, end);
+    }
+    workgroupBarrier();
+    return find_patch(component, item, bounds[0], bounds[1] + 1u);
+}
+
+// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; side 3 is the inside.
+struct Place {
+    side: u32,
+    t: u32,
+}
+
+fn place(u: u32, v: u32) -> Place {
+    let w = FIXED_ONE - u - v;
+    if w == 0u {
+        return Place(0u, v);
+    }
+    if u == 0u {
+        return Place(1u, w);
+    }
+    if v == 0u {
+        return Place(2u, u);
+    }
+    return Place(3u, 0u);
+}
+
+fn rim_position(patch_index: u32, side: u32, t: u32) -> vec3<f32> {
+    if t == 0u {
+        return points[patches[patch_index].points[side]].xyz;
+    }
+    if t == FIXED_ONE {
+        return points[patches[patch_index].points[(side + 1u) % 3u]].xyz;
+    }
+    let curve = patches[patch_index].curves[side];
+    let reversed = (curve & 1u) == 1u;
+    let start = patches[patch_index].points[side];
+    let end = patches[patch_index].points[(side + 1u) % 3u];
+    let a = points[select(start, end, reversed)].xyz;
+    let b = points[select(end, start, reversed)].xyz;
+    let net = curve_nets[curve >> 1u];
+    return edge_position(params.surface, a, net.ab, net.ba, b, select(t, FIXED_ONE - t, reversed));
+}
+
+@compute @workgroup_size(256)
+fn emit_vertices_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let chunk = chunks[chunk_index];
+    let first = grid_index(workgroup, workgroups, 0u);
+    let index = first + local;
+    let item = chunk.first_vertex + index;
+    let last = chunk.first_vertex + min(first + WORKGROUP, chunk.vertex_count) - 1u;
+    let entry = find_patch_in_workgroup(0u, min(item, last), chunk.first_vertex + first, last, local);
+    if index >= chunk.vertex_count {
+        return;
+    }
+    let patch_index = slab.first_patch + entry;
+    let uv = domain_point(patch_factors[entry], item - offsets[entry].x);
+    let at = place(uv.x, uv.y);
+    var position: vec3<f32>;
+    if at.side == 3u {
+        position = patch_position(params.surface, load_net(patch_index), uv.x, uv.y);
+    } else {
+        position = rim_position(patch_index, at.side, at.t);
+    }
+    let key = pack_key(patch_index, uv.x, uv.y);
+    vertices[index] = Vertex(position.x, position.y, position.z, key.x, key.y);
+}
+
+@compute @workgroup_size(256)
+fn emit_triangles_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let chunk = chunks[chunk_index];
+    let first = grid_index(workgroup, workgroups, 0u);
+    let index = first + local;
+    let item = chunk.first_triangle + index;
+    let last = chunk.first_triangle + min(first + WORKGROUP, chunk.triangle_count) - 1u;
+    let entry = find_patch_in_workgroup(1u, min(item, last), chunk.first_triangle + first, last, local);
+    if index >= chunk.triangle_count {
+        return;
+    }
+    let corners = domain_triangle(patch_factors[entry], item - offsets[entry].y);
+    let base = offsets[entry].x - chunk.first_vertex;
+    indices[3u * index] = base + corners.x;
+    indices[3u * index + 1u] = base + corners.y;
+    indices[3u * index + 2u] = base + corners.z;
+}

@@ -1,0 +1,62 @@
+// Once a mesh and surface: the control points of every curve, then of every patch's centre.
+
+@group(0) @binding(0) var<uniform> params: Params;
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> corners: array<Corner>;
+@group(0) @binding(3) var<storage, read> curves: array<Curve>;
+@group(0) @binding(4) var<storage, read> curve_sides: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read> patches: array<Patch>;
+@group(0) @binding(6) var<storage, read_write> curve_nets: array<CurveNet>;
+@group(0) @binding(7) var<storage, read_write> centers: array<vec4<f32>>;
+
+@compute @workgroup_size(256)
+fn curve_nets_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index >= params.curve_count {
+        return;
+    }
+    let curve = curves[index];
+    let a = points[curve.points[0]].xyz;
+    let b = points[curve.points[1]].xyz;
+    if params.surface == SURFACE_FLAT {
+        curve_nets[index] = CurveNet(straight_control_point(a, b), straight_control_point(b, a));
+        return;
+    }
+    // The mean over the curve's sides of each side's own proposal.
+    var ab = vec3<f32>(0.0);
+    var ba = vec3<f32>(0.0);
+    for (var i = 0u; i < curve.side_count; i++) {
+        let side = curve_sides[curve.first_side + i];
+        ab += edge_control_point(a, b, corners[side.x].normal);
+        ba += edge_control_point(b, a, corners[side.y].normal);
+    }
+    let share = 1.0 / f32(curve.side_count);
+    curve_nets[index] = CurveNet(ab * share, ba * share);
+}
+
+@compute @workgroup_size(256)
+fn centers_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index >= params.patch_count {
+        return;
+    }
+    var net_corners: array<vec3<f32>, 3>;
+    var net_edges: array<vec3<f32>, 6>;
+    for (var k = 0u; k < 3u; k++) {
+        let curve = patches[index].curves[k];
+        let net = curve_nets[curve >> 1u];
+        let reversed = (curve & 1u) == 1u;
+        net_corners[k] = points[patches[index].points[k]].xyz;
+        net_edges[2u * k] = select(net.ab, net.ba, reversed);
+        net_edges[2u * k + 1u] = select(net.ba, net.ab, reversed);
+    }
+    centers[index] = vec4<f32>(center_control_point(net_corners, net_edges), 0.0);
+}

@@ -1,0 +1,117 @@
+// What the passes share. Twin: src/gpu/layout.rs, field by field; a test compares sizes and offsets.
+
+// Settings and view of one tessellation.
+struct Params {
+    view: LodView,
+    factor: f32,
+    pixels_per_segment: f32,
+    surface: u32,
+    partitioning: u32,
+    lod: u32,
+    clip: u32,
+    patch_count: u32,
+    edge_count: u32,
+    curve_count: u32,
+}
+
+// The run of patches that one scan covers, and what the arena holds.
+struct Slab {
+    first_patch: u32,
+    patch_count: u32,
+    vertex_capacity: u32,
+    triangle_capacity: u32,
+    chunk_capacity: u32,
+    material_count: u32,
+}
+
+// An input triangle. Side k runs from corner k to corner k + 1.
+struct Patch {
+    points: array<u32, 3>,
+    corners: array<u32, 3>,
+    // Curve of side k, times 2, plus 1 where the side runs against its edge's direction.
+    curves: array<u32, 3>,
+    // Edge of side k, times 8, plus its kind.
+    edges: array<u32, 3>,
+}
+
+struct Corner {
+    normal: vec3<f32>,
+    uv: vec2<f32>,
+}
+
+// What a set of an edge's sides share: end points in the edge's direction, and those sides.
+struct Curve {
+    points: array<u32, 2>,
+    first_side: u32,
+    side_count: u32,
+}
+
+// Control points of a curve: near its start and near its end.
+struct CurveNet {
+    ab: vec3<f32>,
+    ba: vec3<f32>,
+}
+
+// A vertex as it is drawn: position, then patch and domain coordinates packed in 64 bits.
+struct Vertex {
+    x: f32,
+    y: f32,
+    z: f32,
+    key0: u32,
+    key1: u32,
+}
+
+// Patches that go through the arena together. `first_vertex` and `first_triangle` count from the slab's start.
+struct Chunk {
+    first_patch: u32,
+    patch_end: u32,
+    first_vertex: u32,
+    first_triangle: u32,
+    vertex_count: u32,
+    triangle_count: u32,
+}
+
+// Indirect arguments of a chunk's two emit dispatches.
+struct EmitArgs {
+    vertices: array<u32, 3>,
+    triangles: array<u32, 3>,
+}
+
+// Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices one corner at a time.
+struct DrawArgs {
+    index_count: u32,
+    instance_count: u32,
+    first_index: u32,
+    base_vertex: i32,
+    first_instance: u32,
+    pull_vertex_count: u32,
+    pull_instance_count: u32,
+    pull_first_vertex: u32,
+    pull_first_instance: u32,
+}
+
+// U and V need 17 bits each; the patch gets the other 30.
+fn pack_key(patch_index: u32, u: u32, v: u32) -> vec2<u32> {
+    return vec2<u32>(u | (v << 17u), (v >> 15u) | (patch_index << 2u));
+}
+
+fn key_patch(key: vec2<u32>) -> u32 {
+    return key.y >> 2u;
+}
+
+fn key_uv(key: vec2<u32>) -> vec2<u32> {
+    return vec2<u32>(key.x & 0x1ffffu, (key.x >> 17u) | ((key.y & 3u) << 15u));
+}
+
+const WORKGROUP: u32 = 256u;
+
+// Work of any size as a grid within 65,535 workgroups a dimension; the index of an invocation in such a grid.
+fn grid(items: u32) -> array<u32, 3> {
+    let workgroups = (items + WORKGROUP - 1u) / WORKGROUP;
+    let x = min(workgroups, 32768u);
+    return array<u32, 3>(x, (workgroups + 32767u) / 32768u, 1u);
+}
+
+fn grid_index(workgroup: vec3<u32>, workgroups: vec3<u32>, local: u32) -> u32 {
+    return (workgroup.y * workgroups.x + workgroup.x) * WORKGROUP + local;
+}

@@ -1,0 +1,79 @@
+//! A mesh in the window, and its loading beside the window.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+use crate::engine::{self, Engine, Loaded};
+use crate::mesh::{EdgeCounts, LoadError, Progress, Source};
+use crate::render::Scene;
+use crate::settings::ARENA_BYTES;
+
+/// What is open.
+pub struct Document {
+    pub loaded: Loaded,
+    pub scene: Scene,
+    pub edges: EdgeCounts,
+    /// Tells one loaded document from the next, also of one file.
+    pub generation: u64,
+}
+
+/// A load under way; dropping it cancels it.
+pub struct Load {
+    pub source: Source,
+    /// Whether the camera stays where it is: the same mesh is loaded again.
+    pub keep_view: bool,
+    pub progress: Progress,
+    done: Receiver<Result<Document, Option<String>>>,
+}
+
+impl Load {
+    /// Loads on a thread of its own.
+    pub fn start(engine: &Engine, context: &egui::Context, source: Source, keep_view: bool) -> Self {
+        static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+        let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let (sender, done) = channel();
+        let progress = Progress::default();
+        let (engine, context) = (engine.clone(), context.clone());
+        let (wanted, own_progress) = (source.clone(), progress.clone());
+        std::thread::spawn(move || {
+            let result = load(&engine, &wanted, &own_progress, generation);
+            // Nobody is waiting any more if the load was replaced.
+            let _ = sender.send(result);
+            context.request_repaint();
+        });
+        Self { source, keep_view, progress, done }
+    }
+
+    /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
+    pub fn take(&mut self) -> Option<Result<Document, Option<String>>> {
+        match self.done.try_recv() {
+            Ok(result) => Some(result),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => {
+                let title = self.source.title();
+                Some(Err(Some(format!("{title}: loading it stopped unexpectedly; the file may be damaged"))))
+            }
+        }
+    }
+}
+
+impl Drop for Load {
+    fn drop(&mut self) {
+        self.progress.cancel();
+    }
+}
+
+fn load(
+    engine: &Engine,
+    source: &Source,
+    progress: &Progress,
+    generation: u64,
+) -> Result<Document, Option<String>> {
+    let loaded = match engine::load(source, progress) {
+        Ok(loaded) => loaded,
+        Err(LoadError::Cancelled(_)) => return Err(None),
+        Err(error) => return Err(Some(error.to_string())),
+    };
+    let scene = engine.scene(&loaded, ARENA_BYTES).map_err(|error| Some(error.to_string()))?;
+    let edges = loaded.topology.edge_counts();
+    Ok(Document { loaded, scene, edges, generation })
+}

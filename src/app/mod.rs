@@ -1,0 +1,245 @@
+//! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
+
+mod document;
+mod measuring;
+mod menu;
+mod panels;
+mod text;
+mod viewport;
+
+use std::sync::{Arc, Mutex};
+
+use thiserror::Error;
+
+use crate::engine::Engine;
+use crate::gpu::{Gpu, GpuError, device_descriptor};
+use crate::measure::Cracks;
+use crate::mesh::Source;
+use crate::render::Camera;
+use crate::settings::Settings;
+use crate::tessellate::LodView;
+
+use document::{Document, Load};
+use measuring::Measuring;
+use viewport::Viewport;
+
+#[derive(Debug, Error)]
+pub enum WindowError {
+    /// Why, in a few words.
+    #[error("no window could be opened ({0})")]
+    NoDisplay(String),
+}
+
+/// Opens the window on `source`, or on a cube made in code, and returns when it is closed.
+///
+/// # Errors
+/// There is no display, or none that a window can be drawn on.
+pub fn run(source: Option<Source>) -> Result<(), WindowError> {
+    if cfg!(target_os = "linux") && !["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some())
+    {
+        return Err(WindowError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".into()));
+    }
+    let options = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("pnaen")
+            .with_app_id("pnaen")
+            .with_inner_size([1400.0, 860.0])
+            .with_min_inner_size([760.0, 480.0]),
+        renderer: eframe::Renderer::Wgpu,
+        wgpu_options: wgpu_configuration(),
+        ..Default::default()
+    };
+    eframe::run_native("pnaen", options, Box::new(|context| Ok(Box::new(App::new(context, source)?))))
+        .map_err(|error| WindowError::NoDisplay(error.to_string()))
+}
+
+/// The device that egui draws with is the engine's own.
+fn wgpu_configuration() -> egui_wgpu::WgpuConfiguration {
+    let mut configuration = egui_wgpu::WgpuConfiguration::default();
+    if let egui_wgpu::WgpuSetup::CreateNew(new) = &mut configuration.wgpu_setup {
+        new.power_preference = wgpu::PowerPreference::HighPerformance;
+        new.device_descriptor = Arc::new(device_descriptor);
+    }
+    configuration
+}
+
+/// The window's state.
+pub struct App {
+    engine: Engine,
+    render_state: egui_wgpu::RenderState,
+    settings: Settings,
+    camera: Camera,
+    /// The view that LOD and clipping stay computed for, while frozen.
+    frozen: Option<LodView>,
+    document: Option<Document>,
+    load: Option<Load>,
+    dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
+    viewport: Viewport,
+    measuring: Measuring,
+    /// What is being typed as a path to open, while that window is open.
+    typed_path: Option<String>,
+    shows_keys: bool,
+    /// What went wrong last, until it is closed.
+    error: Option<String>,
+    device_errors: Arc<Mutex<Option<String>>>,
+}
+
+impl App {
+    /// # Errors
+    /// The window isn't drawn through wgpu.
+    pub fn new(context: &eframe::CreationContext, source: Option<Source>) -> Result<Self, GpuError> {
+        let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
+        let device_errors = watch_device(&render_state.device);
+        let gpu = Gpu::new(&render_state.adapter, render_state.device.clone(), render_state.queue.clone());
+        let engine = Engine::new(gpu);
+        menu::style(&context.egui_ctx);
+        let mut app = Self {
+            viewport: Viewport::new(&engine),
+            engine,
+            render_state,
+            settings: Settings::default(),
+            camera: Camera::framing(&Default::default()),
+            frozen: None,
+            document: None,
+            load: None,
+            dialog: None,
+            measuring: Measuring::default(),
+            typed_path: None,
+            shows_keys: false,
+            error: None,
+            device_errors,
+        };
+        app.settings.overlays.wireframe = true;
+        app.open(&context.egui_ctx, source.unwrap_or_default());
+        Ok(app)
+    }
+
+    /// Starts to load a mesh beside the window; a load that is under way is cancelled.
+    pub fn open(&mut self, context: &egui::Context, source: Source) {
+        let keep_view = self.document.as_ref().is_some_and(|document| document.loaded.source == source);
+        self.load = Some(Load::start(&self.engine, context, source, keep_view));
+    }
+
+    /// Loads the same mesh again; settings and camera stay.
+    pub fn reload(&mut self, context: &egui::Context) {
+        if let Some(source) = self.document.as_ref().map(|document| document.loaded.source.clone()) {
+            self.open(context, source);
+        }
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Cracks of what is shown, once they are measured.
+    pub fn cracks(&self) -> Option<&Cracks> {
+        self.measuring.cracks()
+    }
+
+    /// Vertices and triangles of what is shown.
+    pub fn totals(&self) -> Option<(u64, u64)> {
+        self.document.as_ref().map(|document| document.scene.tessellator.totals())
+    }
+
+    /// What is shown; not what is being loaded.
+    pub fn source(&self) -> Option<&Source> {
+        self.document.as_ref().map(|document| &document.loaded.source)
+    }
+
+    /// How many pictures have been drawn.
+    pub fn pictures(&self) -> u64 {
+        self.viewport.pictures()
+    }
+
+    /// Whether something is still being loaded, drawn or measured.
+    pub fn is_busy(&self) -> bool {
+        self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy()
+    }
+
+    fn take_loaded(&mut self) {
+        let Some(load) = &mut self.load else { return };
+        let Some(result) = load.take() else { return };
+        let keep_view = load.keep_view;
+        self.load = None;
+        match result {
+            Ok(document) => {
+                if !keep_view {
+                    self.camera.frame(&document.scene.bounds);
+                    self.frozen = None;
+                }
+                self.document = Some(document);
+                self.measuring = Measuring::default();
+                self.error = None;
+            }
+            Err(Some(error)) => self.error = Some(error),
+            // Cancelled by the person in front of the window, who knows.
+            Err(None) => {}
+        }
+    }
+
+    fn take_dialog(&mut self, context: &egui::Context) {
+        if let Some(path) = self.dialog.as_ref().map(std::sync::mpsc::Receiver::try_recv) {
+            match path {
+                Err(std::sync::mpsc::TryRecvError::Empty) => {}
+                Ok(Some(path)) => {
+                    self.dialog = None;
+                    self.open(context, Source::File(path));
+                }
+                Ok(None) | Err(_) => self.dialog = None,
+            }
+        }
+    }
+
+    fn take_device_errors(&mut self) {
+        // A thread that panicked while it held the lock leaves text that is still whole.
+        let mut error = self.device_errors.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(error) = error.take() {
+            self.error = Some(error);
+        }
+    }
+}
+
+/// Keeps what the device reports, in place of wgpu's own panic.
+fn watch_device(device: &wgpu::Device) -> Arc<Mutex<Option<String>>> {
+    let errors = Arc::new(Mutex::new(None));
+    let keep = |errors: &Arc<Mutex<Option<String>>>| {
+        let errors = errors.clone();
+        move |text: String| {
+            let mut kept = errors.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            kept.get_or_insert(text);
+        }
+    };
+    let uncaptured = keep(&errors);
+    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        uncaptured(format!("The graphics device refused a command: {error}"));
+    }));
+    let lost = keep(&errors);
+    device.set_device_lost_callback(move |reason, message| {
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            lost(format!("The graphics device was lost ({message}): restart pnaen"));
+        }
+    });
+    errors
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
+        self.take_loaded();
+        self.take_dialog(context);
+        self.take_device_errors();
+        let dropped = context.input(|input| input.raw.dropped_files.iter().find_map(|file| file.path.clone()));
+        if let Some(path) = dropped {
+            self.open(context, Source::File(path));
+        }
+        self.shortcuts(context);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        egui::Panel::top("menu").show(ui, |ui| self.menu_bar(ui));
+        egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
+        egui::Panel::left("settings").resizable(false).exact_size(272.0).show(ui, |ui| self.settings_panel(ui));
+        egui::Panel::right("facts").resizable(false).exact_size(252.0).show(ui, |ui| self.facts_panel(ui));
+        egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
+        self.windows(ui.ctx());
+    }
+}

@@ -1,0 +1,49 @@
+//! `pnaen adjacency`: PN-AEN's index buffer.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use super::{CliError, load, write_text};
+use crate::mesh::{Source, adjacency};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    pub file: Source,
+    /// Indices a patch: 9 (corners and the neighbours' corners), or 12 (and dominant corners)
+    #[arg(long, default_value_t = 9, value_parser = indices)]
+    pub indices: u32,
+    /// File to write, JSON (- for standard output)
+    #[arg(short, long, value_name = "OUT.json")]
+    pub output: PathBuf,
+}
+
+fn indices(text: &str) -> Result<u32, String> {
+    text.parse().ok().filter(|n| [9, 12].contains(n)).ok_or_else(|| "expected 9 or 12".into())
+}
+
+#[derive(Serialize)]
+struct Adjacency {
+    indices_per_patch: u32,
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    patches: Vec<Vec<u32>>,
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let loaded = load(&args.file)?;
+    let (corners, topology) = (&loaded.mesh.corners, &loaded.topology);
+    let patches = 0..topology.patches.len() as u32;
+    let adjacency = Adjacency {
+        indices_per_patch: args.indices,
+        positions: corners.iter().map(|c| c.position.to_array()).collect(),
+        normals: corners.iter().map(|c| c.normal.to_array()).collect(),
+        patches: match args.indices {
+            12 => patches.map(|p| adjacency::twelve(topology, p).to_vec()).collect(),
+            _ => patches.map(|p| adjacency::nine(topology, p).to_vec()).collect(),
+        },
+    };
+    let text = serde_json::to_string(&adjacency).map_err(|error| CliError::Output(error.into()))?;
+    write_text(&args.output, &(text + "\n"))
+}

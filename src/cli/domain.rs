@@ -1,0 +1,110 @@
+//! `pnaen domain`: the bare tessellator.
+
+use std::io::{BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::tessellate::Device;
+use super::{CliError, file_error};
+use crate::gpu::{DomainPattern, DomainPass, Gpu};
+use crate::tessellate::{Partitioning, domain_point, domain_triangle, point_count, process, triangle_count};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// How factors become segments: integer, pow2, fractional-odd or fractional-even
+    #[arg(long, value_name = "P")]
+    pub partitioning: Partitioning,
+    /// Factors of the edges where u, v and w are 0, and inside; also nan, inf, 0 and negatives
+    #[arg(
+        long,
+        value_name = "E0,E1,E2,INSIDE",
+        allow_hyphen_values = true,
+        value_parser = comma_set,
+        required_unless_present = "input",
+        conflicts_with = "input"
+    )]
+    pub factors: Option<FactorSet>,
+    /// File with a set of factors a line, separated by spaces (- for standard input)
+    #[arg(long, value_name = "FILE")]
+    pub input: Option<PathBuf>,
+    /// Where to compute; the CPU needs no graphics driver
+    #[arg(long, value_enum, default_value_t = Device::Gpu)]
+    pub device: Device,
+}
+
+/// Three edge factors and the inside factor.
+pub type FactorSet = [f32; 4];
+
+/// Sets that go to the GPU together.
+const BATCH: usize = 256;
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let (sets, numbered) = match (&args.input, args.factors) {
+        (Some(path), _) => (read_sets(path)?, true),
+        (None, set) => (set.into_iter().collect(), false),
+    };
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    let mut number = 0;
+    let mut write = |pattern: &DomainPattern| {
+        let prefix = if numbered { format!("{number},") } else { String::new() };
+        number += 1;
+        write_pattern(&mut out, &prefix, pattern).map_err(CliError::Output)
+    };
+    match args.device {
+        Device::Cpu => sets.iter().try_for_each(|set| write(&on_cpu(args.partitioning, set)))?,
+        Device::Gpu => {
+            let gpu = Gpu::headless()?;
+            let pass = DomainPass::new(&gpu);
+            for batch in sets.chunks(BATCH) {
+                pass.run(&gpu, args.partitioning, batch)?.iter().try_for_each(&mut write)?;
+            }
+        }
+    }
+    out.flush().map_err(CliError::Output)
+}
+
+fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &FactorSet) -> DomainPattern {
+    let factors = process(partitioning, [e0, e1, e2], inside);
+    DomainPattern {
+        points: (0..point_count(factors)).map(|i| domain_point(factors, i)).collect(),
+        triangles: (0..triangle_count(factors)).map(|t| domain_triangle(factors, t)).collect(),
+    }
+}
+
+fn write_pattern(out: &mut impl Write, prefix: &str, pattern: &DomainPattern) -> std::io::Result<()> {
+    for (index, [u, v]) in pattern.points.iter().enumerate() {
+        writeln!(out, "{prefix}point,{index},{u},{v}")?;
+    }
+    for [a, b, c] in &pattern.triangles {
+        writeln!(out, "{prefix}triangle,{a},{b},{c}")?;
+    }
+    Ok(())
+}
+
+fn comma_set(text: &str) -> Result<FactorSet, String> {
+    factor_set(text.split(',')).ok_or_else(|| "expected four numbers, such as 3,2.5,inf,4".into())
+}
+
+fn factor_set<'a>(numbers: impl Iterator<Item = &'a str>) -> Option<FactorSet> {
+    let numbers: Option<Vec<f32>> = numbers.map(|number| number.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
+/// The sets of a file, one a line; empty lines are passed over.
+fn read_sets(path: &Path) -> Result<Vec<FactorSet>, CliError> {
+    let mut text = String::new();
+    let read = if path.as_os_str() == "-" {
+        std::io::stdin().read_to_string(&mut text)
+    } else {
+        std::fs::File::open(path).and_then(|mut file| file.read_to_string(&mut text))
+    };
+    read.map_err(|error| file_error(path, "read", &error))?;
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let set = |(index, line): (usize, &str)| {
+        factor_set(line.split_whitespace()).ok_or_else(|| CliError::Line {
+            path: path.display().to_string(),
+            line: index + 1,
+            reason: "expected four numbers separated by spaces, such as 3 2.5 inf 4".into(),
+        })
+    };
+    lines.map(set).collect()
+}

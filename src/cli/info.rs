@@ -1,0 +1,20 @@
+//! `pnaen info`: what a file holds.
+
+use super::{CliError, load, to_json, write_text};
+use crate::mesh::{Info, Source};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    pub file: Source,
+    /// As JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let loaded = load(&args.file)?;
+    let info = Info::of(&loaded.mesh, &loaded.topology);
+    let text = if args.json { to_json(&info)? } else { info.to_string() };
+    write_text("-".as_ref(), &text)
+}

@@ -1,0 +1,126 @@
+//! The commands: no window, no display. One file a command; this one reads the command line and says what went wrong.
+
+mod adjacency;
+mod domain;
+mod info;
+mod options;
+mod render;
+mod tessellate;
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use thiserror::Error;
+
+pub use options::SurfaceOptions;
+
+use crate::export::ExportError;
+use crate::gpu::GpuError;
+use crate::measure::CompareError;
+use crate::mesh::{LoadError, Source};
+
+/// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
+#[derive(Debug, Parser)]
+#[command(version, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// What the window opens on: a .gltf or .glb file, or a shape made in code such as shape:cube-split
+    pub file: Option<Source>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw the picture that the window shows, into a PNG file
+    Render(render::Args),
+    /// Write the tessellated mesh
+    Tessellate(tessellate::Args),
+    /// Print the tessellator's domain points and triangles for given factors
+    Domain(domain::Args),
+    /// Write the index buffer of PN-AEN patches
+    Adjacency(adjacency::Args),
+    /// Say what a file holds, and what of it was left out
+    Info(info::Args),
+}
+
+/// Why a command failed, in one sentence.
+#[derive(Debug, Error)]
+pub enum CliError {
+    #[error(transparent)]
+    Load(#[from] LoadError),
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    #[error("{path}: could not be {doing} ({reason})")]
+    File { path: String, doing: &'static str, reason: String },
+    #[error("{reference}: {reason}")]
+    Reference { reference: String, reason: CompareError },
+    #[error(
+        "{picture} differs from {reference} by {difference:.4}, more than {threshold}: see {diff}, where the differences are bright"
+    )]
+    Different { picture: String, reference: String, difference: f64, threshold: f64, diff: String },
+    #[error("{path}, line {line}: {reason}")]
+    Line { path: String, line: usize, reason: String },
+    #[error("the output could not be written: {0}")]
+    Output(std::io::Error),
+}
+
+/// Runs a command. A closed pipe is no failure: whoever reads has seen enough.
+pub fn run(command: Command) -> ExitCode {
+    let result = match command {
+        Command::Render(args) => render::run(&args),
+        Command::Tessellate(args) => tessellate::run(&args),
+        Command::Domain(args) => domain::run(&args),
+        Command::Adjacency(args) => adjacency::run(&args),
+        Command::Info(args) => info::run(&args),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => fail(&error),
+    }
+}
+
+/// Says what went wrong on standard error; the exit code of a failure.
+pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
+    // Standard error may be closed too; then there is nobody to tell.
+    let _ = writeln!(std::io::stderr(), "pnaen: {error}");
+    ExitCode::FAILURE
+}
+
+/// Writes the picture that the window would have shown, for machines without a display.
+pub fn preview(source: Option<Source>, path: &Path) -> Result<(), CliError> {
+    let source = source.unwrap_or_default();
+    render::run(&render::Args::preview(source, path))
+}
+
+/// Writes a whole text, to standard output if the path is `-`.
+fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
+    if path.as_os_str() == "-" {
+        let mut out = std::io::stdout().lock();
+        return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(CliError::Output);
+    }
+    crate::export::write_whole(path, text.as_bytes()).map_err(|error| file_error(path, "written", &error))
+}
+
+/// Serialised on several lines, with a line end.
+fn to_json(value: &impl serde::Serialize) -> Result<String, CliError> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| CliError::Output(error.into()))?;
+    Ok(text + "\n")
+}
+
+fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) -> CliError {
+    CliError::File { path: path.display().to_string(), doing, reason: reason.to_string() }
+}
+
+/// Loads a mesh for a command, saying on standard error what was left out or repaired.
+fn load(source: &Source) -> Result<crate::engine::Loaded, CliError> {
+    let loaded = crate::engine::load(source, &crate::mesh::Progress::default())?;
+    for warning in &loaded.mesh.warnings {
+        let _ = writeln!(std::io::stderr(), "pnaen: warning: {warning}");
+    }
+    Ok(loaded)
+}

@@ -1,0 +1,154 @@
+//! Options that several commands share, and how their values are read.
+
+use std::str::FromStr;
+
+use clap::Args;
+use glam::Vec2;
+
+use crate::mesh::Bounds;
+use crate::render::Camera;
+use crate::settings::{FACTOR_RANGE, PIXELS_RANGE, Settings};
+use crate::tessellate::{Clip, Lod, Partitioning, Surface};
+
+/// What is tessellated how, and seen from where.
+#[derive(Clone, Debug, Args)]
+pub struct SurfaceOptions {
+    /// Surface that each triangle becomes
+    #[arg(long, value_enum, default_value_t = Settings::default().surface)]
+    pub surface: Surface,
+    /// Tessellation factor under uniform LOD, 1 to 64
+    #[arg(long, value_name = "F", default_value_t = Settings::default().factor, value_parser = factor)]
+    pub factor: f32,
+    /// How factors become segments: integer, pow2, fractional-odd or fractional-even
+    #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning)]
+    pub partitioning: Partitioning,
+    /// Where factors come from: the same everywhere, or the white paper's projected length of an edge's control polygon
+    #[arg(long, value_enum, default_value_t = Settings::default().lod)]
+    pub lod: Lod,
+    /// Length of a segment on screen under --lod paper, in px, 1 to 256
+    #[arg(long, value_name = "P", default_value_t = Settings::default().pixels, value_parser = pixels)]
+    pub pixels: f32,
+    /// Whether patches out of view are left out: never, or by the white paper's test
+    #[arg(long, value_enum, default_value_t = Settings::default().clip)]
+    pub clip: Clip,
+    /// Width and height of the view, in px
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    pub size: Size,
+    /// Degrees from the front to the right, degrees upwards, and how far from the middle in bounding radii (by default as
+    /// far as shows all)
+    #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
+    pub camera: CameraOption,
+}
+
+impl SurfaceOptions {
+    /// Settings with these options, and nothing over the surface.
+    pub fn settings(&self) -> Settings {
+        let Self { surface, factor, partitioning, lod, pixels, clip, .. } = *self;
+        Settings { surface, factor, partitioning, lod, pixels, clip, ..Settings::default() }
+    }
+
+    pub fn camera(&self, bounds: &Bounds) -> Camera {
+        let mut camera = Camera::framing(bounds);
+        (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
+        if let Some(radii) = self.camera.distance {
+            camera.distance = radii * bounds.radius();
+        }
+        camera
+    }
+
+    /// Width and height in px.
+    pub fn viewport(&self) -> Vec2 {
+        Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
+    }
+}
+
+/// Width and height in px.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
+        let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+        sides.map(Self).ok_or_else(|| "expected WIDTHxHEIGHT in px, each from 1 to 16384, such as 1280x720".into())
+    }
+}
+
+/// Where one looks from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraOption {
+    /// Degrees.
+    pub azimuth: f32,
+    pub elevation: f32,
+    /// Bounding radii.
+    pub distance: Option<f32>,
+}
+
+impl FromStr for CameraOption {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f32>> =
+            text.split(',').map(|number| number.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
+        match numbers.as_deref() {
+            Some(&[azimuth, elevation]) => Ok(Self { azimuth, elevation, distance: None }),
+            Some(&[azimuth, elevation, distance]) if distance > 0.0 => {
+                Ok(Self { azimuth, elevation, distance: Some(distance) })
+            }
+            _ => Err("expected AZIMUTH,ELEVATION in degrees and perhaps a DISTANCE above 0 in bounding radii, such as 30,20,2.5".into()),
+        }
+    }
+}
+
+/// An sRGB colour as RRGGBB.
+pub fn color(text: &str) -> Result<[u8; 3], String> {
+    let digits = text.strip_prefix('#').unwrap_or(text);
+    let value = (digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
+        .then(|| u32::from_str_radix(digits, 16).ok())
+        .flatten();
+    let [_, r, g, b] = value.ok_or("expected six hexadecimal digits, such as 2b2e33")?.to_be_bytes();
+    Ok([r, g, b])
+}
+
+/// A fraction from 0 to 1.
+pub fn fraction(text: &str) -> Result<f32, String> {
+    within(text, 0.0..=1.0)
+}
+
+fn factor(text: &str) -> Result<f32, String> {
+    within(text, FACTOR_RANGE)
+}
+
+fn pixels(text: &str) -> Result<f32, String> {
+    within(text, PIXELS_RANGE)
+}
+
+fn within(text: &str, range: std::ops::RangeInclusive<f32>) -> Result<f32, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("expected a number from {} to {}", range.start(), range.end()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_colors_and_cameras_are_read_or_refused() {
+        assert_eq!("640x480".parse(), Ok(Size([640, 480])));
+        for bad in ["640", "0x10", "640x", "-1x5", "99999x5"] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+        assert_eq!(color("#ff8000"), Ok([255, 128, 0]));
+        for bad in ["", "12345", "1234567", "gggggg", "+12345"] {
+            assert!(color(bad).is_err(), "{bad}");
+        }
+        let camera = CameraOption { azimuth: -10.0, elevation: 5.5, distance: Some(2.0) };
+        assert_eq!("-10, 5.5,2".parse(), Ok(camera));
+        for bad in ["1", "1,2,0", "1,2,3,4", "nan,0", "a,b"] {
+            assert!(bad.parse::<CameraOption>().is_err(), "{bad}");
+        }
+        assert!(factor("nan").is_err() && factor("65").is_err() && factor("0.5").is_err() && factor("64").is_ok());
+    }
+}

@@ -1,0 +1,223 @@
+//! `pnaen render`: the window's picture, without the window.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::{CliError, SurfaceOptions, file_error, load, options, to_json, write_text};
+use crate::engine::{Engine, Loaded, Measured};
+use crate::gpu::{PassTime, Timing};
+use crate::measure::{compare, ulp};
+use crate::mesh::{EdgeCounts, Source};
+use crate::render::{Camera, Scene, Target};
+use crate::settings::{ARENA_BYTES, Overlay, Settings};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    pub file: Source,
+    /// Picture to write, a PNG file
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub surface: SurfaceOptions,
+    /// What is drawn over the surface
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "OVERLAY,..")]
+    pub overlay: Vec<Overlay>,
+    /// Left of this fraction of the width, show the mesh untessellated
+    #[arg(long, value_name = "FRACTION", value_parser = options::fraction)]
+    pub split: Option<f32>,
+    /// sRGB colour behind the mesh
+    #[arg(long, value_name = "RRGGBB", default_value = "2b2e33", value_parser = options::color)]
+    pub background: [u8; 3],
+    /// Write what was done, and how long it took, as JSON (- for standard output)
+    #[arg(long, value_name = "FILE")]
+    pub stats: Option<PathBuf>,
+    /// Fail if the picture differs from this one by more than the threshold, and write the difference beside it
+    #[arg(long, value_name = "PNG")]
+    pub reference: Option<PathBuf>,
+    /// Difference that is still the same picture: 0 is none, 1 is all (1 minus structural similarity)
+    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::fraction)]
+    pub threshold: f32,
+}
+
+impl Args {
+    /// What the window shows when it opens.
+    pub fn preview(file: Source, output: &Path) -> Self {
+        let Settings { background, .. } = Settings::default();
+        Self {
+            file,
+            output: output.to_owned(),
+            surface: default_surface_options(),
+            overlay: vec![Overlay::Wireframe],
+            split: None,
+            background,
+            stats: None,
+            reference: None,
+            threshold: 0.01,
+        }
+    }
+
+    fn settings(&self) -> Settings {
+        Settings {
+            overlays: self.overlay.iter().copied().collect(),
+            split: self.split,
+            background: self.background,
+            ..self.surface.settings()
+        }
+    }
+}
+
+fn default_surface_options() -> SurfaceOptions {
+    let Settings { surface, factor, partitioning, lod, pixels, clip, .. } = Settings::default();
+    let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
+    SurfaceOptions { surface, factor, partitioning, lod, pixels, clip, size: options::Size([1280, 720]), camera }
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let loaded = load(&args.file)?;
+    let engine = Engine::headless()?;
+    let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
+    let target = Target::new(&engine.gpu, args.surface.size.0)?;
+    let camera = args.surface.camera(&scene.bounds);
+    let settings = args.settings();
+
+    let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+    engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+    let measured = if settings.overlays.cracks || args.stats.is_some() {
+        let measured = engine.measure(&mut scene)?;
+        scene.set_lines(&engine.gpu, &measured.cracks.lines());
+        Some(measured)
+    } else {
+        None
+    };
+    engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;
+    let picture = target.read(&engine.gpu)?;
+    write_picture(&args.output, &picture.clone().into())?;
+
+    if let (Some(path), Some(measured)) = (&args.stats, measured) {
+        let passes = engine.time(&mut scene, &target, &camera, &settings)?;
+        let stats = Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes);
+        write_text(path, &to_json(&stats)?)?;
+    }
+    match &args.reference {
+        Some(reference) => hold_against(args, &picture, reference),
+        None => Ok(()),
+    }
+}
+
+fn hold_against(args: &Args, picture: &image::RgbaImage, path: &Path) -> Result<(), CliError> {
+    let reference = image::open(path).map_err(|error| file_error(path, "read", &error))?.to_rgba8();
+    let comparison = compare(picture, &reference)
+        .map_err(|reason| CliError::Reference { reference: path.display().to_string(), reason })?;
+    let threshold = f64::from(args.threshold);
+    if comparison.difference <= threshold {
+        return Ok(());
+    }
+    let mut name = args.output.file_stem().unwrap_or_default().to_owned();
+    name.push("-diff.png");
+    let diff = args.output.with_file_name(name);
+    write_picture(&diff, &comparison.map.into())?;
+    Err(CliError::Different {
+        picture: args.output.display().to_string(),
+        reference: path.display().to_string(),
+        difference: comparison.difference,
+        threshold,
+        diff: diff.display().to_string(),
+    })
+}
+
+/// Writes a PNG file, whatever its name ends in.
+fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let encoded = picture.write_to(&mut png, image::ImageFormat::Png);
+    encoded.map_err(|error| file_error(path, "encoded", &error))?;
+    crate::export::write_whole(path, png.get_ref()).map_err(|error| file_error(path, "written", &error))
+}
+
+/// What was done and what it cost. Times are medians in ms.
+#[derive(Debug, Serialize)]
+struct Stats {
+    adapter: String,
+    triangles_in: u64,
+    points: u64,
+    corners: u64,
+    edges: EdgeCounts,
+    degenerate: u32,
+    patches: u64,
+    patches_culled: u32,
+    triangles_out: u64,
+    vertices_out: u64,
+    bytes: Bytes,
+    cracks: CrackStats,
+    ms: BTreeMap<&'static str, f64>,
+}
+
+/// Memory, in bytes.
+#[derive(Debug, Serialize)]
+struct Bytes {
+    /// Corners and triangles as loaded.
+    input: u64,
+    /// Points, patches, edges, nets, factors and counts on the device.
+    topology: u64,
+    /// Output on the device.
+    arena: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct CrackStats {
+    edge_points: u64,
+    different_bits: u64,
+    /// Object units.
+    max_gap: f64,
+    /// In units of the last place of the mesh's largest coordinate.
+    max_gap_ulp: f64,
+    max_gap_px: f64,
+    edges: u64,
+}
+
+impl Stats {
+    fn new(
+        engine: &Engine,
+        loaded: &Loaded,
+        scene: &Scene,
+        measured: &Measured,
+        camera: &Camera,
+        target: &Target,
+        passes: &[PassTime],
+    ) -> Self {
+        let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+        let (vertices_out, triangles_out) = scene.tessellator.totals();
+        let cracks = &measured.cracks;
+        let viewport = target.viewport();
+        let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
+        ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
+        Self {
+            adapter: engine.gpu.info.name.clone(),
+            triangles_in: mesh.triangles.len() as u64,
+            points: topology.points.len() as u64,
+            corners: mesh.corners.len() as u64,
+            edges: topology.edge_counts(),
+            degenerate: topology.degenerate,
+            patches: topology.patches.len() as u64,
+            patches_culled: measured.patches_culled,
+            triangles_out,
+            vertices_out,
+            bytes: Bytes {
+                input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,
+                topology: scene.tessellator.buffers().bytes() + scene.tessellator.work_bytes(),
+                arena: scene.tessellator.arena_bytes(),
+            },
+            cracks: CrackStats {
+                edge_points: cracks.edge_points,
+                different_bits: cracks.different_bits,
+                max_gap: cracks.max_gap(),
+                max_gap_ulp: cracks.max_gap() / ulp(topology),
+                max_gap_px: cracks.max_gap_px(camera.clip_from_object(viewport, &scene.bounds), viewport),
+                edges: cracks.edges.len() as u64,
+            },
+            ms,
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! `pnaen tessellate`: the tessellated mesh as a file.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use super::{CliError, SurfaceOptions, load};
+use crate::engine::Engine;
+use crate::export::Exported;
+use crate::gpu::Timing;
+use crate::mesh::Source;
+use crate::settings::ARENA_BYTES;
+use crate::tessellate;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    pub file: Source,
+    /// Mesh to write, a .glb or .obj file
+    #[arg(short, long, value_name = "OUT.glb|OUT.obj")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub surface: SurfaceOptions,
+    /// Where to tessellate; the CPU needs no graphics driver
+    #[arg(long, value_enum, default_value_t = Device::Gpu)]
+    pub device: Device,
+}
+
+/// Where the mathematics runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Device {
+    Gpu,
+    Cpu,
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let loaded = load(&args.file)?;
+    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+    let bounds = mesh.bounds();
+    let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
+    let inputs = args.surface.settings().inputs(view);
+    let tessellated = match args.device {
+        Device::Cpu => tessellate::tessellate(mesh, topology, &inputs, None),
+        Device::Gpu => {
+            let engine = Engine::headless()?;
+            let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
+            engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+            engine.read_tessellated(&mut scene)?
+        }
+    };
+    Ok(Exported::new(mesh, topology, &tessellated).write(&args.output)?)
+}

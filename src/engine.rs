@@ -1,0 +1,225 @@
+//! The engine as both faces use it: a device with its pipelines, and what one does with a scene without a window.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::gpu::{
+    ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait,
+};
+use crate::measure::{Cracks, Rims};
+use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
+use crate::render::{Camera, Renderer, Scene, Target};
+use crate::settings::Settings;
+use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex};
+
+/// A mesh with its topology, and how long both took.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    pub source: Source,
+    pub mesh: Arc<Mesh>,
+    pub topology: Arc<Topology>,
+    pub load_ms: f64,
+    pub topology_ms: f64,
+}
+
+/// Reads a mesh and builds its topology. Needs no device.
+///
+/// # Errors
+/// What the file holds can't be shown, or `progress` was cancelled.
+pub fn load(source: &Source, progress: &Progress) -> Result<Loaded, LoadError> {
+    let start = Instant::now();
+    let mesh = source.load(progress)?;
+    let loaded = Instant::now();
+    let topology = Topology::build(&mesh, progress)?;
+    Ok(Loaded {
+        source: source.clone(),
+        mesh: Arc::new(mesh),
+        topology: Arc::new(topology),
+        load_ms: (loaded - start).as_secs_f64() * 1e3,
+        topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
+    })
+}
+
+/// A device with every pipeline compiled. Cheap to clone; clones share everything.
+#[derive(Clone)]
+pub struct Engine {
+    pub gpu: Gpu,
+    pub pipelines: Arc<ComputePipelines>,
+    pub renderer: Arc<Renderer>,
+}
+
+/// What was emitted for a view, measured.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    pub patches_culled: u32,
+    pub cracks: Cracks,
+}
+
+impl Engine {
+    pub fn new(gpu: Gpu) -> Self {
+        let pipelines = Arc::new(ComputePipelines::new(&gpu));
+        let renderer = Arc::new(Renderer::new(&gpu));
+        Self { gpu, pipelines, renderer }
+    }
+
+    /// An engine on the machine's best adapter, without a window.
+    ///
+    /// # Errors
+    /// No adapter.
+    pub fn headless() -> Result<Self, GpuError> {
+        Gpu::headless().map(Self::new)
+    }
+
+    /// Uploads a mesh. May run beside a window.
+    ///
+    /// # Errors
+    /// The mesh is larger than the adapter binds.
+    pub fn scene(&self, loaded: &Loaded, arena_bytes: u64) -> Result<Scene, GpuError> {
+        let (mesh, topology) = (loaded.mesh.clone(), loaded.topology.clone());
+        Scene::new(&self.gpu, &self.renderer, self.pipelines.clone(), mesh, topology, arena_bytes)
+    }
+
+    /// Runs the passes up to the counts and waits for them.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn count(&self, scene: &mut Scene, inputs: &Inputs, timing: &mut Timing) -> Result<(), GpuError> {
+        scene.tessellator.set(inputs)?;
+        if scene.tessellator.needs_count() {
+            let mut recorder = Recorder::new(&self.gpu, timing);
+            scene.tessellator.count(&mut recorder);
+            recorder.submit();
+            scene.tessellator.read_counts()?;
+        }
+        Ok(())
+    }
+
+    /// Tessellates for `lod_view` and draws from `camera`, waiting for the counts but not for the picture.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn draw(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+        timing: &mut Timing,
+    ) -> Result<(), GpuError> {
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        self.count(scene, &settings.inputs(view), timing)?;
+        let mut recorder = Recorder::new(&self.gpu, timing);
+        self.renderer.draw(&mut recorder, scene, target, camera, settings);
+        recorder.submit();
+        Ok(())
+    }
+
+    /// Everything that is emitted, chunk by chunk: calls `take` with each chunk's first patch and its vertices, and its
+    /// triangles if `triangles` is set. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read_chunks(
+        &self,
+        scene: &mut Scene,
+        triangles: bool,
+        mut take: impl FnMut(u32, &[Vertex], &[[u32; 3]]),
+    ) -> Result<(), GpuError> {
+        for index in 0..scene.tessellator.chunk_count() {
+            let mut timing = Timing::Off;
+            let mut recorder = Recorder::new(&self.gpu, &mut timing);
+            scene.tessellator.emit(&mut recorder, index);
+            recorder.submit();
+            let chunk = scene.tessellator.chunk(index);
+            let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
+            let vertices = read_buffer(&self.gpu, chunk.vertices, 0, vertex_bytes)?;
+            let triangle_bytes = if triangles { u64::from(chunk.chunk.triangle_count) * 12 } else { 0 };
+            let indices = read_buffer(&self.gpu, chunk.indices, 0, triangle_bytes)?;
+            take(chunk.chunk.first_patch, &cast(&vertices), &cast(&indices));
+        }
+        Ok(())
+    }
+
+    /// The factors that every patch was emitted with.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn patch_factors(&self, scene: &Scene) -> Result<Vec<PatchFactors>, GpuError> {
+        let mut factors = Vec::new();
+        for (buffer, count) in scene.tessellator.patch_factors() {
+            let bytes = read_buffer(&self.gpu, buffer, 0, u64::from(count) * size_of::<PatchFactors>() as u64)?;
+            factors.extend(cast::<PatchFactors>(&bytes));
+        }
+        Ok(factors)
+    }
+
+    /// Reads back the rims of all patches and compares them along every edge. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
+        let mut rims = Rims::new(self.patch_factors(scene)?);
+        self.read_chunks(scene, false, |first_patch, vertices, _| rims.take(first_patch, vertices))?;
+        Ok(Measured { patches_culled: rims.culled(), cracks: rims.cracks(scene.tessellator.topology()) })
+    }
+
+    /// The whole tessellated mesh, read back. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read_tessellated(&self, scene: &mut Scene) -> Result<Tessellated, GpuError> {
+        let mut out = Tessellated { patch_factors: self.patch_factors(scene)?, ..Tessellated::default() };
+        self.read_chunks(scene, true, |_, vertices, triangles| {
+            let base = out.vertices.len() as u32;
+            out.vertices.extend_from_slice(vertices);
+            out.triangles.extend(triangles.iter().map(|triangle| triangle.map(|i| base + i)));
+        })?;
+        Ok(out)
+    }
+
+    /// Median ms of every pass over complete recomputations, after one to warm up: five, or as many as fit two seconds,
+    /// but at least one.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn time(
+        &self,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<Vec<PassTime>, GpuError> {
+        let mut timing = Timing::on(&self.gpu);
+        let mut all: Vec<Vec<PassTime>> = Vec::new();
+        let start = Instant::now();
+        for run in 0..=5 {
+            if run > 1 && start.elapsed() > Duration::from_secs(2) {
+                break;
+            }
+            scene.tessellator.forget();
+            self.draw(scene, target, camera, settings, &mut timing)?;
+            wait(&self.gpu);
+            let times = take_times(&self.gpu, &mut timing);
+            if run > 0 {
+                all.push(times);
+            }
+        }
+        Ok(medians(&all))
+    }
+}
+
+/// The median of each pass over runs that all have the same passes.
+fn medians(runs: &[Vec<PassTime>]) -> Vec<PassTime> {
+    let Some(first) = runs.first() else { return Vec::new() };
+    let median = |pass: &'static str| {
+        let mut ms: Vec<f64> = runs.iter().flatten().filter(|time| time.pass == pass).map(|time| time.ms).collect();
+        ms.sort_by(f64::total_cmp);
+        PassTime { pass, ms: ms[ms.len() / 2] }
+    };
+    first.iter().map(|time| median(time.pass)).collect()
+}
+
+/// Bytes read back as what they are; copied, since they may not be aligned.
+fn cast<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(bytes: &[u8]) -> Vec<T> {
+    bytemuck::pod_collect_to_vec(bytes)
+}

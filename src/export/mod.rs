@@ -1,0 +1,90 @@
+//! Tessellated meshes as files.
+
+mod glb;
+mod obj;
+
+use std::io::Write;
+use std::path::Path;
+
+use glam::{Vec2, Vec3};
+use thiserror::Error;
+
+use crate::mesh::{Mesh, Topology};
+use crate::tessellate::{Tessellated, linear_normal, linear_uv};
+
+/// A mesh with attributes, one run of triangles a material.
+pub struct Exported<'a> {
+    pub mesh: &'a Mesh,
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+    pub uvs: Vec<Vec2>,
+    /// As many as the mesh has materials.
+    pub triangles: Vec<Vec<[u32; 3]>>,
+}
+
+#[derive(Debug, Error)]
+pub enum ExportError {
+    #[error("{path}: the name must end in .glb or .obj")]
+    Extension { path: String },
+    #[error("{path}: could not be written ({reason})")]
+    Io { path: String, reason: std::io::Error },
+    #[error("{path}: {triangles} triangles are more than a .glb file can hold (4 GiB): lower the factor, or write an .obj")]
+    TooLarge { path: String, triangles: usize },
+    #[error("{path}: a texture could not be encoded ({reason})")]
+    Texture { path: String, reason: String },
+}
+
+impl<'a> Exported<'a> {
+    /// Attributes of every emitted vertex: positions as they are, normals and uvs interpolated in the patch.
+    pub fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
+        let corners = |patch: u32| topology.patches[patch as usize].corners.map(|c| &mesh.corners[c as usize]);
+        let vertices = &tessellated.vertices;
+        let attributes = vertices.iter().map(|vertex| {
+            let ([u, v], corners) = (vertex.uv(), corners(vertex.patch()));
+            (linear_normal(corners.map(|c| c.normal), u, v), linear_uv(corners.map(|c| c.uv), u, v))
+        });
+        let (normals, uvs) = attributes.unzip();
+        let mut triangles = vec![Vec::new(); mesh.materials.len()];
+        for &triangle in &tessellated.triangles {
+            let patch = vertices[triangle[0] as usize].patch();
+            let material = topology.material_patches.partition_point(|range| range.end <= patch);
+            triangles[material].push(triangle);
+        }
+        let positions = vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
+        Self { mesh, positions, normals, uvs, triangles }
+    }
+
+    /// Writes a .glb or .obj file, by the path's ending: beside it first, then renamed, so that a failure leaves what was
+    /// there.
+    ///
+    /// # Errors
+    /// Another ending, a file that can't be written, or more than the format holds.
+    pub fn write(&self, path: &Path) -> Result<(), ExportError> {
+        let shown = path.display().to_string();
+        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+        let bytes = match ending.as_str() {
+            "glb" => glb::encode(self, &shown)?,
+            "obj" => obj::encode(self),
+            _ => return Err(ExportError::Extension { path: shown }),
+        };
+        write_whole(path, &bytes).map_err(|reason| ExportError::Io { path: shown, reason })
+    }
+}
+
+/// Writes a file beside its place, then renames it there. What is no file (a pipe, a device) is written directly.
+///
+/// # Errors
+/// The file system's.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if path.exists() && !path.is_file() {
+        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    }
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = Path::new(&beside);
+    let written = std::fs::write(beside, bytes).and_then(|()| std::fs::rename(beside, path));
+    if written.is_err() {
+        let _ = std::fs::remove_file(beside);
+    }
+    written
+}

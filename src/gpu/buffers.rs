@@ -1,0 +1,137 @@
+//! A mesh in device memory.
+
+use bytemuck::Pod;
+use wgpu::util::DeviceExt;
+
+use super::layout::{Corner, Curve, CurveNet, Patch};
+use super::{Gpu, GpuError};
+use crate::mesh::{Curves, Mesh, Sharing, Topology};
+
+/// What a mesh is on the device: its topology, and room for its control nets.
+pub struct MeshBuffers {
+    pub points: wgpu::Buffer,
+    pub corners: wgpu::Buffer,
+    pub patches: wgpu::Buffer,
+    pub curves: wgpu::Buffer,
+    pub curve_sides: wgpu::Buffer,
+    pub edge_curves: wgpu::Buffer,
+    pub material_patches: wgpu::Buffer,
+    pub curve_nets: wgpu::Buffer,
+    pub centers: wgpu::Buffer,
+    pub edge_factors: wgpu::Buffer,
+    pub sharing: Sharing,
+    pub patch_count: u32,
+    pub edge_count: u32,
+    pub curve_count: u32,
+    pub material_count: u32,
+}
+
+impl MeshBuffers {
+    /// Uploads a mesh, its sides grouped into curves as `sharing` says.
+    ///
+    /// # Errors
+    /// A buffer would be larger than the adapter binds.
+    pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Result<Self, GpuError> {
+        let grouped = Curves::build(mesh, topology, sharing);
+        let points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
+        let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
+        let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
+        Ok(Self {
+            points: filled(gpu, "points", &points)?,
+            corners: filled(gpu, "corners", &corners(mesh))?,
+            patches: filled(gpu, "patches", &patches(topology, &grouped))?,
+            curves: filled(gpu, "curves", &curves)?,
+            curve_sides: filled(gpu, "sides", &grouped.sides)?,
+            edge_curves: filled(gpu, "edges", &grouped.edge_curves)?,
+            material_patches: filled(gpu, "materials", &material_patches)?,
+            curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
+            centers: empty::<[f32; 4]>(gpu, "patch centres", topology.patches.len())?,
+            edge_factors: empty::<f32>(gpu, "edge factors", topology.edges.len())?,
+            sharing,
+            patch_count: topology.patches.len() as u32,
+            edge_count: topology.edges.len() as u32,
+            curve_count: curves.len() as u32,
+            material_count: material_patches.len() as u32,
+        })
+    }
+
+    /// Bytes of everything derived from the mesh: points, topology, nets and factors.
+    pub fn bytes(&self) -> u64 {
+        [
+            &self.points,
+            &self.corners,
+            &self.patches,
+            &self.curves,
+            &self.curve_sides,
+            &self.edge_curves,
+            &self.material_patches,
+            &self.curve_nets,
+            &self.centers,
+            &self.edge_factors,
+        ]
+        .iter()
+        .map(|buffer| buffer.size())
+        .sum()
+    }
+}
+
+fn corners(mesh: &Mesh) -> Vec<Corner> {
+    let corner = |c: &crate::mesh::Corner| Corner {
+        normal: c.normal.to_array(),
+        _pad: 0.0,
+        uv: c.uv.to_array(),
+        _pad2: [0.0; 2],
+    };
+    mesh.corners.iter().map(corner).collect()
+}
+
+fn curve(curve: &crate::mesh::Curve) -> Curve {
+    Curve { points: curve.points, first_side: curve.first_side, side_count: curve.side_count }
+}
+
+fn patches(topology: &Topology, grouped: &Curves) -> Vec<Patch> {
+    let side = |index: u32| topology.sides[index as usize];
+    topology
+        .patches
+        .iter()
+        .map(|patch| Patch {
+            points: patch.corners.map(|c| topology.corner_points[c as usize]),
+            corners: patch.corners,
+            curves: patch.sides.map(|s| grouped.side_curves[s as usize] << 1 | u32::from(side(s).reversed)),
+            edges: patch.sides.map(|s| side(s).edge << 3 | topology.edges[side(s).edge as usize].kind as u32),
+        })
+        .collect()
+}
+
+/// A read-only storage buffer. Nothing to bind is still bound: one zeroed element.
+pub fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu::Buffer, GpuError> {
+    check_size::<T>(gpu, what, items.len())?;
+    let zero = [T::zeroed()];
+    Ok(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(what),
+        contents: bytemuck::cast_slice(if items.is_empty() { &zero } else { items }),
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+    }))
+}
+
+/// A storage buffer that passes write.
+pub fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buffer, GpuError> {
+    check_size::<T>(gpu, what, count)?;
+    Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(what),
+        size: (count.max(1) * size_of::<T>()) as u64,
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::INDIRECT
+            | wgpu::BufferUsages::VERTEX
+            | wgpu::BufferUsages::INDEX,
+        mapped_at_creation: false,
+    }))
+}
+
+fn check_size<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<(), GpuError> {
+    let bytes = (count * size_of::<T>()) as u64;
+    let limits = gpu.device.limits();
+    let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+    if bytes > limit { Err(GpuError::TooLarge { what, bytes, limit }) } else { Ok(()) }
+}

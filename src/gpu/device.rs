@@ -1,0 +1,73 @@
+//! An adapter and its device, with or without a window.
+
+use crate::error::GpuError;
+
+/// A device that tessellates and draws.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    /// Name, driver and kind of the adapter.
+    pub info: wgpu::AdapterInfo,
+    /// Samples a px that the viewport is drawn with: 4 where the adapter has it, else 1.
+    pub samples: u32,
+}
+
+/// How the viewport's texture is drawn into and resolved to: sRGB-encoded 8-bit RGBA.
+pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// What is asked of a device: WebGPU's defaults, larger buffers and timestamps where the adapter has them. Software
+/// drivers' timestamps are wrong for compute, so they are not asked for theirs.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let has = adapter.limits();
+    let mut limits = wgpu::Limits::default();
+    limits.max_buffer_size = limits.max_buffer_size.max(has.max_buffer_size.min(1 << 32));
+    limits.max_storage_buffer_binding_size =
+        limits.max_storage_buffer_binding_size.max(has.max_storage_buffer_binding_size.min(1 << 31));
+    limits.max_texture_dimension_2d = has.max_texture_dimension_2d;
+    let software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+    let timestamps = if software { wgpu::Features::empty() } else { wgpu::Features::TIMESTAMP_QUERY };
+    wgpu::DeviceDescriptor {
+        label: Some("pnaen"),
+        required_features: adapter.features() & timestamps,
+        required_limits: limits,
+        ..Default::default()
+    }
+}
+
+impl Gpu {
+    /// The machine's best adapter, without a window.
+    ///
+    /// # Errors
+    /// No adapter, or one that gives no device.
+    pub fn headless() -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+            .map_err(|error| GpuError::NoDevice { adapter: adapter.get_info().name, reason: error.to_string() })?;
+        Ok(Self::new(&adapter, device, queue))
+    }
+
+    /// Takes over a device that a window already has.
+    pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let flags = |format: wgpu::TextureFormat| adapter.get_texture_format_features(format).flags;
+        let four = wgpu::TextureFormatFeatureFlags::MULTISAMPLE_X4;
+        let multisampled = flags(COLOR_FORMAT).contains(four) && flags(DEPTH_FORMAT).contains(four);
+        Self { device, queue, info: adapter.get_info(), samples: if multisampled { 4 } else { 1 } }
+    }
+
+    /// Whether the adapter runs on the CPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Whether the GPU's own clock can time passes.
+    pub fn has_timestamps(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+}

@@ -1,0 +1,19 @@
+//! What can go wrong between here and the graphics driver.
+
+use thiserror::Error;
+
+#[derive(Clone, Debug, Error)]
+pub enum GpuError {
+    #[error("no graphics adapter was found: install a Vulkan driver (the software one is in Debian's mesa-vulkan-drivers)")]
+    NoAdapter,
+    #[error("the adapter {adapter} gave no device ({reason}): update its driver, or choose another adapter")]
+    NoDevice { adapter: String, reason: String },
+    #[error(
+        "the mesh's {what} take {bytes} bytes and the adapter binds at most {limit}: use a mesh with fewer triangles or another adapter"
+    )]
+    TooLarge { what: &'static str, bytes: u64, limit: u64 },
+    #[error("a picture of {width} x {height} px is larger than the adapter's {limit} px a side: ask for a smaller one")]
+    PictureTooLarge { width: u32, height: u32, limit: u32 },
+    #[error("reading back from the graphics device failed ({0}): the device may have been lost; try again")]
+    Readback(String),
+}

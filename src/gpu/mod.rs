@@ -1,0 +1,21 @@
+//! The mathematics of [`crate::tessellate`] as compute passes.
+//!
+//! Once a mesh and surface: nets. When settings or view change: factors, counts, scan, chunks. Then, for every chunk of
+//! patches that fits the arena: emit, and whatever is done with it (a draw, a readback).
+
+mod buffers;
+mod device;
+mod domain;
+mod error;
+pub mod layout;
+mod pipelines;
+mod recorder;
+mod tessellator;
+
+pub use buffers::MeshBuffers;
+pub use device::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, device_descriptor};
+pub use domain::{DomainParams, DomainPass, DomainPattern};
+pub use error::GpuError;
+pub use pipelines::{ComputePipelines, SHADERS, bind_group, compute_pipeline, shader_module, shader_source};
+pub use recorder::{PASSES, PassTime, Recorder, Timing, mapped_bytes, read_buffer, read_staging, staging_buffer, take_times, wait};
+pub use tessellator::{ChunkBuffers, Tessellator};

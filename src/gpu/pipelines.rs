@@ -1,0 +1,100 @@
+//! Shader modules put together from their rooms, and the compute pipelines made of them.
+
+use super::Gpu;
+
+/// Rooms of the tessellator itself, part of every module that tessellates.
+const DOMAIN: [&str; 2] = [include_str!("../../shaders/factors.wgsl"), include_str!("../../shaders/domain.wgsl")];
+const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
+const LOD: &str = include_str!("../../shaders/lod.wgsl");
+const CULL: &str = include_str!("../../shaders/cull.wgsl");
+const TYPES: &str = include_str!("../../shaders/types.wgsl");
+const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
+
+/// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
+/// another; names are unique across rooms.
+const ROOMS: [&str; 6] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, CULL, TYPES];
+
+/// Every shader module by name, with the rooms that only it has. A test validates each.
+pub const SHADERS: [(&str, &[&str]); 9] = [
+    ("nets", &[include_str!("../../shaders/pass_nets.wgsl")]),
+    ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
+    ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
+    ("scan", &[include_str!("../../shaders/pass_scan.wgsl")]),
+    ("chunks", &[include_str!("../../shaders/pass_chunks.wgsl")]),
+    ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
+    ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
+    ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
+    ("lines", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_lines.wgsl")]),
+];
+
+/// The whole text of the module `name`, which is one of [`SHADERS`]; any other name gives the shared rooms alone.
+pub fn shader_source(name: &str) -> String {
+    let own = SHADERS.iter().find(|(shader, _)| *shader == name).map_or(&[][..], |(_, rooms)| rooms);
+    ROOMS.iter().chain(own).copied().collect::<Vec<_>>().join("\n")
+}
+
+/// Compiles the module `name`.
+pub fn shader_module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(name),
+        source: wgpu::ShaderSource::Wgsl(shader_source(name).into()),
+    })
+}
+
+/// One pipeline an entry point of the passes.
+pub struct ComputePipelines {
+    pub curve_nets: wgpu::ComputePipeline,
+    pub centers: wgpu::ComputePipeline,
+    pub edge_factors: wgpu::ComputePipeline,
+    pub counts: wgpu::ComputePipeline,
+    pub scan_blocks: wgpu::ComputePipeline,
+    pub scan_sums: wgpu::ComputePipeline,
+    pub scan_add: wgpu::ComputePipeline,
+    pub chunks: wgpu::ComputePipeline,
+    pub emit_vertices: wgpu::ComputePipeline,
+    pub emit_triangles: wgpu::ComputePipeline,
+}
+
+impl ComputePipelines {
+    pub fn new(gpu: &Gpu) -> Self {
+        let (nets, scan, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "scan"), shader_module(gpu, "emit"));
+        Self {
+            curve_nets: compute_pipeline(gpu, &nets, "curve_nets_main"),
+            centers: compute_pipeline(gpu, &nets, "centers_main"),
+            edge_factors: compute_pipeline(gpu, &shader_module(gpu, "factors"), "edge_factors_main"),
+            counts: compute_pipeline(gpu, &shader_module(gpu, "counts"), "counts_main"),
+            scan_blocks: compute_pipeline(gpu, &scan, "scan_blocks_main"),
+            scan_sums: compute_pipeline(gpu, &scan, "scan_sums_main"),
+            scan_add: compute_pipeline(gpu, &scan, "scan_add_main"),
+            chunks: compute_pipeline(gpu, &shader_module(gpu, "chunks"), "chunks_main"),
+            emit_vertices: compute_pipeline(gpu, &emit, "emit_vertices_main"),
+            emit_triangles: compute_pipeline(gpu, &emit, "emit_triangles_main"),
+        }
+    }
+}
+
+/// A pipeline whose layout is what the entry point uses.
+pub fn compute_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, entry_point: &str) -> wgpu::ComputePipeline {
+    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(entry_point),
+        layout: None,
+        module,
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+/// A bind group of whole buffers, each at its binding number.
+pub fn bind_group(
+    gpu: &Gpu,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &[(u32, &wgpu::Buffer)],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = buffers
+        .iter()
+        .map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}

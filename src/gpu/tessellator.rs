@@ -1,0 +1,585 @@
+//! One mesh being tessellated: what is recomputed when, and the passes from top to bottom.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, TryRecvError};
+
+use wgpu::util::DeviceExt;
+
+use super::buffers::empty;
+use super::layout::{Chunk, DrawArgs, EmitArgs, LodView, Params, PatchFactors, Slab, Vertex};
+use super::pipelines::bind_group;
+use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
+use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
+use crate::mesh::{Mesh, Topology};
+use crate::tessellate::{self, Clip, Inputs, Lod, Partitioning, Surface, sharing};
+
+/// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
+const SLAB_PATCHES: u32 = 1 << 19;
+/// Items a workgroup of the scan takes; see `pass_scan.wgsl`.
+const SCAN_BLOCK: u32 = 1024;
+/// Dynamic uniform data starts at multiples of this; WebGPU's default limit.
+const UNIFORM_STRIDE: u64 = 256;
+
+/// A tessellated mesh on the device.
+pub struct Tessellator {
+    gpu: Gpu,
+    pipelines: Arc<ComputePipelines>,
+    mesh: Arc<Mesh>,
+    topology: Arc<Topology>,
+    buffers: MeshBuffers,
+    params: Params,
+    params_buffer: wgpu::Buffer,
+    arena: Arena,
+    slabs: Vec<SlabPasses>,
+    nets: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
+    nets_done: Option<u32>,
+    counts_done: bool,
+    pending: Option<PendingCounts>,
+    chunks: Vec<(usize, u32, Chunk)>,
+    emitted: Option<(usize, u32)>,
+}
+
+/// Room for one chunk's output.
+struct Arena {
+    vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    vertex_capacity: u32,
+    triangle_capacity: u32,
+}
+
+/// One slab's buffers and bind groups.
+struct SlabPasses {
+    slab: Slab,
+    slab_buffer: wgpu::Buffer,
+    patch_factors: wgpu::Buffer,
+    offsets: wgpu::Buffer,
+    block_sums: wgpu::Buffer,
+    chunks: wgpu::Buffer,
+    emit_args: wgpu::Buffer,
+    draw_args: wgpu::Buffer,
+    chunk_indices: wgpu::Buffer,
+    groups: Option<SlabGroups>,
+}
+
+struct SlabGroups {
+    edge_factors: wgpu::BindGroup,
+    counts: wgpu::BindGroup,
+    scan: [wgpu::BindGroup; 3],
+    chunks: wgpu::BindGroup,
+    emit_vertices: wgpu::BindGroup,
+    emit_triangles: wgpu::BindGroup,
+}
+
+/// Chunk tables on their way to the host.
+struct PendingCounts {
+    staging: wgpu::Buffer,
+    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+/// What a chunk left in the arena, for whoever draws or reads it.
+pub struct ChunkBuffers<'a> {
+    pub chunk: Chunk,
+    pub vertices: &'a wgpu::Buffer,
+    pub indices: &'a wgpu::Buffer,
+    /// One [`DrawArgs`] a material, from `draw_args_offset` bytes on.
+    pub draw_args: &'a wgpu::Buffer,
+    pub draw_args_offset: u64,
+    /// The factors of the slab's patches, the first of which is `first_patch`.
+    pub patch_factors: &'a wgpu::Buffer,
+    pub first_patch: u32,
+}
+
+impl Tessellator {
+    /// Uploads a mesh. `arena_bytes` bounds the memory for output; what does not fit goes through it in chunks.
+    ///
+    /// # Errors
+    /// The mesh is larger than the adapter binds.
+    pub fn new(
+        gpu: &Gpu,
+        pipelines: Arc<ComputePipelines>,
+        mesh: Arc<Mesh>,
+        topology: Arc<Topology>,
+        arena_bytes: u64,
+    ) -> Result<Self, GpuError> {
+        let buffers = MeshBuffers::new(gpu, &mesh, &topology, sharing(Surface::PnAen))?;
+        let arena = Arena::new(gpu, buffers.patch_count, arena_bytes)?;
+        let mut slabs = Vec::new();
+        for first_patch in (0..buffers.patch_count.max(1)).step_by(SLAB_PATCHES as usize) {
+            let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);
+            slabs.push(SlabPasses::new(gpu, &buffers, &arena, first_patch, patch_count)?);
+        }
+        let params: Params = bytemuck::Zeroable::zeroed();
+        let params_buffer = uniform_buffer(gpu, "params", bytemuck::bytes_of(&params));
+        Ok(Self {
+            gpu: gpu.clone(),
+            pipelines,
+            mesh,
+            topology,
+            buffers,
+            params,
+            params_buffer,
+            arena,
+            slabs,
+            nets: None,
+            nets_done: None,
+            counts_done: false,
+            pending: None,
+            chunks: Vec::new(),
+            emitted: None,
+        })
+    }
+
+    /// Takes new inputs. What no longer holds is forgotten; nothing is recorded yet.
+    ///
+    /// # Errors
+    /// The mesh's curves under another surface are larger than the adapter binds.
+    pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
+        if sharing(inputs.surface) != self.buffers.sharing {
+            self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing(inputs.surface))?;
+            self.nets = None;
+            self.nets_done = None;
+            self.slabs.iter_mut().for_each(|slab| slab.groups = None);
+        }
+        let params = self.params_of(inputs);
+        if params != self.params || self.nets_done.is_none() {
+            self.params = params;
+            self.gpu.queue.write_buffer(&self.params_buffer, 0, bytemuck::bytes_of(&params));
+            self.counts_done = false;
+            self.pending = None;
+            self.emitted = None;
+        }
+        Ok(())
+    }
+
+    /// Forgets all that was computed, so that every pass runs again: for timing.
+    pub fn forget(&mut self) {
+        self.nets_done = None;
+    }
+
+    /// Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes nothing.
+    fn params_of(&self, inputs: &Inputs) -> Params {
+        let adaptive = inputs.lod != Lod::Uniform;
+        let looks = adaptive || inputs.clip != Clip::Off;
+        let view = LodView {
+            clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
+            half_viewport: inputs.view.half_viewport.to_array(),
+            _pad: [0.0; 2],
+        };
+        Params {
+            view: if looks { view } else { bytemuck::Zeroable::zeroed() },
+            factor: if adaptive { 0.0 } else { inputs.factor },
+            pixels_per_segment: if adaptive { inputs.pixels } else { 0.0 },
+            surface: inputs.surface as u32,
+            partitioning: inputs.partitioning as u32,
+            lod: inputs.lod as u32,
+            clip: inputs.clip as u32,
+            patch_count: self.buffers.patch_count,
+            edge_count: self.buffers.edge_count,
+            curve_count: self.buffers.curve_count,
+            _pad: [0; 3],
+        }
+    }
+
+    /// Whether [`Self::count`] has to run before anything can be emitted.
+    pub fn needs_count(&self) -> bool {
+        !self.counts_done && self.pending.is_none()
+    }
+
+    /// Records the passes that decide what will be emitted: nets (where they are out of date), factors, counts, scan,
+    /// chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
+    pub fn count(&mut self, recorder: &mut Recorder) {
+        self.bind();
+        if self.nets_done != Some(self.params.surface) {
+            self.record_nets(recorder);
+            self.nets_done = Some(self.params.surface);
+        }
+        let staging = staging_buffer(&self.gpu, self.slabs.iter().map(|slab| slab.chunks.size()).sum());
+        let mut offset = 0;
+        for slab in &self.slabs {
+            self.record_counts(recorder, slab);
+            recorder.encoder().copy_buffer_to_buffer(&slab.chunks, 0, &staging, offset, slab.chunks.size());
+            offset += slab.chunks.size();
+        }
+        self.pending = Some(PendingCounts { staging, mapped: std::sync::mpsc::channel().1 });
+    }
+
+    fn record_nets(&self, recorder: &mut Recorder) {
+        let Some((curve_nets, centers)) = &self.nets else { return };
+        recorder.compute("nets", |pass| {
+            dispatch(pass, &self.pipelines.curve_nets, curve_nets, grid(self.buffers.curve_count));
+            dispatch(pass, &self.pipelines.centers, centers, grid(self.buffers.patch_count));
+        });
+    }
+
+    fn record_counts(&self, recorder: &mut Recorder, slab: &SlabPasses) {
+        let Some(groups) = &slab.groups else { return };
+        let pipelines = &self.pipelines;
+        let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
+        if slab.slab.first_patch == 0 {
+            recorder.compute("factors", |pass| {
+                dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.edge_count));
+            });
+        }
+        recorder.compute("counts", |pass| {
+            dispatch(pass, &pipelines.counts, &groups.counts, grid(slab.slab.patch_count + 1));
+        });
+        recorder.compute("scan", |pass| {
+            dispatch(pass, &pipelines.scan_blocks, &groups.scan[0], blocks);
+            dispatch(pass, &pipelines.scan_sums, &groups.scan[1], [1, 1, 1]);
+            dispatch(pass, &pipelines.scan_add, &groups.scan[2], blocks);
+        });
+        recorder.compute("chunks", |pass| dispatch(pass, &pipelines.chunks, &groups.chunks, [1, 1, 1]));
+    }
+
+    /// Asks for the counts after the recorder was submitted; [`Self::poll_counts`] says when they are here.
+    pub fn request_counts(&mut self) {
+        if let Some(pending) = &mut self.pending {
+            let (sender, receiver) = std::sync::mpsc::channel();
+            pending.staging.map_async(wgpu::MapMode::Read, .., move |result| {
+                let _ = sender.send(result);
+            });
+            pending.mapped = receiver;
+        }
+    }
+
+    /// Takes the counts if the device has finished them. True once they are known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn poll_counts(&mut self) -> Result<bool, GpuError> {
+        let Some(pending) = &self.pending else { return Ok(self.counts_done) };
+        match pending.mapped.try_recv() {
+            Err(TryRecvError::Empty) => Ok(false),
+            Err(TryRecvError::Disconnected) => Err(GpuError::Readback("the counts were never asked for".into())),
+            Ok(Err(error)) => Err(GpuError::Readback(error.to_string())),
+            Ok(Ok(())) => {
+                let bytes = mapped_bytes(&pending.staging)?;
+                self.take_chunks(bytemuck::cast_slice(&bytes));
+                Ok(true)
+            }
+        }
+    }
+
+    /// Waits for the counts.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read_counts(&mut self) -> Result<(), GpuError> {
+        self.request_counts();
+        wait(&self.gpu);
+        self.poll_counts().map(|_| ())
+    }
+
+    fn take_chunks(&mut self, table: &[Chunk]) {
+        self.pending = None;
+        self.counts_done = true;
+        self.chunks.clear();
+        let mut rows = table.iter();
+        for (index, slab) in self.slabs.iter().enumerate() {
+            for chunk in 0..slab.slab.chunk_capacity {
+                if let Some(row) = rows.next().filter(|row| row.vertex_count > 0) {
+                    self.chunks.push((index, chunk, *row));
+                }
+            }
+        }
+    }
+
+    /// How many chunks the output takes; 0 before the counts are known, and when nothing is emitted.
+    pub fn chunk_count(&self) -> usize {
+        if self.counts_done { self.chunks.len() } else { 0 }
+    }
+
+    /// Vertices and triangles of the whole output.
+    pub fn totals(&self) -> (u64, u64) {
+        let sum = |count: fn(&Chunk) -> u32| self.chunks.iter().map(|(_, _, chunk)| u64::from(count(chunk))).sum();
+        (sum(|chunk| chunk.vertex_count), sum(|chunk| chunk.triangle_count))
+    }
+
+    /// Records the emission of chunk `index` into the arena, unless it is what the arena already holds.
+    pub fn emit(&mut self, recorder: &mut Recorder, index: usize) {
+        let (slab_index, chunk_index, _) = self.chunks[index];
+        if self.emitted == Some((slab_index, chunk_index)) {
+            return;
+        }
+        let slab = &self.slabs[slab_index];
+        let Some(groups) = &slab.groups else { return };
+        let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
+        let halves = [
+            (&self.pipelines.emit_vertices, &groups.emit_vertices, args),
+            (&self.pipelines.emit_triangles, &groups.emit_triangles, args + 12),
+        ];
+        recorder.compute("emit", |pass| {
+            for (pipeline, group, args) in halves {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, group, &[]);
+                pass.set_bind_group(1, &self.chunk_group(slab, pipeline, chunk_index), &[]);
+                pass.dispatch_workgroups_indirect(&slab.emit_args, args);
+            }
+        });
+        self.emitted = Some((slab_index, chunk_index));
+    }
+
+    fn chunk_group(&self, slab: &SlabPasses, pipeline: &wgpu::ComputePipeline, chunk: u32) -> wgpu::BindGroup {
+        let binding = wgpu::BufferBinding {
+            buffer: &slab.chunk_indices,
+            offset: u64::from(chunk) * UNIFORM_STRIDE,
+            size: std::num::NonZeroU64::new(4),
+        };
+        self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("chunk"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(binding) }],
+        })
+    }
+
+    /// The arena as chunk `index` left it.
+    pub fn chunk(&self, index: usize) -> ChunkBuffers<'_> {
+        let (slab_index, chunk_index, chunk) = self.chunks[index];
+        let slab = &self.slabs[slab_index];
+        let row = size_of::<DrawArgs>() as u64 * u64::from(self.buffers.material_count);
+        ChunkBuffers {
+            chunk,
+            vertices: &self.arena.vertices,
+            indices: &self.arena.indices,
+            draw_args: &slab.draw_args,
+            draw_args_offset: u64::from(chunk_index) * row,
+            patch_factors: &slab.patch_factors,
+            first_patch: slab.slab.first_patch,
+        }
+    }
+
+    /// Room for vertices and for indices, whatever chunk they hold.
+    pub fn arena(&self) -> (&wgpu::Buffer, &wgpu::Buffer) {
+        (&self.arena.vertices, &self.arena.indices)
+    }
+
+    /// The factors of all patches, slab by slab.
+    pub fn patch_factors(&self) -> impl Iterator<Item = (&wgpu::Buffer, u32)> {
+        self.slabs.iter().map(|slab| (&slab.patch_factors, slab.slab.patch_count))
+    }
+
+    pub fn buffers(&self) -> &MeshBuffers {
+        &self.buffers
+    }
+
+    pub fn mesh(&self) -> &Arc<Mesh> {
+        &self.mesh
+    }
+
+    pub fn topology(&self) -> &Arc<Topology> {
+        &self.topology
+    }
+
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Bytes of the output's memory, whatever part of it is in use.
+    pub fn arena_bytes(&self) -> u64 {
+        self.arena.vertices.size() + self.arena.indices.size()
+    }
+
+    /// Bytes of counts, scans and indirect arguments.
+    pub fn work_bytes(&self) -> u64 {
+        self.slabs.iter().map(SlabPasses::bytes).sum()
+    }
+
+    fn bind(&mut self) {
+        let (b, params) = (&self.buffers, &self.params_buffer);
+        let nets = &self.pipelines;
+        self.nets.get_or_insert_with(|| {
+            let inputs = [(0, params), (1, &b.points), (6, &b.curve_nets)];
+            let curves = [&inputs[..], &[(2, &b.corners), (3, &b.curves), (4, &b.curve_sides)]].concat();
+            let centers = [&inputs[..], &[(5, &b.patches), (7, &b.centers)]].concat();
+            (
+                bind_group(&self.gpu, "nets.curves", &nets.curve_nets.get_bind_group_layout(0), &curves),
+                bind_group(&self.gpu, "nets.centers", &nets.centers.get_bind_group_layout(0), &centers),
+            )
+        });
+        for slab in &mut self.slabs {
+            if slab.groups.is_none() {
+                slab.groups = Some(slab.bind(&self.gpu, &self.pipelines, &self.buffers, params, &self.arena));
+            }
+        }
+    }
+}
+
+impl Arena {
+    fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
+        let (patch_vertices, patch_triangles) = largest_patch();
+        let limits = gpu.device.limits();
+        let half = (arena_bytes / 2).min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
+        let capacity = |item: usize, patch: u32| {
+            let needed = u64::from(patch) * u64::from(patch_count.max(1));
+            (half / item as u64).clamp(u64::from(patch), needed.max(u64::from(patch))) as u32
+        };
+        let vertex_capacity = capacity(size_of::<Vertex>(), patch_vertices);
+        let triangle_capacity = capacity(size_of::<[u32; 3]>(), patch_triangles);
+        Ok(Self {
+            vertices: empty::<Vertex>(gpu, "arena.vertices", vertex_capacity as usize)?,
+            indices: empty::<[u32; 3]>(gpu, "arena.indices", triangle_capacity as usize)?,
+            vertex_capacity,
+            triangle_capacity,
+        })
+    }
+
+    /// More chunks than any tessellation of so many patches takes: every chunk but the last is full but for less than
+    /// one patch, in vertices or in triangles.
+    fn chunk_capacity(&self, patch_count: u32) -> u32 {
+        let (patch_vertices, patch_triangles) = largest_patch();
+        let full = |capacity: u32, patch: u32| {
+            let needed = u64::from(patch) * u64::from(patch_count);
+            if needed <= u64::from(capacity) { 0 } else { needed.div_ceil(u64::from(capacity - patch + 1)) as u32 }
+        };
+        full(self.vertex_capacity, patch_vertices) + full(self.triangle_capacity, patch_triangles) + 1
+    }
+}
+
+/// Vertices and triangles of a patch at the largest factors.
+fn largest_patch() -> (u32, u32) {
+    let factors = tessellate::process(Partitioning::Integer, [64.0; 3], 64.0);
+    (tessellate::point_count(factors), tessellate::triangle_count(factors))
+}
+
+impl SlabPasses {
+    fn new(
+        gpu: &Gpu,
+        buffers: &MeshBuffers,
+        arena: &Arena,
+        first_patch: u32,
+        patch_count: u32,
+    ) -> Result<Self, GpuError> {
+        let chunk_capacity = arena.chunk_capacity(patch_count);
+        let slab = Slab {
+            first_patch,
+            patch_count,
+            vertex_capacity: arena.vertex_capacity,
+            triangle_capacity: arena.triangle_capacity,
+            chunk_capacity,
+            material_count: buffers.material_count,
+            _pad: [0; 2],
+        };
+        let (patches, chunks) = (patch_count as usize, chunk_capacity as usize);
+        let mut chunk_indices = vec![0u8; chunks * UNIFORM_STRIDE as usize];
+        for (index, bytes) in chunk_indices.chunks_exact_mut(UNIFORM_STRIDE as usize).enumerate() {
+            bytes[..4].copy_from_slice(&(index as u32).to_ne_bytes());
+        }
+        Ok(Self {
+            slab,
+            slab_buffer: uniform_buffer(gpu, "slab", bytemuck::bytes_of(&slab)),
+            patch_factors: empty::<PatchFactors>(gpu, "patch factors", patches)?,
+            offsets: empty::<[u32; 2]>(gpu, "offsets", patches + 1)?,
+            block_sums: empty::<[u32; 2]>(gpu, "scan sums", (patches + 1).div_ceil(SCAN_BLOCK as usize))?,
+            chunks: empty::<Chunk>(gpu, "chunks", chunks)?,
+            emit_args: empty::<EmitArgs>(gpu, "emit arguments", chunks)?,
+            draw_args: empty::<DrawArgs>(gpu, "draw arguments", chunks * buffers.material_count as usize)?,
+            chunk_indices: uniform_buffer(gpu, "chunk indices", &chunk_indices),
+            groups: None,
+        })
+    }
+
+    fn bytes(&self) -> u64 {
+        [&self.patch_factors, &self.offsets, &self.block_sums, &self.chunks, &self.emit_args, &self.draw_args]
+            .iter()
+            .map(|buffer| buffer.size())
+            .sum()
+    }
+
+    fn bind(
+        &self,
+        gpu: &Gpu,
+        pipelines: &ComputePipelines,
+        b: &MeshBuffers,
+        params: &wgpu::Buffer,
+        arena: &Arena,
+    ) -> SlabGroups {
+        let group = |label: &str, pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
+            bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers)
+        };
+        let slab = &self.slab_buffer;
+        let scan = [(0, slab), (1, &self.offsets), (2, &self.block_sums)];
+        let emit = [(1, slab), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)];
+        let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.centers)];
+        SlabGroups {
+            edge_factors: group(
+                "factors",
+                &pipelines.edge_factors,
+                &[
+                    (0, params),
+                    (1, &b.points),
+                    (2, &b.curves),
+                    (3, &b.curve_nets),
+                    (4, &b.edge_curves),
+                    (5, &b.edge_factors),
+                ],
+            ),
+            counts: group(
+                "counts",
+                &pipelines.counts,
+                &[
+                    (0, params),
+                    (1, slab),
+                    (2, &b.points),
+                    (3, &b.patches),
+                    (4, &b.curve_nets),
+                    (5, &b.centers),
+                    (6, &b.edge_factors),
+                    (7, &self.patch_factors),
+                    (8, &self.offsets),
+                ],
+            ),
+            scan: [
+                group("scan.blocks", &pipelines.scan_blocks, &scan),
+                group("scan.sums", &pipelines.scan_sums, &[scan[0], scan[2]]),
+                group("scan.add", &pipelines.scan_add, &scan),
+            ],
+            chunks: group(
+                "chunks",
+                &pipelines.chunks,
+                &[
+                    (0, slab),
+                    (1, &self.offsets),
+                    (2, &b.material_patches),
+                    (3, &self.chunks),
+                    (4, &self.emit_args),
+                    (5, &self.draw_args),
+                ],
+            ),
+            emit_vertices: group(
+                "emit.vertices",
+                &pipelines.emit_vertices,
+                &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat(),
+            ),
+            emit_triangles: group(
+                "emit.triangles",
+                &pipelines.emit_triangles,
+                &[&emit[..], &[(10, &arena.indices)]].concat(),
+            ),
+        }
+    }
+}
+
+fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some(label),
+        contents,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+    })
+}
+
+/// Twin of `grid` in `shaders/types.wgsl`.
+fn grid(items: u32) -> [u32; 3] {
+    let workgroups = items.div_ceil(256);
+    [workgroups.min(32768), workgroups.div_ceil(32768), 1]
+}
+
+fn dispatch(
+    pass: &mut wgpu::ComputePass,
+    pipeline: &wgpu::ComputePipeline,
+    group: &wgpu::BindGroup,
+    [x, y, z]: [u32; 3],
+) {
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(x, y, z);
+}

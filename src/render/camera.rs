@@ -1,0 +1,184 @@
+//! An orbiting camera. Angles in degrees, lengths in object units; +Y is up and azimuth 0 looks along -Z (from the
+//! front, as glTF has it). Clip space is WebGPU's, with depth reversed: 1 at the near plane, 0 at infinity.
+
+use glam::{Mat4, Vec2, Vec3, vec2, vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::mesh::Bounds;
+use crate::tessellate::LodView;
+
+/// Vertical field of view, in degrees.
+const FIELD_OF_VIEW: f32 = 40.0;
+/// Steeper than this, "up" would turn over.
+const MAX_ELEVATION: f32 = 89.9;
+
+/// A camera that looks at `target` from `distance` away.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Camera {
+    pub target: Vec3,
+    /// Degrees about +Y, from +Z towards +X.
+    pub azimuth: f32,
+    /// Degrees above the horizon.
+    pub elevation: f32,
+    /// From the target to the eye, in object units.
+    pub distance: f32,
+    pub orthographic: bool,
+}
+
+/// Where one looks from along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standpoint {
+    Front,
+    Right,
+    Top,
+}
+
+impl Camera {
+    /// Sees all of `bounds`, from the front, the right and a little above.
+    pub fn framing(bounds: &Bounds) -> Self {
+        let mut camera =
+            Self { target: Vec3::ZERO, azimuth: 30.0, elevation: 20.0, distance: 1.0, orthographic: false };
+        camera.frame(bounds);
+        camera
+    }
+
+    /// Moves the target and the distance so that the bounding sphere fills the view; the angles stay.
+    pub fn frame(&mut self, bounds: &Bounds) {
+        self.target = bounds.center();
+        self.distance = Self::framing_distance(bounds.radius());
+    }
+
+    /// From where a sphere of this radius just fills the height of the view.
+    pub fn framing_distance(radius: f32) -> f32 {
+        let radius = if radius > 0.0 && radius.is_finite() { radius } else { 1.0 };
+        radius / (0.5 * FIELD_OF_VIEW).to_radians().sin()
+    }
+
+    /// Turns to look along an axis.
+    pub fn look_from(&mut self, standpoint: Standpoint) {
+        (self.azimuth, self.elevation) = match standpoint {
+            Standpoint::Front => (0.0, 0.0),
+            Standpoint::Right => (90.0, 0.0),
+            Standpoint::Top => (0.0, MAX_ELEVATION),
+        };
+    }
+
+    /// Unit vectors to the right, up and back to the eye.
+    pub fn axes(&self) -> [Vec3; 3] {
+        let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
+        let back = vec3(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
+        let right = vec3(azimuth.cos(), 0.0, -azimuth.sin());
+        [right, back.cross(right), back]
+    }
+
+    pub fn eye(&self) -> Vec3 {
+        self.target + self.axes()[2] * self.distance
+    }
+
+    /// Turns by `degrees` to the right and upwards.
+    pub fn orbit(&mut self, degrees: Vec2) {
+        self.azimuth = (self.azimuth + degrees.x).rem_euclid(360.0);
+        self.elevation = (self.elevation + degrees.y).clamp(-MAX_ELEVATION, MAX_ELEVATION);
+    }
+
+    /// Moves the target so that what was under the pointer follows it by `pixels` (x right, y down).
+    pub fn pan(&mut self, pixels: Vec2, viewport: Vec2) {
+        let [right, up, _] = self.axes();
+        let unit = self.units_per_pixel(viewport.y);
+        self.target += (up * pixels.y - right * pixels.x) * unit;
+    }
+
+    /// Scales the distance by `ratio`; what lies under `pointer` (px from the top left) at the target's depth stays.
+    pub fn zoom(&mut self, ratio: f32, pointer: Vec2, viewport: Vec2) {
+        let [right, up, _] = self.axes();
+        let from_center = pointer - viewport * 0.5;
+        let before = self.units_per_pixel(viewport.y);
+        self.distance = (self.distance * ratio).clamp(1e-30, 1e30);
+        let moved = before - self.units_per_pixel(viewport.y);
+        self.target += (right * from_center.x - up * from_center.y) * moved;
+    }
+
+    /// Object units a px at the target's depth, in a viewport `height` px high.
+    pub fn units_per_pixel(&self, height: f32) -> f32 {
+        2.0 * self.distance * (0.5 * FIELD_OF_VIEW).to_radians().tan() / height.max(1.0)
+    }
+
+    /// Object units to clip space, for a viewport of `viewport` px. `bounds` is what an orthographic view must hold in
+    /// depth.
+    pub fn clip_from_object(&self, viewport: Vec2, bounds: &Bounds) -> Mat4 {
+        let [right, up, back] = self.axes();
+        let eye = self.eye();
+        let view = Mat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), glam::Vec4::W).transpose()
+            * Mat4::from_translation(-eye);
+        let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
+        let projection = if self.orthographic {
+            let half = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
+            let depth = bounds.radius() + (bounds.center() - self.target).length() + self.distance;
+            Mat4::orthographic_rh(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
+        } else {
+            Mat4::perspective_infinite_reverse_rh(FIELD_OF_VIEW.to_radians(), aspect, self.distance * 1e-3)
+        };
+        projection * view
+    }
+
+    /// The view that LOD and clipping are computed for.
+    pub fn lod_view(&self, viewport: Vec2, bounds: &Bounds) -> LodView {
+        LodView { clip_from_object: self.clip_from_object(viewport, bounds), half_viewport: viewport * 0.5 }
+    }
+}
+
+/// Where a position lands, in px from the viewport's top left; `None` behind the eye.
+pub fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
+    let clip = clip_from_object * position.extend(1.0);
+    (clip.w > 0.0).then(|| (vec2(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * viewport)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit_bounds() -> Bounds {
+        Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) }
+    }
+
+    #[test]
+    fn the_target_is_in_the_middle_and_up_is_up() {
+        let viewport = vec2(800.0, 600.0);
+        for orthographic in [false, true] {
+            let camera = Camera { orthographic, ..Camera::framing(&unit_bounds()) };
+            let clip = camera.clip_from_object(viewport, &unit_bounds());
+            let at = |p| project(clip, viewport, p).expect("in front of the eye");
+            assert!(at(Vec3::ZERO).distance(vec2(400.0, 300.0)) < 1e-2);
+            assert!(at(Vec3::Y * 0.5).y < 290.0);
+        }
+    }
+
+    #[test]
+    fn zooming_keeps_what_is_under_the_pointer() {
+        let viewport = vec2(800.0, 600.0);
+        let mut camera = Camera::framing(&unit_bounds());
+        let [right, up, _] = camera.axes();
+        let pointer = vec2(650.0, 120.0);
+        let unit = camera.units_per_pixel(viewport.y);
+        let under = camera.target + right * (250.0 * unit) + up * (180.0 * unit);
+        camera.zoom(0.5, pointer, viewport);
+        let now = project(camera.clip_from_object(viewport, &unit_bounds()), viewport, under);
+        assert!(now.expect("in front of the eye").distance(pointer) < 0.1);
+    }
+
+    #[test]
+    fn depth_is_reversed_and_has_the_whole_mesh() {
+        let viewport = vec2(400.0, 400.0);
+        for orthographic in [false, true] {
+            let camera = Camera { orthographic, ..Camera::framing(&unit_bounds()) };
+            let clip = camera.clip_from_object(viewport, &unit_bounds());
+            let depth = |p: Vec3| {
+                let c = clip * p.extend(1.0);
+                c.z / c.w
+            };
+            let back = camera.axes()[2];
+            let (near, far) = (depth(back), depth(-back));
+            assert!((0.0..=1.0).contains(&far) && far < near && near <= 1.0, "{near} {far}");
+        }
+    }
+}

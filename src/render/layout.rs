@@ -1,0 +1,54 @@
+//! What host and draws share. Twin: `shaders/draw_types.wgsl`, field by field; a test compares sizes and offsets.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::mesh::EdgeKind;
+use crate::settings::Overlays;
+
+/// One picture's view.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Frame {
+    pub clip_from_object: [[f32; 4]; 4],
+    /// Unit directions in object space, towards the lights that travel with the camera.
+    pub key_light: [f32; 4],
+    pub fill_light: [f32; 4],
+    /// The eye's position (w = 1), or the direction towards it when the projection is orthographic (w = 0).
+    pub eye: [f32; 4],
+    /// Width and height in px.
+    pub viewport: [f32; 2],
+    /// From [`overlay_bits`].
+    pub overlays: u32,
+    pub _pad: u32,
+}
+
+/// A material's constants.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Material {
+    /// Linear RGBA.
+    pub base_color: [f32; 4],
+}
+
+/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks are lines of their own.
+pub fn overlay_bits(overlays: &Overlays) -> u32 {
+    u32::from(overlays.wireframe)
+        | u32::from(overlays.patches) << 1
+        | u32::from(overlays.barycentric) << 2
+        | u32::from(overlays.adjacency) << 3
+}
+
+/// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
+/// Told apart by people with any colour vision (Okabe and Ito 2008), but for the quiet grey of smooth edges.
+pub fn edge_color(kind: EdgeKind) -> [u8; 3] {
+    match kind {
+        EdgeKind::Smooth => [170, 175, 183],
+        EdgeKind::Split => [230, 159, 0],
+        EdgeKind::Seam => [0, 158, 115],
+        EdgeKind::Boundary => [86, 180, 233],
+        EdgeKind::NonManifold => [204, 121, 167],
+    }
+}
+
+/// sRGB colour of a crack; `CRACK_COLOR` in `shaders/draw_lines.wgsl`.
+pub const CRACK_COLOR: [u8; 3] = [255, 60, 25];

@@ -1,0 +1,12 @@
+//! Pictures: a camera, a scene on the device, and one indirect draw a material into an offscreen texture.
+
+mod camera;
+pub mod layout;
+mod renderer;
+mod scene;
+mod target;
+
+pub use camera::{Camera, Standpoint, project};
+pub use renderer::Renderer;
+pub use scene::{LineSegment, Scene};
+pub use target::Target;

@@ -1,0 +1,106 @@
+//! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::tessellate::{Clip, Inputs, Lod, LodView, Partitioning, Surface};
+
+/// The smallest and largest tessellation factor.
+pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
+/// The smallest and largest length of a segment that adaptive LOD is asked for, in px.
+pub const PIXELS_RANGE: std::ops::RangeInclusive<f32> = 1.0..=256.0;
+/// Memory for a tessellation's output, in bytes.
+pub const ARENA_BYTES: u64 = 256 << 20;
+
+/// The whole state of a view but mesh and camera.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    pub surface: Surface,
+    /// Tessellation factor under uniform LOD, 1 to 64.
+    pub factor: f32,
+    pub partitioning: Partitioning,
+    pub lod: Lod,
+    /// Under adaptive LOD: length of a segment on screen, in px.
+    pub pixels: f32,
+    pub clip: Clip,
+    pub overlays: Overlays,
+    /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
+    pub split: Option<f32>,
+    /// sRGB behind the mesh.
+    pub background: [u8; 3],
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            surface: Surface::PnAen,
+            factor: 8.0,
+            partitioning: Partitioning::FractionalOdd,
+            lod: Lod::Uniform,
+            pixels: 8.0,
+            clip: Clip::Off,
+            overlays: Overlays::default(),
+            split: None,
+            background: [0x2b, 0x2e, 0x33],
+        }
+    }
+}
+
+/// What is drawn over the shaded surface; any of them together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Overlays {
+    /// Edges of the tessellated triangles.
+    pub wireframe: bool,
+    /// Borders of the input triangles.
+    pub patches: bool,
+    /// Domain coordinates as colours: u red, v green, w blue.
+    pub barycentric: bool,
+    /// Borders of the input triangles in the colour of their edge's kind.
+    pub adjacency: bool,
+    /// Edges whose sides differ in position.
+    pub cracks: bool,
+}
+
+/// One of [`Overlays`], by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Overlay {
+    Wireframe,
+    Patches,
+    Barycentric,
+    Adjacency,
+    Cracks,
+}
+
+impl Overlay {
+    pub const ALL: [Self; 5] = [Self::Wireframe, Self::Patches, Self::Barycentric, Self::Adjacency, Self::Cracks];
+}
+
+impl Overlays {
+    /// The switch of one overlay.
+    pub fn get_mut(&mut self, overlay: Overlay) -> &mut bool {
+        match overlay {
+            Overlay::Wireframe => &mut self.wireframe,
+            Overlay::Patches => &mut self.patches,
+            Overlay::Barycentric => &mut self.barycentric,
+            Overlay::Adjacency => &mut self.adjacency,
+            Overlay::Cracks => &mut self.cracks,
+        }
+    }
+}
+
+impl FromIterator<Overlay> for Overlays {
+    fn from_iter<I: IntoIterator<Item = Overlay>>(overlays: I) -> Self {
+        let mut all = Self::default();
+        overlays.into_iter().for_each(|overlay| *all.get_mut(overlay) = true);
+        all
+    }
+}
+
+impl Settings {
+    /// What the tessellation depends on, seen from `view`.
+    pub fn inputs(&self, view: LodView) -> Inputs {
+        let Self { surface, factor, partitioning, lod, pixels, clip, .. } = *self;
+        Inputs { surface, factor, partitioning, lod, pixels, clip, view }
+    }
+}
