@@ -2,8 +2,8 @@
 //! `mesh.rs` has none of its own: it does for a whole mesh what the passes do.
 
 mod cull;
-mod domain;
-mod factors;
+pub mod domain;
+pub mod factors;
 mod lod;
 mod mesh;
 mod surface;

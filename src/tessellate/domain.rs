@@ -1,0 +1,384 @@
+//! Domain points and triangles of a patch, each one in closed form from its number: no walk over the patch, so that a
+//! GPU can give every vertex and every triangle an invocation of its own. Twin: `shaders/domain.wgsl`.
+//!
+//! The patch is an outline of three edge rows, and inside it rings of three equal sides, numbered from 1 inwards, all cut
+//! from one inside row. A ring's side `k` ends on the first point of the next side. With an even number of inside
+//! segments the last ring is a single point, the centre; with an odd one it is a triangle.
+//!
+//! Source: D3D11.3 Functional Specification, sections 11.7.5 to 11.7.14. Coordinates are 16.16 fixed point.
+
+use super::factors::{
+    FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity,
+    outer_count, patch_is_minimal, segments,
+};
+
+/// Two thirds in 16.16 fixed point, rounded down as the tessellator has it.
+pub const FIXED_TWO_THIRDS: u32 = 0xaaaa;
+
+/// A row of points, made ready for asking where they lie.
+///
+/// It is a blend of two uniform rows: `fraction` of the way from the one with whole `half_factor` segments a half to the
+/// one with one more, whose new point grows out of point `split` of each half.
+#[derive(Clone, Copy, Debug)]
+pub struct DomainRow {
+    half: u32,
+    odd: u32,
+    fraction: u32,
+    split: u32,
+    coarse_step: u32,
+    fine_step: u32,
+}
+
+/// The length of one of `segments` equal segments: 1 / segments, rounded half up.
+fn segment_length(segments: u32) -> u32 {
+    (2 * FIXED_ONE + segments) / (2 * segments)
+}
+
+/// Clears the highest set bit of a number that is not zero.
+fn drop_top_bit(value: u32) -> u32 {
+    value ^ (1 << value.ilog2())
+}
+
+/// The point of each half after which the next new point grows: the order is that of a breadth-first bisection.
+fn row_split(whole: u32, odd: u32) -> u32 {
+    let v = whole - odd;
+    if v == 0 { 0 } else { 2 * drop_top_bit(v) + 1 }
+}
+
+/// Prepares the row of a factor.
+pub fn domain_row(word: u32) -> DomainRow {
+    let factor = half_factor(word);
+    let whole = factor >> 16;
+    let odd = odd_parity(word);
+    let fraction = factor & 0xffff;
+    let half = half_segments(word);
+    DomainRow {
+        half,
+        odd,
+        fraction,
+        split: if fraction == 0 {
+            u32::MAX
+        } else {
+            row_split(whole, odd)
+        },
+        coarse_step: segment_length(2 * whole - odd),
+        fine_step: segment_length(2 * half - odd),
+    }
+}
+
+/// Where point `p` of the row lies, 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
+pub fn row_location(row: DomainRow, p: u32) -> u32 {
+    if row.odd == 0 && p == row.half {
+        return FIXED_HALF;
+    }
+    let mirrored = p >= row.half;
+    let fine = if mirrored {
+        2 * row.half - row.odd - p
+    } else {
+        p
+    };
+    let coarse = if fine > row.split { fine - 1 } else { fine };
+    let coarse_part = coarse * row.coarse_step * (FIXED_ONE - row.fraction);
+    let fine_part = fine * row.fine_step * row.fraction;
+    let x = (coarse_part + fine_part + FIXED_HALF) >> 16;
+    if mirrored { FIXED_ONE - x } else { x }
+}
+
+/// The largest `s` up to `m / 2` with `s * (m - s) <= area`, for `m` up to 64 and `area` up to `m * m / 4`: the number
+/// of whole rings before something, as a ring has a fixed number of things fewer than the one around it.
+///
+/// The exact root is a whole number or at least 1/64 below the next one. Half of that is added, hundreds of times the
+/// error that WGSL allows a square root, so that the result is exact everywhere.
+fn rings_before(m: u32, area: u32) -> u32 {
+    let root = ((m * m - 4 * area) as f32).sqrt();
+    ((m as f32 - root) * 0.5 + 0.0078125) as u32
+}
+
+/// (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
+pub fn domain_point(factors: PatchFactors, i: u32) -> [u32; 2] {
+    let outer = outer_count(factors);
+    if i < outer {
+        outer_point(factors, i)
+    } else {
+        inner_point(factors.inside, i - outer)
+    }
+}
+
+/// Point `i` of the outline. It starts at V == 1 with the edge U == 0, and leaves out each edge's last point.
+fn outer_point(factors: PatchFactors, i: u32) -> [u32; 2] {
+    let start1 = segments(factors.outside[0]);
+    let start2 = start1 + segments(factors.outside[1]);
+    // One row, chosen first: on a GPU the points of three edges then take one path.
+    let side = u32::from(i >= start1) + u32::from(i >= start2);
+    let (word, p) = match side {
+        0 => (factors.outside[0], start1 - i),
+        1 => (factors.outside[1], i - start1),
+        _ => (
+            factors.outside[2],
+            segments(factors.outside[2]) - (i - start2),
+        ),
+    };
+    let x = row_location(domain_row(word), p);
+    match side {
+        0 => [0, x],
+        1 => [x, 0],
+        _ => [x, FIXED_ONE - x],
+    }
+}
+
+/// Point `i` of the rings inside.
+fn inner_point(inside: u32, i: u32) -> [u32; 2] {
+    let n = inside_segments(inside);
+    let rings = rings_before(n - 1, i / 3);
+    let ring = rings + 1;
+    let side_length = n - 2 * ring;
+    if side_length == 0 {
+        return [0x5555, 0x5555];
+    }
+    let in_ring = i - 3 * rings * (n - 1 - rings);
+    let side = u32::from(in_ring >= side_length) + u32::from(in_ring >= 2 * side_length);
+    let p = in_ring - side * side_length;
+
+    let row = domain_row(inside);
+    let across = (row_location(row, ring) * FIXED_TWO_THIRDS + FIXED_HALF) >> 16;
+    let along =
+        row_location(row, if side == 1 { ring + p } else { n - ring - p }) - ((across + 1) >> 1);
+    match side {
+        0 => [across, along],
+        1 => [along, across],
+        _ => [along, FIXED_ONE - along - across],
+    }
+}
+
+/// The number of point `p` of a closed ring of `length` points: the one after the last is the first.
+fn ring_point(start: u32, length: u32, p: u32) -> u32 {
+    start + if p == length { 0 } else { p }
+}
+
+/// The corners of triangle `t`, below `triangle_count(factors)`, as point numbers, clockwise.
+pub fn domain_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
+    if patch_is_minimal(factors) {
+        return [0, 1, 2];
+    }
+    let outer = outer_count(factors);
+    let n = inside_segments(factors.inside);
+    let transition = outer + 3 * (n - 2);
+    if t < transition {
+        transition_triangle(factors, t)
+    } else {
+        regular_triangle(outer, n, t - transition)
+    }
+}
+
+/// One triangle between an edge and the side inside it. It has point `inner` of the inner side, point `outer` of the edge,
+/// and the next point of one of the two.
+#[derive(Clone, Copy, Debug)]
+struct TransitionStep {
+    inner: u32,
+    outer: u32,
+    /// The third corner is the inner side's next point, not the edge's.
+    along_inner: bool,
+    /// The triangle is written from its inner point.
+    inner_first: bool,
+}
+
+/// Which of the 31 places before a side's middle have a point, as points appear in the order of a breadth-first
+/// bisection: place 16, then 8 and 24, then 4, 12, 20, 28, and so on.
+///
+/// With `half_points` in 2^L .. 2^(L+1), level L is complete and level L + 1 filled from the left: every multiple of
+/// 2^(5-L), and the first `extra` ones half-way between those.
+#[derive(Clone, Copy, Debug)]
+struct TransitionPlaces {
+    shift: u32,
+    extra: u32,
+}
+
+fn transition_places(half_points: u32) -> TransitionPlaces {
+    let top = half_points.max(1).ilog2();
+    TransitionPlaces {
+        shift: 5 - top,
+        extra: half_points.max(1) - (1 << top),
+    }
+}
+
+/// The number of points at places 1 to `place`.
+fn points_up_to(places: TransitionPlaces, place: u32) -> u32 {
+    (place >> places.shift) + places.extra.min((((2 * place) >> places.shift) + 1) >> 1)
+}
+
+/// `place + skip` if no more than `count` points of both sides lie up to there, else `place`.
+fn skip_places(
+    inner: TransitionPlaces,
+    outer: TransitionPlaces,
+    place: u32,
+    skip: u32,
+    count: u32,
+) -> u32 {
+    let further = place + skip;
+    let fits = points_up_to(inner, further) + points_up_to(outer, further) <= count;
+    if fits { further } else { place }
+}
+
+/// Triangle `t` of those before a side's middle.
+fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> TransitionStep {
+    // The edge's first segment comes before all places.
+    let first = outer_half.min(1);
+    if t < first {
+        return TransitionStep {
+            inner: 0,
+            outer: 0,
+            along_inner: false,
+            inner_first: false,
+        };
+    }
+    let count = t - first;
+    let inner_places = transition_places(inner_half);
+    let outer_places = transition_places(outer_half);
+    // Bisection over the 31 places, unrolled.
+    let mut place = skip_places(inner_places, outer_places, 0, 16, count);
+    place = skip_places(inner_places, outer_places, place, 8, count);
+    place = skip_places(inner_places, outer_places, place, 4, count);
+    place = skip_places(inner_places, outer_places, place, 2, count);
+    place = skip_places(inner_places, outer_places, place, 1, count);
+
+    // The triangle belongs to the next place, where the inner side goes first.
+    let inner = points_up_to(inner_places, place);
+    let outer = points_up_to(outer_places, place);
+    let inner_steps = points_up_to(inner_places, place + 1) - inner;
+    let along_inner = inner_steps == 1 && count == inner + outer;
+    TransitionStep {
+        inner: if along_inner {
+            inner
+        } else {
+            inner + inner_steps
+        },
+        outer: first + outer,
+        along_inner,
+        inner_first: along_inner,
+    }
+}
+
+/// Triangle `t` between the inside's first ring and an edge. After its middle a side mirrors what came before it.
+fn transition_step(inside: u32, edge: u32, t: u32) -> TransitionStep {
+    let inner_half = half_segments(inside) - odd_parity(inside);
+    let outer_half = half_segments(edge) - odd_parity(edge);
+    let inner_segments = inside_segments(inside) - 2;
+    let outer_segments = segments(edge);
+    let total = inner_segments + outer_segments;
+    let before = inner_half - 1 + outer_half;
+    let after_middle = t + before >= total;
+    if t >= before && !after_middle {
+        // The middle: an odd inside's triangle, then an odd edge's.
+        let along_inner = t == before && odd_parity(inside) == 1;
+        return TransitionStep {
+            inner: inner_half - 1 + (t - before),
+            outer: outer_half,
+            along_inner,
+            inner_first: true,
+        };
+    }
+    let step = transition_before_middle(
+        inner_half,
+        outer_half,
+        if after_middle { total - 1 - t } else { t },
+    );
+    if !after_middle {
+        return step;
+    }
+    TransitionStep {
+        inner: inner_segments - step.inner - u32::from(step.along_inner),
+        outer: outer_segments - step.outer - u32::from(!step.along_inner),
+        along_inner: step.along_inner,
+        inner_first: step.inner_first,
+    }
+}
+
+/// Triangle `t` of those between the outline and the first ring, where the numbers of segments differ.
+fn transition_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
+    let inner_segments = inside_segments(factors.inside) - 2;
+    let start1 = segments(factors.outside[0]);
+    let start2 = start1 + segments(factors.outside[1]);
+    let outer = start2 + segments(factors.outside[2]);
+    let side =
+        u32::from(t >= start1 + inner_segments) + u32::from(t >= start2 + 2 * inner_segments);
+    let side_start = match side {
+        0 => 0,
+        1 => start1,
+        _ => start2,
+    };
+    let edge = factors.outside[side as usize];
+
+    let step = transition_step(factors.inside, edge, t - side_start - side * inner_segments);
+    let inner_start = side * inner_segments + step.inner;
+    let outer_start = side_start + step.outer;
+    let i = ring_point(outer, 3 * inner_segments, inner_start);
+    let o = ring_point(0, outer, outer_start);
+    let next = if step.along_inner {
+        ring_point(outer, 3 * inner_segments, inner_start + 1)
+    } else {
+        ring_point(0, outer, outer_start + 1)
+    };
+    if step.inner_first {
+        [i, o, next]
+    } else {
+        [o, next, i]
+    }
+}
+
+/// Triangle `t` of those inside the first ring: ring by ring against the ring around it, whose sides have two segments
+/// more, and at the centre of an odd patch one last triangle.
+fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
+    let rings = rings_before(n - 2, t / 6);
+    let ring = rings + 2;
+    let around_start = outer + 3 * rings * (n - 1 - rings);
+    if 2 * ring > n {
+        return [around_start, around_start + 1, around_start + 2];
+    }
+    let inner_segments = n - 2 * ring;
+    let around_length = 3 * (inner_segments + 2);
+    let start = around_start + around_length;
+    let in_ring = t - 6 * rings * (n - 2 - rings);
+    let per_side = 2 * inner_segments + 2;
+    let side = u32::from(in_ring >= per_side) + u32::from(in_ring >= 2 * per_side);
+    let q = in_ring - side * per_side;
+
+    // Every triangle has point h of the inner side, point h + 1 of the outer, and a third beside one of these.
+    let h = q >> 1;
+    let odd = (q & 1) == 1;
+    let early = q <= 2 * ((inner_segments + 1) >> 1);
+    let inner_start = side * inner_segments + h;
+    let outer_start = side * (inner_segments + 2) + h;
+    let i = ring_point(start, 3 * inner_segments, inner_start);
+    let o = ring_point(around_start, around_length, outer_start + 1);
+    let third = if early != odd {
+        ring_point(
+            around_start,
+            around_length,
+            outer_start + if odd { 2 } else { 0 },
+        )
+    } else {
+        ring_point(
+            start,
+            3 * inner_segments,
+            if odd {
+                inner_start + 1
+            } else {
+                inner_start - 1
+            },
+        )
+    };
+    if !odd {
+        return [third, o, i];
+    }
+    let last = q == per_side - 1;
+    if early || last {
+        [o, third, i]
+    } else {
+        [i, o, third]
+    }
+}
+
+#[cfg(test)]
+mod serial;
+#[cfg(test)]
+mod tests;

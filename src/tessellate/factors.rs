@@ -1,0 +1,258 @@
+//! Tessellation factors, from what an application asks for to what the fixed-function tessellator works with.
+//!
+//! Everything here is integer arithmetic, also on the bits of an `f32`, so that CPU and GPU agree to the last bit
+//! whatever the GPU's compiler assumes about NaN, infinity and denormals. Twin: `shaders/factors.wgsl`.
+//!
+//! Source: D3D11.3 Functional Specification, sections 10.10 and 11.7.3 to 11.7.14.
+
+use std::{fmt, str::FromStr};
+
+use bytemuck::{Pod, Zeroable};
+use serde::{Deserialize, Serialize};
+
+/// 1.0 in 16.16 fixed point.
+pub const FIXED_ONE: u32 = 0x1_0000;
+/// 0.5 in 16.16 fixed point.
+pub const FIXED_HALF: u32 = 0x8000;
+/// The bit of a factor's word that says "odd": a row with an even number of points.
+pub const FACTOR_ODD: u32 = 0x8000_0000;
+
+/// `f32` bit patterns. Those of positive numbers are ordered as the numbers are; NaN and negatives lie above them all.
+const BITS_ONE: u32 = 0x3f80_0000;
+const BITS_TWO: u32 = 0x4000_0000;
+const BITS_63: u32 = 0x427c_0000;
+const BITS_64: u32 = 0x4280_0000;
+const BITS_INFINITY: u32 = 0x7f80_0000;
+/// 1 + 2^-17, the largest edge factor that rounds to 1 in fixed point.
+const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
+/// 1 + 2^-16, the next factor after 1 in fixed point.
+const BITS_ONE_AND_STEP: u32 = 0x3f80_0080;
+
+/// How a factor between two whole numbers becomes segments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[repr(u32)]
+pub enum Partitioning {
+    /// Rounded up to a whole number of equal segments.
+    #[default]
+    Integer = 0,
+    /// As integer to the tessellator; factors go through [`round_pow2`] before it.
+    Pow2 = 1,
+    /// Always an odd number of segments, two of which grow from nothing.
+    FractionalOdd = 2,
+    /// Always an even number of segments, two of which grow from nothing.
+    FractionalEven = 3,
+}
+
+impl Partitioning {
+    pub const ALL: [Self; 4] = [
+        Self::Integer,
+        Self::Pow2,
+        Self::FractionalOdd,
+        Self::FractionalEven,
+    ];
+
+    /// The name in settings, commands and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Integer => "integer",
+            Self::Pow2 => "pow2",
+            Self::FractionalOdd => "fractional-odd",
+            Self::FractionalEven => "fractional-even",
+        }
+    }
+}
+
+impl fmt::Display for Partitioning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// A name that is none of [`Partitioning::ALL`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("unknown partitioning \"{0}\": expected integer, pow2, fractional-odd or fractional-even")]
+pub struct UnknownPartitioning(pub String);
+
+impl FromStr for Partitioning {
+    type Err = UnknownPartitioning;
+
+    /// Accepts HLSL's spelling with an underscore too.
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let kebab = name.replace('_', "-");
+        let found = Self::ALL.into_iter().find(|p| p.name() == kebab);
+        found.ok_or_else(|| UnknownPartitioning(name.to_owned()))
+    }
+}
+
+/// A patch's factors as the tessellator uses them. Each word is a factor of 1..=64 in 16.16 fixed point, clamped and
+/// rounded, with [`FACTOR_ODD`] set where its parity is odd. A culled patch is all zeros.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
+#[repr(C)]
+pub struct PatchFactors {
+    /// The edges U == 0, V == 0 and W == 0.
+    pub outside: [u32; 3],
+    pub inside: u32,
+}
+
+/// Whether an `f32` with these bits is greater than zero. Denormals are, NaN is not.
+fn positive_bits(bits: u32) -> bool {
+    bits.wrapping_sub(1) < BITS_INFINITY
+}
+
+/// The smallest factor of a partitioning, as `f32` bits.
+fn factor_lower_bound(partitioning: Partitioning) -> u32 {
+    if partitioning == Partitioning::FractionalEven {
+        BITS_TWO
+    } else {
+        BITS_ONE
+    }
+}
+
+/// The largest factor of a partitioning, as `f32` bits.
+fn factor_upper_bound(partitioning: Partitioning) -> u32 {
+    if partitioning == Partitioning::FractionalOdd {
+        BITS_63
+    } else {
+        BITS_64
+    }
+}
+
+/// The word of a factor of 1..=64, given as `f32` bits: rounded up to a whole number, or to the nearest 1/65536 with
+/// ties to even, with the parity that the partitioning gives it.
+fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
+    let exponent = (bits >> 23) - 127;
+    let mantissa = (bits & 0x7f_ffff) | 0x80_0000;
+    if partitioning == Partitioning::Integer || partitioning == Partitioning::Pow2 {
+        let shift = 23 - exponent;
+        let whole = (mantissa + (1 << shift) - 1) >> shift;
+        return (whole << 16) | (whole << 31);
+    }
+    let shift = 7 - exponent;
+    let tie_to_even = (mantissa >> shift) & 1;
+    let fixed = (mantissa + (1 << (shift - 1)) - 1 + tie_to_even) >> shift;
+    fixed
+        | if partitioning == Partitioning::FractionalOdd {
+            FACTOR_ODD
+        } else {
+            0
+        }
+}
+
+/// As [`factor_word`], for the inside factor: rounded up to 1 it counts as even, and acts as 2.
+fn inside_word(partitioning: Partitioning, bits: u32) -> u32 {
+    let word = factor_word(partitioning, bits);
+    let even_one = partitioning != Partitioning::FractionalOdd && word == (FACTOR_ODD | FIXED_ONE);
+    if even_one { FIXED_ONE } else { word }
+}
+
+/// What the tessellator makes of a patch's factors (11.7.3 to 11.7.10): culls the patch if an edge's factor is not
+/// greater than zero, clamps to what the partitioning allows, and rounds to fixed point. `edges` are U == 0, V == 0 and
+/// W == 0. The inside factor never culls: NaN and anything too small act as the smallest.
+pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> PatchFactors {
+    let bits = edges.map(f32::to_bits);
+    if !(positive_bits(bits[0]) && positive_bits(bits[1]) && positive_bits(bits[2])) {
+        return PatchFactors::default();
+    }
+    let low = factor_lower_bound(partitioning);
+    let high = factor_upper_bound(partitioning);
+    let clamped = bits.map(|b| b.clamp(low, high));
+
+    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
+    let largest = clamped[0].max(clamped[1]).max(clamped[2]);
+    let splits = partitioning == Partitioning::FractionalOdd && largest > BITS_ONE_AND_HALF_STEP;
+    let inside_low = if splits { BITS_ONE_AND_STEP } else { low };
+    let inside_bits = if positive_bits(inside.to_bits()) {
+        inside.to_bits()
+    } else {
+        0
+    };
+    PatchFactors {
+        outside: clamped.map(|b| factor_word(partitioning, b)),
+        inside: inside_word(partitioning, inside_bits.clamp(inside_low, high)),
+    }
+}
+
+/// The factor that a shader compiler hands to the tessellator for pow2: clamped to 1..=64, then rounded up to a power
+/// of two. What culls a patch (NaN, zero, negatives) stays as it is.
+pub fn round_pow2(factor: f32) -> f32 {
+    let bits = factor.to_bits();
+    if !positive_bits(bits) {
+        return factor;
+    }
+    let clamped = bits.clamp(BITS_ONE, BITS_64);
+    // A carry out of the mantissa lands in the exponent.
+    f32::from_bits((clamped + 0x7f_ffff) & 0x7f80_0000)
+}
+
+/// Whether the patch is culled: no points, no triangles.
+pub fn patch_is_culled(factors: PatchFactors) -> bool {
+    factors.outside[0] == 0
+}
+
+/// Whether the patch is its own three corners and nothing more: all factors 1.
+pub fn patch_is_minimal(factors: PatchFactors) -> bool {
+    let edges_are_one = factors.outside == [FACTOR_ODD | FIXED_ONE; 3];
+    edges_are_one && (factors.inside & !FACTOR_ODD) == FIXED_ONE
+}
+
+/// 1 where the word's parity is odd, else 0.
+pub fn odd_parity(word: u32) -> u32 {
+    word >> 31
+}
+
+/// The number of segments from an end of a row to its middle, in 16.16 fixed point: the fraction is how far the newest
+/// one has grown. An odd row's middle segment counts as whole.
+pub fn half_factor(word: u32) -> u32 {
+    let half = ((word & !FACTOR_ODD) + 1) >> 1;
+    let rounds_up = odd_parity(word) == 1 || half == FIXED_HALF;
+    if rounds_up { half + FIXED_HALF } else { half }
+}
+
+/// [`half_factor`] rounded up: segments of half a row, the middle one of an odd row counted.
+pub fn half_segments(word: u32) -> u32 {
+    (half_factor(word) + (FIXED_ONE - 1)) >> 16
+}
+
+/// The number of segments of an edge's row: one less than its points.
+pub fn segments(word: u32) -> u32 {
+    2 * half_segments(word) - odd_parity(word)
+}
+
+/// The number of segments of the inside row: at least 3 where odd, 2 where even.
+pub fn inside_segments(word: u32) -> u32 {
+    segments(word).max(2 + odd_parity(word))
+}
+
+/// The number of points on the patch's outline: each edge without its last point.
+pub fn outer_count(factors: PatchFactors) -> u32 {
+    segments(factors.outside[0]) + segments(factors.outside[1]) + segments(factors.outside[2])
+}
+
+/// The number of domain points of the patch.
+pub fn point_count(factors: PatchFactors) -> u32 {
+    if patch_is_culled(factors) {
+        return 0;
+    }
+    if patch_is_minimal(factors) {
+        return 3;
+    }
+    // The rings inside hold 3 R^2 points (odd) or 3 R (R + 1) + 1 (even, with the centre), R = (n - 1) / 2.
+    let n = inside_segments(factors.inside);
+    outer_count(factors) + ((3 * (n - 1) * (n - 1) + 1) >> 2)
+}
+
+/// The number of triangles of the patch.
+pub fn triangle_count(factors: PatchFactors) -> u32 {
+    if patch_is_culled(factors) {
+        return 0;
+    }
+    if patch_is_minimal(factors) {
+        return 1;
+    }
+    let inner = inside_segments(factors.inside) - 2;
+    outer_count(factors) + 3 * inner + ((3 * inner * inner) >> 1)
+}
+
+#[cfg(test)]
+mod tests;
