@@ -1,5 +1,6 @@
 //! Arguments in, window or command out.
 
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -15,15 +16,12 @@ fn main() -> ExitCode {
     if let Some(command) = command {
         return cli::run(command);
     }
-    match app::run(file.clone()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(WindowError::NoDisplay(reason)) => match cli::preview(file, Path::new(PREVIEW)) {
-            Ok(()) => {
-                println!("There is no display to open a window on ({reason}); the picture it would have shown is in {PREVIEW}.");
-                ExitCode::SUCCESS
-            }
-            Err(error) => cli::fail(&error),
-        },
-        Err(error) => cli::fail(&error),
+    let Err(WindowError::NoDisplay(reason)) = app::run(file.clone()) else { return ExitCode::SUCCESS };
+    if let Err(error) = cli::preview(file, Path::new(PREVIEW)) {
+        return cli::fail(&error);
     }
+    let said = "There is no display to open a window on";
+    // A closed standard output is no failure.
+    let _ = writeln!(std::io::stdout(), "{said} ({reason}); the picture it would have shown is in {PREVIEW}.");
+    ExitCode::SUCCESS
 }

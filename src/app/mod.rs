@@ -227,7 +227,7 @@ impl eframe::App for App {
         self.take_loaded();
         self.take_dialog(context);
         self.take_device_errors();
-        let dropped = context.input(|input| input.raw.dropped_files.iter().find_map(|file| file.path.clone()));
+        let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());
         if let Some(path) = dropped {
             self.open(context, Source::File(path));
         }

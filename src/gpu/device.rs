@@ -1,6 +1,6 @@
 //! An adapter and its device, with or without a window.
 
-use crate::error::GpuError;
+use super::GpuError;
 
 /// A device that tessellates and draws.
 #[derive(Clone, Debug)]

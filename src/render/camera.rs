@@ -1,8 +1,8 @@
 //! An orbiting camera. Angles in degrees, lengths in object units; +Y is up and azimuth 0 looks along -Z (from the
 //! front, as glTF has it). Clip space is WebGPU's, with depth reversed: 1 at the near plane, 0 at infinity.
 
+use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, Vec2, Vec3, vec2, vec3};
-use serde::{Deserialize, Serialize};
 
 use crate::mesh::Bounds;
 use crate::tessellate::LodView;
@@ -13,7 +13,7 @@ const FIELD_OF_VIEW: f32 = 40.0;
 const MAX_ELEVATION: f32 = 89.9;
 
 /// A camera that looks at `target` from `distance` away.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     pub target: Vec3,
     /// Degrees about +Y, from +Z towards +X.
@@ -114,9 +114,9 @@ impl Camera {
         let projection = if self.orthographic {
             let half = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
             let depth = bounds.radius() + (bounds.center() - self.target).length() + self.distance;
-            Mat4::orthographic_rh(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
+            proj::orthographic(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
         } else {
-            Mat4::perspective_infinite_reverse_rh(FIELD_OF_VIEW.to_radians(), aspect, self.distance * 1e-3)
+            proj::perspective_infinite_reverse(FIELD_OF_VIEW.to_radians(), aspect, self.distance * 1e-3)
         };
         projection * view
     }

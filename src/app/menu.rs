@@ -1,0 +1,257 @@
+//! The menu bar, the keys, and the small windows they open.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use super::App;
+use crate::mesh::{Shape, Source};
+use crate::render::Standpoint;
+use crate::settings::{FACTOR_RANGE, Overlay};
+
+const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
+const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
+const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+
+/// Every key, and what it does; shown under Help, and listed in the README.
+pub const KEYS: [(&str, &str); 20] = [
+    ("Left drag, arrows", "orbit"),
+    ("Middle or Shift drag, Shift arrows", "pan"),
+    ("Wheel, Page Up, Page Down", "zoom (the wheel: to the pointer)"),
+    ("F", "frame the mesh"),
+    ("1, 3, 7", "look from the front, the right, the top"),
+    ("5", "perspective or orthographic"),
+    ("+, -", "tessellation factor up or down by 1"),
+    ("W", "wireframe"),
+    ("P", "patch borders"),
+    ("B", "barycentric colours"),
+    ("A", "adjacency edges"),
+    ("C", "cracks"),
+    ("S", "split view"),
+    ("L", "adaptive LOD"),
+    ("Z", "freeze the LOD camera"),
+    ("R", "reload the file"),
+    ("Ctrl+O", "open a file"),
+    ("Ctrl+L", "type a path to open"),
+    ("Esc", "cancel loading, close a message"),
+    ("Ctrl+Q", "quit"),
+];
+
+/// Spacing that both themes share: calm, and the same everywhere.
+pub fn style(context: &egui::Context) {
+    context.all_styles_mut(|style| {
+        style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+        style.spacing.slider_width = 96.0;
+        style.spacing.combo_width = 148.0;
+        style.interaction.tooltip_delay = 0.4;
+    });
+}
+
+impl App {
+    pub(super) fn menu_bar(&mut self, ui: &mut egui::Ui) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| self.file_menu(ui));
+            ui.menu_button("View", |ui| self.view_menu(ui));
+            ui.menu_button("Help", |ui| {
+                if ui.button("Keys…").clicked() {
+                    self.shows_keys = true;
+                    ui.close();
+                }
+                ui.hyperlink_to("The PN-AEN white paper", WHITE_PAPER);
+            });
+            let title = self.document.as_ref().map_or_else(String::new, |document| document.loaded.source.title());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.weak(concat!("pnaen ", env!("CARGO_PKG_VERSION")));
+                ui.separator();
+                ui.strong(title);
+            });
+        });
+    }
+
+    fn file_menu(&mut self, ui: &mut egui::Ui) {
+        let entry = |ui: &mut egui::Ui, text: &str, shortcut: &KeyboardShortcut| {
+            ui.add(egui::Button::new(text).shortcut_text(ui.ctx().format_shortcut(shortcut))).clicked()
+        };
+        if entry(ui, "Open…", &OPEN) {
+            self.open_dialog(ui.ctx());
+        }
+        if entry(ui, "Open path…", &OPEN_PATH) {
+            self.typed_path.get_or_insert_default();
+        }
+        let reload = egui::Button::new("Reload").shortcut_text("R");
+        if ui.add_enabled(self.document.is_some(), reload).clicked() {
+            self.reload(ui.ctx());
+        }
+        ui.separator();
+        ui.menu_button("Shapes", |ui| {
+            for shape in Shape::ALL {
+                if ui.button(shape.title()).clicked() {
+                    self.open(ui.ctx(), Source::Shape(shape));
+                    ui.close();
+                }
+            }
+        });
+        ui.separator();
+        if entry(ui, "Quit", &QUIT) {
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    fn view_menu(&mut self, ui: &mut egui::Ui) {
+        let entry = |ui: &mut egui::Ui, text: &str, key: &str| ui.add(egui::Button::new(text).shortcut_text(key)).clicked();
+        if entry(ui, "Frame", "F") {
+            self.frame();
+        }
+        for (text, key, standpoint) in [
+            ("Front", "1", Standpoint::Front),
+            ("Right", "3", Standpoint::Right),
+            ("Top", "7", Standpoint::Top),
+        ] {
+            if entry(ui, text, key) {
+                self.camera.look_from(standpoint);
+            }
+        }
+        ui.checkbox(&mut self.camera.orthographic, "Orthographic").on_hover_text("No perspective (5)");
+        ui.separator();
+        egui::widgets::global_theme_preference_buttons(ui);
+    }
+
+    fn frame(&mut self) {
+        if let Some(document) = &self.document {
+            self.camera.frame(&document.scene.bounds);
+        }
+    }
+
+    /// The desktop's file dialog, on a thread of its own.
+    fn open_dialog(&mut self, context: &egui::Context) {
+        if self.dialog.is_some() {
+            return;
+        }
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let context = context.clone();
+        std::thread::spawn(move || {
+            let dialog = rfd::FileDialog::new().set_title("Open a mesh").add_filter("glTF", &["gltf", "glb"]);
+            let _ = sender.send(dialog.pick_file());
+            context.request_repaint();
+        });
+        self.dialog = Some(receiver);
+    }
+
+    /// Keys that work wherever the pointer is, unless text is being typed.
+    pub(super) fn shortcuts(&mut self, context: &egui::Context) {
+        let taken = |shortcut| context.input_mut(|input| input.consume_shortcut(shortcut));
+        if taken(&OPEN) {
+            self.open_dialog(context);
+        }
+        if taken(&OPEN_PATH) {
+            self.typed_path.get_or_insert_default();
+        }
+        if taken(&QUIT) {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if context.input(|input| input.key_pressed(Key::Escape)) {
+            self.load = None;
+            self.error = None;
+            self.typed_path = None;
+            self.shows_keys = false;
+        }
+        if context.egui_wants_keyboard_input() {
+            return;
+        }
+        let pressed = |key| context.input(|input| input.key_pressed(key) && !input.modifiers.command);
+        let keys = [Key::W, Key::P, Key::B, Key::A, Key::C];
+        for (key, overlay) in keys.into_iter().zip(Overlay::ALL) {
+            if pressed(key) {
+                let switch = self.settings.overlays.get_mut(overlay);
+                *switch = !*switch;
+            }
+        }
+        for (key, standpoint) in
+            [(Key::Num1, Standpoint::Front), (Key::Num3, Standpoint::Right), (Key::Num7, Standpoint::Top)]
+        {
+            if pressed(key) {
+                self.camera.look_from(standpoint);
+            }
+        }
+        let steps = i8::from(pressed(Key::Plus) || pressed(Key::Equals)) - i8::from(pressed(Key::Minus));
+        if steps != 0 {
+            let factor = self.settings.factor + f32::from(steps);
+            self.settings.factor = factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
+        }
+        if pressed(Key::Num5) {
+            self.camera.orthographic = !self.camera.orthographic;
+        }
+        if pressed(Key::F) {
+            self.frame();
+        }
+        if pressed(Key::R) {
+            self.reload(context);
+        }
+        if pressed(Key::S) {
+            self.toggle_split();
+        }
+        if pressed(Key::L) {
+            self.toggle_lod();
+        }
+        if pressed(Key::Z) {
+            self.toggle_frozen();
+        }
+    }
+
+    /// What lies over everything: typing a path, the keys, an error.
+    pub(super) fn windows(&mut self, context: &egui::Context) {
+        self.path_window(context);
+        let mut open = self.shows_keys;
+        egui::Window::new("Keys").open(&mut open).resizable(false).collapsible(false).show(context, |ui| {
+            egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                for (key, does) in KEYS {
+                    ui.strong(key);
+                    ui.label(does);
+                    ui.end_row();
+                }
+            });
+        });
+        self.shows_keys = open;
+        let Some(error) = &self.error else { return };
+        let mut closed = false;
+        let anchor = (egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0));
+        let window = egui::Window::new("Problem").resizable(false).collapsible(false).anchor(anchor.0, anchor.1);
+        window.default_width(420.0).show(context, |ui| {
+            ui.label(error);
+            closed = ui.button("Close").clicked();
+        });
+        if closed {
+            self.error = None;
+        }
+    }
+
+    fn path_window(&mut self, context: &egui::Context) {
+        let Some(path) = &mut self.typed_path else { return };
+        let (mut accepted, mut cancelled) = (false, false);
+        let window = egui::Window::new("Open path").resizable(false).collapsible(false);
+        window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(context, |ui| {
+            let label = ui.label("A .gltf or .glb file, or shape:NAME");
+            let edit = egui::TextEdit::singleline(path).desired_width(420.0).hint_text("model.glb");
+            let response = ui.add(edit).labelled_by(label.id);
+            if !response.has_focus() && !response.lost_focus() {
+                response.request_focus();
+            }
+            accepted = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            ui.horizontal(|ui| {
+                accepted |= ui.button("Open").clicked();
+                cancelled = ui.button("Cancel").clicked();
+            });
+        });
+        if accepted {
+            match path.trim().parse::<Source>() {
+                Ok(source) => {
+                    self.typed_path = None;
+                    self.open(context, source);
+                }
+                Err(error) => self.error = Some(error.to_string()),
+            }
+        } else if cancelled {
+            self.typed_path = None;
+        }
+    }
+}
+
+const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";

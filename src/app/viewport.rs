@@ -1,0 +1,300 @@
+//! The picture in the middle: pointer and keys move the camera, and a new picture is drawn when anything changed.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use egui::{Key, PointerButton, Sense};
+use glam::{Mat4, Vec2, vec2};
+
+use super::{App, Document};
+use crate::engine::Engine;
+use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
+use crate::measure::Cracks;
+use crate::render::{Camera, Target};
+use crate::settings::Settings;
+use crate::tessellate::{Inputs, LodView};
+
+/// Degrees that the camera turns for a point of dragging, and for a press of an arrow key.
+const DEGREES_PER_POINT: f32 = 0.4;
+const DEGREES_PER_KEY: f32 = 7.5;
+/// Points that a press of an arrow key moves the target by.
+const POINTS_PER_KEY: f32 = 40.0;
+/// Half the width in points in which the divider can be grabbed.
+const DIVIDER_REACH: f32 = 5.0;
+
+/// Everything that the picture is a function of.
+#[derive(Clone, Copy, PartialEq)]
+struct Wanted {
+    document: u64,
+    lines: u64,
+    camera: Camera,
+    settings: Settings,
+    inputs: Inputs,
+    clip_from_object: Mat4,
+    /// Width and height in px.
+    viewport: Vec2,
+}
+
+/// The picture and what it cost.
+pub struct Viewport {
+    target: Option<(Target, egui::TextureId)>,
+    drawn: Option<Wanted>,
+    timing: Timing,
+    /// Of the last picture: a pass each where the GPU's clock can be trusted.
+    pub times: Vec<PassTime>,
+    /// From submitting the last picture to its completion, in ms.
+    pub picture_ms: Option<f64>,
+    in_flight: Option<(Instant, Arc<AtomicBool>)>,
+    pictures: u64,
+}
+
+impl Viewport {
+    pub fn new(engine: &Engine) -> Self {
+        // Waiting for every pass would stall the window; without timestamps, whole pictures are timed.
+        let timing = match Timing::on(&engine.gpu) {
+            Timing::Submissions(_) => Timing::Off,
+            timestamps => timestamps,
+        };
+        Self { target: None, drawn: None, timing, times: Vec::new(), picture_ms: None, in_flight: None, pictures: 0 }
+    }
+
+    pub fn pictures(&self) -> u64 {
+        self.pictures
+    }
+
+    /// Whether the device still works on a picture.
+    pub fn is_busy(&self) -> bool {
+        self.in_flight.is_some()
+    }
+
+    /// The view that the LOD of what is shown was computed for.
+    pub fn shown_view(&self) -> Option<LodView> {
+        self.drawn.as_ref().map(|drawn| drawn.inputs.view)
+    }
+
+    /// The largest gap of these cracks in px, seen as the last picture was.
+    pub fn gap_px(&self, cracks: &Cracks) -> f64 {
+        self.drawn.as_ref().map_or(0.0, |drawn| cracks.max_gap_px(drawn.clip_from_object, drawn.viewport))
+    }
+
+    /// Bytes of the textures drawn into.
+    pub fn bytes(&self) -> u64 {
+        self.target.as_ref().map_or(0, |(target, _)| target.bytes())
+    }
+
+    /// Looks whether the picture in flight has landed.
+    fn land(&mut self, engine: &Engine) {
+        if let Some((start, done)) = &self.in_flight
+            && done.load(Ordering::Acquire)
+        {
+            self.picture_ms = Some(start.elapsed().as_secs_f64() * 1e3);
+            self.in_flight = None;
+            let times = take_times(&engine.gpu, &mut self.timing);
+            // Passes that did not run again keep the time they last took.
+            for time in times {
+                match self.times.iter_mut().find(|known| known.pass == time.pass) {
+                    Some(known) => *known = time,
+                    None => self.times.push(time),
+                }
+            }
+        }
+    }
+
+    /// A target of the size wanted, registered with egui.
+    fn fit(&mut self, app: &egui_wgpu::RenderState, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
+        if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
+            return Ok(());
+        }
+        let target = Target::new(&engine.gpu, size)?;
+        let mut renderer = app.renderer.write();
+        let (view, filter) = (target.shown_view(), wgpu::FilterMode::Nearest);
+        let id = match self.target.take() {
+            Some((_, id)) => {
+                renderer.update_egui_texture_from_wgpu_texture(&engine.gpu.device, &view, filter, id);
+                id
+            }
+            None => renderer.register_native_texture(&engine.gpu.device, &view, filter),
+        };
+        self.target = Some((target, id));
+        self.drawn = None;
+        Ok(())
+    }
+
+    /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then the
+    /// last picture stays.
+    fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
+        if self.drawn.as_ref() == Some(wanted) || self.in_flight.is_some() {
+            return Ok(());
+        }
+        let Some((target, _)) = &self.target else { return Ok(()) };
+        let tessellator = &mut document.scene.tessellator;
+        tessellator.set(&wanted.inputs)?;
+        if tessellator.needs_count() {
+            let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
+            tessellator.count(&mut recorder);
+            recorder.submit();
+            tessellator.request_counts();
+        }
+        if !tessellator.poll_counts()? {
+            return Ok(());
+        }
+        let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
+        engine.renderer.draw(&mut recorder, &mut document.scene, target, &wanted.camera, &wanted.settings);
+        let done = Arc::new(AtomicBool::new(false));
+        self.in_flight = Some((Instant::now(), done.clone()));
+        recorder.submit();
+        engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
+        self.drawn = Some(*wanted);
+        self.pictures += 1;
+        Ok(())
+    }
+}
+
+impl App {
+    pub(super) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
+        let points = vec2(rect.width(), rect.height());
+        self.move_camera(ui, &response, points);
+        let scale = ui.ctx().pixels_per_point();
+        let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
+        if let Err(error) = self.advance(ui.ctx(), size) {
+            self.error = Some(error.to_string());
+        }
+        if let Some((_, id)) = &self.viewport.target {
+            let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+            ui.painter().image(*id, rect, whole, egui::Color32::WHITE);
+        }
+        self.divider(ui, rect);
+        self.viewport_notes(ui, rect);
+    }
+
+    /// Lets everything beside the window go on, and draws what is wanted.
+    fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), GpuError> {
+        // Callbacks of readbacks run here; a lost device reports through its own callback.
+        let _ = self.engine.gpu.device.poll(wgpu::PollType::Poll);
+        self.viewport.fit(&self.render_state, &self.engine, size)?;
+        self.viewport.land(&self.engine);
+        let Some(document) = &mut self.document else { return Ok(()) };
+        let viewport = vec2(size[0] as f32, size[1] as f32);
+        let view = self.frozen.unwrap_or_else(|| self.camera.lod_view(viewport, &document.scene.bounds));
+        let inputs = self.settings.inputs(view);
+        let wanted = Wanted {
+            document: document.generation,
+            lines: self.measuring.generation,
+            camera: self.camera,
+            settings: self.settings,
+            inputs,
+            clip_from_object: self.camera.clip_from_object(viewport, &document.scene.bounds),
+            viewport,
+        };
+        self.viewport.draw(&self.engine, document, &wanted)?;
+        let shown = self.viewport.drawn.as_ref() == Some(&wanted);
+        if shown
+            && self.viewport.in_flight.is_none()
+            && self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, &inputs)?
+        {
+            let lines = self.measuring.cracks().map(Cracks::lines).unwrap_or_default();
+            document.scene.set_lines(&self.engine.gpu, &lines);
+        }
+        if !shown || self.is_busy() {
+            context.request_repaint();
+        }
+        Ok(())
+    }
+
+    fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, points: Vec2) {
+        let drag = vec2(response.drag_delta().x, response.drag_delta().y);
+        let shift = ui.input(|input| input.modifiers.shift);
+        let pans = response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && shift);
+        if pans {
+            self.camera.pan(drag, points);
+        } else if response.dragged_by(PointerButton::Primary) {
+            self.camera.orbit(vec2(-drag.x, drag.y) * DEGREES_PER_POINT);
+        }
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let ratio = (-scroll * 0.0025).exp() / pinch;
+            if ratio != 1.0 {
+                let pointer = pointer - response.rect.min;
+                self.camera.zoom(ratio, vec2(pointer.x, pointer.y), points);
+            }
+        }
+        if ui.memory(|memory| memory.focused().is_none()) {
+            self.move_camera_by_keys(ui, points);
+        }
+    }
+
+    fn move_camera_by_keys(&mut self, ui: &egui::Ui, points: Vec2) {
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        let axis = |less, more| f32::from(u8::from(pressed(more))) - f32::from(u8::from(pressed(less)));
+        let arrows = vec2(axis(Key::ArrowLeft, Key::ArrowRight), axis(Key::ArrowDown, Key::ArrowUp));
+        if arrows != Vec2::ZERO {
+            if ui.input(|input| input.modifiers.shift) {
+                self.camera.pan(vec2(arrows.x, -arrows.y) * POINTS_PER_KEY, points);
+            } else {
+                self.camera.orbit(arrows * DEGREES_PER_KEY);
+            }
+        }
+        let closer = axis(Key::PageDown, Key::PageUp);
+        if closer != 0.0 {
+            self.camera.zoom(0.8f32.powf(closer), points * 0.5, points);
+        }
+    }
+
+    /// The split's divider, which can be dragged.
+    fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        let Some(split) = &mut self.settings.split else { return };
+        let at = rect.left() + rect.width() * *split;
+        let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
+        let response = ui.interact(reach, ui.scope_id().with("divider"), Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Split divider"));
+        if response.dragged()
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+        }
+        let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+        let color = if response.hovered() || response.dragged() {
+            ui.visuals().selection.stroke.color
+        } else {
+            egui::Color32::from_gray(190)
+        };
+        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(1.5, color));
+        let label = |x, align, text| {
+            let position = egui::pos2(x, rect.top() + 8.0);
+            let font = egui::TextStyle::Small.resolve(ui.style());
+            ui.painter().text(position, align, text, font, egui::Color32::from_gray(210));
+        };
+        label(at - 8.0, egui::Align2::RIGHT_TOP, "untessellated");
+        label(at + 8.0, egui::Align2::LEFT_TOP, "tessellated");
+    }
+
+    /// What the picture alone doesn't say: loading, freezing.
+    fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        if self.frozen.is_some() {
+            let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
+            let font = egui::TextStyle::Body.resolve(ui.style());
+            let color = egui::Color32::from_rgb(120, 190, 255);
+            ui.painter().text(position, egui::Align2::LEFT_BOTTOM, "LOD camera frozen", font, color);
+        }
+        if let Some(load) = &self.load {
+            let (title, fraction) = (load.source.title(), load.progress.fraction());
+            let area = egui::Rect::from_center_size(rect.center(), egui::vec2(280.0, 84.0));
+            let mut cancelled = false;
+            ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.label(format!("Loading {title}"));
+                    ui.add(egui::ProgressBar::new(fraction).desired_width(260.0));
+                    cancelled = ui.button("Cancel").on_hover_text("Stops loading; what is open stays open").clicked();
+                });
+            });
+            if cancelled {
+                self.load = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        }
+    }
+}
