@@ -246,8 +246,8 @@ impl App {
             let drawn = patches - u64::from(self.measuring.culled().unwrap_or(0));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             status(ui, 120.0, format!("{} of {} patches", grouped(drawn), grouped(patches)), "Patches drawn, of all; the rest is clipped.");
-            status(ui, 170.0, format!("{} → {} triangles", grouped(before.0), grouped(triangles)), "Before and after tessellation.");
-            status(ui, 160.0, format!("{} → {} vertices", grouped(before.1), grouped(vertices)), "Before and after tessellation.");
+            status(ui, 170.0, format!("{} to {} triangles", grouped(before.0), grouped(triangles)), "Before and after tessellation.");
+            status(ui, 160.0, format!("{} to {} vertices", grouped(before.1), grouped(vertices)), "Before and after tessellation.");
             self.status_of_cracks(ui);
             let bytes = scene.tessellator.buffers().bytes()
                 + scene.tessellator.work_bytes()

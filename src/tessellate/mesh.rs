@@ -90,6 +90,11 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, edge_factor
     out
 }
 
+/// One factor for each edge, as LOD gives them.
+pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
+    Nets::new(mesh, topology, inputs.surface).edge_factors(inputs)
+}
+
 /// Factor i belongs to the edge opposite corner i: side i + 1. Inside: the largest of the three.
 fn patch_factors(topology: &Topology, partitioning: Partitioning, edge_factors: &[f32], patch: u32) -> PatchFactors {
     let sides = topology.patches[patch as usize].sides;

@@ -15,7 +15,7 @@ pub use factors::{
     segments, triangle_count,
 };
 pub use lod::{Lod, LodView, paper_edge_factor, project_and_scale};
-pub use mesh::{Inputs, Tessellated, Vertex, pack_key, sharing, tessellate};
+pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv, patch_position,
     straight_control_point,

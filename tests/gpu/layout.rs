@@ -1,0 +1,116 @@
+//! Every struct that host and shaders share: same size, same fields at the same offsets. And every shader is valid with
+//! no more capabilities than WebGPU has by default.
+
+use std::mem::{offset_of, size_of};
+
+use pnaen::gpu::layout::{
+    Chunk, Corner, Curve, CurveNet, DrawArgs, EmitArgs, LodView, Params, Patch, PatchFactors, Slab, Vertex,
+};
+use pnaen::gpu::{DomainParams, SHADERS, shader_source};
+use pnaen::render::layout::{Frame, Material};
+
+fn parse(name: &str) -> naga::Module {
+    let source = shader_source(name);
+    naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(&source)))
+}
+
+#[test]
+fn every_shader_is_valid() {
+    for (name, _) in SHADERS {
+        let module = parse(name);
+        let flags = naga::valid::ValidationFlags::all();
+        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::default());
+        if let Err(error) = validator.validate(&module) {
+            panic!("{name}: {}", error.emit_to_string(&shader_source(name)));
+        }
+    }
+}
+
+/// Size and (name, offset) of a struct's members, as the shader has it.
+fn wgsl_struct(name: &str) -> (usize, Vec<(String, usize)>) {
+    let found = SHADERS.iter().find_map(|(shader, _)| {
+        let module = parse(shader);
+        module.types.iter().find_map(|(_, ty)| match &ty.inner {
+            naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
+                let member = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize);
+                Some((*span as usize, members.iter().map(member).collect()))
+            }
+            _ => None,
+        })
+    });
+    found.unwrap_or_else(|| panic!("no shader has a struct {name}"))
+}
+
+/// Holds a Rust struct against the WGSL struct of its name: every member of either, but for Rust's padding.
+macro_rules! same {
+    ($name:ident { $($field:ident),* $(,)? }) => {
+        let (size, members) = wgsl_struct(stringify!($name));
+        assert_eq!(size, size_of::<$name>(), "size of {}", stringify!($name));
+        let rust = vec![$((stringify!($field).to_owned(), offset_of!($name, $field))),*];
+        assert_eq!(members, rust, "members of {}", stringify!($name));
+    };
+}
+
+#[test]
+fn shared_structs_have_one_layout() {
+    same!(LodView { clip_from_object, half_viewport });
+    same!(Params {
+        view,
+        factor,
+        pixels_per_segment,
+        surface,
+        partitioning,
+        lod,
+        clip,
+        patch_count,
+        edge_count,
+        curve_count,
+    });
+    same!(Patch { points, corners, curves, edges });
+    same!(Corner { normal, uv });
+    same!(Curve { points, first_side, side_count });
+    same!(CurveNet { ab, ba });
+    same!(PatchFactors { outside, inside });
+    same!(Chunk { first_patch, patch_end, first_vertex, first_triangle, vertex_count, triangle_count });
+    same!(EmitArgs { vertices, triangles });
+    same!(DrawArgs {
+        index_count,
+        instance_count,
+        first_index,
+        base_vertex,
+        first_instance,
+        pull_vertex_count,
+        pull_instance_count,
+        pull_first_vertex,
+        pull_first_instance,
+    });
+    same!(DomainParams { partitioning, set_count });
+    same!(Frame { clip_from_object, key_light, fill_light, eye, viewport, overlays });
+    same!(Material { base_color });
+}
+
+#[test]
+fn uniforms_may_be_longer_in_rust_by_padding_alone() {
+    // A uniform buffer's size is a multiple of 16; the shader's own struct ends with its last member.
+    let (size, members) = wgsl_struct("Slab");
+    let rust = [
+        ("first_patch", offset_of!(Slab, first_patch)),
+        ("patch_count", offset_of!(Slab, patch_count)),
+        ("vertex_capacity", offset_of!(Slab, vertex_capacity)),
+        ("triangle_capacity", offset_of!(Slab, triangle_capacity)),
+        ("chunk_capacity", offset_of!(Slab, chunk_capacity)),
+        ("material_count", offset_of!(Slab, material_count)),
+    ];
+    assert_eq!(members, rust.map(|(name, offset)| (name.to_owned(), offset)));
+    assert_eq!(size, offset_of!(Slab, _pad));
+}
+
+#[test]
+fn a_vertex_is_five_words() {
+    // WGSL has no 12-byte vector without padding, so its members are scalars.
+    let (size, members) = wgsl_struct("Vertex");
+    assert_eq!(size, size_of::<Vertex>());
+    let [position, key] = [offset_of!(Vertex, position), offset_of!(Vertex, key)];
+    let rust = [("x", position), ("y", position + 4), ("z", position + 8), ("key0", key), ("key1", key + 4)];
+    assert_eq!(members, rust.map(|(name, offset)| (name.to_owned(), offset)));
+}

@@ -1,0 +1,53 @@
+//! What runs on the device, held against the CPU's reference, against itself, and against pictures.
+//!
+//! These tests fail, rather than pass over, where there is no adapter. In CI it must be the software one.
+
+mod domain;
+mod layout;
+mod passes;
+mod pictures;
+
+use std::sync::OnceLock;
+
+use pnaen::engine::{Engine, Loaded, load};
+use pnaen::gpu::Timing;
+use pnaen::mesh::{Progress, Shape, Source};
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::{ARENA_BYTES, Settings};
+
+/// One engine for all tests: compiling its pipelines is what takes long.
+pub fn engine() -> &'static Engine {
+    static ENGINE: OnceLock<Engine> = OnceLock::new();
+    ENGINE.get_or_init(|| {
+        let engine = Engine::headless().expect("these tests need a graphics adapter: run ./setup.sh");
+        println!("adapter: {} ({:?})", engine.gpu.info.name, engine.gpu.info.device_type);
+        let in_ci = std::env::var_os("CI").is_some();
+        assert!(!in_ci || engine.gpu.is_software(), "in CI, pictures come from the software adapter");
+        engine
+    })
+}
+
+pub fn loaded(shape: Shape) -> Loaded {
+    load(&Source::Shape(shape), &Progress::default()).expect("shapes always load")
+}
+
+pub fn scene(shape: Shape) -> (Loaded, Scene) {
+    let loaded = loaded(shape);
+    let scene = engine().scene(&loaded, ARENA_BYTES).expect("shapes are small");
+    (loaded, scene)
+}
+
+/// Draws what `pnaen render` would.
+pub fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
+    let engine = engine();
+    let target = Target::new(&engine.gpu, size).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds);
+    let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+    engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
+    if settings.overlays.cracks {
+        let measured = engine.measure(scene).expect("a readback");
+        scene.set_lines(&engine.gpu, &measured.cracks.lines());
+    }
+    engine.draw(scene, &target, &camera, settings, &mut Timing::Off).expect("a draw");
+    target.read(&engine.gpu).expect("a readback")
+}

@@ -1,0 +1,238 @@
+//! The passes, held against the CPU's reference and against themselves.
+
+use pnaen::engine::Loaded;
+use pnaen::gpu::{Timing, read_buffer, take_times};
+use pnaen::measure::ulp;
+use pnaen::mesh::Shape;
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::Settings;
+use pnaen::tessellate::{Clip, Inputs, Lod, Partitioning, Surface, Tessellated, tessellate};
+
+use crate::{engine, loaded, picture, scene};
+
+const SURFACES: [Surface; 3] = [Surface::Flat, Surface::Pn, Surface::PnAen];
+
+fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
+    let bounds = loaded.mesh.bounds();
+    settings.inputs(Camera::framing(&bounds).lod_view(glam::vec2(640.0, 480.0), &bounds))
+}
+
+fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
+    engine().count(scene, inputs, &mut Timing::Off).expect("counts");
+    engine().read_tessellated(scene).expect("a readback")
+}
+
+/// The factors that the GPU gave the edges.
+fn edge_factors(scene: &Scene) -> Vec<f32> {
+    let buffer = &scene.tessellator.buffers().edge_factors;
+    bytemuck::pod_collect_to_vec(&read_buffer(&engine().gpu, buffer, 0, buffer.size()).expect("a readback"))
+}
+
+/// Same domain points and triangles in the same order, positions within 4 ULP of the largest coordinate: what is left
+/// after sums of up to ten products that one side may fuse and the other not.
+fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &str) {
+    assert_eq!(gpu.patch_factors, cpu.patch_factors, "{what}: factors");
+    assert_eq!(gpu.triangles, cpu.triangles, "{what}: triangles");
+    assert_eq!(gpu.vertices.len(), cpu.vertices.len(), "{what}: vertices");
+    let bound = 4.0 * ulp(&loaded.topology);
+    for (index, (a, b)) in gpu.vertices.iter().zip(&cpu.vertices).enumerate() {
+        assert_eq!(a.key, b.key, "{what}: key of vertex {index}");
+        for (x, y) in a.position.into_iter().zip(b.position) {
+            assert!((f64::from(x) - f64::from(y)).abs() <= bound, "{what}: vertex {index}: {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn uniform_factors_agree_with_the_cpu() {
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = scene(shape);
+        for surface in SURFACES {
+            for partitioning in Partitioning::ALL {
+                for factor in [1.0, 5.3] {
+                    let settings = Settings { surface, partitioning, factor, ..Settings::default() };
+                    let inputs = inputs(&loaded, &settings);
+                    let gpu = on_gpu(&mut scene, &inputs);
+                    let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+                    assert_agree(&loaded, &gpu, &cpu, &format!("{shape:?} {surface:?} {partitioning} {factor}"));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn adaptive_factors_agree_with_the_cpu() {
+    for shape in [Shape::CubeSplit, Shape::Torus, Shape::Cone, Shape::Moebius] {
+        let (loaded, mut scene) = scene(shape);
+        for surface in SURFACES {
+            for partitioning in Partitioning::ALL {
+                let settings =
+                    Settings { surface, partitioning, lod: Lod::Paper, clip: Clip::Paper, ..Settings::default() };
+                let inputs = inputs(&loaded, &settings);
+                let gpu = on_gpu(&mut scene, &inputs);
+                let factors = edge_factors(&scene);
+                let what = format!("{shape:?} {surface:?} {partitioning}");
+                // Division and square root may differ in the last bits, and a factor's rounding with them: the
+                // tessellation is compared at the GPU's factors, and those with the CPU's own to a millionth.
+                let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, Some(&factors));
+                assert_agree(&loaded, &gpu, &cpu, &what);
+                assert!(factors.iter().any(|&factor| factor != factors[0]), "{what}: all factors are the same");
+            }
+        }
+    }
+}
+
+#[test]
+fn adaptive_factors_are_those_of_the_formula() {
+    let (loaded, mut scene) = scene(Shape::Torus);
+    let settings = Settings { lod: Lod::Paper, pixels: 6.0, ..Settings::default() };
+    let inputs = inputs(&loaded, &settings);
+    on_gpu(&mut scene, &inputs);
+    let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
+    for (gpu, cpu) in edge_factors(&scene).into_iter().zip(own) {
+        // Two divisions, a matrix and a square root, each to within a few ULP.
+        assert!((gpu - cpu).abs() <= 1e-5 * cpu, "{gpu} {cpu}");
+    }
+}
+
+#[test]
+fn every_shared_point_has_the_same_bits_from_all_sides() {
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = scene(shape);
+        for surface in [Surface::Flat, Surface::PnAen] {
+            for partitioning in Partitioning::ALL {
+                for lod in [Lod::Uniform, Lod::Paper] {
+                    let settings = Settings { surface, partitioning, lod, factor: 6.7, ..Settings::default() };
+                    engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
+                    let cracks = engine().measure(&mut scene).expect("a readback").cracks;
+                    assert_eq!(cracks.different_bits, 0, "{shape:?} {surface:?} {partitioning} {lod:?}");
+                    let inner = loaded.topology.edges.iter().filter(|edge| edge.sides.len() > 1).count();
+                    assert!(cracks.edge_points >= 2 * inner as u64, "both ends of every inner edge");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn pn_tears_where_normals_are_split_and_nowhere_else() {
+    for (shape, torn) in [(Shape::CubeSplit, 12), (Shape::CubeSmooth, 0), (Shape::Torus, 0)] {
+        let (loaded, mut scene) = scene(shape);
+        let settings = Settings { surface: Surface::Pn, ..Settings::default() };
+        engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
+        let cracks = engine().measure(&mut scene).expect("a readback").cracks;
+        assert_eq!(cracks.edges.len(), torn, "{shape:?}");
+    }
+}
+
+#[test]
+fn a_small_arena_gives_the_same_mesh_in_chunks() {
+    let loaded = loaded(Shape::Torus);
+    let mut whole = engine().scene(&loaded, 1 << 28).expect("small");
+    // Room for a little more than one patch at the largest factor: 3169 vertices of 20 bytes, 6144 triangles of 12.
+    let mut cut = engine().scene(&loaded, 2 * 90_000).expect("small");
+    for (lod, factor) in [(Lod::Uniform, 17.0), (Lod::Uniform, 64.0), (Lod::Paper, 1.0)] {
+        let settings = Settings { lod, factor, pixels: 2.0, ..Settings::default() };
+        let inputs = inputs(&loaded, &settings);
+        let (a, b) = (on_gpu(&mut whole, &inputs), on_gpu(&mut cut, &inputs));
+        assert_eq!(whole.tessellator.chunk_count(), 1);
+        assert!(cut.tessellator.chunk_count() > 10, "{} chunks", cut.tessellator.chunk_count());
+        assert!(a == b, "{lod:?} {factor}: the chunks differ from the whole");
+        let size = [160, 120];
+        assert!(picture(&mut whole, &settings, size) == picture(&mut cut, &settings, size), "{lod:?} {factor}: pictures");
+    }
+}
+
+#[test]
+fn output_is_the_same_on_every_run() {
+    let (loaded, mut scene) = scene(Shape::Cylinder);
+    let settings = Settings { lod: Lod::Paper, pixels: 3.0, ..Settings::default() };
+    let inputs = inputs(&loaded, &settings);
+    let first = on_gpu(&mut scene, &inputs);
+    for _ in 0..3 {
+        scene.tessellator.forget();
+        assert!(on_gpu(&mut scene, &inputs) == first);
+    }
+}
+
+#[test]
+fn only_what_changed_is_recomputed() {
+    let engine = engine();
+    let (_, mut scene) = scene(Shape::Torus);
+    let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
+    let mut camera = Camera::framing(&scene.bounds);
+    let mut settings = Settings::default();
+    let mut passes = |scene: &mut Scene, camera: &Camera, settings: &Settings| {
+        let mut timing = Timing::Submissions(Vec::new());
+        engine.draw(scene, &target, camera, settings, &mut timing).expect("a draw");
+        take_times(&engine.gpu, &mut timing).iter().map(|time| time.pass).collect::<Vec<_>>()
+    };
+    let all = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
+    let counts = &all[1..];
+    assert_eq!(passes(&mut scene, &camera, &settings), all);
+    assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "nothing changed");
+    camera.azimuth += 10.0;
+    assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "the camera moved under uniform LOD");
+    settings.pixels = 3.0;
+    assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "px a segment mean nothing under uniform LOD");
+    settings.factor = 3.0;
+    assert_eq!(passes(&mut scene, &camera, &settings), counts, "the factor changed");
+    settings.lod = Lod::Paper;
+    assert_eq!(passes(&mut scene, &camera, &settings), counts, "LOD changed");
+    camera.azimuth += 10.0;
+    assert_eq!(passes(&mut scene, &camera, &settings), counts, "the camera moved under adaptive LOD");
+    settings.surface = Surface::Flat;
+    assert_eq!(passes(&mut scene, &camera, &settings), all, "the surface changed");
+}
+
+#[test]
+fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
+    let (loaded, mut scene) = scene(Shape::Torus);
+    let bounds = loaded.mesh.bounds();
+    // Close to the rim: part of the torus lies behind the eye and beside the view.
+    let camera = Camera { distance: bounds.radius() * 0.9, ..Camera::framing(&bounds) };
+    let view = camera.lod_view(glam::vec2(640.0, 480.0), &bounds);
+    let off = Settings::default();
+    let on = Settings { clip: Clip::Paper, ..off };
+    let whole = on_gpu(&mut scene, &off.inputs(view));
+    let clipped = on_gpu(&mut scene, &on.inputs(view));
+    let kept: Vec<_> = clipped.patch_factors.iter().zip(&whole.patch_factors).filter(|(c, _)| c.inside != 0).collect();
+    assert!(!kept.is_empty() && kept.len() < whole.patch_factors.len(), "{} patches kept", kept.len());
+    assert!(kept.iter().all(|(clipped, whole)| clipped == whole), "a neighbour's factors changed");
+    assert_eq!(clipped, tessellate_like(&loaded, &on.inputs(view), &clipped), "clipping differs from the CPU's");
+}
+
+/// The CPU's tessellation with positions taken from `like`: they may differ in the last bits.
+fn tessellate_like(loaded: &Loaded, inputs: &Inputs, like: &Tessellated) -> Tessellated {
+    let mut cpu = tessellate(&loaded.mesh, &loaded.topology, inputs, None);
+    for (vertex, other) in cpu.vertices.iter_mut().zip(&like.vertices) {
+        vertex.position = other.position;
+    }
+    cpu
+}
+
+#[test]
+fn the_passes_are_timed_one_by_one() {
+    let engine = engine();
+    let (_, mut scene) = scene(Shape::CubeSplit);
+    let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds);
+    let times = engine.time(&mut scene, &target, &camera, &Settings::default()).expect("a draw");
+    assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), pnaen::gpu::PASSES);
+    assert!(times.iter().all(|time| time.ms >= 0.0 && time.ms.is_finite()));
+}
+
+#[test]
+fn an_empty_view_emits_nothing_and_draws_the_background() {
+    let engine = engine();
+    let (_, mut scene) = scene(Shape::CubeSplit);
+    let target = Target::new(&engine.gpu, [32, 32]).expect("a small picture");
+    let mut camera = Camera::framing(&scene.bounds);
+    camera.target += camera.axes()[2] * camera.distance * 3.0;
+    let settings = Settings { clip: Clip::Paper, background: [10, 200, 30], ..Settings::default() };
+    engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
+    assert_eq!(scene.tessellator.totals(), (0, 0));
+    let picture = target.read(&engine.gpu).expect("a readback");
+    assert!(picture.pixels().all(|pixel| pixel.0 == [10, 200, 30, 255]));
+}
