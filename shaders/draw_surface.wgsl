@@ -83,11 +83,11 @@ fn edge_color(kind: u32) -> vec3<f32> {
     return color;
 }
 
-// Distance in px to where each coordinate is 0.
-fn pixels_to_zero(coordinates: vec3<f32>) -> vec3<f32> {
+// How far one has to go, in px, for each coordinate to change by 1: a triangle's heights.
+fn heights(coordinates: vec3<f32>) -> vec3<f32> {
     let dx = dpdx(coordinates);
     let dy = dpdy(coordinates);
-    return coordinates / max(sqrt(dx * dx + dy * dy), vec3<f32>(1e-12));
+    return 1.0 / max(sqrt(dx * dx + dy * dy), vec3<f32>(1e-12));
 }
 
 // How much of a line `half_width` px to either side covers a pixel `distance` px away.
@@ -100,25 +100,29 @@ fn shade(base: vec3<f32>, normal: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
     let key = max(dot(normal, frame.key_light.xyz), 0.0);
     let fill = 0.5 + 0.5 * dot(normal, frame.fill_light.xyz);
     let half_way = normalize(frame.key_light.xyz + to_eye);
-    let gloss = pow(max(dot(normal, half_way), 0.0), 48.0) * 0.12;
-    return base * (0.72 * key + 0.26 * fill + 0.05) + vec3<f32>(gloss);
+    let gloss = pow(max(dot(normal, half_way), 0.0), 48.0) * 0.08;
+    return base * (0.62 * key + 0.22 * fill + 0.04) + vec3<f32>(gloss);
 }
 
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // Derivatives and samples first: both need uniform control flow.
-    let to_edges = pixels_to_zero(in.domain);
-    let to_sides = pixels_to_zero(in.corner);
+    let to_edges = in.domain * heights(in.domain);
+    let side_heights = heights(in.corner);
+    let to_sides = in.corner * side_heights;
     let texel = textureSample(base_texture, base_sampler, in.uv);
     var base = material.base_color.rgb * texel.rgb;
     if (frame.overlays & OVERLAY_BARYCENTRIC) != 0u {
-        base = pow(clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0)), vec3<f32>(2.2));
+        base = clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0));
     }
     let normal = normalize(select(-in.normal, in.normal, front));
     var color = shade(base, normal, in.position);
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let nearest = min(min(to_sides.x, to_sides.y), to_sides.z);
-        color = mix(color, vec3<f32>(0.008, 0.010, 0.014), 0.75 * line_coverage(nearest, 0.5));
+        // Triangles of a px or two would be nothing but lines: those fade, and the surface stays readable.
+        let height = min(min(side_heights.x, side_heights.y), side_heights.z);
+        let strength = mix(0.25, 0.75, smoothstep(1.5, 8.0, height));
+        color = mix(color, vec3<f32>(0.008, 0.010, 0.014), strength * line_coverage(nearest, 0.5));
     }
     let nearest_edge = min(min(to_edges.x, to_edges.y), to_edges.z);
     if (frame.overlays & OVERLAY_PATCHES) != 0u {

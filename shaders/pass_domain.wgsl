@@ -20,23 +20,23 @@ const DOMAIN_TRIANGLES: u32 = 6144u;
 @compute @workgroup_size(256)
 fn domain_main(@builtin(global_invocation_id) invocation: vec3<u32>) {
     let index = invocation.x;
-    let set = invocation.y;
-    if set >= domain_params.set_count {
+    let case_index = invocation.y;
+    if case_index >= domain_params.set_count {
         return;
     }
-    let raw = bitcast<vec4<f32>>(factor_sets[set]);
+    let raw = bitcast<vec4<f32>>(factor_sets[case_index]);
     let factors = process(domain_params.partitioning, raw.xyz, raw.w);
     let points = point_count(factors);
     let triangles = triangle_count(factors);
     if index == 0u {
-        domain_counts[set] = vec2<u32>(points, triangles);
+        domain_counts[case_index] = vec2<u32>(points, triangles);
     }
     if index < points {
-        domain_points[set * DOMAIN_POINTS + index] = domain_point(factors, index);
+        domain_points[case_index * DOMAIN_POINTS + index] = domain_point(factors, index);
     }
     if index < triangles {
         let triangle = domain_triangle(factors, index);
-        let first = 3u * (set * DOMAIN_TRIANGLES + index);
+        let first = 3u * (case_index * DOMAIN_TRIANGLES + index);
         domain_triangles[first] = triangle.x;
         domain_triangles[first + 1u] = triangle.y;
         domain_triangles[first + 2u] = triangle.z;

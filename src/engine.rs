@@ -3,9 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::gpu::{
-    ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait,
-};
+use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
 use crate::measure::{Cracks, Rims};
 use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
 use crate::render::{Camera, Renderer, Scene, Target};

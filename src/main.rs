@@ -13,6 +13,7 @@ const PREVIEW: &str = "pnaen-preview.png";
 
 fn main() -> ExitCode {
     let Cli { command, file } = Cli::parse();
+    quiet_driver();
     if let Some(command) = command {
         return cli::run(command);
     }
@@ -24,4 +25,13 @@ fn main() -> ExitCode {
     // A closed standard output is no failure.
     let _ = writeln!(std::io::stdout(), "{said} ({reason}); the picture it would have shown is in {PREVIEW}.");
     ExitCode::SUCCESS
+}
+
+/// Without a session, Mesa's device selection asks for a Wayland display and complains on standard error; commands need
+/// none, and choose their adapter themselves.
+fn quiet_driver() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: nothing else runs yet that could read the environment at the same time.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
 }

@@ -62,12 +62,7 @@ impl Drop for Load {
     }
 }
 
-fn load(
-    engine: &Engine,
-    source: &Source,
-    progress: &Progress,
-    generation: u64,
-) -> Result<Document, Option<String>> {
+fn load(engine: &Engine, source: &Source, progress: &Progress, generation: u64) -> Result<Document, Option<String>> {
     let loaded = match engine::load(source, progress) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),

@@ -96,15 +96,14 @@ impl App {
     }
 
     fn view_menu(&mut self, ui: &mut egui::Ui) {
-        let entry = |ui: &mut egui::Ui, text: &str, key: &str| ui.add(egui::Button::new(text).shortcut_text(key)).clicked();
+        let entry =
+            |ui: &mut egui::Ui, text: &str, key: &str| ui.add(egui::Button::new(text).shortcut_text(key)).clicked();
         if entry(ui, "Frame", "F") {
             self.frame();
         }
-        for (text, key, standpoint) in [
-            ("Front", "1", Standpoint::Front),
-            ("Right", "3", Standpoint::Right),
-            ("Top", "7", Standpoint::Top),
-        ] {
+        for (text, key, standpoint) in
+            [("Front", "1", Standpoint::Front), ("Right", "3", Standpoint::Right), ("Top", "7", Standpoint::Top)]
+        {
             if entry(ui, text, key) {
                 self.camera.look_from(standpoint);
             }

@@ -131,6 +131,10 @@ impl App {
         &self.settings
     }
 
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
     /// Cracks of what is shown, once they are measured.
     pub fn cracks(&self) -> Option<&Cracks> {
         self.measuring.cracks()

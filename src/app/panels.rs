@@ -4,8 +4,8 @@ use egui::RichText;
 
 use super::App;
 use super::text::{grouped, mebibytes, short};
-use crate::mesh::EdgeKind;
 use crate::measure::ulp;
+use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, edge_color};
 use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE};
 use crate::tessellate::{Clip, Lod, Partitioning, Surface};
@@ -27,9 +27,21 @@ const SURFACES: [(Surface, &str, &str); 3] = [
 ];
 const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
     (Partitioning::Integer, "Integer", "Factors are rounded up: every segment is as long, and the pattern pops."),
-    (Partitioning::Pow2, "Power of two", "Factors are rounded up to 1, 2, 4, 8, 16, 32 or 64: the pattern only halves."),
-    (Partitioning::FractionalOdd, "Fractional odd", "An odd number of segments, two of which grow from nothing: no pops."),
-    (Partitioning::FractionalEven, "Fractional even", "An even number of segments, two of which grow from nothing; at least 2."),
+    (
+        Partitioning::Pow2,
+        "Power of two",
+        "Factors are rounded up to 1, 2, 4, 8, 16, 32 or 64: the pattern only halves.",
+    ),
+    (
+        Partitioning::FractionalOdd,
+        "Fractional odd",
+        "An odd number of segments, two of which grow from nothing: no pops.",
+    ),
+    (
+        Partitioning::FractionalEven,
+        "Fractional even",
+        "An even number of segments, two of which grow from nothing; at least 2.",
+    ),
 ];
 const OVERLAYS: [(Overlay, &str, &str); 5] = [
     (Overlay::Wireframe, "Wireframe", "Edges of the tessellated triangles (W)."),
@@ -185,16 +197,36 @@ impl App {
         let topology = &document.loaded.topology;
         let gap = cracks.max_gap();
         egui::Grid::new("cracks").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            fact(ui, "Points compared", &grouped(cracks.edge_points), "Points of edges with several sides, once for each side after the first.");
-            fact(ui, "Different", &grouped(cracks.different_bits), "Those that differ in at least one bit between two sides.");
+            fact(
+                ui,
+                "Points compared",
+                &grouped(cracks.edge_points),
+                "Points of edges with several sides, once for each side after the first.",
+            );
+            fact(
+                ui,
+                "Different",
+                &grouped(cracks.different_bits),
+                "Those that differ in at least one bit between two sides.",
+            );
             ui.horizontal(|ui| {
                 swatch(ui, CRACK_COLOR);
                 ui.label("Cracked edges").on_hover_text("Edges with at least one such point; the overlay shows them.");
             });
             number(ui, &grouped(cracks.edges.len() as u64));
             ui.end_row();
-            fact(ui, "Largest gap", &format!("{} units", short(gap)), "Largest distance between two sides' positions of one point, in object units.");
-            fact(ui, "", &format!("{} ULP", short(gap / ulp(topology))), "In units of the last place of the mesh's largest coordinate.");
+            fact(
+                ui,
+                "Largest gap",
+                &format!("{} units", short(gap)),
+                "Largest distance between two sides' positions of one point, in object units.",
+            );
+            fact(
+                ui,
+                "",
+                &format!("{} ULP", short(gap / ulp(topology))),
+                "In units of the last place of the mesh's largest coordinate.",
+            );
             fact(ui, "", &format!("{} px", short(self.viewport.gap_px(cracks))), "On screen.");
         });
     }
@@ -206,15 +238,30 @@ impl App {
         egui::Grid::new("mesh").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "As loaded.");
             fact(ui, "Patches", &grouped(topology.patches.len() as u64), "Triangles that are tessellated.");
-            fact(ui, "Degenerate", &grouped(u64::from(topology.degenerate)), "Triangles left out: two corners on one point.");
-            fact(ui, "Points", &grouped(topology.points.len() as u64), "Positions, welded where they are exactly equal.");
+            fact(
+                ui,
+                "Degenerate",
+                &grouped(u64::from(topology.degenerate)),
+                "Triangles left out: two corners on one point.",
+            );
+            fact(
+                ui,
+                "Points",
+                &grouped(topology.points.len() as u64),
+                "Positions, welded where they are exactly equal.",
+            );
             fact(ui, "Corners", &grouped(mesh.corners.len() as u64), "Distinct position, normal and uv.");
             fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
             for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
                 fact(ui, axis, &format!("{} units", short(f64::from(length))), "Extent of the mesh, in object units.");
             }
             fact(ui, "Loading", &format!("{} ms", short(document.loaded.load_ms)), "Reading the file.");
-            fact(ui, "Topology", &format!("{} ms", short(document.loaded.topology_ms)), "Welding points and finding edges.");
+            fact(
+                ui,
+                "Topology",
+                &format!("{} ms", short(document.loaded.topology_ms)),
+                "Welding points and finding edges.",
+            );
         });
         for warning in &mesh.warnings {
             ui.label(RichText::new(warning).small().color(ui.visuals().warn_fg_color));
@@ -245,9 +292,24 @@ impl App {
             let patches = document.loaded.topology.patches.len() as u64;
             let drawn = patches - u64::from(self.measuring.culled().unwrap_or(0));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
-            status(ui, 120.0, format!("{} of {} patches", grouped(drawn), grouped(patches)), "Patches drawn, of all; the rest is clipped.");
-            status(ui, 170.0, format!("{} to {} triangles", grouped(before.0), grouped(triangles)), "Before and after tessellation.");
-            status(ui, 160.0, format!("{} to {} vertices", grouped(before.1), grouped(vertices)), "Before and after tessellation.");
+            status(
+                ui,
+                120.0,
+                format!("{} of {} patches", grouped(drawn), grouped(patches)),
+                "Patches drawn, of all; the rest is clipped.",
+            );
+            status(
+                ui,
+                170.0,
+                format!("{} to {} triangles", grouped(before.0), grouped(triangles)),
+                "Before and after tessellation.",
+            );
+            status(
+                ui,
+                160.0,
+                format!("{} to {} vertices", grouped(before.1), grouped(vertices)),
+                "Before and after tessellation.",
+            );
             self.status_of_cracks(ui);
             let bytes = scene.tessellator.buffers().bytes()
                 + scene.tessellator.work_bytes()
@@ -281,7 +343,13 @@ fn heading(ui: &mut egui::Ui, text: &str) {
 }
 
 /// A row with a name and a list to choose from.
-fn chooser<T: Copy + PartialEq>(ui: &mut egui::Ui, name: &str, hover: &str, value: &mut T, choices: &[(T, &str, &str)]) {
+fn chooser<T: Copy + PartialEq>(
+    ui: &mut egui::Ui,
+    name: &str,
+    hover: &str,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) {
     let label = ui.label(name);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {

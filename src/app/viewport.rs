@@ -40,6 +40,8 @@ struct Wanted {
 pub struct Viewport {
     target: Option<(Target, egui::TextureId)>,
     drawn: Option<Wanted>,
+    /// Whether the picture shown is not the one wanted.
+    outdated: bool,
     timing: Timing,
     /// Of the last picture: a pass each where the GPU's clock can be trusted.
     pub times: Vec<PassTime>,
@@ -56,16 +58,25 @@ impl Viewport {
             Timing::Submissions(_) => Timing::Off,
             timestamps => timestamps,
         };
-        Self { target: None, drawn: None, timing, times: Vec::new(), picture_ms: None, in_flight: None, pictures: 0 }
+        Self {
+            target: None,
+            drawn: None,
+            outdated: false,
+            timing,
+            times: Vec::new(),
+            picture_ms: None,
+            in_flight: None,
+            pictures: 0,
+        }
     }
 
     pub fn pictures(&self) -> u64 {
         self.pictures
     }
 
-    /// Whether the device still works on a picture.
+    /// Whether the picture shown is not the one wanted, or not complete.
     pub fn is_busy(&self) -> bool {
-        self.in_flight.is_some()
+        self.outdated || self.in_flight.is_some()
     }
 
     /// The view that the LOD of what is shown was computed for.
@@ -183,7 +194,7 @@ impl App {
         let inputs = self.settings.inputs(view);
         let wanted = Wanted {
             document: document.generation,
-            lines: self.measuring.generation,
+            lines: if self.settings.overlays.cracks { self.measuring.generation } else { 0 },
             camera: self.camera,
             settings: self.settings,
             inputs,
@@ -192,14 +203,16 @@ impl App {
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
         let shown = self.viewport.drawn.as_ref() == Some(&wanted);
+        self.viewport.outdated = !shown;
         if shown
             && self.viewport.in_flight.is_none()
             && self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, &inputs)?
         {
             let lines = self.measuring.cracks().map(Cracks::lines).unwrap_or_default();
             document.scene.set_lines(&self.engine.gpu, &lines);
+            self.viewport.outdated = self.settings.overlays.cracks;
         }
-        if !shown || self.is_busy() {
+        if self.is_busy() {
             context.request_repaint();
         }
         Ok(())

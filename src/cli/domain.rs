@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::tessellate::Device;
 use super::{CliError, file_error};
-use crate::gpu::{DomainPattern, DomainPass, Gpu};
+use crate::gpu::{DomainPass, DomainPattern, Gpu};
 use crate::tessellate::{Partitioning, domain_point, domain_triangle, point_count, process, triangle_count};
 
 #[derive(Debug, clap::Args)]

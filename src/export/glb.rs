@@ -206,8 +206,7 @@ impl Writer {
         }
         self.root.asset.generator = Some(concat!("pnaen ", env!("CARGO_PKG_VERSION")).to_owned());
         let nodes = (0..self.root.nodes.len() as u32).map(Index::new).collect();
-        let scene =
-            self.root.push(json::Scene { name: None, nodes, extensions: None, extras: Default::default() });
+        let scene = self.root.push(json::Scene { name: None, nodes, extensions: None, extras: Default::default() });
         self.root.scene = Some(scene);
         self.root.push(json::Buffer {
             byte_length: USize64::from(self.bin.len()),

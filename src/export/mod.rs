@@ -28,7 +28,9 @@ pub enum ExportError {
     Extension { path: String },
     #[error("{path}: could not be written ({reason})")]
     Io { path: String, reason: std::io::Error },
-    #[error("{path}: {triangles} triangles are more than a .glb file can hold (4 GiB): lower the factor, or write an .obj")]
+    #[error(
+        "{path}: {triangles} triangles are more than a .glb file can hold (4 GiB): lower the factor, or write an .obj"
+    )]
     TooLarge { path: String, triangles: usize },
     #[error("{path}: a texture could not be encoded ({reason})")]
     Texture { path: String, reason: String },

@@ -4,7 +4,9 @@ use thiserror::Error;
 
 #[derive(Clone, Debug, Error)]
 pub enum GpuError {
-    #[error("no graphics adapter was found: install a Vulkan driver (the software one is in Debian's mesa-vulkan-drivers)")]
+    #[error(
+        "no graphics adapter was found: install a Vulkan driver (the software one is in Debian's mesa-vulkan-drivers)"
+    )]
     NoAdapter,
     #[error("the adapter {adapter} gave no device ({reason}): update its driver, or choose another adapter")]
     NoDevice { adapter: String, reason: String },

@@ -17,5 +17,7 @@ pub use device::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;
 pub use pipelines::{ComputePipelines, SHADERS, bind_group, compute_pipeline, shader_module, shader_source};
-pub use recorder::{PASSES, PassTime, Recorder, Timing, mapped_bytes, read_buffer, read_staging, staging_buffer, take_times, wait};
+pub use recorder::{
+    PASSES, PassTime, Recorder, Timing, mapped_bytes, read_buffer, read_staging, staging_buffer, take_times, wait,
+};
 pub use tessellator::{ChunkBuffers, Tessellator};

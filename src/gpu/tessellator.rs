@@ -251,13 +251,17 @@ impl Tessellator {
         match pending.mapped.try_recv() {
             Err(TryRecvError::Empty) => Ok(false),
             Err(TryRecvError::Disconnected) => Err(GpuError::Readback("the counts were never asked for".into())),
-            Ok(Err(error)) => Err(GpuError::Readback(error.to_string())),
-            Ok(Ok(())) => {
-                let bytes = mapped_bytes(&pending.staging)?;
-                self.take_chunks(bytemuck::cast_slice(&bytes));
-                Ok(true)
-            }
+            Ok(result) => self.take_counts(result).map(|()| true),
         }
+    }
+
+    fn take_counts(&mut self, mapped: Result<(), wgpu::BufferAsyncError>) -> Result<(), GpuError> {
+        mapped.map_err(|error| GpuError::Readback(error.to_string()))?;
+        if let Some(pending) = self.pending.take() {
+            let bytes = mapped_bytes(&pending.staging)?;
+            self.take_chunks(&bytemuck::pod_collect_to_vec::<u8, Chunk>(&bytes));
+        }
+        Ok(())
     }
 
     /// Waits for the counts.
@@ -267,11 +271,15 @@ impl Tessellator {
     pub fn read_counts(&mut self) -> Result<(), GpuError> {
         self.request_counts();
         wait(&self.gpu);
-        self.poll_counts().map(|_| ())
+        let Some(pending) = &self.pending else { return Ok(()) };
+        // Another thread that polls may still be running the callback.
+        match pending.mapped.recv() {
+            Ok(result) => self.take_counts(result),
+            Err(error) => Err(GpuError::Readback(error.to_string())),
+        }
     }
 
     fn take_chunks(&mut self, table: &[Chunk]) {
-        self.pending = None;
         self.counts_done = true;
         self.chunks.clear();
         let mut rows = table.iter();

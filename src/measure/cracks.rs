@@ -91,8 +91,7 @@ impl Rims {
         let lengths = self.factors[patch].outside.map(segments);
         let factor = (side + 2) % 3;
         let first: u32 = lengths[..factor].iter().sum();
-        let mut points: Vec<_> =
-            (first..=first + lengths[factor]).map(|p| ring[p as usize % ring.len()]).collect();
+        let mut points: Vec<_> = (first..=first + lengths[factor]).map(|p| ring[p as usize % ring.len()]).collect();
         if reversed {
             points.reverse();
         }

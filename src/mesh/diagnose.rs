@@ -24,8 +24,11 @@ pub fn near_misses(mesh: &Mesh, topology: &Topology) -> Vec<NearMiss> {
     if !(reach > 0.0 && reach.is_finite()) {
         return Vec::new();
     }
-    let open: Vec<u32> =
-        (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind == EdgeKind::Boundary).map(|(index, _)| index).collect();
+    let open: Vec<u32> = (0..)
+        .zip(&topology.edges)
+        .filter(|(_, edge)| edge.kind == EdgeKind::Boundary)
+        .map(|(index, _)| index)
+        .collect();
     let ends = |edge: u32| topology.edges[edge as usize].points.map(|p| topology.points[p as usize].as_dvec3());
     // Middles of edges whose ends are within reach are within reach too: they lie in neighbouring cells.
     let cell = |middle: DVec3| (middle / reach).floor().as_i64vec3();

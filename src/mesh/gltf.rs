@@ -36,7 +36,8 @@ pub fn load(
         move |reason: Problem| LoadError::Damaged { path: path.to_owned(), place: place.clone(), reason }
     };
     let pose = Pose::new(&document).map_err(damaged("the scene's nodes".into()))?;
-    let mut loader = Loader { buffers: &buffers, folder, soup: Soup::default(), materials: Materials::default(), other: 0 };
+    let mut loader =
+        Loader { buffers: &buffers, folder, soup: Soup::default(), materials: Materials::default(), other: 0 };
     let nodes = scene_nodes(&document);
     for (index, node) in nodes.iter().enumerate() {
         progress.set(0.2 + 0.5 * index as f32 / nodes.len() as f32);
@@ -63,7 +64,8 @@ pub fn load(
 fn parse(bytes: &[u8]) -> Result<gltf::Gltf, String> {
     let gltf = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| error.to_string())?;
     let required = gltf.document.extensions_required();
-    let unknown: Vec<&str> = required.filter(|name| !HARMLESS.iter().any(|harmless| name.starts_with(harmless))).collect();
+    let unknown: Vec<&str> =
+        required.filter(|name| !HARMLESS.iter().any(|harmless| name.starts_with(harmless))).collect();
     if !unknown.is_empty() {
         return Err(format!("it requires {}, which pnaen doesn't know", unknown.join(", ")));
     }
@@ -369,7 +371,10 @@ fn decode(image: &gltf::Image, buffers: &[Data], folder: Option<&Path>) -> Resul
             let data = buffers.get(view.buffer().index());
             let end = view.offset().checked_add(view.length());
             let bytes = data.zip(end).and_then(|(data, end)| data.get(view.offset()..end));
-            (format!("image {}", image.index()), bytes.map(<[u8]>::to_vec).ok_or("it lies outside its buffer".to_owned()))
+            (
+                format!("image {}", image.index()),
+                bytes.map(<[u8]>::to_vec).ok_or("it lies outside its buffer".to_owned()),
+            )
         }
         gltf::image::Source::Uri { uri, .. } => {
             // Buffers and images name their files the same way.
@@ -378,7 +383,8 @@ fn decode(image: &gltf::Image, buffers: &[Data], folder: Option<&Path>) -> Resul
             (name, data.map(|data| data.0).map_err(|error| error.to_string()))
         }
     };
-    let missing = |reason: String| format!("texture {name} could not be read ({reason}); its material is shown without");
+    let missing =
+        |reason: String| format!("texture {name} could not be read ({reason}); its material is shown without");
     let bytes = bytes.map_err(missing)?;
     let pixels = image::load_from_memory(&bytes).map_err(|error| missing(error.to_string()))?.to_rgba8();
     Ok(Texture { size: [pixels.width(), pixels.height()], rgba: pixels.into_raw() })

@@ -107,7 +107,8 @@ mod tests {
 
     #[test]
     fn faces_without_area_give_no_nan() {
-        let flat = [[Vec3::ZERO, Vec3::X, Vec3::X * 2.0], [Vec3::ZERO; 3], [Vec3::ZERO, Vec3::Z * 1e-30, Vec3::X * 1e-30]];
+        let flat =
+            [[Vec3::ZERO, Vec3::X, Vec3::X * 2.0], [Vec3::ZERO; 3], [Vec3::ZERO, Vec3::Z * 1e-30, Vec3::X * 1e-30]];
         let normals = smooth_normals(&flat);
         assert!(normals.iter().flatten().all(|normal| (normal.length() - 1.0).abs() < 1e-5), "{normals:?}");
     }

@@ -35,7 +35,9 @@ impl Source {
     pub fn title(&self) -> String {
         match self {
             Self::Shape(shape) => shape.title().to_owned(),
-            Self::File(path) => path.file_name().map_or_else(|| path.display(), |name| std::path::Path::new(name).display()).to_string(),
+            Self::File(path) => {
+                path.file_name().map_or_else(|| path.display(), |name| std::path::Path::new(name).display()).to_string()
+            }
         }
     }
 

@@ -43,7 +43,8 @@ mod tests {
 
     #[test]
     fn equal_positions_are_one_point_and_minus_zero_is_zero() {
-        let positions = [Vec3::ZERO, Vec3::X, Vec3::new(-0.0, 0.0, -0.0), Vec3::X, Vec3::new(1.0 + f32::EPSILON, 0.0, 0.0)];
+        let positions =
+            [Vec3::ZERO, Vec3::X, Vec3::new(-0.0, 0.0, -0.0), Vec3::X, Vec3::new(1.0 + f32::EPSILON, 0.0, 0.0)];
         let welded = weld(positions.into_iter());
         assert_eq!(welded.point_of, [0, 1, 0, 1, 2]);
         let first = weld([Vec3::new(-0.0, 1.0, -0.0)].into_iter());

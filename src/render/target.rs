@@ -44,8 +44,8 @@ impl Target {
         let resolved_srgb =
             resolved.create_view(&wgpu::TextureViewDescriptor { format: Some(COLOR_FORMAT), ..Default::default() });
         let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let multisampled = (gpu.samples > 1)
-            .then(|| view(texture("target.multisampled", COLOR_FORMAT, gpu.samples, drawn, &[])));
+        let multisampled =
+            (gpu.samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, gpu.samples, drawn, &[])));
         let depth = view(texture("target.depth", DEPTH_FORMAT, gpu.samples, drawn, &[]));
         Ok(Self { size: [width, height], resolved, resolved_srgb, multisampled, depth })
     }

@@ -8,8 +8,8 @@
 //! Source: D3D11.3 Functional Specification, sections 11.7.5 to 11.7.14. Coordinates are 16.16 fixed point.
 
 use super::factors::{
-    FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity,
-    outer_count, patch_is_minimal, segments,
+    FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity, outer_count,
+    patch_is_minimal, segments,
 };
 
 /// Two thirds in 16.16 fixed point, rounded down as the tessellator has it.
@@ -56,11 +56,7 @@ pub fn domain_row(word: u32) -> DomainRow {
         half,
         odd,
         fraction,
-        split: if fraction == 0 {
-            u32::MAX
-        } else {
-            row_split(whole, odd)
-        },
+        split: if fraction == 0 { u32::MAX } else { row_split(whole, odd) },
         coarse_step: segment_length(2 * whole - odd),
         fine_step: segment_length(2 * half - odd),
     }
@@ -72,11 +68,7 @@ pub fn row_location(row: DomainRow, p: u32) -> u32 {
         return FIXED_HALF;
     }
     let mirrored = p >= row.half;
-    let fine = if mirrored {
-        2 * row.half - row.odd - p
-    } else {
-        p
-    };
+    let fine = if mirrored { 2 * row.half - row.odd - p } else { p };
     let coarse = if fine > row.split { fine - 1 } else { fine };
     let coarse_part = coarse * row.coarse_step * (FIXED_ONE - row.fraction);
     let fine_part = fine * row.fine_step * row.fraction;
@@ -97,11 +89,7 @@ fn rings_before(m: u32, area: u32) -> u32 {
 /// (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
 pub fn domain_point(factors: PatchFactors, i: u32) -> [u32; 2] {
     let outer = outer_count(factors);
-    if i < outer {
-        outer_point(factors, i)
-    } else {
-        inner_point(factors.inside, i - outer)
-    }
+    if i < outer { outer_point(factors, i) } else { inner_point(factors.inside, i - outer) }
 }
 
 /// Point `i` of the outline. It starts at V == 1 with the edge U == 0, and leaves out each edge's last point.
@@ -113,10 +101,7 @@ fn outer_point(factors: PatchFactors, i: u32) -> [u32; 2] {
     let (word, p) = match side {
         0 => (factors.outside[0], start1 - i),
         1 => (factors.outside[1], i - start1),
-        _ => (
-            factors.outside[2],
-            segments(factors.outside[2]) - (i - start2),
-        ),
+        _ => (factors.outside[2], segments(factors.outside[2]) - (i - start2)),
     };
     let x = row_location(domain_row(word), p);
     match side {
@@ -141,8 +126,7 @@ fn inner_point(inside: u32, i: u32) -> [u32; 2] {
 
     let row = domain_row(inside);
     let across = (row_location(row, ring) * FIXED_TWO_THIRDS + FIXED_HALF) >> 16;
-    let along =
-        row_location(row, if side == 1 { ring + p } else { n - ring - p }) - ((across + 1) >> 1);
+    let along = row_location(row, if side == 1 { ring + p } else { n - ring - p }) - ((across + 1) >> 1);
     match side {
         0 => [across, along],
         1 => [along, across],
@@ -163,11 +147,7 @@ pub fn domain_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
     let outer = outer_count(factors);
     let n = inside_segments(factors.inside);
     let transition = outer + 3 * (n - 2);
-    if t < transition {
-        transition_triangle(factors, t)
-    } else {
-        regular_triangle(outer, n, t - transition)
-    }
+    if t < transition { transition_triangle(factors, t) } else { regular_triangle(outer, n, t - transition) }
 }
 
 /// One triangle between an edge and the side inside it. It has point `inner` of the inner side, point `outer` of the edge,
@@ -195,10 +175,7 @@ struct TransitionPlaces {
 
 fn transition_places(half_points: u32) -> TransitionPlaces {
     let top = half_points.max(1).ilog2();
-    TransitionPlaces {
-        shift: 5 - top,
-        extra: half_points.max(1) - (1 << top),
-    }
+    TransitionPlaces { shift: 5 - top, extra: half_points.max(1) - (1 << top) }
 }
 
 /// The number of points at places 1 to `place`.
@@ -207,13 +184,7 @@ fn points_up_to(places: TransitionPlaces, place: u32) -> u32 {
 }
 
 /// `place + skip` if no more than `count` points of both sides lie up to there, else `place`.
-fn skip_places(
-    inner: TransitionPlaces,
-    outer: TransitionPlaces,
-    place: u32,
-    skip: u32,
-    count: u32,
-) -> u32 {
+fn skip_places(inner: TransitionPlaces, outer: TransitionPlaces, place: u32, skip: u32, count: u32) -> u32 {
     let further = place + skip;
     let fits = points_up_to(inner, further) + points_up_to(outer, further) <= count;
     if fits { further } else { place }
@@ -224,12 +195,7 @@ fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Transit
     // The edge's first segment comes before all places.
     let first = outer_half.min(1);
     if t < first {
-        return TransitionStep {
-            inner: 0,
-            outer: 0,
-            along_inner: false,
-            inner_first: false,
-        };
+        return TransitionStep { inner: 0, outer: 0, along_inner: false, inner_first: false };
     }
     let count = t - first;
     let inner_places = transition_places(inner_half);
@@ -247,11 +213,7 @@ fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Transit
     let inner_steps = points_up_to(inner_places, place + 1) - inner;
     let along_inner = inner_steps == 1 && count == inner + outer;
     TransitionStep {
-        inner: if along_inner {
-            inner
-        } else {
-            inner + inner_steps
-        },
+        inner: if along_inner { inner } else { inner + inner_steps },
         outer: first + outer,
         along_inner,
         inner_first: along_inner,
@@ -277,11 +239,7 @@ fn transition_step(inside: u32, edge: u32, t: u32) -> TransitionStep {
             inner_first: true,
         };
     }
-    let step = transition_before_middle(
-        inner_half,
-        outer_half,
-        if after_middle { total - 1 - t } else { t },
-    );
+    let step = transition_before_middle(inner_half, outer_half, if after_middle { total - 1 - t } else { t });
     if !after_middle {
         return step;
     }
@@ -299,8 +257,7 @@ fn transition_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
     let start1 = segments(factors.outside[0]);
     let start2 = start1 + segments(factors.outside[1]);
     let outer = start2 + segments(factors.outside[2]);
-    let side =
-        u32::from(t >= start1 + inner_segments) + u32::from(t >= start2 + 2 * inner_segments);
+    let side = u32::from(t >= start1 + inner_segments) + u32::from(t >= start2 + 2 * inner_segments);
     let side_start = match side {
         0 => 0,
         1 => start1,
@@ -318,11 +275,7 @@ fn transition_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
     } else {
         ring_point(0, outer, outer_start + 1)
     };
-    if step.inner_first {
-        [i, o, next]
-    } else {
-        [o, next, i]
-    }
+    if step.inner_first { [i, o, next] } else { [o, next, i] }
 }
 
 /// Triangle `t` of those inside the first ring: ring by ring against the ring around it, whose sides have two segments
@@ -351,31 +304,15 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
     let i = ring_point(start, 3 * inner_segments, inner_start);
     let o = ring_point(around_start, around_length, outer_start + 1);
     let third = if early != odd {
-        ring_point(
-            around_start,
-            around_length,
-            outer_start + if odd { 2 } else { 0 },
-        )
+        ring_point(around_start, around_length, outer_start + if odd { 2 } else { 0 })
     } else {
-        ring_point(
-            start,
-            3 * inner_segments,
-            if odd {
-                inner_start + 1
-            } else {
-                inner_start - 1
-            },
-        )
+        ring_point(start, 3 * inner_segments, if odd { inner_start + 1 } else { inner_start - 1 })
     };
     if !odd {
         return [third, o, i];
     }
     let last = q == per_side - 1;
-    if early || last {
-        [o, third, i]
-    } else {
-        [i, o, third]
-    }
+    if early || last { [o, third, i] } else { [i, o, third] }
 }
 
 #[cfg(test)]

@@ -45,12 +45,7 @@ pub enum Partitioning {
 }
 
 impl Partitioning {
-    pub const ALL: [Self; 4] = [
-        Self::Integer,
-        Self::Pow2,
-        Self::FractionalOdd,
-        Self::FractionalEven,
-    ];
+    pub const ALL: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 
     /// The name in settings, commands and files.
     pub const fn name(self) -> &'static str {
@@ -102,20 +97,12 @@ fn positive_bits(bits: u32) -> bool {
 
 /// The smallest factor of a partitioning, as `f32` bits.
 fn factor_lower_bound(partitioning: Partitioning) -> u32 {
-    if partitioning == Partitioning::FractionalEven {
-        BITS_TWO
-    } else {
-        BITS_ONE
-    }
+    if partitioning == Partitioning::FractionalEven { BITS_TWO } else { BITS_ONE }
 }
 
 /// The largest factor of a partitioning, as `f32` bits.
 fn factor_upper_bound(partitioning: Partitioning) -> u32 {
-    if partitioning == Partitioning::FractionalOdd {
-        BITS_63
-    } else {
-        BITS_64
-    }
+    if partitioning == Partitioning::FractionalOdd { BITS_63 } else { BITS_64 }
 }
 
 /// The word of a factor of 1..=64, given as `f32` bits: rounded up to a whole number, or to the nearest 1/65536 with
@@ -131,12 +118,7 @@ fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
     let shift = 7 - exponent;
     let tie_to_even = (mantissa >> shift) & 1;
     let fixed = (mantissa + (1 << (shift - 1)) - 1 + tie_to_even) >> shift;
-    fixed
-        | if partitioning == Partitioning::FractionalOdd {
-            FACTOR_ODD
-        } else {
-            0
-        }
+    fixed | if partitioning == Partitioning::FractionalOdd { FACTOR_ODD } else { 0 }
 }
 
 /// As [`factor_word`], for the inside factor: rounded up to 1 it counts as even, and acts as 2.
@@ -162,11 +144,7 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
     let largest = clamped[0].max(clamped[1]).max(clamped[2]);
     let splits = partitioning == Partitioning::FractionalOdd && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = if splits { BITS_ONE_AND_STEP } else { low };
-    let inside_bits = if positive_bits(inside.to_bits()) {
-        inside.to_bits()
-    } else {
-        0
-    };
+    let inside_bits = if positive_bits(inside.to_bits()) { inside.to_bits() } else { 0 };
     PatchFactors {
         outside: clamped.map(|b| factor_word(partitioning, b)),
         inside: inside_word(partitioning, inside_bits.clamp(inside_low, high)),

@@ -11,12 +11,12 @@ mod surface;
 pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped};
 pub use domain::{domain_point, domain_triangle};
 pub use factors::{
-    FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count, process, round_pow2,
-    segments, triangle_count,
+    FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count, process,
+    round_pow2, segments, triangle_count,
 };
 pub use lod::{Lod, LodView, paper_edge_factor, project_and_scale};
 pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate};
 pub use surface::{
-    ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv, patch_position,
-    straight_control_point,
+    ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv,
+    patch_position, straight_control_point,
 };

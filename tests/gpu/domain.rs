@@ -2,9 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use pnaen::tessellate::domain::{domain_point, domain_triangle};
-use pnaen::tessellate::factors::{
-    Partitioning, PatchFactors, point_count, process, round_pow2, triangle_count,
-};
+use pnaen::tessellate::factors::{Partitioning, PatchFactors, point_count, process, round_pow2, triangle_count};
 use wgpu::util::DeviceExt;
 
 /// One workgroup a patch; its invocations take turns with the points and triangles.
@@ -100,47 +98,29 @@ fn on_cpu(f: Factors) -> Patch {
         counts,
         inside_power: round_pow2(f.inside).to_bits(),
         points: (0..counts[0]).map(|i| domain_point(factors, i)).collect(),
-        triangles: (0..counts[1])
-            .map(|t| domain_triangle(factors, t))
-            .collect(),
+        triangles: (0..counts[1]).map(|t| domain_triangle(factors, t)).collect(),
     }
 }
 
 fn device() -> (wgpu::Device, wgpu::Queue) {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let options = wgpu::RequestAdapterOptions {
-        force_fallback_adapter: false,
-        ..Default::default()
-    };
-    let adapter =
-        pollster::block_on(instance.request_adapter(&options)).expect("a GPU, or a software one");
+    let options = wgpu::RequestAdapterOptions { force_fallback_adapter: false, ..Default::default() };
+    let adapter = pollster::block_on(instance.request_adapter(&options)).expect("a GPU, or a software one");
     println!("adapter: {:?}", adapter.get_info());
-    pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default()))
-        .expect("a device")
+    pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device")
 }
 
 fn read(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
-    buffer.map_async(wgpu::MapMode::Read, .., |mapped| {
-        mapped.expect("a readable buffer")
-    });
-    device
-        .poll(wgpu::PollType::wait_indefinitely())
-        .expect("the GPU finishes");
-    buffer
-        .get_mapped_range(..)
-        .expect("a mapped buffer")
-        .to_vec()
+    buffer.map_async(wgpu::MapMode::Read, .., |mapped| mapped.expect("a readable buffer"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the GPU finishes");
+    buffer.get_mapped_range(..).expect("a mapped buffer").to_vec()
 }
 
 /// Runs the shader over all cases; gives the bytes of its results, points and triangles.
 fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
-    let source = [
-        include_str!("../shaders/factors.wgsl"),
-        include_str!("../shaders/domain.wgsl"),
-        ENTRY,
-    ]
-    .concat();
+    let source =
+        [include_str!("../../shaders/factors.wgsl"), include_str!("../../shaders/domain.wgsl"), ENTRY].concat();
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("domain parity"),
         source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -166,25 +146,12 @@ fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
         contents: bytemuck::cast_slice(cases),
         usage: wgpu::BufferUsages::STORAGE,
     });
-    let outputs = sizes.map(|s| {
-        buffer(
-            s,
-            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-        )
-    });
-    let readable = sizes.map(|s| {
-        buffer(
-            s,
-            wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        )
-    });
+    let outputs = sizes.map(|s| buffer(s, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC));
+    let readable = sizes.map(|s| buffer(s, wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST));
     let bound = [&input, &outputs[0], &outputs[1], &outputs[2]];
     let entries: Vec<_> = (0..)
         .zip(bound)
-        .map(|(binding, b)| wgpu::BindGroupEntry {
-            binding,
-            resource: b.as_entire_binding(),
-        })
+        .map(|(binding, b)| wgpu::BindGroupEntry { binding, resource: b.as_entire_binding() })
         .collect();
     let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
@@ -221,11 +188,7 @@ fn on_gpu(factors: &[Factors], expected: &[Patch]) -> Vec<Patch> {
         first_point += patch.counts[0];
         first_triangle += patch.counts[1];
     }
-    let sizes = [
-        size_of::<CaseResult>() * cases.len(),
-        8 * first_point as usize,
-        12 * first_triangle as usize,
-    ];
+    let sizes = [size_of::<CaseResult>() * cases.len(), 8 * first_point as usize, 12 * first_triangle as usize];
     let [results, points, triangles] = dispatch(&cases, sizes);
     let results: Vec<CaseResult> = bytemuck::pod_collect_to_vec(&results);
     let points: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&points);
@@ -242,39 +205,10 @@ fn on_gpu(factors: &[Factors], expected: &[Patch]) -> Vec<Patch> {
 
 /// What classification, clamping and rounding must take apart. No signalling NaN: a load may quieten it.
 fn special_values() -> Vec<f32> {
-    let mut values = vec![
-        0.0,
-        -0.0,
-        -1.0,
-        f32::NAN,
-        -f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-    ];
-    values.extend([
-        f32::from_bits(1),
-        f32::MIN_POSITIVE,
-        f32::MAX,
-        0.5,
-        1.0,
-        1.5,
-        2.0,
-        3.0,
-        63.0,
-        64.0,
-    ]);
-    for around in [
-        1.0,
-        1.0 + 1.0 / 131_072.0,
-        1.0 + 1.0 / 65_536.0,
-        2.0 + 1.0 / 131_072.0,
-        2.0,
-        63.0,
-        64.0f32,
-    ] {
-        values.extend(
-            [around.to_bits() - 1, around.to_bits(), around.to_bits() + 1].map(f32::from_bits),
-        );
+    let mut values = vec![0.0, -0.0, -1.0, f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+    values.extend([f32::from_bits(1), f32::MIN_POSITIVE, f32::MAX, 0.5, 1.0, 1.5, 2.0, 3.0, 63.0, 64.0]);
+    for around in [1.0, 1.0 + 1.0 / 131_072.0, 1.0 + 1.0 / 65_536.0, 2.0 + 1.0 / 131_072.0, 2.0, 63.0, 64.0f32] {
+        values.extend([around.to_bits() - 1, around.to_bits(), around.to_bits() + 1].map(f32::from_bits));
     }
     values
 }
@@ -283,13 +217,7 @@ fn all_cases() -> Vec<Factors> {
     let mut cases = Vec::new();
     let special = special_values();
     for partitioning in Partitioning::ALL {
-        let mut add = |edges, inside| {
-            cases.push(Factors {
-                partitioning,
-                edges,
-                inside,
-            })
-        };
+        let mut add = |edges, inside| cases.push(Factors { partitioning, edges, inside });
         for &x in &special {
             add([x, 1.0, 1.0], 1.0);
             add([2.0, x, 5.0], x);
@@ -315,11 +243,7 @@ fn gpu_and_cpu_tessellate_alike() {
     let expected: Vec<_> = cases.iter().map(|f| on_cpu(*f)).collect();
     let found = on_gpu(&cases, &expected);
     for ((case, cpu), gpu) in cases.iter().zip(&expected).zip(&found) {
-        assert_eq!(
-            (gpu.factors, gpu.counts),
-            (cpu.factors, cpu.counts),
-            "{case:?}"
-        );
+        assert_eq!((gpu.factors, gpu.counts), (cpu.factors, cpu.counts), "{case:?}");
         assert_eq!(gpu.inside_power, cpu.inside_power, "{case:?}");
         assert!(gpu.points == cpu.points, "points of {case:?}");
         assert!(gpu.triangles == cpu.triangles, "triangles of {case:?}");
@@ -328,23 +252,15 @@ fn gpu_and_cpu_tessellate_alike() {
 
 /// The names of a file's functions, in order; methods and nested ones, which are indented, left out.
 fn function_names(source: &str) -> Vec<&str> {
-    let declared = source
-        .lines()
-        .filter_map(|line| line.trim_start_matches("pub ").strip_prefix("fn "));
+    let declared = source.lines().filter_map(|line| line.trim_start_matches("pub ").strip_prefix("fn "));
     declared.filter_map(|rest| rest.split('(').next()).collect()
 }
 
 #[test]
 fn twins_have_the_same_functions_in_the_same_order() {
     let twins = [
-        (
-            include_str!("../src/tessellate/factors.rs"),
-            include_str!("../shaders/factors.wgsl"),
-        ),
-        (
-            include_str!("../src/tessellate/domain.rs"),
-            include_str!("../shaders/domain.wgsl"),
-        ),
+        (include_str!("../../src/tessellate/factors.rs"), include_str!("../../shaders/factors.wgsl")),
+        (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
     ];
     for (rust, wgsl) in twins {
         assert!(!function_names(wgsl).is_empty());

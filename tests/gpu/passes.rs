@@ -31,8 +31,9 @@ fn edge_factors(scene: &Scene) -> Vec<f32> {
 /// Same domain points and triangles in the same order, positions within 4 ULP of the largest coordinate: what is left
 /// after sums of up to ten products that one side may fuse and the other not.
 fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &str) {
-    assert_eq!(gpu.patch_factors, cpu.patch_factors, "{what}: factors");
-    assert_eq!(gpu.triangles, cpu.triangles, "{what}: triangles");
+    // Not assert_eq: nobody reads a hundred thousand triangles.
+    assert!(gpu.patch_factors == cpu.patch_factors, "{what}: factors");
+    assert!(gpu.triangles == cpu.triangles, "{what}: triangles");
     assert_eq!(gpu.vertices.len(), cpu.vertices.len(), "{what}: vertices");
     let bound = 4.0 * ulp(&loaded.topology);
     for (index, (a, b)) in gpu.vertices.iter().zip(&cpu.vertices).enumerate() {
@@ -140,7 +141,10 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
         assert!(cut.tessellator.chunk_count() > 10, "{} chunks", cut.tessellator.chunk_count());
         assert!(a == b, "{lod:?} {factor}: the chunks differ from the whole");
         let size = [160, 120];
-        assert!(picture(&mut whole, &settings, size) == picture(&mut cut, &settings, size), "{lod:?} {factor}: pictures");
+        assert!(
+            picture(&mut whole, &settings, size) == picture(&mut cut, &settings, size),
+            "{lod:?} {factor}: pictures"
+        );
     }
 }
 
@@ -163,7 +167,7 @@ fn only_what_changed_is_recomputed() {
     let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
     let mut camera = Camera::framing(&scene.bounds);
     let mut settings = Settings::default();
-    let mut passes = |scene: &mut Scene, camera: &Camera, settings: &Settings| {
+    let passes = |scene: &mut Scene, camera: &Camera, settings: &Settings| {
         let mut timing = Timing::Submissions(Vec::new());
         engine.draw(scene, &target, camera, settings, &mut timing).expect("a draw");
         take_times(&engine.gpu, &mut timing).iter().map(|time| time.pass).collect::<Vec<_>>()
@@ -200,7 +204,7 @@ fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
     let kept: Vec<_> = clipped.patch_factors.iter().zip(&whole.patch_factors).filter(|(c, _)| c.inside != 0).collect();
     assert!(!kept.is_empty() && kept.len() < whole.patch_factors.len(), "{} patches kept", kept.len());
     assert!(kept.iter().all(|(clipped, whole)| clipped == whole), "a neighbour's factors changed");
-    assert_eq!(clipped, tessellate_like(&loaded, &on.inputs(view), &clipped), "clipping differs from the CPU's");
+    assert!(clipped == tessellate_like(&loaded, &on.inputs(view), &clipped), "clipping differs from the CPU's");
 }
 
 /// The CPU's tessellation with positions taken from `like`: they may differ in the last bits.
@@ -229,7 +233,7 @@ fn an_empty_view_emits_nothing_and_draws_the_background() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     let target = Target::new(&engine.gpu, [32, 32]).expect("a small picture");
     let mut camera = Camera::framing(&scene.bounds);
-    camera.target += camera.axes()[2] * camera.distance * 3.0;
+    camera.target -= camera.axes()[2] * camera.distance * 3.0;
     let settings = Settings { clip: Clip::Paper, background: [10, 200, 30], ..Settings::default() };
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
     assert_eq!(scene.tessellator.totals(), (0, 0));

@@ -19,22 +19,12 @@ pub fn patch(factors: PatchFactors) -> Patch {
         return Patch::default();
     }
     if factors.outside == [FACTOR_ODD | ONE; 3] && factors.inside & !FACTOR_ODD == ONE {
-        return Patch {
-            points: vec![[0, ONE], [0, 0], [ONE, 0]],
-            triangles: vec![[0, 1, 2]],
-        };
+        return Patch { points: vec![[0, ONE], [0, 0], [ONE, 0]], triangles: vec![[0, 1, 2]] };
     }
     let mut points = outline(factors);
     let outline_length = points.len();
-    rings(
-        &row(factors.inside, true),
-        is_odd(factors.inside),
-        &mut points,
-    );
-    Patch {
-        triangles: triangles(factors, outline_length),
-        points,
-    }
+    rings(&row(factors.inside, true), is_odd(factors.inside), &mut points);
+    Patch { triangles: triangles(factors, outline_length), points }
 }
 
 fn is_odd(word: u32) -> bool {
@@ -44,11 +34,7 @@ fn is_odd(word: u32) -> bool {
 /// The fixed-point number of segments of half a row.
 fn half(word: u32) -> u32 {
     let h = ((word & !FACTOR_ODD) + 1) >> 1;
-    if is_odd(word) || h == HALF {
-        h + HALF
-    } else {
-        h
-    }
+    if is_odd(word) || h == HALF { h + HALF } else { h }
 }
 
 fn half_rounded_up(word: u32) -> u32 {
@@ -60,9 +46,7 @@ pub fn row(word: u32, inside: bool) -> Vec<u32> {
     let odd = is_odd(word);
     let h = half_rounded_up(word);
     let (n, fewest) = if odd { (2 * h, 4) } else { (2 * h + 1, 3) };
-    (0..if inside { n.max(fewest) } else { n })
-        .map(|p| location(word, p))
-        .collect()
+    (0..if inside { n.max(fewest) } else { n }).map(|p| location(word, p)).collect()
 }
 
 fn location(word: u32, p: u32) -> u32 {
@@ -73,13 +57,7 @@ fn location(word: u32, p: u32) -> u32 {
         return HALF;
     }
     let reciprocal = |k: u32| (131072 + k) / (2 * k);
-    let without_top_bit = |v: u32| {
-        (0..32)
-            .rev()
-            .map(|b| 1 << b)
-            .find(|b| v >= *b)
-            .map_or(0, |b| v - b)
-    };
+    let without_top_bit = |v: u32| (0..32).rev().map(|b| 1 << b).find(|b| v >= *b).map_or(0, |b| v - b);
     let split = match (fraction, odd, floor) {
         (0, _, _) => u32::MAX,
         (_, 1, 1) => 0,
@@ -89,10 +67,8 @@ fn location(word: u32, p: u32) -> u32 {
     let at = if p >= h { 2 * h - odd - p } else { p };
     let coarse = if at > split { at - 1 } else { at };
     let (rf, rc) = (reciprocal(2 * floor - odd), reciprocal(2 * h - odd));
-    let x = (u64::from(coarse * rf) * u64::from(ONE - fraction)
-        + u64::from(at * rc) * u64::from(fraction)
-        + 32768)
-        >> 16;
+    let x =
+        (u64::from(coarse * rf) * u64::from(ONE - fraction) + u64::from(at * rc) * u64::from(fraction) + 32768) >> 16;
     let x = u32::try_from(x).expect("within 0..=1");
     if p >= h { ONE - x } else { x }
 }
@@ -116,13 +92,7 @@ fn rings(x: &[u32], odd: bool, points: &mut Vec<[u32; 2]>) {
         for side in 0..3 {
             for p in r..last {
                 let along = x[if side == 1 { p } else { last - (p - r) }] - ((across + 1) >> 1);
-                points.push(
-                    [
-                        [across, along],
-                        [along, across],
-                        [along, ONE - along - across],
-                    ][side],
-                );
+                points.push([[across, along], [along, across], [along, ONE - along - across]][side]);
             }
         }
     }
@@ -136,9 +106,7 @@ fn closed_sides(start: u32, lengths: [u32; 3]) -> [Vec<u32>; 3] {
     let total: u32 = lengths.iter().sum();
     let mut first = 0;
     lengths.map(|length| {
-        let side = (first..=first + length)
-            .map(|p| start + if p == total { 0 } else { p })
-            .collect();
+        let side = (first..=first + length).map(|p| start + if p == total { 0 } else { p }).collect();
         first += length;
         side
     })
@@ -148,12 +116,7 @@ fn triangles(factors: PatchFactors, outline_length: usize) -> Vec<[u32; 3]> {
     let n = row(factors.inside, true).len() as u32;
     let odd = is_odd(factors.inside);
     let mut out = Vec::new();
-    let mut around = closed_sides(
-        0,
-        factors
-            .outside
-            .map(|word| row(word, false).len() as u32 - 1),
-    );
+    let mut around = closed_sides(0, factors.outside.map(|word| row(word, false).len() as u32 - 1));
     let mut start = outline_length as u32;
     let last_ring = if odd { n / 2 - 1 } else { n / 2 };
     for r in 1..=last_ring {
@@ -161,13 +124,7 @@ fn triangles(factors: PatchFactors, outline_length: usize) -> Vec<[u32; 3]> {
         let ring = closed_sides(start, [length; 3]);
         for side in 0..3 {
             if r == 1 {
-                transition(
-                    factors.inside,
-                    factors.outside[side],
-                    &ring[side],
-                    &around[side],
-                    &mut out,
-                );
+                transition(factors.inside, factors.outside[side], &ring[side], &around[side], &mut out);
             } else {
                 regular(&ring[side], &around[side], &mut out);
             }
@@ -216,29 +173,17 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn step_out(&mut self) {
-        self.out.push([
-            self.outer[self.b],
-            self.outer[self.b + 1],
-            self.inner[self.a],
-        ]);
+        self.out.push([self.outer[self.b], self.outer[self.b + 1], self.inner[self.a]]);
         self.b += 1;
     }
 
     fn step_in(&mut self) {
-        self.out.push([
-            self.inner[self.a],
-            self.outer[self.b],
-            self.inner[self.a + 1],
-        ]);
+        self.out.push([self.inner[self.a], self.outer[self.b], self.inner[self.a + 1]]);
         self.a += 1;
     }
 
     fn step_out_from_inner(&mut self) {
-        self.out.push([
-            self.inner[self.a],
-            self.outer[self.b],
-            self.outer[self.b + 1],
-        ]);
+        self.out.push([self.inner[self.a], self.outer[self.b], self.outer[self.b + 1]]);
         self.b += 1;
     }
 }
@@ -246,13 +191,7 @@ impl Walk<'_> {
 fn transition(inside: u32, edge: u32, inner: &[u32], outer: &[u32], out: &mut Vec<[u32; 3]>) {
     let hi = half_rounded_up(inside) - u32::from(is_odd(inside));
     let ho = half_rounded_up(edge) - u32::from(is_odd(edge));
-    let mut walk = Walk {
-        inner,
-        outer,
-        a: 0,
-        b: 0,
-        out,
-    };
+    let mut walk = Walk { inner, outer, a: 0, b: 0, out };
     if ho > 0 {
         walk.step_out();
     }
@@ -286,8 +225,8 @@ fn transition(inside: u32, edge: u32, inner: &[u32], outer: &[u32], out: &mut Ve
 #[test]
 fn the_order_is_a_breadth_first_bisection() {
     let listed = [
-        16, 8, 17, 4, 18, 9, 19, 2, 20, 10, 21, 5, 22, 11, 23, 1, 24, 12, 25, 6, 26, 13, 27, 3, 28,
-        14, 29, 7, 30, 15, 31,
+        16, 8, 17, 4, 18, 9, 19, 2, 20, 10, 21, 5, 22, 11, 23, 1, 24, 12, 25, 6, 26, 13, 27, 3, 28, 14, 29, 7, 30, 15,
+        31,
     ];
     assert!((2..=32).map(order).eq(listed));
 }

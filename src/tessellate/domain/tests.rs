@@ -3,16 +3,12 @@ use std::collections::HashMap;
 use proptest::prelude::*;
 
 use super::*;
-use crate::tessellate::factors::{
-    FACTOR_ODD, Partitioning, patch_is_culled, point_count, process, triangle_count,
-};
+use crate::tessellate::factors::{FACTOR_ODD, Partitioning, patch_is_culled, point_count, process, triangle_count};
 
 fn closed_form(f: PatchFactors) -> serial::Patch {
     serial::Patch {
         points: (0..point_count(f)).map(|i| domain_point(f, i)).collect(),
-        triangles: (0..triangle_count(f))
-            .map(|t| domain_triangle(f, t))
-            .collect(),
+        triangles: (0..triangle_count(f)).map(|t| domain_triangle(f, t)).collect(),
     }
 }
 
@@ -28,23 +24,7 @@ fn row_of(p: Partitioning, factor: f32) -> Vec<u32> {
 
 /// Factor sets with every parity, the extremes, and what rounding and clamping make special.
 fn mixed_factors() -> Vec<PatchFactors> {
-    let values = [
-        0.0,
-        1.0,
-        1.000_007_6,
-        1.000_015_3,
-        1.5,
-        2.0,
-        2.3,
-        3.0,
-        4.7,
-        6.0,
-        17.2,
-        31.9,
-        33.0,
-        63.0,
-        64.0,
-    ];
+    let values = [0.0, 1.0, 1.000_007_6, 1.000_015_3, 1.5, 2.0, 2.3, 3.0, 4.7, 6.0, 17.2, 31.9, 33.0, 63.0, 64.0];
     let mut sets = Vec::new();
     for p in Partitioning::ALL {
         for a in values {
@@ -65,20 +45,10 @@ fn rows_lie_where_the_specification_puts_them() {
         (Odd, 1.5, &[0, 5461, 60075, 65536]),
         (Odd, 2.0, &[0, 10923, 54613, 65536]),
         (Odd, 3.5, &[0, 19661, 22937, 42599, 45875, 65536]),
-        (
-            Odd,
-            7.5,
-            &[
-                0, 8842, 17684, 26526, 28347, 37189, 39010, 47852, 56694, 65536,
-            ],
-        ),
+        (Odd, 7.5, &[0, 8842, 17684, 26526, 28347, 37189, 39010, 47852, 56694, 65536]),
         (Even, 2.5, &[0, 28672, 32768, 36864, 65536]),
         (Even, 4.5, &[0, 15019, 17750, 32768, 47786, 50517, 65536]),
-        (
-            Even,
-            6.5,
-            &[0, 10240, 20481, 30721, 32768, 34815, 45055, 55296, 65536],
-        ),
+        (Even, 6.5, &[0, 10240, 20481, 30721, 32768, 34815, 45055, 55296, 65536]),
     ];
     for (p, factor, points) in rows {
         assert_eq!(row_of(p, factor), points, "{p} {factor}");
@@ -91,12 +61,7 @@ fn rows_are_symmetric_and_never_run_back() {
         for step in 0..=64 * 16 {
             let row = row_of(p, step as f32 / 16.0 + 1e-6);
             assert!(row.is_sorted(), "{p} {step}: {row:?}");
-            assert!(
-                row.iter()
-                    .zip(row.iter().rev())
-                    .all(|(a, b)| a + b == FIXED_ONE),
-                "{p} {step}: {row:?}"
-            );
+            assert!(row.iter().zip(row.iter().rev()).all(|(a, b)| a + b == FIXED_ONE), "{p} {step}: {row:?}");
         }
     }
 }
@@ -113,42 +78,23 @@ fn whole_rings_are_counted_exactly() {
 
 #[test]
 fn a_minimal_patch_is_its_corners() {
-    let minimal = serial::Patch {
-        points: vec![[0, FIXED_ONE], [0, 0], [FIXED_ONE, 0]],
-        triangles: vec![[0, 1, 2]],
-    };
-    for p in [
-        Partitioning::Integer,
-        Partitioning::Pow2,
-        Partitioning::FractionalOdd,
-    ] {
+    let minimal = serial::Patch { points: vec![[0, FIXED_ONE], [0, 0], [FIXED_ONE, 0]], triangles: vec![[0, 1, 2]] };
+    for p in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
         assert_eq!(closed_form(uniform(p, 1.0)), minimal);
     }
 }
 
 #[test]
 fn a_culled_patch_is_empty() {
-    assert_eq!(
-        closed_form(uniform(Partitioning::Integer, 0.0)),
-        serial::Patch::default()
-    );
+    assert_eq!(closed_form(uniform(Partitioning::Integer, 0.0)), serial::Patch::default());
 }
 
 #[test]
 fn one_split_edge_gives_a_fan_around_the_centre() {
     let patch = closed_form(process(Partitioning::Integer, [2.0, 1.0, 1.0], 1.0));
-    let points = [
-        [0, FIXED_ONE],
-        [0, FIXED_HALF],
-        [0, 0],
-        [FIXED_ONE, 0],
-        [0x5555, 0x5555],
-    ];
+    let points = [[0, FIXED_ONE], [0, FIXED_HALF], [0, 0], [FIXED_ONE, 0], [0x5555, 0x5555]];
     assert_eq!(patch.points, points);
-    assert_eq!(
-        patch.triangles,
-        [[0, 1, 4], [1, 2, 4], [4, 2, 3], [4, 3, 0]]
-    );
+    assert_eq!(patch.triangles, [[0, 1, 4], [1, 2, 4], [4, 2, 3], [4, 3, 0]]);
 }
 
 #[test]
@@ -167,11 +113,7 @@ fn every_pair_of_edge_and_inside_is_as_the_serial_tessellator_has_it() {
         for edge in 1..=62 {
             let edges = [edge, edge + 1, edge + 2].map(|e| e as f32);
             let f = process(Partitioning::Integer, edges, inside as f32);
-            assert_eq!(
-                closed_form(f).triangles,
-                serial::patch(f).triangles,
-                "{edges:?} {inside}"
-            );
+            assert_eq!(closed_form(f).triangles, serial::patch(f).triangles, "{edges:?} {inside}");
         }
     }
 }
@@ -193,24 +135,14 @@ fn doubled_area(points: &[[u32; 2]], t: [u32; 3]) -> i64 {
 fn triangles_cover_the_domain_once() {
     for f in mixed_factors().into_iter().filter(|f| !patch_is_culled(*f)) {
         let patch = closed_form(f);
-        let areas = patch
-            .triangles
-            .iter()
-            .map(|t| doubled_area(&patch.points, *t));
-        assert_eq!(
-            areas.sum::<i64>(),
-            i64::from(FIXED_ONE) * i64::from(FIXED_ONE),
-            "{f:x?}"
-        );
+        let areas = patch.triangles.iter().map(|t| doubled_area(&patch.points, *t));
+        assert_eq!(areas.sum::<i64>(), i64::from(FIXED_ONE) * i64::from(FIXED_ONE), "{f:x?}");
     }
 }
 
 #[test]
 fn no_triangle_of_whole_factors_is_turned_over() {
-    for f in mixed_factors()
-        .into_iter()
-        .filter(|f| f.outside[0] & 0xffff == 0 && f.outside[2] & 0xffff == 0)
-    {
+    for f in mixed_factors().into_iter().filter(|f| f.outside[0] & 0xffff == 0 && f.outside[2] & 0xffff == 0) {
         let patch = closed_form(f);
         for t in &patch.triangles {
             assert!(doubled_area(&patch.points, *t) >= 0, "{f:x?}: {t:?}");
@@ -221,11 +153,7 @@ fn no_triangle_of_whole_factors_is_turned_over() {
 // Each edge inside belongs to two triangles, which run along it in opposite directions; the others are the outline.
 #[test]
 fn triangles_are_a_disc() {
-    for f in mixed_factors()
-        .into_iter()
-        .step_by(7)
-        .filter(|f| !patch_is_culled(*f))
-    {
+    for f in mixed_factors().into_iter().step_by(7).filter(|f| !patch_is_culled(*f)) {
         let triangles = closed_form(f).triangles;
         let mut sides = HashMap::new();
         for t in &triangles {
@@ -234,20 +162,10 @@ fn triangles_are_a_disc() {
             }
         }
         assert!(sides.values().all(|n| *n == 1), "{f:x?}");
-        let mut outline: Vec<_> = sides
-            .keys()
-            .filter(|(a, b)| !sides.contains_key(&(*b, *a)))
-            .copied()
-            .collect();
+        let mut outline: Vec<_> = sides.keys().filter(|(a, b)| !sides.contains_key(&(*b, *a))).copied().collect();
         outline.sort_unstable();
         let outer = outer_count(f);
-        assert!(
-            outline
-                .iter()
-                .copied()
-                .eq((0..outer).map(|i| (i, (i + 1) % outer))),
-            "{f:x?}"
-        );
+        assert!(outline.iter().copied().eq((0..outer).map(|i| (i, (i + 1) % outer))), "{f:x?}");
         // Euler: points - edges + triangles = 1.
         let edges = (sides.len() as u32 + outer) / 2;
         assert_eq!(point_count(f) + triangles.len() as u32, edges + 1, "{f:x?}");
@@ -260,9 +178,7 @@ fn an_edge_depends_on_its_own_factor_only() {
         let edge = |others: f32, inside: f32| {
             let f = process(p, [others, 7.3, others], inside);
             let start = segments(f.outside[0]);
-            (start..start + segments(f.outside[1]))
-                .map(|i| domain_point(f, i))
-                .collect::<Vec<_>>()
+            (start..start + segments(f.outside[1])).map(|i| domain_point(f, i)).collect::<Vec<_>>()
         };
         assert_eq!(edge(2.2, 1.0), edge(50.0, 33.3));
     }
@@ -270,8 +186,8 @@ fn an_edge_depends_on_its_own_factor_only() {
 
 fn any_factor() -> impl Strategy<Value = f32> {
     let just_above_one = (0u32..0x200).prop_map(|k| f32::from_bits(0x3f80_0000 + k));
-    let near_whole = (1u32..=64, -3i32..=3)
-        .prop_map(|(n, k)| f32::from_bits((n as f32).to_bits().wrapping_add_signed(k)));
+    let near_whole =
+        (1u32..=64, -3i32..=3).prop_map(|(n, k)| f32::from_bits((n as f32).to_bits().wrapping_add_signed(k)));
     prop_oneof![
         8 => 0.5f32..66.0,
         2 => 1.0f32..4.0,

@@ -15,10 +15,7 @@ fn names_go_both_ways_and_accept_hlsl_spelling() {
         assert_eq!(p.name().replace('-', "_").parse(), Ok(p));
         assert_eq!(serde_json::to_string(&p).ok(), Some(format!("\"{p}\"")));
     }
-    assert_eq!(
-        "odd".parse::<Partitioning>(),
-        Err(UnknownPartitioning("odd".into()))
-    );
+    assert_eq!("odd".parse::<Partitioning>(), Err(UnknownPartitioning("odd".into())));
 }
 
 #[test]
@@ -40,31 +37,16 @@ fn an_edge_that_is_not_positive_culls() {
 #[test]
 fn denormals_are_positive() {
     for p in Partitioning::ALL {
-        assert_eq!(
-            process(p, [f32::from_bits(1); 3], 1.0),
-            process(p, [1.0; 3], 1.0)
-        );
+        assert_eq!(process(p, [f32::from_bits(1); 3], 1.0), process(p, [1.0; 3], 1.0));
         assert!(!patch_is_culled(process(p, [f32::from_bits(1); 3], 1.0)));
     }
 }
 
 #[test]
 fn the_inside_never_culls() {
-    for bad in [
-        0.0,
-        -0.0,
-        -7.0,
-        f32::NAN,
-        -f32::NAN,
-        f32::NEG_INFINITY,
-        1e-40,
-    ] {
+    for bad in [0.0, -0.0, -7.0, f32::NAN, -f32::NAN, f32::NEG_INFINITY, 1e-40] {
         for p in Partitioning::ALL {
-            assert_eq!(
-                process(p, [5.0; 3], bad),
-                process(p, [5.0; 3], 1.0),
-                "{bad} in {p}"
-            );
+            assert_eq!(process(p, [5.0; 3], bad), process(p, [5.0; 3], 1.0), "{bad} in {p}");
         }
     }
 }
@@ -72,23 +54,14 @@ fn the_inside_never_culls() {
 #[test]
 fn factors_are_clamped() {
     let both = |p, x| process(p, [x; 3], x);
-    let same = |word| PatchFactors {
-        outside: [word; 3],
-        inside: word,
-    };
+    let same = |word| PatchFactors { outside: [word; 3], inside: word };
     for high in [65.0, 1e9, f32::MAX, f32::INFINITY] {
         assert_eq!(both(Partitioning::Integer, high), same(64 << 16));
         assert_eq!(both(Partitioning::Pow2, high), same(64 << 16));
         assert_eq!(both(Partitioning::FractionalOdd, high), same(whole(63)));
         assert_eq!(both(Partitioning::FractionalEven, high), same(64 << 16));
     }
-    assert_eq!(
-        both(Partitioning::Integer, 0.25),
-        PatchFactors {
-            outside: [ODD_ONE; 3],
-            inside: FIXED_ONE
-        }
-    );
+    assert_eq!(both(Partitioning::Integer, 0.25), PatchFactors { outside: [ODD_ONE; 3], inside: FIXED_ONE });
     assert_eq!(both(Partitioning::FractionalOdd, 0.25), same(ODD_ONE));
     assert_eq!(both(Partitioning::FractionalEven, 0.25), same(2 << 16));
 }
@@ -97,13 +70,7 @@ fn factors_are_clamped() {
 fn integer_rounds_up_and_keeps_each_parity() {
     for p in [Partitioning::Integer, Partitioning::Pow2] {
         let f = process(p, [1.0, 1.000_000_1, 2.5], 4.0);
-        assert_eq!(
-            f,
-            PatchFactors {
-                outside: [ODD_ONE, 2 << 16, whole(3)],
-                inside: 4 << 16
-            }
-        );
+        assert_eq!(f, PatchFactors { outside: [ODD_ONE, 2 << 16, whole(3)], inside: 4 << 16 });
         // An inside of 1 is even.
         assert_eq!(process(p, [2.0, 1.0, 1.0], 1.0).inside, FIXED_ONE);
         assert_eq!(process(p, [2.0, 1.0, 1.0], 3.0).inside, whole(3));
@@ -116,10 +83,7 @@ fn fractions_round_to_even_ties() {
     let half_step = 0.5 / 65536.0;
     assert_eq!(steps(2.0 + half_step), 2 << 16);
     assert_eq!(steps(2.0 + 3.0 * half_step), (2 << 16) + 2);
-    assert_eq!(
-        steps(f32::from_bits((2.0 + half_step).to_bits() + 1)),
-        (2 << 16) + 1
-    );
+    assert_eq!(steps(f32::from_bits((2.0 + half_step).to_bits() + 1)), (2 << 16) + 1);
     assert_eq!(steps(2.0 + 2.0 * half_step), (2 << 16) + 1);
     assert_eq!(steps(f32::from_bits(64f32.to_bits() - 1)), 64 << 16);
 }
@@ -152,26 +116,14 @@ fn counts_of_known_patches() {
     assert_eq!(counts(Partitioning::Pow2, [5.0, 7.0, 3.0], 4.0), (22, 27));
     assert_eq!(counts(Partitioning::FractionalEven, [1.0; 3], 1.0), (7, 6));
     for (n, triangles) in [(3, 13), (8, 96), (16, 384), (63, 5953), (64, 6144)] {
-        assert_eq!(
-            counts(Partitioning::Integer, [n as f32; 3], n as f32).1,
-            triangles
-        );
+        assert_eq!(counts(Partitioning::Integer, [n as f32; 3], n as f32).1, triangles);
     }
     assert_eq!(counts(Partitioning::Integer, [64.0; 3], 64.0).0, 3169);
 }
 
 #[test]
 fn pow2_rounds_up_and_leaves_what_culls() {
-    let cases = [
-        (0.1, 1.0),
-        (1.0, 1.0),
-        (1.01, 2.0),
-        (3.0, 4.0),
-        (4.0, 4.0),
-        (33.0, 64.0),
-        (64.0, 64.0),
-        (1e9, 64.0),
-    ];
+    let cases = [(0.1, 1.0), (1.0, 1.0), (1.01, 2.0), (3.0, 4.0), (4.0, 4.0), (33.0, 64.0), (64.0, 64.0), (1e9, 64.0)];
     for (x, power) in cases {
         assert_eq!(round_pow2(x), power, "{x}");
     }

@@ -1,0 +1,257 @@
+//! The real window, driven by the names that its controls have for a screen reader.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::mesh::{Shape, Source};
+use pnaen::tessellate::{Clip, Lod, Partitioning, Surface};
+
+/// Longer than anything here takes on two slow cores.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn window(source: Option<Source>) -> Harness<'static, App> {
+    let mut harness = Harness::builder()
+        .with_size([1200.0, 800.0])
+        .wgpu()
+        .build_eframe(move |context| App::new(context, source).expect("these tests need a graphics adapter"));
+    settle(&mut harness);
+    harness
+}
+
+/// Steps until everything is loaded, drawn and measured.
+fn settle(harness: &mut Harness<App>) {
+    let start = Instant::now();
+    // What was just pressed takes effect in the next two steps.
+    harness.run_steps(3);
+    while harness.state().is_busy() {
+        assert!(start.elapsed() < PATIENCE, "the window is still busy");
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+    harness.run_steps(2);
+}
+
+fn press(harness: &mut Harness<App>, key: egui::Key) {
+    harness.key_press(key);
+    settle(harness);
+}
+
+fn click(harness: &mut Harness<App>, label: &str) {
+    harness.get_by_label(label).click();
+    settle(harness);
+}
+
+fn vase() -> Source {
+    Source::File(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")))
+}
+
+#[test]
+fn it_opens_on_a_cube_without_cracks() {
+    let harness = window(None);
+    let app = harness.state();
+    assert_eq!(app.source(), Some(&Source::Shape(Shape::CubeSplit)));
+    assert_eq!((app.settings().surface, app.settings().factor), (Surface::PnAen, 8.0));
+    assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(0));
+    harness.get_by_label("cracks 0");
+    harness.get_by_label("12 of 12 patches");
+}
+
+#[test]
+fn choosing_pn_lights_up_the_cracks() {
+    let mut harness = window(None);
+    harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
+    settle(&mut harness);
+    click(&mut harness, "PN");
+    harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
+    settle(&mut harness);
+    let app = harness.state();
+    assert_eq!(app.settings().surface, Surface::Pn);
+    assert!(app.settings().overlays.cracks);
+    assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(12));
+    harness.get_by_label("cracks 12");
+}
+
+#[test]
+fn the_factor_can_be_slid_typed_and_stepped() {
+    let mut harness = window(None);
+    let before = harness.state().totals();
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(12.0);
+    settle(&mut harness);
+    let slid = harness.state().settings().factor;
+    press(&mut harness, egui::Key::Plus);
+    assert_eq!(harness.state().settings().factor, slid + 1.0);
+    assert_ne!(harness.state().totals(), before);
+    press(&mut harness, egui::Key::Minus);
+    assert_eq!(harness.state().settings().factor, slid);
+}
+
+#[test]
+fn every_switch_does_what_it_says() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    for (label, is_on) in [
+        ("Patch borders", (|app: &App| app.settings().overlays.patches) as fn(&App) -> bool),
+        ("Barycentric colours", |app| app.settings().overlays.barycentric),
+        ("Adjacency edges", |app| app.settings().overlays.adjacency),
+        ("Cracks", |app| app.settings().overlays.cracks),
+        ("Adaptive LOD", |app| app.settings().lod == Lod::Paper),
+        ("Clip patches out of view", |app| app.settings().clip == Clip::Paper),
+        ("Split view", |app| app.settings().split.is_some()),
+    ] {
+        assert!(!is_on(harness.state()), "{label} is on already");
+        let pictures = harness.state().pictures();
+        harness.get_by_role_and_label(Role::CheckBox, label).click();
+        settle(&mut harness);
+        assert!(is_on(harness.state()), "{label}");
+        assert!(harness.state().pictures() > pictures, "{label}: a new picture");
+    }
+    assert!(harness.state().settings().overlays.wireframe);
+    press(&mut harness, egui::Key::W);
+    assert!(!harness.state().settings().overlays.wireframe);
+    harness.get_by_role_and_label(Role::ComboBox, "Partitioning").click();
+    settle(&mut harness);
+    click(&mut harness, "Power of two");
+    assert_eq!(harness.state().settings().partitioning, Partitioning::Pow2);
+}
+
+#[test]
+fn nothing_is_drawn_when_nothing_changed() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let pictures = harness.state().pictures();
+    harness.hover_at(egui::pos2(600.0, 400.0));
+    harness.run_steps(20);
+    assert_eq!(harness.state().pictures(), pictures);
+    press(&mut harness, egui::Key::Num1);
+    assert_eq!(harness.state().pictures(), pictures + 1);
+}
+
+#[test]
+fn frozen_lod_stays_while_the_camera_moves() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    press(&mut harness, egui::Key::L);
+    let before = harness.state().totals();
+    press(&mut harness, egui::Key::Z);
+    press(&mut harness, egui::Key::PageUp);
+    press(&mut harness, egui::Key::PageUp);
+    assert_eq!(harness.state().totals(), before, "frozen");
+    press(&mut harness, egui::Key::Z);
+    assert!(harness.state().totals() > before, "nearer, so more triangles");
+}
+
+#[test]
+fn the_pointer_orbits_and_zooms() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let pictures = harness.state().pictures();
+    let before = *harness.state().camera();
+    harness.drag_at(egui::pos2(600.0, 400.0));
+    harness.run_steps(1);
+    harness.hover_at(egui::pos2(650.0, 420.0));
+    harness.run_steps(1);
+    harness.drop_at(egui::pos2(650.0, 420.0));
+    settle(&mut harness);
+    let orbited = *harness.state().camera();
+    assert_ne!(orbited.azimuth, before.azimuth);
+    assert_eq!(orbited.target, before.target);
+    harness.hover_at(egui::pos2(650.0, 420.0));
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: egui::vec2(0.0, 2.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    settle(&mut harness);
+    harness.run_steps(10);
+    settle(&mut harness);
+    assert!(harness.state().camera().distance < orbited.distance);
+    assert!(harness.state().pictures() > pictures);
+}
+
+#[test]
+fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
+    let mut harness = window(None);
+    press(&mut harness, egui::Key::B);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::L);
+    settle(&mut harness);
+    let Source::File(path) = vase() else { unreachable!("it is a file") };
+    harness.get_by_label("A .gltf or .glb file, or shape:NAME").type_text(&path.display().to_string());
+    settle(&mut harness);
+    click(&mut harness, "Open");
+    assert_eq!(harness.state().source(), Some(&vase()));
+    assert_eq!(harness.state().cracks().map(|cracks| cracks.different_bits), Some(0));
+    harness.get_by_label("308 of 308 patches");
+    press(&mut harness, egui::Key::Num3);
+    let camera = *harness.state().camera();
+    press(&mut harness, egui::Key::R);
+    assert_eq!(*harness.state().camera(), camera);
+    assert!(harness.state().settings().overlays.barycentric);
+}
+
+#[test]
+fn a_file_that_cannot_be_loaded_changes_nothing() {
+    let mut harness = window(Some(vase()));
+    press(&mut harness, egui::Key::A);
+    let (settings, camera) = (*harness.state().settings(), *harness.state().camera());
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::File(PathBuf::from("nowhere.glb")));
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&vase()), "the old mesh stays");
+    assert_eq!((*harness.state().settings(), *harness.state().camera()), (settings, camera));
+    harness.get_by_label_contains("nowhere.glb: could not be read");
+    click(&mut harness, "Close");
+    assert!(harness.query_by_label_contains("nowhere.glb").is_none());
+}
+
+#[test]
+fn a_dropped_file_is_opened() {
+    #[derive(Debug)]
+    struct Dropped(PathBuf);
+    impl egui::DroppedFile for Dropped {
+        fn path(&self) -> &std::path::Path {
+            &self.0
+        }
+        fn bytes(&self) -> Result<Vec<u8>, String> {
+            std::fs::read(&self.0).map_err(|error| error.to_string())
+        }
+    }
+    let mut harness = window(None);
+    let Source::File(path) = vase() else { unreachable!("it is a file") };
+    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&vase()));
+}
+
+#[test]
+fn every_shape_is_in_the_menu() {
+    let mut harness = window(None);
+    for shape in Shape::ALL {
+        click(&mut harness, "File");
+        harness.get_by_label_contains("Shapes").click();
+        settle(&mut harness);
+        harness.get_by_role_and_label(Role::Button, shape.title()).click();
+        settle(&mut harness);
+        assert_eq!(harness.state().source(), Some(&Source::Shape(shape)));
+        assert_eq!(harness.state().cracks().map(|cracks| cracks.different_bits), Some(0), "{shape:?}");
+    }
+}
+
+#[test]
+fn both_themes_show_the_picture_and_legible_controls() {
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        let mut harness = Harness::builder()
+            .with_size([1200.0, 800.0])
+            .with_theme(theme)
+            .wgpu()
+            .build_eframe(|context| App::new(context, Some(vase())).expect("these tests need a graphics adapter"));
+        settle(&mut harness);
+        let picture = harness.render().expect("a picture of the window");
+        let panel = picture.get_pixel(8, 700).0;
+        assert_eq!(panel[0] > 128, theme == egui::Theme::Light, "{theme:?}: {panel:?}");
+        // The vase's blue belt, in the middle of the viewport.
+        let middle = picture.get_pixel(610, 400).0;
+        assert!(middle[2] > middle[0], "{theme:?}: {middle:?}");
+    }
+}
