@@ -120,8 +120,8 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let nearest = min(min(to_sides.x, to_sides.y), to_sides.z);
         // Triangles of a px or two would be nothing but lines: those fade, and the surface stays readable.
-        let height = min(min(side_heights.x, side_heights.y), side_heights.z);
-        let strength = mix(0.25, 0.75, smoothstep(1.5, 8.0, height));
+        let height = max(max(side_heights.x, side_heights.y), side_heights.z);
+        let strength = mix(0.25, 0.75, smoothstep(2.0, 10.0, height));
         color = mix(color, vec3<f32>(0.008, 0.010, 0.014), strength * line_coverage(nearest, 0.5));
     }
     let nearest_edge = min(min(to_edges.x, to_edges.y), to_edges.z);
