@@ -316,10 +316,24 @@ impl App {
                 + scene.tessellator.arena_bytes()
                 + self.viewport.bytes();
             status(ui, 76.0, mebibytes(bytes), "Memory on the device: topology, output and picture.");
-            let ms = self.viewport.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
-            status(ui, 70.0, ms, "From submitting the last picture to its completion.");
+            let (ms, hover) = self.times();
+            status(ui, 112.0, ms, &hover);
             ui.weak(&self.engine.gpu.info.name).on_hover_text("Graphics adapter.");
         });
+    }
+
+    /// What the last picture took: tessellation and drawing by the GPU's own clock, or else the whole.
+    fn times(&self) -> (String, String) {
+        let times = &self.viewport.times;
+        let Some(draw) = times.iter().find(|time| time.pass == "draw") else {
+            let ms = self.viewport.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
+            let why = "From submitting the last picture to its completion; this adapter can't time single passes.";
+            return (ms, why.into());
+        };
+        let all: f64 = times.iter().map(|time| time.ms).sum();
+        let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
+        let hover = format!("Tessellation and drawing, by the GPU's own clock.\n{}", passes.join("\n"));
+        (format!("{:.2} + {:.2} ms", all - draw.ms, draw.ms), hover)
     }
 
     fn status_of_cracks(&self, ui: &mut egui::Ui) {
