@@ -35,8 +35,8 @@ fn line_vertex(
     let length_px = max(length(along_px), 1e-6);
     let along = along_px / length_px;
     let across = vec2<f32>(-along.y, along.x);
-    // Two triangles: corners 0 1 2, 2 1 3; bit 0 picks the end, bit 1 the side.
-    let corner = select(index, 5u - index, index >= 3u);
+    // Two triangles: corners 0 1 2 and 3 2 1; bit 0 picks the end, bit 1 the side.
+    let corner = select(index, 6u - index, index >= 3u);
     let at_end = (corner & 1u) == 1u;
     let side = select(-1.0, 1.0, (corner & 2u) == 2u);
     let reach = HALF_WIDTH + 1.0;

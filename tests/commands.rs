@@ -267,9 +267,9 @@ fn failures_are_one_sentence_and_exit_code_1() {
     let [out, text, broken] = ["out.png", "notes.txt", "broken.gltf"].map(|name| folder.path(name));
     std::fs::write(&text, "no mesh").expect("a writable folder");
     std::fs::write(&broken, "{\"asset\":").expect("a writable folder");
-    sentence(&["info", "nowhere.glb"], &["nowhere.glb", "could not be read"]);
+    sentence(&["info", "nowhere.glb"], &["nowhere.glb", "can't be read"]);
     sentence(&["info", &text], &["notes.txt", ".gltf or .glb"]);
-    sentence(&["info", &broken], &["broken.gltf", "not valid glTF"]);
+    sentence(&["info", &broken], &["broken.gltf", "not a glTF 2.0 document"]);
     sentence(
         &["render", "shape:torus", "-o", &folder.path("no/such/folder/out.png")],
         &["out.png", "could not be written"],

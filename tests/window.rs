@@ -200,7 +200,7 @@ fn a_file_that_cannot_be_loaded_changes_nothing() {
     settle(&mut harness);
     assert_eq!(harness.state().source(), Some(&vase()), "the old mesh stays");
     assert_eq!((*harness.state().settings(), *harness.state().camera()), (settings, camera));
-    harness.get_by_label_contains("nowhere.glb: could not be read");
+    harness.get_by_label_contains("nowhere.glb can't be read");
     click(&mut harness, "Close");
     assert!(harness.query_by_label_contains("nowhere.glb").is_none());
 }

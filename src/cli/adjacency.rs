@@ -40,10 +40,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         positions: corners.iter().map(|c| c.position.to_array()).collect(),
         normals: corners.iter().map(|c| c.normal.to_array()).collect(),
         patches: match args.indices {
-            12 => {
-                let dominant = adjacency::dominant_corners(topology);
-                patches.map(|p| adjacency::twelve(topology, &dominant, p).to_vec()).collect()
-            }
+            12 => patches.map(|p| adjacency::twelve(topology, p).to_vec()).collect(),
             _ => patches.map(|p| adjacency::nine(topology, p).to_vec()).collect(),
         },
     };

@@ -1,7 +1,8 @@
 //! `pnaen info`: what a file holds.
 
-use super::{CliError, load, to_json, write_text};
-use crate::mesh::{Info, Source};
+use super::{CliError, to_json, write_text};
+use crate::engine::load;
+use crate::mesh::{Info, Progress, Source};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -13,7 +14,8 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    let loaded = load(&args.file)?;
+    // Its warnings are among what is said.
+    let loaded = load(&args.file, &Progress::default())?;
     let info = Info::of(&loaded.mesh, &loaded.topology);
     let text = if args.json { to_json(&info)? } else { info.to_string() };
     write_text("-".as_ref(), &text)

@@ -1,37 +1,70 @@
-//! Where a mesh lies.
+//! How large a mesh is and where it lies.
 
 use glam::Vec3;
 
 use super::Mesh;
 
-/// An axis-aligned box, in object units.
+/// An axis-aligned box around corners, in object units, and the sphere around the box's centre that holds them all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     pub min: Vec3,
     pub max: Vec3,
+    radius: f32,
 }
 
 impl Bounds {
+    /// The bounds of some positions; all zero when there are none.
+    pub fn of(positions: impl Iterator<Item = Vec3> + Clone) -> Self {
+        let around = |(min, max): (Vec3, Vec3), p: Vec3| (min.min(p), max.max(p));
+        let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let (min, max) = positions.clone().fold(start, around);
+        if !min.is_finite() {
+            return Self::default();
+        }
+        let center = min * 0.5 + max * 0.5;
+        let radius = positions.map(|p| p.distance(center)).fold(0.0, f32::max);
+        Self { min, max, radius }
+    }
+
+    /// The middle of the box.
     pub fn center(&self) -> Vec3 {
+        // Halved first: the sum of two large coordinates could overflow.
         self.min * 0.5 + self.max * 0.5
     }
 
-    /// Length from corner to corner.
+    /// The length of the box's diagonal.
     pub fn diagonal(&self) -> f32 {
-        (self.max - self.min).length()
+        self.min.distance(self.max)
     }
 
-    /// Radius of the sphere around the box.
+    /// The greatest distance of a corner from [`center`](Self::center): at most half the diagonal, often less.
     pub fn radius(&self) -> f32 {
-        0.5 * self.diagonal()
+        self.radius
     }
 }
 
 impl Mesh {
-    /// The box around all corners; at the origin if there are none.
+    /// The bounds of all corners; zero for an empty mesh.
     pub fn bounds(&self) -> Bounds {
-        let mut positions = self.corners.iter().map(|corner| corner.position);
-        let Some(first) = positions.next() else { return Bounds::default() };
-        positions.fold(Bounds { min: first, max: first }, |b, p| Bounds { min: b.min.min(p), max: b.max.max(p) })
+        Bounds::of(self.corners.iter().map(|corner| corner.position))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_octahedron_fills_less_than_its_box() {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+        let bounds = Bounds::of(axes.iter().flat_map(|&a| [a + Vec3::ONE, Vec3::ONE - a]));
+        assert_eq!(bounds.center(), Vec3::ONE);
+        assert_eq!(bounds.radius(), 1.0);
+        assert_eq!(bounds.diagonal(), 12_f32.sqrt());
+    }
+
+    #[test]
+    fn nothing_has_no_size() {
+        assert_eq!(Mesh::default().bounds(), Bounds::default());
     }
 }

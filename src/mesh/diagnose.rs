@@ -1,117 +1,142 @@
-//! What a person should know about a mesh before tessellating it.
+//! What is odd about a mesh, and the numbers that `pnaen info` prints.
 
 use std::collections::HashMap;
 use std::fmt;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use serde::Serialize;
 
-use super::{EdgeCounts, EdgeKind, Mesh, Topology};
+use super::Mesh;
+use super::bounds::Bounds;
+use super::topology::{EdgeCounts, EdgeKind, Topology};
 
-/// Ends closer than this share of the diagonal nearly meet.
+/// How near ends must be to count as a near miss, as a part of the bounding diagonal.
 const NEAR: f64 = 1e-5;
 
-/// Two open edges whose ends nearly meet: a seam that isn't quite closed. Indices of [`Topology::edges`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Edges tried against one edge at most. More than that within one tolerance is noise, and trying all would be quadratic.
+const TRIES: usize = 256;
+
+/// Two boundary edges that look welded and aren't: a crack before any tessellation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NearMiss {
+    /// Indices into [`Topology::edges`], the lower one first.
     pub edges: [u32; 2],
+    /// The second edge's own direction runs against the first's.
+    pub reversed: bool,
+    /// The larger of the two distances between ends, in object units.
+    pub distance: f32,
 }
 
-/// Open edges whose ends lie within 1e-5 of the diagonal of another open edge's ends. Near linear, unless very many lie
-/// in one place.
-pub fn near_misses(mesh: &Mesh, topology: &Topology) -> Vec<NearMiss> {
-    let reach = NEAR * f64::from(mesh.bounds().diagonal());
-    if !(reach > 0.0 && reach.is_finite()) {
-        return Vec::new();
-    }
-    let open: Vec<u32> = (0..)
-        .zip(&topology.edges)
-        .filter(|(_, edge)| edge.kind == EdgeKind::Boundary)
-        .map(|(index, _)| index)
-        .collect();
-    let ends = |edge: u32| topology.edges[edge as usize].points.map(|p| topology.points[p as usize].as_dvec3());
-    // Middles of edges whose ends are within reach are within reach too: they lie in neighbouring cells.
-    let cell = |middle: DVec3| (middle / reach).floor().as_i64vec3();
-    let middle = |edge: u32| (ends(edge)[0] + ends(edge)[1]) * 0.5;
-    let mut cells: HashMap<_, Vec<u32>> = HashMap::new();
-    let mut found = Vec::new();
-    for &edge in &open {
-        let home = cell(middle(edge));
-        for offset in 0..27 {
-            let at = home + glam::i64vec3(offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1);
-            let near = cells.get(&at).into_iter().flatten();
-            let meet = near.filter(|&&other| ends_meet(ends(edge), ends(other), reach));
-            found.extend(meet.map(|&other| NearMiss { edges: [other, edge] }));
+/// A boundary edge on the grid of middles.
+struct Open {
+    edge: u32,
+    ends: [DVec3; 2],
+}
+
+/// Pairs of boundary edges whose ends lie within 1e-5 of the bounding diagonal of each other's, in either direction,
+/// though they aren't the same points. Edges shorter than twice that are left out. In the order of the first edge.
+///
+/// Near linear: middles are hashed on a grid, and an edge is compared with the first 256 edges of each grid cell around it.
+pub fn near_misses(topology: &Topology) -> Vec<NearMiss> {
+    let tolerance = NEAR * f64::from(Bounds::of(topology.points.iter().copied()).diagonal());
+    let mut misses = Vec::new();
+    let mut grid: HashMap<[i64; 3], Vec<Open>> = HashMap::new();
+    let long = |open: &Open| open.ends[0].distance(open.ends[1]) > 2.0 * tolerance;
+    for open in boundary(topology).filter(long) {
+        let cell = cell(open.ends[0].midpoint(open.ends[1]), tolerance);
+        for near in around(cell).iter().filter_map(|cell| grid.get(cell)) {
+            let found = near.iter().take(TRIES).filter_map(|earlier| compare(earlier, &open, tolerance));
+            misses.extend(found);
         }
-        cells.entry(home).or_default().push(edge);
+        grid.entry(cell).or_default().push(open);
     }
-    found
+    misses.sort_by_key(|miss| miss.edges);
+    misses
 }
 
-fn ends_meet([a, b]: [DVec3; 2], [c, d]: [DVec3; 2], reach: f64) -> bool {
-    let within = |x: DVec3, y: DVec3| x.distance(y) <= reach;
-    (within(a, c) && within(b, d)) || (within(a, d) && within(b, c))
+fn boundary(topology: &Topology) -> impl Iterator<Item = Open> {
+    let edges = topology.edges.iter().enumerate().filter(|(_, edge)| edge.kind == EdgeKind::Boundary);
+    edges.map(|(i, edge)| {
+        let ends = edge.points.map(|point| topology.points[point as usize].as_dvec3());
+        Open { edge: i as u32, ends }
+    })
 }
 
-/// What `pnaen info` says.
+fn compare(a: &Open, b: &Open, tolerance: f64) -> Option<NearMiss> {
+    let apart = |x: usize, y: usize| a.ends[0].distance(b.ends[x]).max(a.ends[1].distance(b.ends[y]));
+    let (along, against) = (apart(0, 1), apart(1, 0));
+    let reversed = against < along;
+    let distance = along.min(against);
+    (distance <= tolerance).then_some(NearMiss { edges: [a.edge, b.edge], reversed, distance: distance as f32 })
+}
+
+/// Cells are two tolerances wide, so middles a tolerance apart lie in neighbouring cells at most.
+fn cell(middle: DVec3, tolerance: f64) -> [i64; 3] {
+    (middle / (2.0 * tolerance)).to_array().map(|x| x.floor() as i64)
+}
+
+fn around([x, y, z]: [i64; 3]) -> [[i64; 3]; 27] {
+    std::array::from_fn(|i| {
+        let [dx, dy, dz] = [i / 9, i / 3 % 3, i % 3].map(|step| step as i64 - 1);
+        [x.saturating_add(dx), y.saturating_add(dy), z.saturating_add(dz)]
+    })
+}
+
+/// A mesh in numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct Info {
     pub name: String,
-    pub triangles: usize,
+    pub triangles: u32,
+    /// Triangles left out because two corners lie on one point.
     pub degenerate: u32,
-    pub patches: usize,
-    pub points: usize,
-    pub corners: usize,
-    pub edges: EdgeCounts,
-    /// No edge with one side.
-    pub closed: bool,
-    /// Points - edges + patches.
-    pub euler_characteristic: i64,
-    pub near_misses: usize,
-    /// Object units.
-    pub min: [f32; 3],
-    pub max: [f32; 3],
-    pub diagonal: f32,
+    pub corners: u32,
+    pub points: u32,
     pub materials: Vec<MaterialInfo>,
+    pub edges: EdgeCounts,
+    /// See [`near_misses`].
+    pub near_misses: u32,
+    pub bounds: BoundsInfo,
+    /// Points in use - edges + patches.
+    pub euler_characteristic: i64,
+    /// Every edge has exactly two sides.
+    pub closed: bool,
     pub warnings: Vec<String>,
 }
 
+/// A material in numbers.
 #[derive(Clone, Debug, Serialize)]
 pub struct MaterialInfo {
     pub name: String,
     pub triangles: u32,
-    /// Linear RGBA.
-    pub base_color: [f32; 4],
-    /// Width and height in px.
+    /// Width and height in px, where there is a texture.
     pub texture: Option<[u32; 2]>,
 }
 
+/// The bounding box, in object units.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct BoundsInfo {
+    pub min: [f32; 3],
+    pub max: [f32; 3],
+    pub diagonal: f32,
+}
+
 impl Info {
+    /// Gathers the numbers of a mesh and of the topology built from it.
     pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
+        let edges = topology.edge_counts();
         let bounds = mesh.bounds();
-        let [points, edges, patches] = [topology.points.len(), topology.edges.len(), topology.patches.len()];
-        let counts = topology.edge_counts();
-        let materials = mesh.materials.iter().map(|material| MaterialInfo {
-            name: material.name.clone(),
-            triangles: material.triangles.end - material.triangles.start,
-            base_color: material.base_color,
-            texture: material.texture.as_ref().map(|texture| texture.size),
-        });
         Self {
             name: mesh.name.clone(),
-            triangles: mesh.triangles.len(),
+            triangles: mesh.triangles.len() as u32,
             degenerate: topology.degenerate,
-            patches,
-            points,
-            corners: mesh.corners.len(),
-            edges: counts,
-            closed: counts.boundary == 0 && edges > 0,
-            euler_characteristic: points as i64 - edges as i64 + patches as i64,
-            near_misses: near_misses(mesh, topology).len(),
-            min: bounds.min.to_array(),
-            max: bounds.max.to_array(),
-            diagonal: bounds.diagonal(),
-            materials: materials.collect(),
+            corners: mesh.corners.len() as u32,
+            points: topology.points.len() as u32,
+            materials: mesh.materials.iter().map(material).collect(),
+            edges,
+            near_misses: near_misses(topology).len() as u32,
+            bounds: BoundsInfo { min: bounds.min.into(), max: bounds.max.into(), diagonal: bounds.diagonal() },
+            euler_characteristic: euler_characteristic(topology),
+            closed: edges.total() > 0 && edges.boundary == 0 && edges.non_manifold == 0,
             warnings: mesh.warnings.clone(),
         }
     }
@@ -124,7 +149,7 @@ impl fmt::Display for Info {
         writeln!(f, "triangles     {} ({} degenerate, left out)", self.triangles, self.degenerate)?;
         writeln!(f, "points        {}", self.points)?;
         writeln!(f, "corners       {}", self.corners)?;
-        writeln!(f, "edges         {}", smooth + split + seam + boundary + non_manifold)?;
+        writeln!(f, "edges         {}", self.edges.total())?;
         writeln!(f, "  smooth        {smooth}")?;
         writeln!(f, "  split normal  {split}")?;
         writeln!(f, "  uv seam       {seam}")?;
@@ -133,8 +158,10 @@ impl fmt::Display for Info {
         let closed = if self.closed { "closed" } else { "open" };
         writeln!(f, "surface       {closed}, Euler characteristic {}", self.euler_characteristic)?;
         writeln!(f, "near misses   {} (pairs of open edges that nearly meet)", self.near_misses)?;
-        let [min, max] = [self.min, self.max].map(Vec3::from);
-        writeln!(f, "box           {min} to {max}, diagonal {} object units", self.diagonal)?;
+        let [x, y, z] = self.bounds.min;
+        let [to_x, to_y, to_z] = self.bounds.max;
+        writeln!(f, "from          {x} {y} {z} (object units)")?;
+        writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", self.bounds.diagonal)?;
         for material in &self.materials {
             let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
             writeln!(f, "material      {}: {} triangles{texture}", material.name, material.triangles)?;
@@ -146,35 +173,78 @@ impl fmt::Display for Info {
     }
 }
 
+fn material(material: &super::Material) -> MaterialInfo {
+    MaterialInfo {
+        name: material.name.clone(),
+        triangles: material.triangles.len() as u32,
+        texture: material.texture.as_ref().map(|texture| texture.size),
+    }
+}
+
+/// Points in use - edges + patches: 2 for whatever is like a sphere, 0 for a torus.
+fn euler_characteristic(topology: &Topology) -> i64 {
+    let mut used = vec![false; topology.points.len()];
+    for edge in &topology.edges {
+        for point in edge.points {
+            used[point as usize] = true;
+        }
+    }
+    let points = used.iter().filter(|used| **used).count();
+    points as i64 - topology.edges.len() as i64 + topology.patches.len() as i64
+}
+
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
-    use crate::mesh::{Corner, Progress, Shape, merge};
-    use glam::{Vec2, vec3};
+    use crate::mesh::Progress;
+    use crate::mesh::shapes::Shape;
 
-    fn near(gap: f32) -> usize {
-        let corner = |position| Corner { position, normal: Vec3::Y, uv: Vec2::ZERO };
-        let left = [Vec3::ZERO, Vec3::Z, -Vec3::X].map(corner);
-        let right = [vec3(gap, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(gap, 0.0, 1.0)].map(corner);
-        let mesh = merge::from_triangles("two", [left, right].into_iter());
-        let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-        near_misses(&mesh, &topology).len()
+    /// A saddle cut in two along x = 0, the right half moved by `offset`.
+    fn cut_saddle(offset: Vec3) -> Topology {
+        let mut mesh = Shape::Saddle.build();
+        let corners = mesh.corners.clone();
+        for triangle in &mut mesh.triangles {
+            if triangle.iter().all(|&c| corners[c as usize].position.x > -0.01) {
+                for c in triangle {
+                    let mut corner = corners[*c as usize];
+                    corner.position += offset;
+                    *c = mesh.corners.len() as u32;
+                    mesh.corners.push(corner);
+                }
+            }
+        }
+        Topology::build(&mesh, &Progress::new()).unwrap()
     }
 
     #[test]
-    fn edges_that_nearly_meet_are_found_and_others_are_not() {
-        // The diagonal is about the square root of 5.
-        assert_eq!([near(0.0), near(1e-6), near(2.2e-5), near(2.4e-5), near(0.1)], [0, 1, 1, 0, 0]);
+    fn a_hairline_cut_is_found() {
+        let misses = near_misses(&cut_saddle(Vec3::X * 4e-6));
+        assert_eq!(misses.len(), 6, "{misses:?}");
+        assert!(misses.iter().all(|miss| miss.distance < 1e-5 && miss.edges[0] < miss.edges[1]));
     }
 
     #[test]
-    fn shapes_are_described() {
+    fn a_wide_cut_and_no_cut_are_not() {
+        assert_eq!(near_misses(&cut_saddle(Vec3::X * 1e-3)), []);
+        assert_eq!(near_misses(&cut_saddle(Vec3::ZERO)), []);
+        assert_eq!(near_misses(&Topology::default()), []);
+    }
+
+    #[test]
+    fn info_of_a_torus() {
         let mesh = Shape::Torus.build();
-        let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-        let info = Info::of(&mesh, &topology);
-        assert_eq!((info.closed, info.euler_characteristic, info.near_misses), (true, 0, 0));
-        assert_eq!((info.points, info.edges.seam), (128, 24));
-        let text = info.to_string();
-        assert!(text.contains("uv seam       24") && text.contains("closed, Euler characteristic 0"), "{text}");
+        let info = Info::of(&mesh, &Topology::build(&mesh, &Progress::new()).unwrap());
+        assert_eq!((info.triangles, info.points, info.euler_characteristic, info.closed), (256, 128, 0, true));
+        assert_eq!((info.materials.len(), info.materials[0].triangles), (1, 256));
+        let json = serde_json::to_value(&info).unwrap();
+        assert_eq!(json["edges"]["seam"], 24);
+    }
+
+    #[test]
+    fn info_of_nothing() {
+        let info = Info::of(&Mesh::default(), &Topology::default());
+        assert_eq!((info.triangles, info.euler_characteristic, info.closed), (0, 0, false));
     }
 }

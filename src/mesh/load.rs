@@ -1,44 +1,78 @@
-//! From a path to a mesh.
+//! From a path to a mesh: picks the reader by the file's extension.
 
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use thiserror::Error;
+use super::Mesh;
+use super::gltf::{self, Problem};
+use super::progress::{Cancelled, Progress};
 
-use super::{Cancelled, Mesh, Progress, gltf};
-
-/// Why there is no mesh. Each says what, where, and what to do.
-#[derive(Debug, Error)]
+/// Why a file became no mesh.
+#[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{path}: could not be read ({reason})")]
-    Io { path: String, reason: std::io::Error },
-    #[error("{path}: this is no .gltf or .glb file: convert it to glTF 2.0 first")]
-    Extension { path: String },
-    #[error("{path}: not valid glTF 2.0 ({reason}): export the file again")]
-    Invalid { path: String, reason: String },
-    #[error("{path}: buffer {buffer} could not be loaded ({reason}): put it beside the file, or export a .glb")]
-    Buffer { path: String, buffer: usize, reason: String },
-    #[error("{path}: {place} {reason}: export the file again")]
-    Damaged { path: String, place: String, reason: String },
-    #[error("{path}: there are no triangles in it{instead}: choose a file with a triangle mesh")]
-    Empty { path: String, instead: String },
+    #[error("{} can't be read because its name ends in {extension}; choose a .gltf or .glb file (glTF 2.0)", path.display())]
+    UnknownFormat { path: PathBuf, extension: String },
+    #[error("{} can't be read: {source}", path.display())]
+    Io { path: PathBuf, source: io::Error },
+    #[error("{}: {problem}", path.display())]
+    Gltf { path: PathBuf, problem: Box<Problem> },
+    #[error("{} has no triangles to show: {holds}", path.display())]
+    Empty { path: PathBuf, holds: String },
 }
 
-/// Loads a .gltf or .glb file. `progress` is checked between buffers and primitives.
+/// Reads a file: glTF 2.0, as `.gltf` or `.glb` (in either case).
+///
+/// `progress` goes from 0 to 1 meanwhile. Buffers and textures in files of their own are looked for in the model's
+/// folder and below it.
 ///
 /// # Errors
-/// See [`LoadError`]; what can be done without is a warning of the mesh instead.
+/// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture is none: it
+/// becomes one of the mesh's warnings.
 pub fn load(path: &Path, progress: &Progress) -> Result<Mesh, LoadError> {
-    let shown = path.display().to_string();
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    if !["gltf", "glb"].contains(&ending.as_str()) {
-        // A path that isn't there says so first.
-        std::fs::metadata(path).map_err(|reason| LoadError::Io { path: shown.clone(), reason })?;
-        return Err(LoadError::Extension { path: shown });
+    progress.set(0.0);
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let mesh = match extension.as_deref() {
+        Some("gltf" | "glb") => load_gltf(path, progress)?,
+        other => {
+            let extension = other.map_or("no extension".to_owned(), |extension| format!(".{extension}"));
+            return Err(LoadError::UnknownFormat { path: path.to_owned(), extension });
+        }
+    };
+    progress.set(1.0);
+    Ok(mesh)
+}
+
+fn load_gltf(path: &Path, progress: &Progress) -> Result<Mesh, LoadError> {
+    let bytes = std::fs::read(path).map_err(|source| LoadError::Io { path: path.to_owned(), source })?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    gltf::read(&bytes, folder, &name, progress).map_err(|problem| match problem {
+        Problem::Cancelled(cancelled) => cancelled.into(),
+        Problem::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+        problem => LoadError::Gltf { path: path.to_owned(), problem: Box::new(problem) },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(path: &str) -> String {
+        load(Path::new(path), &Progress::new()).unwrap_err().to_string()
     }
-    let bytes = std::fs::read(path).map_err(|reason| LoadError::Io { path: shown.clone(), reason })?;
-    progress.check()?;
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    gltf::load(&bytes, path.parent(), &shown, name, progress)
+
+    #[test]
+    fn unknown_formats_name_the_known_ones() {
+        let expected = "can't be read because its name ends in .fbx; choose a .gltf or .glb file (glTF 2.0)";
+        assert_eq!(message("a.FBX"), format!("a.FBX {expected}"));
+        assert!(message("a").contains("no extension"));
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        assert!(message("nowhere/a.glb").starts_with("nowhere/a.glb can't be read: "));
+        assert!(message("nowhere/A.GLTF").starts_with("nowhere/A.GLTF can't be read: "));
+    }
 }

@@ -1,59 +1,154 @@
-//! Puts triangles together into a mesh: every corner once, triangles grouped by material.
+//! From loose triangles to a [`Mesh`]: grouped by material, every distinct corner once.
 
 use std::collections::HashMap;
 
-use super::{Corner, Material, Mesh, position_bits};
+use super::normals;
+use super::weld::{plus_zero2, plus_zero3};
+use super::{Corner, Material, Mesh, Progress};
+use crate::mesh::progress::Cancelled;
+use glam::{Vec2, Vec3};
 
-/// Collects triangles, material by material.
-#[derive(Default)]
-pub struct Merge {
-    corners: Vec<Corner>,
-    known: HashMap<[u32; 8], u32>,
-    groups: Vec<Vec<[u32; 3]>>,
+/// A corner as a file or a shape gives it: the normal may be missing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LooseCorner {
+    pub position: Vec3,
+    /// Of unit length, or none: then [`MeshBuilder::finish`] makes one.
+    pub normal: Option<Vec3>,
+    pub uv: Vec2,
 }
 
-impl Merge {
-    /// Adds a triangle of material `group`, counted from 0.
-    pub fn push(&mut self, group: usize, triangle: [Corner; 3]) {
-        if self.groups.len() <= group {
-            self.groups.resize_with(group + 1, Vec::new);
-        }
-        let indices = triangle.map(|corner| self.corner(corner));
-        self.groups[group].push(indices);
-    }
-
-    fn corner(&mut self, corner: Corner) -> u32 {
-        let ([a, b, c], [d, e, f]) = (position_bits(corner.position), position_bits(corner.normal));
-        let [g, h] = corner.uv.to_array().map(|x| (x + 0.0).to_bits());
-        let next = self.corners.len() as u32;
-        let index = *self.known.entry([a, b, c, d, e, f, g, h]).or_insert(next);
-        if index == next {
-            self.corners.push(corner);
-        }
-        index
-    }
-
-    /// The mesh, with `materials` for the groups in order; their runs of triangles are filled in.
-    pub fn finish(self, name: String, mut materials: Vec<Material>, warnings: Vec<String>) -> Mesh {
-        let mut triangles = Vec::new();
-        let groups = self.groups.into_iter().chain(std::iter::repeat_with(Vec::new));
-        for (material, group) in materials.iter_mut().zip(groups) {
-            let first = triangles.len() as u32;
-            triangles.extend(group);
-            material.triangles = first..triangles.len() as u32;
-        }
-        Mesh { name, corners: self.corners, triangles, materials, warnings }
+impl From<Corner> for LooseCorner {
+    fn from(corner: Corner) -> Self {
+        Self { position: corner.position, normal: Some(corner.normal), uv: corner.uv }
     }
 }
 
-/// A mesh of one plain material.
-pub fn from_triangles(name: &str, triangles: impl Iterator<Item = [Corner; 3]>) -> Mesh {
-    let mut merge = Merge::default();
-    triangles.for_each(|triangle| merge.push(0, triangle));
-    merge.finish(name.to_owned(), vec![plain_material("plain")], Vec::new())
+/// Collects triangles, material by material, and makes a mesh of them.
+#[derive(Debug, Default)]
+pub struct MeshBuilder {
+    groups: Vec<(Material, Vec<[LooseCorner; 3]>)>,
 }
 
-/// Light grey, without a texture.
-pub fn plain_material(name: &str) -> Material {
-    Material { name: name.to_owned(), base_color: [0.6, 0.6, 0.6, 1.0], texture: None, triangles: 0..0 }
+impl MeshBuilder {
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a material (its `triangles` are set at the end) and returns its index for [`triangle`](Self::triangle).
+    /// The mesh has its materials in the order of these calls.
+    pub fn material(&mut self, material: Material) -> usize {
+        self.groups.push((material, Vec::new()));
+        self.groups.len() - 1
+    }
+
+    /// Adds a triangle, counter-clockwise seen from outside.
+    ///
+    /// # Panics
+    /// When `material` isn't an index that [`material`](Self::material) gave.
+    pub fn triangle(&mut self, material: usize, corners: [LooseCorner; 3]) {
+        self.groups[material].1.push(corners);
+    }
+
+    /// How many triangles there are so far.
+    pub fn len(&self) -> usize {
+        self.groups.iter().map(|(_, triangles)| triangles.len()).sum()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The mesh: triangles grouped by material, in the order they came; corners with the same bits (-0 counts as 0)
+    /// merged, in the order of first use; materials without triangles left out; missing normals made (see
+    /// [`normals::smooth`]). Linear in triangles.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub fn finish(mut self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
+        self.groups.retain(|(_, triangles)| !triangles.is_empty());
+        self.make_missing_normals(progress)?;
+        let mut mesh = Mesh { name, ..Mesh::default() };
+        let mut ids = HashMap::new();
+        for (mut material, triangles) in self.groups {
+            progress.check()?;
+            let first = mesh.triangles.len() as u32;
+            for triangle in triangles {
+                mesh.triangles.push(triangle.map(|corner| corner_id(&mut ids, &mut mesh.corners, corner)));
+            }
+            material.triangles = first..mesh.triangles.len() as u32;
+            mesh.materials.push(material);
+        }
+        Ok(mesh)
+    }
+
+    fn make_missing_normals(&mut self, progress: &Progress) -> Result<(), Cancelled> {
+        let triangles = || self.groups.iter().flat_map(|(_, triangles)| triangles);
+        if triangles().flatten().all(|corner| corner.normal.is_some()) {
+            return Ok(());
+        }
+        let positions: Vec<_> = triangles().map(|triangle| triangle.map(|corner| corner.position)).collect();
+        let made = normals::smooth(&positions, progress)?;
+        let corners = self.groups.iter_mut().flat_map(|(_, triangles)| triangles).flatten();
+        for (corner, normal) in corners.zip(made.into_iter().flatten()) {
+            corner.normal.get_or_insert(normal);
+        }
+        Ok(())
+    }
+}
+
+fn corner_id(ids: &mut HashMap<[u32; 8], u32>, corners: &mut Vec<Corner>, loose: LooseCorner) -> u32 {
+    let position = plus_zero3(loose.position);
+    let normal = plus_zero3(loose.normal.unwrap_or(Vec3::Z));
+    let uv = plus_zero2(loose.uv);
+    let values = [position.x, position.y, position.z, normal.x, normal.y, normal.z, uv.x, uv.y];
+    *ids.entry(values.map(f32::to_bits)).or_insert_with(|| {
+        corners.push(Corner { position, normal, uv });
+        corners.len() as u32 - 1
+    })
+}
+
+impl Material {
+    /// A material of one colour (linear RGBA), without triangles yet.
+    pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
+        Self { name: name.to_owned(), base_color, texture: None, triangles: 0..0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(x: f32, y: f32) -> LooseCorner {
+        LooseCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
+    }
+
+    #[test]
+    fn triangles_are_grouped_and_corners_shared() {
+        let mut builder = MeshBuilder::new();
+        let red = builder.material(Material::plain("red", [1.0, 0.0, 0.0, 1.0]));
+        let unused = builder.material(Material::plain("unused", [1.0; 4]));
+        let blue = builder.material(Material::plain("blue", [0.0, 0.0, 1.0, 1.0]));
+        assert_eq!([red, unused, blue], [0, 1, 2]);
+        builder.triangle(blue, [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)]);
+        builder.triangle(red, [corner(-0.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+        builder.triangle(blue, [corner(1.0, 0.0), corner(2.0, 0.0), corner(1.0, 1.0)]);
+        let mesh = builder.finish("two".to_owned(), &Progress::new()).unwrap();
+        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 1], [3, 4, 1]]);
+        assert_eq!(mesh.corners.len(), 5);
+        let ranges: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.triangles.clone())).collect();
+        assert_eq!(ranges, [("red", 0..1), ("blue", 1..3)]);
+    }
+
+    #[test]
+    fn only_missing_normals_are_made() {
+        let mut builder = MeshBuilder::new();
+        let material = builder.material(Material::plain("plain", [1.0; 4]));
+        let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+        corners[0].normal = Some(Vec3::X);
+        corners[1].normal = None;
+        builder.triangle(material, corners);
+        let mesh = builder.finish(String::new(), &Progress::new()).unwrap();
+        let normals: Vec<_> = mesh.corners.iter().map(|c| c.normal).collect();
+        assert_eq!(normals, [Vec3::X, Vec3::Z, Vec3::Z]);
+    }
 }

@@ -1,20 +1,18 @@
 //! What a file becomes: triangles with corners ([`Mesh`]), then welded points, edges and their sides ([`Topology`]).
 
 pub mod adjacency;
-mod bounds;
-mod curves;
-mod diagnose;
+pub mod bounds;
+pub mod curves;
+pub mod diagnose;
 mod gltf;
-mod gltf_accessors;
-mod gltf_pose;
-mod load;
-mod merge;
-mod normals;
-mod progress;
-mod shapes;
-mod source;
-mod topology;
-mod weld;
+pub mod load;
+pub mod merge;
+pub mod normals;
+pub mod progress;
+pub mod shapes;
+pub mod source;
+pub mod topology;
+pub mod weld;
 
 use std::ops::Range;
 
@@ -23,12 +21,12 @@ use glam::{Vec2, Vec3};
 pub use bounds::Bounds;
 pub use curves::{Curve, Curves, Sharing};
 pub use diagnose::{Info, NearMiss, near_misses};
+pub use gltf::Problem as GltfProblem;
 pub use load::{LoadError, load};
 pub use progress::{Cancelled, Progress};
 pub use shapes::{Shape, UnknownShape};
 pub use source::Source;
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
-pub use weld::{Welded, position_bits, weld};
 
 /// A triangle's vertex: a position in object units, a unit normal and a texture coordinate (uv, in texture widths and
 /// heights, v downwards as in glTF).
@@ -60,7 +58,7 @@ pub struct Material {
     pub name: String,
     /// Linear RGBA, 0 to 1.
     pub base_color: [f32; 4],
-    /// The pixels themselves, shared between materials that use one image.
+    /// Index into no list: the pixels themselves, shared between materials that use one image.
     pub texture: Option<std::sync::Arc<Texture>>,
     /// The triangles of the mesh that wear it.
     pub triangles: Range<u32>,

@@ -1,11 +1,17 @@
-//! Where a mesh comes from.
+//! Where a mesh comes from: a shape made in code, or a file.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use super::{LoadError, Mesh, Progress, Shape, UnknownShape, load};
+use super::load::{LoadError, load};
+use super::shapes::{Shape, UnknownShape};
+use super::{Mesh, Progress};
 
-/// A file, or a shape made in code.
+/// What comes before a shape's name.
+const SHAPE: &str = "shape:";
+
+/// A shape or a file. As text: `shape:torus`, or a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     Shape(Shape),
@@ -18,37 +24,68 @@ impl Default for Source {
     }
 }
 
-impl FromStr for Source {
-    type Err = UnknownShape;
-
-    /// `shape:NAME`, or a path.
-    fn from_str(text: &str) -> Result<Self, UnknownShape> {
-        match text.strip_prefix("shape:") {
-            Some(name) => name.parse().map(Self::Shape),
-            None => Ok(Self::File(PathBuf::from(text))),
-        }
-    }
-}
-
 impl Source {
-    /// What people call it: the file's name, or the shape's.
-    pub fn title(&self) -> String {
-        match self {
-            Self::Shape(shape) => shape.title().to_owned(),
-            Self::File(path) => {
-                path.file_name().map_or_else(|| path.display(), |name| std::path::Path::new(name).display()).to_string()
-            }
-        }
-    }
-
-    /// Makes the shape or reads the file.
+    /// Builds the shape or reads the file.
     ///
     /// # Errors
-    /// See [`LoadError`].
+    /// Those of [`load`]; a shape has none.
     pub fn load(&self, progress: &Progress) -> Result<Mesh, LoadError> {
         match self {
             Self::Shape(shape) => Ok(shape.build()),
             Self::File(path) => load(path, progress),
         }
+    }
+
+    /// A name for a window's title: the shape's, or the file's without its folder.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Shape(shape) => shape.title().to_owned(),
+            Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+        }
+    }
+}
+
+impl FromStr for Source {
+    type Err = UnknownShape;
+
+    fn from_str(text: &str) -> Result<Self, UnknownShape> {
+        match text.strip_prefix(SHAPE) {
+            Some(name) => name.parse().map(Self::Shape),
+            None => Ok(Self::File(text.into())),
+        }
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape(shape) => write!(f, "{SHAPE}{shape}"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_names_a_shape_or_a_file() {
+        assert_eq!("shape:torus".parse(), Ok(Source::Shape(Shape::Torus)));
+        assert_eq!("torus".parse(), Ok(Source::File("torus".into())));
+        assert!("shape:nothing".parse::<Source>().is_err());
+        assert_eq!(Source::Shape(Shape::Torus).to_string(), "shape:torus");
+    }
+
+    #[test]
+    fn titles_are_short() {
+        assert_eq!(Source::File("models/fox.glb".into()).title(), "fox.glb");
+        assert_eq!(Source::Shape(Shape::Moebius).title(), "Moebius strip");
+    }
+
+    #[test]
+    fn shapes_load() {
+        let mesh = Source::Shape(Shape::Icosphere).load(&Progress::new()).unwrap();
+        assert_eq!(mesh.triangles.len(), 80);
     }
 }

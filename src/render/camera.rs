@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     fn unit_bounds() -> Bounds {
-        Bounds { min: Vec3::splat(-1.0), max: Vec3::splat(1.0) }
+        Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter())
     }
 
     #[test]

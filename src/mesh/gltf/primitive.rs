@@ -1,0 +1,147 @@
+//! A primitive's triangles: lists, strips and fans, indexed or not.
+
+use ::gltf::mesh::Mode;
+use ::gltf::{Document, Mesh, Primitive};
+
+pub use super::vertices::Pose;
+use super::{Accessors, Problem, vertices};
+use crate::mesh::merge::LooseCorner;
+
+/// Reads primitives and remembers what was odd about them.
+#[derive(Debug, Default)]
+pub struct Primitives {
+    read: usize,
+    points: usize,
+    lines: usize,
+    /// Primitives without normals, vertices with bad ones, ...
+    without_normals: usize,
+    bad_normals: usize,
+    bad_uvs: usize,
+    bad_weights: usize,
+    /// Indices at the end of lists that make no whole triangle.
+    left_over: usize,
+}
+
+impl Primitives {
+    /// Whether there are no triangles in it by its very kind; counts it then.
+    pub fn skip(&mut self, primitive: &Primitive) -> bool {
+        let count = match primitive.mode() {
+            Mode::Points => &mut self.points,
+            Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.lines,
+            Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => return false,
+        };
+        *count += 1;
+        true
+    }
+
+    /// The triangles of a primitive in the scene's space, counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// [`Problem::Accessor`] and [`Problem::Primitive`].
+    pub fn read(
+        &mut self,
+        mesh: &Mesh,
+        primitive: &Primitive,
+        pose: &Pose,
+        uv_set: u32,
+        accessors: &Accessors,
+    ) -> Result<Vec<[LooseCorner; 3]>, Problem> {
+        let name = name(mesh, primitive);
+        let vertices = vertices::read(primitive, &name, pose, uv_set, accessors)?;
+        let indices = match primitive.indices() {
+            Some(accessor) => accessors.indices(&accessor, &format!("indices of {name}"))?,
+            None => (0..vertices.corners.len() as u32).collect(),
+        };
+        self.count(&vertices.repairs, primitive.mode(), indices.len());
+        let count = vertices.corners.len();
+        if let Some((i, index)) = indices.iter().enumerate().find(|(_, index)| **index as usize >= count) {
+            let reason = format!("uses vertex {index} of {count}, at index {i}");
+            return Err(Problem::Primitive { primitive: name, reason });
+        }
+        let corners = |[a, b, c]: [u32; 3]| {
+            let ordered = if vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
+            ordered.map(|vertex| vertices.corners[vertex as usize])
+        };
+        Ok(triangles(primitive.mode(), &indices).into_iter().map(corners).collect())
+    }
+
+    fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
+        self.read += 1;
+        self.without_normals += usize::from(repairs.no_normals > 0);
+        self.bad_normals += repairs.bad_normals;
+        self.bad_uvs += repairs.bad_uvs;
+        self.bad_weights += repairs.bad_weights;
+        if mode == Mode::Triangles {
+            self.left_over += indices % 3;
+        }
+    }
+
+    /// What was left out or repaired, one sentence each.
+    pub fn warnings(&self) -> Vec<String> {
+        let sentences = [
+            (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
+            (self.bad_normals, "normals of no direction, replaced by ones that are smooth within 60 degrees"),
+            (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
+            (self.bad_weights, "vertices with unusable joints or weights, left unskinned"),
+            (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),
+            (self.points, "primitives of points, left out"),
+            (self.lines, "primitives of lines, left out"),
+        ];
+        let found = sentences.into_iter().filter(|(count, _)| *count > 0);
+        found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect()
+    }
+
+    /// What there is in place of triangles.
+    pub fn holds(&self, document: &Document) -> String {
+        match (document.meshes().len(), self.points, self.lines) {
+            (0, ..) => "the document has no meshes".to_owned(),
+            (_, 0, 0) if self.read == 0 => "no node of its scene has a mesh".to_owned(),
+            (_, 0, 0) => format!("the {} primitives of its scene are empty", self.read),
+            (_, points, lines) => format!("its scene holds {points} primitives of points and {lines} of lines"),
+        }
+    }
+}
+
+/// A primitive's name for messages.
+fn name(mesh: &Mesh, primitive: &Primitive) -> String {
+    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" \"{name}\""));
+    format!("mesh {}{mesh_name}, primitive {}", mesh.index(), primitive.index())
+}
+
+/// Indices as triangles (specification, section 3.7.2.1). Triangles of a strip or fan that use a vertex twice only
+/// carry it to its next part and are dropped; those of a list are kept.
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    let whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+    match mode {
+        Mode::TriangleStrip => {
+            let windows = indices.array_windows().enumerate();
+            windows.map(|(i, &[a, b, c])| if i % 2 == 0 { [a, b, c] } else { [a, c, b] }).filter(whole).collect()
+        }
+        Mode::TriangleFan => {
+            let Some((&hub, rim)) = indices.split_first() else { return Vec::new() };
+            rim.array_windows().map(|&[a, b]| [a, b, hub]).filter(whole).collect()
+        }
+        _ => indices.as_chunks().0.to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_alternate_and_fans_turn() {
+        let indices = [0, 1, 2, 3, 4];
+        assert_eq!(triangles(Mode::TriangleStrip, &indices), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(triangles(Mode::TriangleFan, &indices), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
+        assert_eq!(triangles(Mode::Triangles, &indices), [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn stitches_of_strips_are_dropped() {
+        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]), [[0, 1, 2], [3, 5, 4]]);
+        for mode in [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan] {
+            assert!(triangles(mode, &[]).is_empty() && triangles(mode, &[7]).is_empty());
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! A primitive's vertices in their rest pose: attributes read, morphed, then skinned or placed.
+
+use ::gltf::accessor::Accessor;
+use ::gltf::{Primitive, Semantic};
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
+
+use super::{Accessors, Problem};
+use crate::mesh::merge::LooseCorner;
+
+/// How the primitive's node stands.
+pub struct Pose<'a> {
+    /// The node's own space to the scene's.
+    pub global: DMat4,
+    /// The joints' matrices (see [`super::skin`]); empty without a skin.
+    pub joints: &'a [DMat4],
+    /// The weights of the morph targets; missing ones are 0.
+    pub weights: &'a [f32],
+}
+
+/// Vertices in the scene's space.
+pub struct Vertices {
+    pub corners: Vec<LooseCorner>,
+    /// The vertex went through a mirroring transform, so its triangles must be wound the other way.
+    pub mirrored: Vec<bool>,
+    pub repairs: Repairs,
+}
+
+/// What had to be mended, in vertices.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Repairs {
+    /// The primitive had no normals at all.
+    pub no_normals: usize,
+    /// A normal had no direction: zero or not finite.
+    pub bad_normals: usize,
+    /// A uv was not finite and is (0, 0) now.
+    pub bad_uvs: usize,
+    /// Weights didn't sum to anything, or named a joint that isn't there; the vertex was left as the mesh has it.
+    pub bad_weights: usize,
+}
+
+/// The attributes as the file has them.
+struct Attributes {
+    positions: Vec<Vec3>,
+    normals: Option<Vec<Vec3>>,
+    uvs: Option<Vec<[f32; 2]>>,
+}
+
+/// Reads and poses a primitive's vertices. `name` is the primitive's, for messages; `uv_set` the n of TEXCOORD_n.
+///
+/// # Errors
+/// [`Problem::Accessor`] and [`Problem::Primitive`].
+pub fn read(
+    primitive: &Primitive,
+    name: &str,
+    pose: &Pose,
+    uv_set: u32,
+    accessors: &Accessors,
+) -> Result<Vertices, Problem> {
+    let attributes = Source { primitive, name, accessors };
+    let mut values = attributes.read(uv_set)?;
+    attributes.morph(&mut values, pose.weights)?;
+    let mut repairs = Repairs::default();
+    let matrices = attributes.matrices(pose, values.positions.len(), &mut repairs)?;
+    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), repairs };
+    for i in 0..values.positions.len() {
+        let matrix = matrices.get(i).unwrap_or(&pose.global);
+        vertices.push(&values, i, matrix, name)?;
+    }
+    Ok(vertices)
+}
+
+impl Vertices {
+    fn push(&mut self, values: &Attributes, i: usize, matrix: &DMat4, name: &str) -> Result<(), Problem> {
+        let position = matrix.transform_point3(values.positions[i].as_dvec3()).as_vec3();
+        if !position.is_finite() {
+            let reason = format!("has a position that isn't finite, at vertex {i}");
+            return Err(Problem::Primitive { primitive: name.to_owned(), reason });
+        }
+        let linear = DMat3::from_mat4(*matrix);
+        let normal = values.normals.as_ref().map(|normals| turned(normals[i], &linear));
+        match normal {
+            None => self.repairs.no_normals += 1,
+            Some(None) => self.repairs.bad_normals += 1,
+            Some(Some(_)) => {}
+        }
+        let mut uv = values.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs[i].into());
+        if !uv.is_finite() {
+            uv = Vec2::ZERO;
+            self.repairs.bad_uvs += 1;
+        }
+        self.corners.push(LooseCorner { position, normal: normal.flatten(), uv });
+        self.mirrored.push(linear.determinant() < 0.0);
+        Ok(())
+    }
+}
+
+/// A normal through the inverse transpose of a linear map, of unit length; none if that has no direction.
+fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
+    let normal = normal.as_dvec3();
+    if *linear == DMat3::IDENTITY && (normal.length_squared() - 1.0).abs() < 1e-6 {
+        return Some(normal.as_vec3());
+    }
+    // The cofactors are the inverse transpose times the determinant, and exist where the inverse doesn't.
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    (sign * (cofactors * normal)).try_normalize().map(DVec3::as_vec3)
+}
+
+/// Where a primitive's attributes come from.
+struct Source<'a> {
+    primitive: &'a Primitive<'a>,
+    name: &'a str,
+    accessors: &'a Accessors<'a>,
+}
+
+impl Source<'_> {
+    fn read(&self, uv_set: u32) -> Result<Attributes, Problem> {
+        let positions = self.primitive.get(&Semantic::Positions).ok_or_else(|| Problem::Primitive {
+            primitive: self.name.to_owned(),
+            reason: "has no positions".to_owned(),
+        })?;
+        let count = positions.count();
+        Ok(Attributes {
+            positions: self.vectors(&positions, "POSITION", count)?,
+            normals: match self.primitive.get(&Semantic::Normals) {
+                Some(accessor) => Some(self.vectors(&accessor, "NORMAL", count)?),
+                None => None,
+            },
+            uvs: self.attribute(Semantic::TexCoords(uv_set), count)?,
+        })
+    }
+
+    /// Adds the morph targets, each times its weight (specification, section 3.7.2.2).
+    fn morph(&self, values: &mut Attributes, weights: &[f32]) -> Result<(), Problem> {
+        let count = values.positions.len();
+        for (target, &weight) in self.primitive.morph_targets().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            if let Some(accessor) = target.positions() {
+                add(&mut values.positions, &self.vectors(&accessor, "POSITION of a morph target", count)?, weight);
+            }
+            if let (Some(accessor), Some(normals)) = (target.normals(), &mut values.normals) {
+                add(normals, &self.vectors(&accessor, "NORMAL of a morph target", count)?, weight);
+            }
+        }
+        Ok(())
+    }
+
+    /// A skinned vertex's own matrix; none at all without a skin.
+    fn matrices(&self, pose: &Pose, count: usize, repairs: &mut Repairs) -> Result<Vec<DMat4>, Problem> {
+        if pose.joints.is_empty() {
+            return Ok(Vec::new());
+        }
+        let joints = self.attribute::<4>(Semantic::Joints(0), count)?;
+        let weights = self.attribute::<4>(Semantic::Weights(0), count)?;
+        let (Some(joints), Some(weights)) = (joints, weights) else { return Ok(Vec::new()) };
+        let blends = joints.iter().zip(&weights).map(|(joints, weights)| {
+            blend(pose.joints, joints, weights).unwrap_or_else(|| {
+                repairs.bad_weights += 1;
+                DMat4::IDENTITY
+            })
+        });
+        Ok(blends.collect())
+    }
+
+    fn attribute<const N: usize>(&self, semantic: Semantic, count: usize) -> Result<Option<Vec<[f32; N]>>, Problem> {
+        match self.primitive.get(&semantic) {
+            Some(accessor) => self.numbers(&accessor, &semantic.to_string(), count).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    fn vectors(&self, accessor: &Accessor, attribute: &str, count: usize) -> Result<Vec<Vec3>, Problem> {
+        Ok(self.numbers::<3>(accessor, attribute, count)?.into_iter().map(Vec3::from).collect())
+    }
+
+    /// An attribute's values, as many as there are vertices.
+    fn numbers<const N: usize>(
+        &self,
+        accessor: &Accessor,
+        attribute: &str,
+        count: usize,
+    ) -> Result<Vec<[f32; N]>, Problem> {
+        let role = format!("{attribute} of {}", self.name);
+        if accessor.count() != count {
+            let reason = format!("has {} elements for {count} vertices", accessor.count());
+            return Err(Problem::Accessor { accessor: accessor.index(), role, reason });
+        }
+        self.accessors.numbers(accessor, &role)
+    }
+}
+
+fn add(values: &mut [Vec3], changes: &[Vec3], weight: f32) {
+    for (value, change) in values.iter_mut().zip(changes) {
+        *value += *change * weight;
+    }
+}
+
+/// The mean of the joints' matrices by weight. Weights are brought to a sum of 1, which quantised ones miss.
+fn blend(matrices: &[DMat4], joints: &[f32; 4], weights: &[f32; 4]) -> Option<DMat4> {
+    let (mut sum, mut total) = (DMat4::ZERO, 0.0);
+    for (&joint, &weight) in joints.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+        sum += *matrices.get(joint as usize)? * f64::from(weight);
+        total += f64::from(weight);
+    }
+    (total.is_finite() && total > 0.0).then(|| sum * (1.0 / total))
+}

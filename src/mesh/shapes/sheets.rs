@@ -1,0 +1,59 @@
+//! Saddle and Möbius strip: open patches.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{Vec2, Vec3};
+
+use super::{corner, quad};
+use crate::mesh::Corner;
+
+/// Quads along each side of the saddle.
+const CELLS: usize = 6;
+/// Quads along and across the Möbius strip.
+const LENGTH: usize = 24;
+const WIDTH: usize = 2;
+
+pub(super) fn saddle() -> Vec<[Corner; 3]> {
+    let node = |i: usize, j: usize| {
+        let uv = Vec2::new(i as f32, j as f32) / CELLS as f32;
+        let (x, z) = (1.6 * uv.x - 0.8, 1.6 * uv.y - 0.8);
+        corner(Vec3::new(x, (x * x - z * z) / 2.0, z), Vec3::new(-x, 1.0, z), uv)
+    };
+    grid(CELLS, CELLS, node)
+}
+
+pub(super) fn moebius() -> Vec<[Corner; 3]> {
+    let node = |i: usize, j: usize| {
+        // The last column is the first one upside down: the same positions to the last bit, normals flipped.
+        let (column, row, flip) = if i == LENGTH { (0, WIDTH - j, -1.0) } else { (i, j, 1.0) };
+        let uv = Vec2::new(i as f32 / LENGTH as f32, j as f32 / WIDTH as f32);
+        let turn = TAU * column as f32 / LENGTH as f32;
+        let across = 2.0 * row as f32 / WIDTH as f32 - 1.0;
+        let (position, normal) = moebius_at(turn, 0.3 * across);
+        corner(position, flip * normal, uv)
+    };
+    grid(LENGTH, WIDTH, node)
+}
+
+/// Position and normal at an angle around the Y axis and a distance from the middle line, which has radius 0.7.
+fn moebius_at(turn: f32, across: f32) -> (Vec3, Vec3) {
+    let out = Vec3::new(turn.sin(), 0.0, turn.cos());
+    let along = Vec3::new(turn.cos(), 0.0, -turn.sin());
+    // Half a twist a turn.
+    let (sin, cos) = (turn * PI / TAU).sin_cos();
+    let rung = out * cos + Vec3::Y * sin;
+    let rung_change = (Vec3::Y * cos - out * sin) / 2.0 + along * cos;
+    let ahead = along * 0.7 + rung_change * across;
+    (out * 0.7 + rung * across, rung.cross(ahead))
+}
+
+/// A grid of quads; the node (i, j) lies at column i, row j, and rows run to the left of columns seen from outside.
+fn grid(columns: usize, rows: usize, node: impl Fn(usize, usize) -> Corner) -> Vec<[Corner; 3]> {
+    let mut triangles = Vec::with_capacity(2 * columns * rows);
+    for i in 0..columns {
+        for j in 0..rows {
+            triangles.extend(quad([node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)]));
+        }
+    }
+    triangles
+}

@@ -1,0 +1,167 @@
+use std::collections::HashMap;
+
+use glam::Vec2;
+use proptest::prelude::*;
+
+use super::*;
+use crate::mesh::Material;
+use crate::mesh::shapes::Shape;
+
+/// A mesh whose corner i lies at (i, i * i, 0); `corners` repeats points by giving their number.
+fn mesh(corners: &[u32], triangles: &[[u32; 3]]) -> Mesh {
+    let corner = |&point: &u32| Corner {
+        position: Vec3::new(point as f32, (point * point) as f32, 0.0),
+        normal: Vec3::Z,
+        uv: Vec2::ZERO,
+    };
+    let mut material = Material::plain("plain", [1.0; 4]);
+    material.triangles = 0..triangles.len() as u32;
+    Mesh {
+        corners: corners.iter().map(corner).collect(),
+        triangles: triangles.to_vec(),
+        materials: vec![material],
+        ..Mesh::default()
+    }
+}
+
+fn build(mesh: &Mesh) -> Topology {
+    Topology::build(mesh, &Progress::new()).unwrap()
+}
+
+/// What must hold for every topology.
+fn check(mesh: &Mesh, topology: &Topology) {
+    assert_eq!(topology.sides.len(), 3 * topology.patches.len());
+    assert_eq!(topology.patches.len() + topology.degenerate as usize, mesh.triangles.len());
+    let mut next = 0;
+    for (i, edge) in topology.edges.iter().enumerate() {
+        assert!(edge.points[0] < edge.points[1]);
+        assert_eq!(edge.sides.start, next, "sides are grouped by edge, without gaps");
+        next = edge.sides.end;
+        for side in topology.edge_sides(edge) {
+            assert_eq!(side.edge as usize, i);
+            assert_eq!(side.corners.map(|c| topology.corner_points[c as usize]), edge.points);
+        }
+    }
+    assert_eq!(next as usize, topology.sides.len());
+    assert!(topology.edges.windows(2).all(|pair| pair[0].points < pair[1].points), "every pair of points once");
+    for (p, patch) in topology.patches.iter().enumerate() {
+        assert_eq!(patch.corners, mesh.triangles[patch.triangle as usize]);
+        for k in 0..3 {
+            let side = topology.sides[patch.sides[k] as usize];
+            assert_eq!((side.patch as usize, side.index as usize), (p, k));
+            let mut own = [patch.corners[k], patch.corners[(k + 1) % 3]];
+            if side.reversed {
+                own.reverse();
+            }
+            assert_eq!(side.corners, own);
+        }
+    }
+}
+
+#[test]
+fn two_triangles_share_one_smooth_edge() {
+    let mesh = mesh(&[0, 1, 2, 3], &[[0, 1, 2], [2, 1, 3]]);
+    let topology = build(&mesh);
+    check(&mesh, &topology);
+    assert_eq!(topology.edge_counts(), EdgeCounts { smooth: 1, boundary: 4, ..Default::default() });
+    let shared = &topology.edges[2];
+    assert_eq!((shared.points, shared.kind), ([1, 2], EdgeKind::Smooth));
+    assert_eq!(topology.edge_sides(shared).iter().map(|s| s.reversed).collect::<Vec<_>>(), [false, true]);
+}
+
+#[test]
+fn normals_split_before_uvs_seam() {
+    let mut both = mesh(&[0, 1, 2, 3, 1, 2], &[[0, 1, 2], [5, 4, 3]]);
+    assert_eq!(build(&both).edge_counts().smooth, 1);
+    both.corners[4].uv = Vec2::X;
+    assert_eq!(build(&both).edge_counts().seam, 1);
+    both.corners[5].normal = Vec3::X;
+    assert_eq!(build(&both).edge_counts().split, 1);
+    both.corners[5].normal = Vec3::new(-0.0, -0.0, 1.0);
+    assert_eq!(build(&both).edge_counts().seam, 1, "normals compare by value");
+}
+
+#[test]
+fn sides_wound_the_same_way_still_make_one_edge() {
+    let mesh = mesh(&[0, 1, 2, 3], &[[0, 1, 2], [1, 2, 3]]);
+    let topology = build(&mesh);
+    check(&mesh, &topology);
+    assert_eq!(topology.edge_counts().smooth, 1);
+}
+
+#[test]
+fn three_sides_are_non_manifold() {
+    let mesh = mesh(&[0, 1, 2, 3, 4], &[[0, 1, 2], [1, 0, 3], [0, 1, 4]]);
+    let topology = build(&mesh);
+    check(&mesh, &topology);
+    assert_eq!(topology.edge_counts(), EdgeCounts { non_manifold: 1, boundary: 6, ..Default::default() });
+}
+
+#[test]
+fn degenerate_triangles_are_left_out() {
+    let mut mesh = mesh(&[0, 1, 2, 0], &[[0, 0, 1], [0, 3, 1], [0, 1, 2], [1, 2, 1]]);
+    mesh.materials[0].triangles = 0..2;
+    mesh.materials.push(Material { triangles: 2..4, ..mesh.materials[0].clone() });
+    let topology = build(&mesh);
+    check(&mesh, &topology);
+    assert_eq!((topology.degenerate, topology.patches.len()), (3, 1));
+    assert_eq!(topology.patches[0].triangle, 2);
+    assert_eq!(topology.material_patches, [0..0, 0..1]);
+}
+
+#[test]
+fn nothing_gives_nothing() {
+    let topology = build(&Mesh::default());
+    assert_eq!((topology.points.len(), topology.edges.len(), topology.sides.len()), (0, 0, 0));
+}
+
+#[test]
+fn a_fan_of_300_000_triangles() {
+    let n = 300_000_u32;
+    let corner = |i: u32| Corner {
+        position: if i == 0 { Vec3::ZERO } else { Vec3::new(1.0, i as f32, 0.0) },
+        normal: Vec3::Z,
+        uv: Vec2::ZERO,
+    };
+    // The apex once as the lowest point, once as the highest.
+    for apex in [0, n + 1] {
+        let mut corners: Vec<_> = (1..=n + 1).map(corner).collect();
+        corners.insert(apex as usize, corner(0));
+        let rim = |i: u32| if apex == 0 { i + 1 } else { i };
+        let triangles: Vec<_> = (0..n).map(|i| [apex, rim(i), rim(i + 1)]).collect();
+        let topology = build(&Mesh { corners, triangles, ..Mesh::default() });
+        let counts = topology.edge_counts();
+        assert_eq!((counts.smooth, counts.boundary), (n - 1, n + 2));
+    }
+}
+
+#[test]
+fn a_cancel_is_heard() {
+    let progress = Progress::new();
+    progress.cancel();
+    assert!(Topology::build(&Shape::Torus.build(), &progress).is_err());
+}
+
+proptest! {
+    #[test]
+    fn every_side_belongs_to_one_edge(
+        points in prop::collection::vec(0_u32..9, 12),
+        triangles in prop::collection::vec(prop::array::uniform3(0_u32..12), 0..80),
+    ) {
+        let mesh = mesh(&points, &triangles);
+        let topology = build(&mesh);
+        check(&mesh, &topology);
+        // The same edges, the slow way.
+        let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
+        for patch in &topology.patches {
+            let p = patch.corners.map(|c| topology.corner_points[c as usize]);
+            for (a, b) in [(p[0], p[1]), (p[1], p[2]), (p[2], p[0])] {
+                *uses.entry([a.min(b), a.max(b)]).or_default() += 1;
+            }
+        }
+        prop_assert_eq!(uses.len(), topology.edges.len());
+        for edge in &topology.edges {
+            prop_assert_eq!(uses[&edge.points], edge.sides.len() as u32);
+        }
+    }
+}
