@@ -134,8 +134,10 @@ fn compare_sides(edge: u32, sides: &[Vec<[f32; 3]>]) -> (u64, Option<CrackedEdge
         for (a, b) in first.iter().zip(other) {
             if a.map(f32::to_bits) != b.map(f32::to_bits) {
                 let (a, b) = (Vec3::from(*a), Vec3::from(*b));
-                let gap = a.as_dvec3().distance(b.as_dvec3());
-                if crack.different_bits == 0 || !(gap <= crack.gap) {
+                let distance = a.as_dvec3().distance(b.as_dvec3());
+                // Positions that are not finite are as far apart as can be.
+                let gap = if distance.is_nan() { f64::INFINITY } else { distance };
+                if crack.different_bits == 0 || gap > crack.gap {
                     (crack.gap, crack.widest) = (gap, [a, b]);
                 }
                 crack.different_bits += 1;
@@ -221,8 +223,7 @@ mod tests {
 
     #[test]
     fn an_ulp_is_that_of_the_largest_coordinate() {
-        let mut topology = Topology::default();
-        topology.points = vec![Vec3::new(0.1, -3.0, 0.2), Vec3::ONE];
+        let topology = Topology { points: vec![Vec3::new(0.1, -3.0, 0.2), Vec3::ONE], ..Topology::default() };
         assert_eq!(ulp(&topology), 2f64.powi(-22));
     }
 }
