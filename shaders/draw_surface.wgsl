@@ -23,20 +23,26 @@ struct Varyings {
     @location(5) @interpolate(flat) edge_kinds: vec3<u32>,
 }
 
-fn varyings(position: vec3<f32>, patch_index: u32, u: u32, v: u32, corner: vec3<f32>) -> Varyings {
-    let p = patches[patch_index];
-    let a = corners[p.corners[0]];
-    let b = corners[p.corners[1]];
-    let c = corners[p.corners[2]];
+fn varyings(
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    uv: vec2<f32>,
+    patch_index: u32,
+    domain: vec2<u32>,
+    corner: vec3<f32>,
+) -> Varyings {
     var out: Varyings;
     out.clip = frame.clip_from_object * vec4<f32>(position, 1.0);
     out.position = position;
-    out.normal = linear_normal(array<vec3<f32>, 3>(a.normal, b.normal, c.normal), u, v);
-    out.uv = linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v);
-    out.domain = vec3<f32>(f32(u), f32(v), f32(FIXED_ONE - u - v)) * UNIT;
+    out.normal = normal;
+    out.uv = uv;
+    out.domain = vec3<f32>(f32(domain.x), f32(domain.y), f32(FIXED_ONE - domain.x - domain.y)) * UNIT;
     out.corner = corner;
-    // Kind of the edge where u, v, w is 0: opposite corner 0, 1, 2, which is side 1, 2, 0.
-    out.edge_kinds = vec3<u32>(p.edges[1] & 7u, p.edges[2] & 7u, p.edges[0] & 7u);
+    if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
+        // Kind of the edge where u, v, w is 0: opposite corner 0, 1, 2, which is side 1, 2, 0.
+        let edges = patches[patch_index].edges;
+        out.edge_kinds = vec3<u32>(edges[1] & 7u, edges[2] & 7u, edges[0] & 7u);
+    }
     return out;
 }
 
@@ -45,27 +51,31 @@ fn unit_corner(k: u32) -> vec3<f32> {
 }
 
 @vertex
-fn indexed_vertex(@location(0) position: vec3<f32>, @location(1) key: vec2<u32>) -> Varyings {
-    let uv = key_uv(key);
-    return varyings(position, key_patch(key), uv.x, uv.y, vec3<f32>(1.0));
+fn indexed_vertex(
+    @location(0) position: vec3<f32>,
+    @location(1) key: vec2<u32>,
+    @location(2) normal: u32,
+    @location(3) uv: vec2<f32>,
+) -> Varyings {
+    return varyings(position, unpack_normal(normal), uv, key_patch(key), key_uv(key), vec3<f32>(1.0));
 }
 
 @vertex
 fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let vertex = vertices[indices[index]];
     let key = vec2<u32>(vertex.key0, vertex.key1);
-    let uv = key_uv(key);
     let position = vec3<f32>(vertex.x, vertex.y, vertex.z);
-    return varyings(position, key_patch(key), uv.x, uv.y, unit_corner(index % 3u));
+    let normal = unpack_normal(vertex.normal);
+    return varyings(position, normal, vertex.uv, key_patch(key), key_uv(key), unit_corner(index % 3u));
 }
 
 @vertex
 fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let k = index % 3u;
+    let corner = corners[patches[index / 3u].corners[k]];
     let position = points[patches[index / 3u].points[k]].xyz;
-    let u = select(0u, FIXED_ONE, k == 0u);
-    let v = select(0u, FIXED_ONE, k == 1u);
-    return varyings(position, index / 3u, u, v, unit_corner(k));
+    let domain = vec2<u32>(select(0u, FIXED_ONE, k == 0u), select(0u, FIXED_ONE, k == 1u));
+    return varyings(position, corner.normal, corner.uv, index / 3u, domain, unit_corner(k));
 }
 
 // Colours of edge kinds, as the window's legend has them: src/render/layout.rs.

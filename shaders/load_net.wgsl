@@ -1,4 +1,4 @@
-// A patch's control net from the buffers of the module that includes this: points, patches, curve_nets, centers.
+// A patch's control net from the buffers of the module that includes this: points, patches, curve_nets.
 
 fn load_net(patch_index: u32) -> ControlNet {
     var net: ControlNet;
@@ -10,6 +10,6 @@ fn load_net(patch_index: u32) -> ControlNet {
         net.edges[2u * k] = select(curve_net.ab, curve_net.ba, reversed);
         net.edges[2u * k + 1u] = select(curve_net.ba, curve_net.ab, reversed);
     }
-    net.center = centers[patch_index].xyz;
+    net.center = points[params.point_count + patch_index].xyz;
     return net;
 }

@@ -5,10 +5,9 @@
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
-@group(0) @binding(5) var<storage, read> centers: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> edge_factors: array<f32>;
-@group(0) @binding(7) var<storage, read_write> patch_factors: array<PatchFactors>;
-@group(0) @binding(8) var<storage, read_write> offsets: array<vec2<u32>>;
+@group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
+@group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
+@group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;
 
 @compute @workgroup_size(256)
 fn counts_main(

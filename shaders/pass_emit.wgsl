@@ -8,7 +8,7 @@
 @group(0) @binding(5) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(6) var<storage, read> patches: array<Patch>;
 @group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
-@group(0) @binding(8) var<storage, read> centers: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> corners: array<Corner>;
 @group(0) @binding(9) var<storage, read_write> vertices: array<Vertex>;
 @group(0) @binding(10) var<storage, read_write> indices: array<u32>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
@@ -105,7 +105,12 @@ fn emit_vertices_main(
         position = rim_position(patch_index, at.side, at.t);
     }
     let key = pack_key(patch_index, uv.x, uv.y);
-    vertices[index] = Vertex(position.x, position.y, position.z, key.x, key.y);
+    let a = corners[patches[patch_index].corners[0]];
+    let b = corners[patches[patch_index].corners[1]];
+    let c = corners[patches[patch_index].corners[2]];
+    let normal = linear_normal(array<vec3<f32>, 3>(a.normal, b.normal, c.normal), uv.x, uv.y);
+    let texture_uv = linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), uv.x, uv.y);
+    vertices[index] = Vertex(position.x, position.y, position.z, key.x, key.y, pack_normal(normal), texture_uv);
 }
 
 @compute @workgroup_size(256)

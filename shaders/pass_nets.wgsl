@@ -1,13 +1,13 @@
 // Once a mesh and surface: the control points of every curve, then of every patch's centre.
 
 @group(0) @binding(0) var<uniform> params: Params;
-@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+// Points, then every patch's centre.
+@group(0) @binding(1) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> curves: array<Curve>;
 @group(0) @binding(4) var<storage, read> curve_sides: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> patches: array<Patch>;
 @group(0) @binding(6) var<storage, read_write> curve_nets: array<CurveNet>;
-@group(0) @binding(7) var<storage, read_write> centers: array<vec4<f32>>;
 
 @compute @workgroup_size(256)
 fn curve_nets_main(
@@ -58,5 +58,5 @@ fn centers_main(
         net_edges[2u * k] = select(net.ab, net.ba, reversed);
         net_edges[2u * k + 1u] = select(net.ba, net.ab, reversed);
     }
-    centers[index] = vec4<f32>(center_control_point(net_corners, net_edges), 0.0);
+    points[params.point_count + index] = vec4<f32>(center_control_point(net_corners, net_edges), 0.0);
 }

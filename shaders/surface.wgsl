@@ -66,6 +66,24 @@ fn linear_normal(normals: array<vec3<f32>, 3>, u: u32, v: u32) -> vec3<f32> {
     return select(vec3<f32>(0.0, 0.0, 1.0), n * inverseSqrt(length_squared), length_squared > 0.0);
 }
 
+// Octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
+fn pack_normal(normal: vec3<f32>) -> u32 {
+    let flat = normal / (abs(normal.x) + abs(normal.y) + abs(normal.z));
+    let folded = (1.0 - abs(flat.yx)) * vec2<f32>(toward(flat.x), toward(flat.y));
+    return pack2x16snorm(select(flat.xy, folded, flat.z < 0.0));
+}
+
+fn unpack_normal(bits: u32) -> vec3<f32> {
+    let at = unpack2x16snorm(bits);
+    let z = 1.0 - abs(at.x) - abs(at.y);
+    let back = max(-z, 0.0);
+    return normalize(vec3<f32>(at.x - toward(at.x) * back, at.y - toward(at.y) * back, z));
+}
+
+fn toward(x: f32) -> f32 {
+    return select(-1.0, 1.0, x >= 0.0);
+}
+
 fn linear_uv(uvs: array<vec2<f32>, 3>, u: u32, v: u32) -> vec2<f32> {
     return uvs[0] * (f32(u) * UNIT) + uvs[1] * (f32(v) * UNIT) + uvs[2] * (f32(FIXED_ONE - u - v) * UNIT);
 }

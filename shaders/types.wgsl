@@ -9,6 +9,7 @@ struct Params {
     partitioning: u32,
     lod: u32,
     clip: u32,
+    point_count: u32,
     patch_count: u32,
     edge_count: u32,
     curve_count: u32,
@@ -52,13 +53,15 @@ struct CurveNet {
     ba: vec3<f32>,
 }
 
-// A vertex as it is drawn: position, then patch and domain coordinates packed in 64 bits.
+// A vertex as it is drawn: position, patch and domain coordinates packed in 64 bits, normal packed in 32, uv.
 struct Vertex {
     x: f32,
     y: f32,
     z: f32,
     key0: u32,
     key1: u32,
+    normal: u32,
+    uv: vec2<f32>,
 }
 
 // Patches that go through the arena together. `first_vertex` and `first_triangle` count from the slab's start.

@@ -9,6 +9,7 @@ use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
 /// What a mesh is on the device: its topology, and room for its control nets.
 pub struct MeshBuffers {
+    /// Points, then room for every patch's centre.
     pub points: wgpu::Buffer,
     pub corners: wgpu::Buffer,
     pub patches: wgpu::Buffer,
@@ -17,9 +18,9 @@ pub struct MeshBuffers {
     pub edge_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
-    pub centers: wgpu::Buffer,
     pub edge_factors: wgpu::Buffer,
     pub sharing: Sharing,
+    pub point_count: u32,
     pub patch_count: u32,
     pub edge_count: u32,
     pub curve_count: u32,
@@ -33,7 +34,8 @@ impl MeshBuffers {
     /// A buffer would be larger than the adapter binds.
     pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Result<Self, GpuError> {
         let grouped = Curves::build(mesh, topology, sharing);
-        let points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
+        let mut points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
+        points.resize(points.len() + topology.patches.len(), [0.0; 4]);
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
@@ -45,9 +47,9 @@ impl MeshBuffers {
             edge_curves: filled(gpu, "edges", &grouped.edge_curves)?,
             material_patches: filled(gpu, "materials", &material_patches)?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
-            centers: empty::<[f32; 4]>(gpu, "patch centres", topology.patches.len())?,
             edge_factors: empty::<f32>(gpu, "edge factors", topology.edges.len())?,
             sharing,
+            point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
             edge_count: topology.edges.len() as u32,
             curve_count: curves.len() as u32,
@@ -66,7 +68,6 @@ impl MeshBuffers {
             &self.edge_curves,
             &self.material_patches,
             &self.curve_nets,
-            &self.centers,
             &self.edge_factors,
         ]
         .iter()

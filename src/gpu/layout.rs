@@ -25,10 +25,11 @@ pub struct Params {
     pub partitioning: u32,
     pub lod: u32,
     pub clip: u32,
+    pub point_count: u32,
     pub patch_count: u32,
     pub edge_count: u32,
     pub curve_count: u32,
-    pub _pad: [u32; 3],
+    pub _pad: [u32; 2],
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

@@ -173,10 +173,11 @@ impl Tessellator {
             partitioning: inputs.partitioning as u32,
             lod: inputs.lod as u32,
             clip: inputs.clip as u32,
+            point_count: self.buffers.point_count,
             patch_count: self.buffers.patch_count,
             edge_count: self.buffers.edge_count,
             curve_count: self.buffers.curve_count,
-            _pad: [0; 3],
+            _pad: [0; 2],
         }
     }
 
@@ -398,7 +399,7 @@ impl Tessellator {
         self.nets.get_or_insert_with(|| {
             let inputs = [(0, params), (1, &b.points), (6, &b.curve_nets)];
             let curves = [&inputs[..], &[(2, &b.corners), (3, &b.curves), (4, &b.curve_sides)]].concat();
-            let centers = [&inputs[..], &[(5, &b.patches), (7, &b.centers)]].concat();
+            let centers = [&inputs[..], &[(5, &b.patches)]].concat();
             (
                 bind_group(&self.gpu, "nets.curves", &nets.curve_nets.get_bind_group_layout(0), &curves),
                 bind_group(&self.gpu, "nets.centers", &nets.centers.get_bind_group_layout(0), &centers),
@@ -507,7 +508,7 @@ impl SlabPasses {
         let slab = &self.slab_buffer;
         let scan = [(0, slab), (1, &self.offsets), (2, &self.block_sums)];
         let emit = [(1, slab), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)];
-        let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.centers)];
+        let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.corners)];
         SlabGroups {
             edge_factors: group(
                 "factors",
@@ -530,10 +531,9 @@ impl SlabPasses {
                     (2, &b.points),
                     (3, &b.patches),
                     (4, &b.curve_nets),
-                    (5, &b.centers),
-                    (6, &b.edge_factors),
-                    (7, &self.patch_factors),
-                    (8, &self.offsets),
+                    (5, &b.edge_factors),
+                    (6, &self.patch_factors),
+                    (7, &self.offsets),
                 ],
             ),
             scan: [

@@ -34,7 +34,7 @@ impl Renderer {
         let vertex = [wgpu::VertexBufferLayout {
             array_stride: size_of::<Vertex>() as u64,
             step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2],
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2],
         }];
         let layouts = [Some(&scene_layout), Some(&material_layout)];
         let surface = |entry, buffers| pipeline(gpu, &layouts, &surface, (entry, "surface_fragment"), buffers, true);

@@ -5,8 +5,8 @@ use glam::Vec3;
 
 use super::{
     Clip, ControlNet, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, Surface, center_control_point, domain_point,
-    domain_triangle, edge_control_point, edge_position, paper_edge_factor, patch_is_clipped, patch_position,
-    point_count, process, round_pow2, straight_control_point, triangle_count,
+    domain_triangle, edge_control_point, edge_position, linear_normal, linear_uv, pack_normal, paper_edge_factor,
+    patch_is_clipped, patch_position, point_count, process, round_pow2, straight_control_point, triangle_count,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -23,12 +23,17 @@ pub struct Inputs {
     pub view: LodView,
 }
 
-/// An emitted vertex: position in object units, then patch and domain coordinates packed in 64 bits.
+/// An emitted vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
+    /// Object units.
     pub position: [f32; 3],
+    /// Patch and domain coordinates: see [`pack_key`].
     pub key: [u32; 2],
+    /// See [`super::pack_normal`].
+    pub normal: u32,
+    pub uv: [f32; 2],
 }
 
 impl Vertex {
@@ -78,11 +83,16 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, edge_factor
         if inputs.clip == Clip::Paper && patch_is_clipped(&inputs.view, &net) {
             factors = PatchFactors::zeroed();
         }
+        let corners = topology.patches[patch as usize].corners.map(|corner| &mesh.corners[corner as usize]);
         let base = out.vertices.len() as u32;
         for i in 0..point_count(factors) {
             let uv = domain_point(factors, i);
-            let position = nets.position(patch, &net, uv).to_array();
-            out.vertices.push(Vertex { position, key: pack_key(patch, uv) });
+            out.vertices.push(Vertex {
+                position: nets.position(patch, &net, uv).to_array(),
+                key: pack_key(patch, uv),
+                normal: pack_normal(linear_normal(corners.map(|corner| corner.normal), uv[0], uv[1])),
+                uv: linear_uv(corners.map(|corner| corner.uv), uv[0], uv[1]).to_array(),
+            });
         }
         out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
         out.patch_factors.push(factors);
@@ -216,7 +226,7 @@ mod tests {
     fn a_key_gives_back_what_was_packed() {
         for patch in [0, 1, (1 << 30) - 1] {
             for uv in [[0, 0], [65536, 0], [0, 65536], [32767, 32768], [21845, 21845]] {
-                let vertex = Vertex { position: [0.0; 3], key: pack_key(patch, uv) };
+                let vertex = Vertex { key: pack_key(patch, uv), ..Zeroable::zeroed() };
                 assert_eq!((vertex.patch(), vertex.uv()), (patch, uv));
             }
         }

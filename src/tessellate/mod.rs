@@ -18,5 +18,5 @@ pub use lod::{Lod, LodView, paper_edge_factor, project_and_scale};
 pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv,
-    patch_position, straight_control_point,
+    pack_normal, patch_position, straight_control_point, unpack_normal,
 };

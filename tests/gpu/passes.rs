@@ -6,7 +6,7 @@ use pnaen::measure::ulp;
 use pnaen::mesh::Shape;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{Clip, Inputs, Lod, Partitioning, Surface, Tessellated, tessellate};
+use pnaen::tessellate::{Clip, Inputs, Lod, Partitioning, Surface, Tessellated, Vertex, tessellate, unpack_normal};
 
 use crate::{engine, loaded, picture, scene};
 
@@ -38,6 +38,9 @@ fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &st
     let bound = 4.0 * ulp(&loaded.topology);
     for (index, (a, b)) in gpu.vertices.iter().zip(&cpu.vertices).enumerate() {
         assert_eq!(a.key, b.key, "{what}: key of vertex {index}");
+        let [own, other] = [a.normal, b.normal].map(unpack_normal);
+        assert!(own.distance(other) < 2e-4, "{what}: vertex {index}: {own} {other}");
+        assert!((a.uv[0] - b.uv[0]).abs() + (a.uv[1] - b.uv[1]).abs() < 1e-6, "{what}: vertex {index}: uv");
         for (x, y) in a.position.into_iter().zip(b.position) {
             assert!((f64::from(x) - f64::from(y)).abs() <= bound, "{what}: vertex {index}: {x} {y}");
         }
@@ -131,8 +134,8 @@ fn pn_tears_where_normals_are_split_and_nowhere_else() {
 fn a_small_arena_gives_the_same_mesh_in_chunks() {
     let loaded = loaded(Shape::Torus);
     let mut whole = engine().scene(&loaded, 1 << 28).expect("small");
-    // Room for a little more than one patch at the largest factor: 3169 vertices of 20 bytes, 6144 triangles of 12.
-    let mut cut = engine().scene(&loaded, 2 * 90_000).expect("small");
+    // Room for a little more than one patch at the largest factor: 3169 vertices of 32 bytes, 6144 triangles of 12.
+    let mut cut = engine().scene(&loaded, 2 * 110_000).expect("small");
     for (lod, factor) in [(Lod::Uniform, 17.0), (Lod::Uniform, 64.0), (Lod::Paper, 1.0)] {
         let settings = Settings { lod, factor, pixels: 2.0, ..Settings::default() };
         let inputs = inputs(&loaded, &settings);
@@ -207,11 +210,11 @@ fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
     assert!(clipped == tessellate_like(&loaded, &on.inputs(view), &clipped), "clipping differs from the CPU's");
 }
 
-/// The CPU's tessellation with positions taken from `like`: they may differ in the last bits.
+/// The CPU's tessellation with attributes taken from `like`: they may differ in the last bits.
 fn tessellate_like(loaded: &Loaded, inputs: &Inputs, like: &Tessellated) -> Tessellated {
     let mut cpu = tessellate(&loaded.mesh, &loaded.topology, inputs, None);
     for (vertex, other) in cpu.vertices.iter_mut().zip(&like.vertices) {
-        vertex.position = other.position;
+        *vertex = Vertex { key: vertex.key, ..*other };
     }
     cpu
 }
