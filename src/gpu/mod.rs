@@ -3,6 +3,7 @@
 //! Once a mesh and surface: nets. When settings or view change: factors, counts, scan, chunks. Then, for every chunk of
 //! patches that fits the arena: emit, and whatever is done with it (a draw, a readback).
 
+mod arena;
 mod buffers;
 mod device;
 mod domain;
@@ -10,6 +11,7 @@ mod error;
 pub mod layout;
 mod pipelines;
 mod recorder;
+mod slab;
 mod tessellator;
 
 pub use buffers::MeshBuffers;

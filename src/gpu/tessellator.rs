@@ -3,22 +3,17 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
-use wgpu::util::DeviceExt;
-
-use super::buffers::empty;
-use super::layout::{Chunk, DrawArgs, EmitArgs, LodView, Params, PatchFactors, Slab, Vertex};
+use super::arena::Arena;
+use super::layout::{Chunk, DrawArgs, EmitArgs, LodView, Params};
 use super::pipelines::bind_group;
 use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
+use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
 use crate::mesh::{Mesh, Topology};
-use crate::tessellate::{self, Clip, Inputs, Lod, Partitioning, Surface, sharing};
+use crate::tessellate::{Clip, Inputs, Lod, Surface, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
-/// Items a workgroup of the scan takes; see `pass_scan.wgsl`.
-const SCAN_BLOCK: u32 = 1024;
-/// Dynamic uniform data starts at multiples of this; WebGPU's default limit.
-const UNIFORM_STRIDE: u64 = 256;
 
 /// A tessellated mesh on the device.
 pub struct Tessellator {
@@ -37,37 +32,6 @@ pub struct Tessellator {
     pending: Option<PendingCounts>,
     chunks: Vec<(usize, u32, Chunk)>,
     emitted: Option<(usize, u32)>,
-}
-
-/// Room for one chunk's output.
-struct Arena {
-    vertices: wgpu::Buffer,
-    indices: wgpu::Buffer,
-    vertex_capacity: u32,
-    triangle_capacity: u32,
-}
-
-/// One slab's buffers and bind groups.
-struct SlabPasses {
-    slab: Slab,
-    slab_buffer: wgpu::Buffer,
-    patch_factors: wgpu::Buffer,
-    offsets: wgpu::Buffer,
-    block_sums: wgpu::Buffer,
-    chunks: wgpu::Buffer,
-    emit_args: wgpu::Buffer,
-    draw_args: wgpu::Buffer,
-    chunk_indices: wgpu::Buffer,
-    groups: Option<SlabGroups>,
-}
-
-struct SlabGroups {
-    edge_factors: wgpu::BindGroup,
-    counts: wgpu::BindGroup,
-    scan: [wgpu::BindGroup; 3],
-    chunks: wgpu::BindGroup,
-    emit_vertices: wgpu::BindGroup,
-    emit_triangles: wgpu::BindGroup,
 }
 
 /// Chunk tables on their way to the host.
@@ -411,168 +375,6 @@ impl Tessellator {
             }
         }
     }
-}
-
-impl Arena {
-    fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
-        let (patch_vertices, patch_triangles) = largest_patch();
-        let limits = gpu.device.limits();
-        let half = (arena_bytes / 2).min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
-        let capacity = |item: usize, patch: u32| {
-            let needed = u64::from(patch) * u64::from(patch_count.max(1));
-            (half / item as u64).clamp(u64::from(patch), needed.max(u64::from(patch))) as u32
-        };
-        let vertex_capacity = capacity(size_of::<Vertex>(), patch_vertices);
-        let triangle_capacity = capacity(size_of::<[u32; 3]>(), patch_triangles);
-        Ok(Self {
-            vertices: empty::<Vertex>(gpu, "arena.vertices", vertex_capacity as usize)?,
-            indices: empty::<[u32; 3]>(gpu, "arena.indices", triangle_capacity as usize)?,
-            vertex_capacity,
-            triangle_capacity,
-        })
-    }
-
-    /// More chunks than any tessellation of so many patches takes: every chunk but the last is full but for less than
-    /// one patch, in vertices or in triangles.
-    fn chunk_capacity(&self, patch_count: u32) -> u32 {
-        let (patch_vertices, patch_triangles) = largest_patch();
-        let full = |capacity: u32, patch: u32| {
-            let needed = u64::from(patch) * u64::from(patch_count);
-            if needed <= u64::from(capacity) { 0 } else { needed.div_ceil(u64::from(capacity - patch + 1)) as u32 }
-        };
-        full(self.vertex_capacity, patch_vertices) + full(self.triangle_capacity, patch_triangles) + 1
-    }
-}
-
-/// Vertices and triangles of a patch at the largest factors.
-fn largest_patch() -> (u32, u32) {
-    let factors = tessellate::process(Partitioning::Integer, [64.0; 3], 64.0);
-    (tessellate::point_count(factors), tessellate::triangle_count(factors))
-}
-
-impl SlabPasses {
-    fn new(
-        gpu: &Gpu,
-        buffers: &MeshBuffers,
-        arena: &Arena,
-        first_patch: u32,
-        patch_count: u32,
-    ) -> Result<Self, GpuError> {
-        let chunk_capacity = arena.chunk_capacity(patch_count);
-        let slab = Slab {
-            first_patch,
-            patch_count,
-            vertex_capacity: arena.vertex_capacity,
-            triangle_capacity: arena.triangle_capacity,
-            chunk_capacity,
-            material_count: buffers.material_count,
-            _pad: [0; 2],
-        };
-        let (patches, chunks) = (patch_count as usize, chunk_capacity as usize);
-        let mut chunk_indices = vec![0u8; chunks * UNIFORM_STRIDE as usize];
-        for (index, bytes) in chunk_indices.chunks_exact_mut(UNIFORM_STRIDE as usize).enumerate() {
-            bytes[..4].copy_from_slice(&(index as u32).to_ne_bytes());
-        }
-        Ok(Self {
-            slab,
-            slab_buffer: uniform_buffer(gpu, "slab", bytemuck::bytes_of(&slab)),
-            patch_factors: empty::<PatchFactors>(gpu, "patch factors", patches)?,
-            offsets: empty::<[u32; 2]>(gpu, "offsets", patches + 1)?,
-            block_sums: empty::<[u32; 2]>(gpu, "scan sums", (patches + 1).div_ceil(SCAN_BLOCK as usize))?,
-            chunks: empty::<Chunk>(gpu, "chunks", chunks)?,
-            emit_args: empty::<EmitArgs>(gpu, "emit arguments", chunks)?,
-            draw_args: empty::<DrawArgs>(gpu, "draw arguments", chunks * buffers.material_count as usize)?,
-            chunk_indices: uniform_buffer(gpu, "chunk indices", &chunk_indices),
-            groups: None,
-        })
-    }
-
-    fn bytes(&self) -> u64 {
-        [&self.patch_factors, &self.offsets, &self.block_sums, &self.chunks, &self.emit_args, &self.draw_args]
-            .iter()
-            .map(|buffer| buffer.size())
-            .sum()
-    }
-
-    fn bind(
-        &self,
-        gpu: &Gpu,
-        pipelines: &ComputePipelines,
-        b: &MeshBuffers,
-        params: &wgpu::Buffer,
-        arena: &Arena,
-    ) -> SlabGroups {
-        let group = |label: &str, pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
-            bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers)
-        };
-        let slab = &self.slab_buffer;
-        let scan = [(0, slab), (1, &self.offsets), (2, &self.block_sums)];
-        let emit = [(1, slab), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)];
-        let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.corners)];
-        SlabGroups {
-            edge_factors: group(
-                "factors",
-                &pipelines.edge_factors,
-                &[
-                    (0, params),
-                    (1, &b.points),
-                    (2, &b.curves),
-                    (3, &b.curve_nets),
-                    (4, &b.edge_curves),
-                    (5, &b.edge_factors),
-                ],
-            ),
-            counts: group(
-                "counts",
-                &pipelines.counts,
-                &[
-                    (0, params),
-                    (1, slab),
-                    (2, &b.points),
-                    (3, &b.patches),
-                    (4, &b.curve_nets),
-                    (5, &b.edge_factors),
-                    (6, &self.patch_factors),
-                    (7, &self.offsets),
-                ],
-            ),
-            scan: [
-                group("scan.blocks", &pipelines.scan_blocks, &scan),
-                group("scan.sums", &pipelines.scan_sums, &[scan[0], scan[2]]),
-                group("scan.add", &pipelines.scan_add, &scan),
-            ],
-            chunks: group(
-                "chunks",
-                &pipelines.chunks,
-                &[
-                    (0, slab),
-                    (1, &self.offsets),
-                    (2, &b.material_patches),
-                    (3, &self.chunks),
-                    (4, &self.emit_args),
-                    (5, &self.draw_args),
-                ],
-            ),
-            emit_vertices: group(
-                "emit.vertices",
-                &pipelines.emit_vertices,
-                &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat(),
-            ),
-            emit_triangles: group(
-                "emit.triangles",
-                &pipelines.emit_triangles,
-                &[&emit[..], &[(10, &arena.indices)]].concat(),
-            ),
-        }
-    }
-}
-
-fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-    })
 }
 
 /// Twin of `grid` in `shaders/types.wgsl`.

@@ -1,0 +1,55 @@
+//! Room for output: of fixed size, whatever the factors. What does not fit goes through it in chunks.
+
+use super::buffers::empty;
+use super::layout::Vertex;
+use super::{Gpu, GpuError};
+use crate::tessellate::{Partitioning, point_count, process, triangle_count};
+
+/// Room for one chunk's output.
+pub struct Arena {
+    pub vertices: wgpu::Buffer,
+    pub indices: wgpu::Buffer,
+    pub vertex_capacity: u32,
+    pub triangle_capacity: u32,
+}
+
+impl Arena {
+    /// At most `arena_bytes`, and no more than a mesh of so many patches can fill.
+    ///
+    /// # Errors
+    /// More than the adapter binds.
+    pub fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
+        let (patch_vertices, patch_triangles) = largest_patch();
+        let limits = gpu.device.limits();
+        let half = (arena_bytes / 2).min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
+        let capacity = |item: usize, patch: u32| {
+            let needed = u64::from(patch) * u64::from(patch_count.max(1));
+            (half / item as u64).clamp(u64::from(patch), needed.max(u64::from(patch))) as u32
+        };
+        let vertex_capacity = capacity(size_of::<Vertex>(), patch_vertices);
+        let triangle_capacity = capacity(size_of::<[u32; 3]>(), patch_triangles);
+        Ok(Self {
+            vertices: empty::<Vertex>(gpu, "arena.vertices", vertex_capacity as usize)?,
+            indices: empty::<[u32; 3]>(gpu, "arena.indices", triangle_capacity as usize)?,
+            vertex_capacity,
+            triangle_capacity,
+        })
+    }
+
+    /// More chunks than any tessellation of so many patches takes: every chunk but the last is full but for less than
+    /// one patch, in vertices or in triangles.
+    pub fn chunk_capacity(&self, patch_count: u32) -> u32 {
+        let (patch_vertices, patch_triangles) = largest_patch();
+        let full = |capacity: u32, patch: u32| {
+            let needed = u64::from(patch) * u64::from(patch_count);
+            if needed <= u64::from(capacity) { 0 } else { needed.div_ceil(u64::from(capacity - patch + 1)) as u32 }
+        };
+        full(self.vertex_capacity, patch_vertices) + full(self.triangle_capacity, patch_triangles) + 1
+    }
+}
+
+/// Vertices and triangles of a patch at the largest factors.
+fn largest_patch() -> (u32, u32) {
+    let factors = process(Partitioning::Integer, [64.0; 3], 64.0);
+    (point_count(factors), triangle_count(factors))
+}
