@@ -283,6 +283,18 @@ fn failures_are_one_sentence_and_exit_code_1() {
 }
 
 #[test]
+fn a_picture_too_large_for_the_device_is_a_sentence() {
+    let folder = Folder::new("large");
+    let path = folder.path("out.png");
+    let output = run(&["render", "shape:torus", "-o", &path, "--size", "16384x16384"]);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    // A device with memory enough may draw it.
+    assert!(output.status.success() || output.status.code() == Some(1), "{errors}");
+    assert!(errors.lines().count() <= 1 && !errors.contains("panicked"), "{errors}");
+    assert_eq!(output.status.success(), Path::new(&path).exists());
+}
+
+#[test]
 fn wrong_usage_exits_with_2() {
     for arguments in [
         &["render", "shape:torus"][..],

@@ -7,7 +7,7 @@ mod panels;
 mod text;
 mod viewport;
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use thiserror::Error;
 
@@ -81,7 +81,6 @@ pub struct App {
     shows_keys: bool,
     /// What went wrong last, until it is closed.
     error: Option<String>,
-    device_errors: Arc<Mutex<Option<String>>>,
 }
 
 impl App {
@@ -89,7 +88,6 @@ impl App {
     /// The window isn't drawn through wgpu.
     pub fn new(context: &eframe::CreationContext, source: Option<Source>) -> Result<Self, GpuError> {
         let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
-        let device_errors = watch_device(&render_state.device);
         let gpu = Gpu::new(&render_state.adapter, render_state.device.clone(), render_state.queue.clone());
         let engine = Engine::new(gpu);
         menu::style(&context.egui_ctx);
@@ -107,7 +105,6 @@ impl App {
             typed_path: None,
             shows_keys: false,
             error: None,
-            device_errors,
         };
         app.settings.overlays.wireframe = true;
         app.open(&context.egui_ctx, source.unwrap_or_default());
@@ -194,43 +191,18 @@ impl App {
         }
     }
 
-    fn take_device_errors(&mut self) {
-        // A thread that panicked while it held the lock leaves text that is still whole.
-        let mut error = self.device_errors.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(error) = error.take() {
-            self.error = Some(error);
+    fn take_device_problem(&mut self) {
+        if let Err(problem) = self.engine.gpu.check() {
+            self.error = Some(problem.to_string());
         }
     }
-}
-
-/// Keeps what the device reports, in place of wgpu's own panic.
-fn watch_device(device: &wgpu::Device) -> Arc<Mutex<Option<String>>> {
-    let errors = Arc::new(Mutex::new(None));
-    let keep = |errors: &Arc<Mutex<Option<String>>>| {
-        let errors = errors.clone();
-        move |text: String| {
-            let mut kept = errors.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            kept.get_or_insert(text);
-        }
-    };
-    let uncaptured = keep(&errors);
-    device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-        uncaptured(format!("The graphics device refused a command: {error}"));
-    }));
-    let lost = keep(&errors);
-    device.set_device_lost_callback(move |reason, message| {
-        if reason != wgpu::DeviceLostReason::Destroyed {
-            lost(format!("The graphics device was lost ({message}): restart pnaen"));
-        }
-    });
-    errors
 }
 
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
         self.take_loaded();
         self.take_dialog(context);
-        self.take_device_errors();
+        self.take_device_problem();
         let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());
         if let Some(path) = dropped {
             self.open(context, Source::File(path));

@@ -1,5 +1,7 @@
 //! An adapter and its device, with or without a window.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use super::GpuError;
 
 /// A device that tessellates and draws.
@@ -9,6 +11,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name, driver and kind of the adapter.
     pub info: wgpu::AdapterInfo,
+    problem: Problem,
     /// Samples a px that the viewport is drawn with: 4 where the adapter has it, else 1.
     pub samples: u32,
 }
@@ -36,6 +39,35 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
+/// The first problem that nobody has asked for yet.
+type Problem = Arc<Mutex<Option<GpuError>>>;
+
+/// Keeps what the device reports, in place of wgpu's own panic.
+fn watch(device: &wgpu::Device) -> Problem {
+    let problem = Problem::default();
+    let keeper = || {
+        let problem = problem.clone();
+        move |found| {
+            problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(found);
+        }
+    };
+    let keep = keeper();
+    device.on_uncaptured_error(Arc::new(move |error| {
+        keep(match error {
+            wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory,
+            error => GpuError::Refused(error.to_string().replace('\n', " ")),
+        });
+    }));
+    let keep = keeper();
+    device.set_device_lost_callback(move |reason, message| {
+        // Destroyed is what a program does to its own device.
+        if reason != wgpu::DeviceLostReason::Destroyed {
+            keep(GpuError::Lost(message));
+        }
+    });
+    problem
+}
+
 impl Gpu {
     /// The machine's best adapter, without a window.
     ///
@@ -58,7 +90,20 @@ impl Gpu {
         let flags = |format: wgpu::TextureFormat| adapter.get_texture_format_features(format).flags;
         let four = wgpu::TextureFormatFeatureFlags::MULTISAMPLE_X4;
         let multisampled = flags(COLOR_FORMAT).contains(four) && flags(DEPTH_FORMAT).contains(four);
-        Self { device, queue, info: adapter.get_info(), samples: if multisampled { 4 } else { 1 } }
+        let problem = watch(&device);
+        Self { device, queue, info: adapter.get_info(), problem, samples: if multisampled { 4 } else { 1 } }
+    }
+
+    /// What the device has reported since the last call, if anything: commands don't fail where they are given.
+    ///
+    /// # Errors
+    /// Out of memory, a refused command, or a lost device.
+    pub fn check(&self) -> Result<(), GpuError> {
+        // A thread that panicked while it held the lock leaves text that is still whole.
+        match self.problem.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            Some(problem) => Err(problem),
+            None => Ok(()),
+        }
     }
 
     /// Whether the adapter runs on the CPU.

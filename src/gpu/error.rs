@@ -16,6 +16,12 @@ pub enum GpuError {
     TooLarge { what: &'static str, bytes: u64, limit: u64 },
     #[error("a picture of {width} x {height} px is larger than the adapter's {limit} px a side: ask for a smaller one")]
     PictureTooLarge { width: u32, height: u32, limit: u32 },
+    #[error("the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh")]
+    OutOfMemory,
+    #[error("the graphics device refused a command ({0}): this is an error in pnaen or in the driver; please report it")]
+    Refused(String),
+    #[error("the graphics device was lost ({0}): try again, or update its driver")]
+    Lost(String),
     #[error("reading back from the graphics device failed ({0}): the device may have been lost; try again")]
     Readback(String),
 }

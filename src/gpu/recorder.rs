@@ -193,6 +193,8 @@ pub fn read_staging(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, GpuErr
         let _ = sender.send(result);
     });
     wait(gpu);
+    // What went wrong on the way explains more than what it led to.
+    gpu.check()?;
     match receiver.recv() {
         Ok(Ok(())) => mapped_bytes(staging),
         Ok(Err(error)) => Err(GpuError::Readback(error.to_string())),

@@ -236,6 +236,7 @@ impl Tessellator {
     pub fn read_counts(&mut self) -> Result<(), GpuError> {
         self.request_counts();
         wait(&self.gpu);
+        self.gpu.check()?;
         let Some(pending) = &self.pending else { return Ok(()) };
         // Another thread that polls may still be running the callback.
         match pending.mapped.recv() {
