@@ -145,7 +145,8 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
         } else if to_edges.y <= nearest_edge {
             kind = in.edge_kinds.y;
         }
-        color = mix(color, edge_color(kind), line_coverage(nearest_edge, 1.75));
+        // Smooth edges are most of a mesh and least of its news.
+        color = mix(color, edge_color(kind), line_coverage(nearest_edge, select(1.75, 0.75, kind == 0u)));
     }
     return vec4<f32>(color, 1.0);
 }

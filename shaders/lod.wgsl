@@ -14,6 +14,12 @@ fn project_and_scale(view: LodView, pixels_per_segment: f32, position: vec3<f32>
     return clip.xy / clip.w * view.half_viewport / pixels_per_segment;
 }
 
+// At least 1, and 1 for NaN, which is told by its bits.
+fn at_least_one(length: f32) -> f32 {
+    let is_nan = (bitcast<u32>(length) & 0x7fffffffu) > 0x7f800000u;
+    return select(length, 1.0, is_nan || length < 1.0);
+}
+
 // ComputeEdgeLOD of the PN-AEN white paper, in the edge's own direction.
 fn paper_edge_factor(
     view: LodView,
@@ -27,5 +33,5 @@ fn paper_edge_factor(
     let pab = project_and_scale(view, pixels_per_segment, ab);
     let pba = project_and_scale(view, pixels_per_segment, ba);
     let pb = project_and_scale(view, pixels_per_segment, b);
-    return max(distance(pa, pab) + distance(pab, pba) + distance(pba, pb), 1.0);
+    return at_least_one(distance(pa, pab) + distance(pab, pba) + distance(pba, pb));
 }

@@ -17,7 +17,11 @@ fn main() -> ExitCode {
     if let Some(command) = command {
         return cli::run(command);
     }
-    let Err(WindowError::NoDisplay(reason)) = app::run(file.clone()) else { return ExitCode::SUCCESS };
+    let reason = match app::run(file.clone()) {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(WindowError::NoDisplay(reason)) => reason,
+        Err(error @ WindowError::Failed(_)) => return cli::fail(&error),
+    };
     if let Err(error) = cli::preview(file, Path::new(PREVIEW)) {
         return cli::fail(&error);
     }

@@ -6,20 +6,32 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
 use crate::measure::{Cracks, Rims};
-use crate::mesh::Topology;
+use crate::mesh::{Progress, Topology};
 use crate::render::Scene;
-use crate::tessellate::{Inputs, PatchFactors, Vertex};
+use crate::tessellate::{PatchFactors, Vertex};
 
 /// What is known about the cracks of the shown tessellation.
 #[derive(Default)]
 pub struct Measuring {
-    /// What was last asked for.
-    of: Option<(u64, Inputs)>,
+    /// Document and tessellation that were last asked for.
+    of: Option<(u64, u64)>,
     copying: Option<Copying>,
-    comparing: Option<Receiver<Found>>,
+    comparing: Option<Comparing>,
     found: Option<Found>,
-    /// Counts results.
+    /// Counts results, and their absence.
     pub generation: u64,
+}
+
+/// The thread that compares; it gives up when this is dropped.
+struct Comparing {
+    found: Receiver<Found>,
+    wanted: Progress,
+}
+
+impl Drop for Comparing {
+    fn drop(&mut self) {
+        self.wanted.cancel();
+    }
 }
 
 struct Found {
@@ -39,6 +51,8 @@ struct Copying {
 enum Part {
     Factors(Vec<u8>),
     Vertices(u32, Vec<u8>),
+    /// All there is.
+    End,
 }
 
 impl Measuring {
@@ -56,27 +70,19 @@ impl Measuring {
         self.copying.is_some() || self.comparing.is_some()
     }
 
-    /// Goes on measuring document `generation` under `inputs`, whose counts are known; starts over if they are new.
-    /// True when a result has just come in.
+    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now. True
+    /// when what is known has changed.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, generation: u64, inputs: &Inputs) -> Result<bool, GpuError> {
-        if self.of != Some((generation, *inputs)) {
-            self.of = Some((generation, *inputs));
-            let (parts, received) = channel();
-            let (found, comparing) = channel();
-            let topology = scene.tessellator.topology().clone();
-            std::thread::spawn(move || {
-                if let Some(result) = compare(&received, &topology) {
-                    let _ = found.send(result);
-                }
-            });
-            self.comparing = Some(comparing);
-            self.copying = Some(copy_factors(gpu, scene, parts));
+    pub fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, document: u64) -> Result<bool, GpuError> {
+        let of = Some((document, scene.tessellator.generation()));
+        if self.of != of {
+            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene) };
+            return Ok(true);
         }
         self.copy_on(gpu, scene)?;
-        match self.comparing.as_ref().map(Receiver::try_recv) {
+        match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
             Some(Ok(found)) => {
                 self.comparing = None;
                 self.found = Some(found);
@@ -89,6 +95,20 @@ impl Measuring {
             }
             _ => Ok(false),
         }
+    }
+
+    fn start(gpu: &Gpu, scene: &Scene) -> Self {
+        let (parts, received) = channel();
+        let (sender, found) = channel();
+        let wanted = Progress::default();
+        let (topology, still_wanted) = (scene.tessellator.topology().clone(), wanted.clone());
+        std::thread::spawn(move || {
+            if let Some(result) = compare(&received, &topology, &still_wanted) {
+                let _ = sender.send(result);
+            }
+        });
+        let copying = Some(copy_factors(gpu, scene, parts));
+        Self { copying, comparing: Some(Comparing { found, wanted }), ..Self::default() }
     }
 
     /// Sends on what has been copied, and copies the next chunk.
@@ -110,6 +130,8 @@ impl Measuring {
         let _ = copying.parts.send(part);
         if copying.next_chunk < scene.tessellator.chunk_count() {
             self.copying = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
+        } else {
+            let _ = copying.parts.send(Part::End);
         }
         Ok(())
     }
@@ -154,16 +176,19 @@ fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
     mapped
 }
 
-/// Puts the parts together, and compares once all are there: when the sender is gone. A replaced measurement ends with
-/// parts missing; its result is no longer wanted.
-fn compare(parts: &Receiver<Part>, topology: &Arc<Topology>) -> Option<Found> {
+/// Puts the parts together, and compares once all are there. `None` if no longer wanted.
+fn compare(parts: &Receiver<Part>, topology: &Arc<Topology>, wanted: &Progress) -> Option<Found> {
     let Ok(Part::Factors(factors)) = parts.recv() else { return None };
     let mut factors: Vec<PatchFactors> = bytemuck::pod_collect_to_vec(&factors);
     factors.truncate(topology.patches.len());
     let mut rims = Rims::new(factors);
-    for part in parts.iter() {
-        if let Part::Vertices(first_patch, bytes) = part {
-            rims.take(first_patch, &bytemuck::pod_collect_to_vec::<u8, Vertex>(&bytes));
+    loop {
+        wanted.check().ok()?;
+        match parts.recv().ok()? {
+            Part::Vertices(first_patch, bytes) => {
+                rims.take(first_patch, &bytemuck::pod_collect_to_vec::<u8, Vertex>(&bytes));
+            }
+            Part::Factors(_) | Part::End => break,
         }
     }
     Some(Found { culled: rims.culled(), cracks: rims.cracks(topology) })

@@ -6,6 +6,7 @@ use super::App;
 use crate::mesh::{Shape, Source};
 use crate::render::Standpoint;
 use crate::settings::{FACTOR_RANGE, Overlay};
+use crate::tessellate::Lod;
 
 const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
 const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
@@ -74,7 +75,7 @@ impl App {
             self.open_dialog(ui.ctx());
         }
         if entry(ui, "Open path…", &OPEN_PATH) {
-            self.typed_path.get_or_insert_default();
+            self.type_path();
         }
         let reload = egui::Button::new("Reload").shortcut_text("R");
         if ui.add_enabled(self.document.is_some(), reload).clicked() {
@@ -110,13 +111,31 @@ impl App {
         }
         ui.checkbox(&mut self.camera.orthographic, "Orthographic").on_hover_text("No perspective (5)");
         ui.separator();
-        egui::widgets::global_theme_preference_buttons(ui);
+        let mut theme = ui.ctx().options(|options| options.theme_preference);
+        for (choice, text) in [
+            (egui::ThemePreference::System, "Theme of the system"),
+            (egui::ThemePreference::Light, "Light theme"),
+            (egui::ThemePreference::Dark, "Dark theme"),
+        ] {
+            if ui.radio_value(&mut theme, choice, text).changed() {
+                ui.ctx().set_theme(theme);
+            }
+        }
     }
 
     fn frame(&mut self) {
         if let Some(document) = &self.document {
-            self.camera.frame(&document.scene.bounds);
+            self.camera.frame(&document.scene.bounds, self.viewport.size());
         }
+    }
+
+    /// Opens the window that takes a path, with that of the open file in it.
+    fn type_path(&mut self) {
+        let path = match self.source() {
+            Some(Source::File(path)) => path.display().to_string(),
+            _ => String::new(),
+        };
+        self.typed_path.get_or_insert(path);
     }
 
     /// The desktop's file dialog, on a thread of its own.
@@ -141,7 +160,7 @@ impl App {
             self.open_dialog(context);
         }
         if taken(&OPEN_PATH) {
-            self.typed_path.get_or_insert_default();
+            self.type_path();
         }
         if taken(&QUIT) {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -155,43 +174,49 @@ impl App {
         if context.egui_wants_keyboard_input() {
             return;
         }
-        let pressed = |key| context.input(|input| input.key_pressed(key) && !input.modifiers.command);
-        let keys = [Key::W, Key::P, Key::B, Key::A, Key::C];
-        for (key, overlay) in keys.into_iter().zip(Overlay::ALL) {
-            if pressed(key) {
+        self.overlay_keys(context);
+        self.camera_keys(context);
+        let steps = presses(context, Key::Plus) + presses(context, Key::Equals) - presses(context, Key::Minus);
+        if steps != 0.0 && self.settings.lod == Lod::Uniform {
+            let factor = self.settings.factor + steps;
+            self.settings.factor = factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
+        }
+        if pressed(context, Key::R) {
+            self.reload(context);
+        }
+        if pressed(context, Key::L) {
+            self.toggle_lod();
+        }
+        if pressed(context, Key::Z) {
+            self.toggle_frozen();
+        }
+    }
+
+    fn overlay_keys(&mut self, context: &egui::Context) {
+        for (key, overlay) in [Key::W, Key::P, Key::B, Key::A, Key::C].into_iter().zip(Overlay::ALL) {
+            if pressed(context, key) {
                 let switch = self.settings.overlays.get_mut(overlay);
                 *switch = !*switch;
             }
         }
-        for (key, standpoint) in
-            [(Key::Num1, Standpoint::Front), (Key::Num3, Standpoint::Right), (Key::Num7, Standpoint::Top)]
-        {
-            if pressed(key) {
+        if pressed(context, Key::S) {
+            self.toggle_split();
+        }
+    }
+
+    fn camera_keys(&mut self, context: &egui::Context) {
+        let standpoints =
+            [(Key::Num1, Standpoint::Front), (Key::Num3, Standpoint::Right), (Key::Num7, Standpoint::Top)];
+        for (key, standpoint) in standpoints {
+            if pressed(context, key) {
                 self.camera.look_from(standpoint);
             }
         }
-        let steps = i8::from(pressed(Key::Plus) || pressed(Key::Equals)) - i8::from(pressed(Key::Minus));
-        if steps != 0 {
-            let factor = self.settings.factor + f32::from(steps);
-            self.settings.factor = factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
-        }
-        if pressed(Key::Num5) {
+        if pressed(context, Key::Num5) {
             self.camera.orthographic = !self.camera.orthographic;
         }
-        if pressed(Key::F) {
+        if pressed(context, Key::F) {
             self.frame();
-        }
-        if pressed(Key::R) {
-            self.reload(context);
-        }
-        if pressed(Key::S) {
-            self.toggle_split();
-        }
-        if pressed(Key::L) {
-            self.toggle_lod();
-        }
-        if pressed(Key::Z) {
-            self.toggle_frozen();
         }
     }
 
@@ -235,11 +260,12 @@ impl App {
             }
             accepted = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
             ui.horizontal(|ui| {
-                accepted |= ui.button("Open").clicked();
+                let button = egui::Button::new("Open");
+                accepted |= ui.add_enabled(!path.trim().is_empty(), button).clicked();
                 cancelled = ui.button("Cancel").clicked();
             });
         });
-        if accepted {
+        if accepted && !path.trim().is_empty() {
             match path.trim().parse::<Source>() {
                 Ok(source) => {
                     self.typed_path = None;
@@ -254,3 +280,20 @@ impl App {
 }
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
+
+/// Whether a key was pressed by itself.
+fn pressed(context: &egui::Context, key: Key) -> bool {
+    presses(context, key) > 0.0
+}
+
+/// How often a key was pressed since the last frame; Shift may be needed for the key itself, so it doesn't matter.
+fn presses(context: &egui::Context, key: Key) -> f32 {
+    let by_itself = |event: &&egui::Event| match event {
+        egui::Event::Key { key: pressed, pressed: true, modifiers, .. } => {
+            let shifted = modifiers.shift && !matches!(key, Key::Plus | Key::Equals);
+            *pressed == key && !(modifiers.alt || modifiers.ctrl || modifiers.command) && !shifted
+        }
+        _ => false,
+    };
+    context.input(|input| input.events.iter().filter(by_itself).count()) as f32
+}

@@ -28,6 +28,8 @@ pub enum WindowError {
     /// Why, in a few words.
     #[error("no window could be opened ({0})")]
     NoDisplay(String),
+    #[error("the window can't be drawn ({0}): check the graphics driver, or use the commands (pnaen --help)")]
+    Failed(String),
 }
 
 /// Opens the window on `source`, or on a cube made in code, and returns when it is closed.
@@ -49,8 +51,14 @@ pub fn run(source: Option<Source>) -> Result<(), WindowError> {
         wgpu_options: wgpu_configuration(),
         ..Default::default()
     };
-    eframe::run_native("pnaen", options, Box::new(|context| Ok(Box::new(App::new(context, source)?))))
-        .map_err(|error| WindowError::NoDisplay(error.to_string()))
+    let window = eframe::run_native("pnaen", options, Box::new(|context| Ok(Box::new(App::new(context, source)?))));
+    window.map_err(|error| match error {
+        // Their texts are about the window library's own files.
+        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
+            WindowError::NoDisplay("the display that DISPLAY or WAYLAND_DISPLAY names can't be opened".into())
+        }
+        error => WindowError::Failed(error.to_string()),
+    })
 }
 
 /// The device that egui draws with is the engine's own.
@@ -69,6 +77,8 @@ pub struct App {
     render_state: egui_wgpu::RenderState,
     settings: Settings,
     camera: Camera,
+    /// Where the split was when it was last on.
+    last_split: f32,
     /// The view that LOD and clipping stay computed for, while frozen.
     frozen: Option<LodView>,
     document: Option<Document>,
@@ -96,7 +106,8 @@ impl App {
             engine,
             render_state,
             settings: Settings::default(),
-            camera: Camera::framing(&Default::default()),
+            camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
+            last_split: 0.5,
             frozen: None,
             document: None,
             load: None,
@@ -157,7 +168,7 @@ impl App {
         self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy()
     }
 
-    fn take_loaded(&mut self) {
+    fn take_loaded(&mut self, context: &egui::Context) {
         let Some(load) = &mut self.load else { return };
         let Some(result) = load.take() else { return };
         let keep_view = load.keep_view;
@@ -165,14 +176,23 @@ impl App {
         match result {
             Ok(document) => {
                 if !keep_view {
-                    self.camera.frame(&document.scene.bounds);
+                    self.camera.frame(&document.scene.bounds, self.viewport.size());
                     self.frozen = None;
                 }
-                self.document = Some(document);
+                let title = format!("{} - pnaen", document.loaded.source.title());
+                context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+                if self.document.replace(document).is_some() {
+                    self.error = None;
+                }
                 self.measuring = Measuring::default();
-                self.error = None;
             }
-            Err(Some(error)) => self.error = Some(error),
+            Err(Some(error)) => {
+                self.error = Some(error);
+                // A window shows something, also if the first file can't be.
+                if self.document.is_none() {
+                    self.open(context, Source::default());
+                }
+            }
             // Cancelled by the person in front of the window, who knows.
             Err(None) => {}
         }
@@ -200,7 +220,7 @@ impl App {
 
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
-        self.take_loaded();
+        self.take_loaded(context);
         self.take_dialog(context);
         self.take_device_problem();
         let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());

@@ -4,7 +4,7 @@ use egui::RichText;
 
 use super::App;
 use super::text::{grouped, mebibytes, short};
-use crate::measure::ulp;
+use crate::measure::{Cracks, ulp};
 use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, edge_color};
 use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE};
@@ -83,7 +83,10 @@ impl App {
         let settings = &mut self.settings;
         chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
         let label = ui.label("Factor");
-        let slider = egui::Slider::new(&mut settings.factor, FACTOR_RANGE).max_decimals(3).logarithmic(true);
+        let slider = egui::Slider::new(&mut settings.factor, FACTOR_RANGE)
+            .max_decimals(3)
+            .logarithmic(true)
+            .update_while_editing(false);
         ui.add_enabled(settings.lod == Lod::Uniform, slider)
             .labelled_by(label.id)
             .on_hover_text("Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -).")
@@ -104,7 +107,8 @@ impl App {
             let slider = egui::Slider::new(&mut self.settings.pixels, PIXELS_RANGE)
                 .logarithmic(true)
                 .max_decimals(1)
-                .suffix(" px");
+                .suffix(" px")
+                .update_while_editing(false);
             ui.add_enabled(adaptive, slider)
                 .labelled_by(label.id)
                 .on_hover_text("Length of a segment on screen, in px.")
@@ -131,12 +135,13 @@ impl App {
             self.toggle_split();
         }
         egui::Grid::new("view").num_columns(2).min_col_width(84.0).show(ui, |ui| {
-            let mut percent = self.settings.split.unwrap_or(0.5) * 100.0;
+            let mut percent = self.settings.split.unwrap_or(self.last_split) * 100.0;
             let label = ui.label("Divider");
             let slider = egui::Slider::new(&mut percent, 0.0..=100.0).max_decimals(0).suffix(" %");
             let response = ui.add_enabled(split, slider).labelled_by(label.id);
             if response.on_hover_text("Where the view is split, from the left.").changed() {
-                self.settings.split = Some(percent / 100.0);
+                self.last_split = percent / 100.0;
+                self.settings.split = Some(self.last_split);
             }
             ui.end_row();
             let label = ui.label("Background");
@@ -152,7 +157,7 @@ impl App {
     }
 
     pub(super) fn toggle_split(&mut self) {
-        self.settings.split = if self.settings.split.is_some() { None } else { Some(0.5) };
+        self.settings.split = if self.settings.split.is_some() { None } else { Some(self.last_split) };
     }
 
     pub(super) fn toggle_frozen(&mut self) {
@@ -178,7 +183,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let edges = &document.edges;
         let counts = [edges.smooth, edges.split, edges.seam, edges.boundary, edges.non_manifold];
-        egui::Grid::new("edges").num_columns(3).show(ui, |ui| {
+        egui::Grid::new("edges").num_columns(3).min_col_width(14.0).show(ui, |ui| {
             for ((kind, name, hover), count) in EDGE_KINDS.into_iter().zip(counts) {
                 swatch(ui, edge_color(kind));
                 ui.label(name).on_hover_text(hover);
@@ -190,44 +195,29 @@ impl App {
 
     fn crack_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        let Some(cracks) = self.measuring.cracks() else {
-            ui.weak("measuring…");
-            return;
+        // Until they are measured the rows keep their places.
+        let cracks = self.measuring.cracks();
+        let count = |number: fn(&Cracks) -> u64| cracks.map_or_else(|| "…".into(), |cracks| grouped(number(cracks)));
+        let gap = |size: &dyn Fn(&Cracks) -> f64, unit: &str| {
+            cracks.map_or_else(|| format!("… {unit}"), |cracks| format!("{} {unit}", short(size(cracks))))
         };
-        let topology = &document.loaded.topology;
-        let gap = cracks.max_gap();
+        let ulp = ulp(&document.loaded.topology);
         egui::Grid::new("cracks").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            fact(
-                ui,
-                "Points compared",
-                &grouped(cracks.edge_points),
-                "Points of edges with several sides, once for each side after the first.",
-            );
-            fact(
-                ui,
-                "Different",
-                &grouped(cracks.different_bits),
-                "Those that differ in at least one bit between two sides.",
-            );
+            let hover = "Points of edges with several sides, once for each side after the first.";
+            fact(ui, "Points compared", &count(|cracks| cracks.edge_points), hover);
+            let hover = "Those that differ in at least one bit from the first side's.";
+            fact(ui, "Different", &count(|cracks| cracks.different_bits), hover);
             ui.horizontal(|ui| {
                 swatch(ui, CRACK_COLOR);
                 ui.label("Cracked edges").on_hover_text("Edges with at least one such point; the overlay shows them.");
             });
-            number(ui, &grouped(cracks.edges.len() as u64));
+            number(ui, &count(|cracks| cracks.edges.len() as u64));
             ui.end_row();
-            fact(
-                ui,
-                "Largest gap",
-                &format!("{} units", short(gap)),
-                "Largest distance between two sides' positions of one point, in object units.",
-            );
-            fact(
-                ui,
-                "",
-                &format!("{} ULP", short(gap / ulp(topology))),
-                "In units of the last place of the mesh's largest coordinate.",
-            );
-            fact(ui, "", &format!("{} px", short(self.viewport.gap_px(cracks))), "On screen.");
+            let hover = "Largest distance between two sides' positions of one point, in object units.";
+            fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
+            let hover = "In units of the last place of the mesh's largest coordinate.";
+            fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
+            fact(ui, "", &gap(&|cracks| self.viewport.gap_px(cracks), "px"), "On screen.");
         });
     }
 
@@ -264,7 +254,8 @@ impl App {
             );
         });
         for warning in &mesh.warnings {
-            ui.label(RichText::new(warning).small().color(ui.visuals().warn_fg_color));
+            let text = RichText::new(warning).color(ui.visuals().warn_fg_color);
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(warning);
         }
     }
 
@@ -288,7 +279,11 @@ impl App {
                 return;
             };
             let scene = &document.scene;
-            let (vertices, triangles) = scene.tessellator.totals();
+            let totals = scene.tessellator.is_counted().then(|| scene.tessellator.totals());
+            let (vertices, triangles) = totals.map_or_else(
+                || ("…".to_owned(), "…".to_owned()),
+                |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
+            );
             let patches = document.loaded.topology.patches.len() as u64;
             let drawn = patches - u64::from(self.measuring.culled().unwrap_or(0));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
@@ -301,13 +296,13 @@ impl App {
             status(
                 ui,
                 170.0,
-                format!("{} to {} triangles", grouped(before.0), grouped(triangles)),
+                format!("{} to {} triangles", grouped(before.0), triangles),
                 "Before and after tessellation.",
             );
             status(
                 ui,
                 160.0,
-                format!("{} to {} vertices", grouped(before.1), grouped(vertices)),
+                format!("{} to {} vertices", grouped(before.1), vertices),
                 "Before and after tessellation.",
             );
             self.status_of_cracks(ui);
@@ -322,7 +317,7 @@ impl App {
         });
     }
 
-    /// What the last picture took: tessellation and drawing by the GPU's own clock, or else the whole.
+    /// Tessellation and drawing, by the last run of each pass and the GPU's own clock; or else the last whole picture.
     fn times(&self) -> (String, String) {
         let times = &self.viewport.times;
         let Some(draw) = times.iter().find(|time| time.pass == "draw") else {
@@ -332,7 +327,8 @@ impl App {
         };
         let all: f64 = times.iter().map(|time| time.ms).sum();
         let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
-        let hover = format!("Tessellation and drawing, by the GPU's own clock.\n{}", passes.join("\n"));
+        let hover =
+            format!("Tessellation and drawing: each pass's last run, by the GPU's own clock.\n{}", passes.join("\n"));
         (format!("{:.2} + {:.2} ms", all - draw.ms, draw.ms), hover)
     }
 

@@ -40,10 +40,12 @@ struct Wanted {
 pub struct Viewport {
     target: Option<(Target, egui::TextureId)>,
     drawn: Option<Wanted>,
+    /// What the device counts for: it is drawn before anything newer, so that a long drag shows pictures.
+    counting: Option<Wanted>,
     /// Whether the picture shown is not the one wanted.
     outdated: bool,
     timing: Timing,
-    /// Of the last picture: a pass each where the GPU's clock can be trusted.
+    /// The last run of each pass, where the GPU's clock can be trusted.
     pub times: Vec<PassTime>,
     /// From submitting the last picture to its completion, in ms.
     pub picture_ms: Option<f64>,
@@ -61,6 +63,7 @@ impl Viewport {
         Self {
             target: None,
             drawn: None,
+            counting: None,
             outdated: false,
             timing,
             times: Vec::new(),
@@ -79,6 +82,11 @@ impl Viewport {
         self.outdated || self.in_flight.is_some()
     }
 
+    /// Width and height of the viewport, in px.
+    pub fn size(&self) -> Vec2 {
+        self.target.as_ref().map_or(vec2(800.0, 600.0), |(target, _)| target.viewport())
+    }
+
     /// The view that the LOD of what is shown was computed for.
     pub fn shown_view(&self) -> Option<LodView> {
         self.drawn.as_ref().map(|drawn| drawn.inputs.view)
@@ -94,20 +102,18 @@ impl Viewport {
         self.target.as_ref().map_or(0, |(target, _)| target.bytes())
     }
 
-    /// Looks whether the picture in flight has landed.
+    /// Looks whether the picture in flight has landed, and takes the times that have come in.
     fn land(&mut self, engine: &Engine) {
         if let Some((start, done)) = &self.in_flight
             && done.load(Ordering::Acquire)
         {
             self.picture_ms = Some(start.elapsed().as_secs_f64() * 1e3);
             self.in_flight = None;
-            let times = take_times(&engine.gpu, &mut self.timing);
-            // Passes that did not run again keep the time they last took.
-            for time in times {
-                match self.times.iter_mut().find(|known| known.pass == time.pass) {
-                    Some(known) => *known = time,
-                    None => self.times.push(time),
-                }
+        }
+        for time in take_times(&engine.gpu, &mut self.timing) {
+            match self.times.iter_mut().find(|known| known.pass == time.pass) {
+                Some(known) => *known = time,
+                None => self.times.push(time),
             }
         }
     }
@@ -135,19 +141,28 @@ impl Viewport {
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then the
     /// last picture stays.
     fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
-        if self.drawn.as_ref() == Some(wanted) || self.in_flight.is_some() {
-            return Ok(());
-        }
-        let Some((target, _)) = &self.target else { return Ok(()) };
         let tessellator = &mut document.scene.tessellator;
-        tessellator.set(&wanted.inputs)?;
+        self.counting = self.counting.filter(|counting| counting.document == document.generation);
+        let wanted = match self.counting {
+            Some(counting) => counting,
+            None => *wanted,
+        };
+        if self.counting.is_none() {
+            tessellator.set(&wanted.inputs)?;
+        }
         if tessellator.needs_count() {
             let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
             tessellator.count(&mut recorder);
             recorder.submit();
             tessellator.request_counts();
+            self.counting = Some(wanted);
         }
-        if !tessellator.poll_counts()? {
+        let Some((target, _)) = &self.target else { return Ok(()) };
+        if self.in_flight.is_some() || !tessellator.poll_counts()? {
+            return Ok(());
+        }
+        self.counting = None;
+        if self.drawn == Some(wanted) {
             return Ok(());
         }
         let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
@@ -156,7 +171,7 @@ impl Viewport {
         self.in_flight = Some((Instant::now(), done.clone()));
         recorder.submit();
         engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
-        self.drawn = Some(*wanted);
+        self.drawn = Some(wanted);
         self.pictures += 1;
         Ok(())
     }
@@ -206,7 +221,8 @@ impl App {
         self.viewport.outdated = !shown;
         if shown
             && self.viewport.in_flight.is_none()
-            && self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, &inputs)?
+            && document.scene.tessellator.is_counted()
+            && self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?
         {
             let lines = self.measuring.cracks().map(Cracks::lines).unwrap_or_default();
             document.scene.set_lines(&self.engine.gpu, &lines);
@@ -268,6 +284,7 @@ impl App {
             && let Some(pointer) = response.interact_pointer_pos()
         {
             *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+            self.last_split = *split;
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
         let color = if response.hovered() || response.dragged() {
@@ -276,22 +293,20 @@ impl App {
             egui::Color32::from_gray(190)
         };
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(1.5, color));
-        let label = |x, align, text| {
-            let position = egui::pos2(x, rect.top() + 8.0);
-            let font = egui::TextStyle::Small.resolve(ui.style());
-            ui.painter().text(position, align, text, font, egui::Color32::from_gray(210));
-        };
-        label(at - 8.0, egui::Align2::RIGHT_TOP, "untessellated");
-        label(at + 8.0, egui::Align2::LEFT_TOP, "tessellated");
+        note(ui, egui::pos2(at - 8.0, rect.top() + 8.0), egui::Align2::RIGHT_TOP, "untessellated");
+        note(ui, egui::pos2(at + 8.0, rect.top() + 8.0), egui::Align2::LEFT_TOP, "tessellated");
     }
 
     /// What the picture alone doesn't say: loading, freezing.
     fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         if self.frozen.is_some() {
             let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
-            let font = egui::TextStyle::Body.resolve(ui.style());
-            let color = egui::Color32::from_rgb(120, 190, 255);
-            ui.painter().text(position, egui::Align2::LEFT_BOTTOM, "LOD camera frozen", font, color);
+            note(ui, position, egui::Align2::LEFT_BOTTOM, "LOD camera frozen");
+        }
+        let is_old = self.document.as_ref().map(|document| document.generation)
+            != self.viewport.drawn.as_ref().map(|drawn| drawn.document);
+        if self.document.is_some() && is_old {
+            note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(load) = &self.load {
             let (title, fraction) = (load.source.title(), load.progress.fraction());
@@ -310,4 +325,13 @@ impl App {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         }
     }
+}
+
+/// A short text over the picture, legible on any of it.
+fn note(ui: &egui::Ui, position: egui::Pos2, align: egui::Align2, text: &str) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::from_gray(235));
+    let rect = align.anchor_size(position, galley.size());
+    ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(170));
+    ui.painter().galley(rect.min, galley, egui::Color32::WHITE);
 }

@@ -48,7 +48,7 @@ impl SurfaceOptions {
     }
 
     pub fn camera(&self, bounds: &Bounds) -> Camera {
-        let mut camera = Camera::framing(bounds);
+        let mut camera = Camera::framing(bounds, self.viewport());
         (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
         if let Some(radii) = self.camera.distance {
             camera.distance = radii * bounds.radius();

@@ -37,12 +37,13 @@ pub enum ExportError {
 }
 
 impl<'a> Exported<'a> {
-    /// Attributes of every emitted vertex: positions as they are, normals and uvs interpolated in the patch.
+    /// Attributes of every emitted vertex: positions and uvs as they are; normals in full precision, which what is drawn
+    /// doesn't need.
     pub fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
         let corners = |patch: u32| topology.patches[patch as usize].corners.map(|c| &mesh.corners[c as usize]);
         let vertices = &tessellated.vertices;
         let attributes = vertices.iter().map(|vertex| {
-            let ([u, v], corners) = (vertex.uv(), corners(vertex.patch()));
+            let ([u, v], corners) = (vertex.domain(), corners(vertex.patch()));
             (linear_normal(corners.map(|c| c.normal), u, v), linear_uv(corners.map(|c| c.uv), u, v))
         });
         let (normals, uvs) = attributes.unzip();

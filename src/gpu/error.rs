@@ -18,7 +18,9 @@ pub enum GpuError {
     PictureTooLarge { width: u32, height: u32, limit: u32 },
     #[error("the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh")]
     OutOfMemory,
-    #[error("the graphics device refused a command ({0}): this is an error in pnaen or in the driver; please report it")]
+    #[error(
+        "the graphics device refused a command ({0}): this is an error in pnaen or in the driver; please report it"
+    )]
     Refused(String),
     #[error("the graphics device was lost ({0}): try again, or update its driver")]
     Lost(String),

@@ -120,21 +120,30 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// The times of all passes since the last call; passes of one name are added up. With timestamps, only of submissions
-/// that the GPU has finished.
+/// How long each pass took when it last ran, of those that ran since the last call; runs of one pass in one submission
+/// (or, without timestamps, since the last call) are added up. With timestamps, only what the GPU has finished.
 pub fn take_times(gpu: &Gpu, timing: &mut Timing) -> Vec<PassTime> {
-    let mut sums: Vec<PassTime> = Vec::new();
-    let mut add = |time: PassTime| match sums.iter_mut().find(|sum| sum.pass == time.pass) {
-        Some(sum) => sum.ms += time.ms,
-        None => sums.push(time),
-    };
+    let mut last: Vec<PassTime> = Vec::new();
     match timing {
         Timing::Off => {}
-        Timing::Submissions(times) => times.drain(..).for_each(add),
+        Timing::Submissions(times) => last = summed(times.drain(..)),
         Timing::Timestamps(profiler) => {
             while let Some(results) = profiler.process_finished_frame(gpu.queue.get_timestamp_period()) {
-                results.iter().filter_map(pass_time).for_each(&mut add);
+                let times = summed(results.iter().filter_map(pass_time));
+                last.retain(|earlier| times.iter().all(|time| time.pass != earlier.pass));
+                last.extend(times);
             }
+        }
+    }
+    last
+}
+
+fn summed(times: impl Iterator<Item = PassTime>) -> Vec<PassTime> {
+    let mut sums: Vec<PassTime> = Vec::new();
+    for time in times {
+        match sums.iter_mut().find(|sum| sum.pass == time.pass) {
+            Some(sum) => sum.ms += time.ms,
+            None => sums.push(time),
         }
     }
     sums

@@ -30,6 +30,7 @@ pub struct Tessellator {
     nets_done: Option<u32>,
     counts_done: bool,
     pending: Option<PendingCounts>,
+    generation: u64,
     chunks: Vec<(usize, u32, Chunk)>,
     emitted: Option<(usize, u32)>,
 }
@@ -37,7 +38,8 @@ pub struct Tessellator {
 /// Chunk tables on their way to the host.
 struct PendingCounts {
     staging: wgpu::Buffer,
-    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    /// Once they have been asked for.
+    mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
 /// What a chunk left in the arena, for whoever draws or reads it.
@@ -88,6 +90,7 @@ impl Tessellator {
             nets_done: None,
             counts_done: false,
             pending: None,
+            generation: 0,
             chunks: Vec::new(),
             emitted: None,
         })
@@ -111,6 +114,7 @@ impl Tessellator {
             self.counts_done = false;
             self.pending = None;
             self.emitted = None;
+            self.generation += 1;
         }
         Ok(())
     }
@@ -145,6 +149,16 @@ impl Tessellator {
         }
     }
 
+    /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
+    pub fn generation(&self) -> u64 {
+        self.generation
+    }
+
+    /// Whether what will be emitted is known.
+    pub fn is_counted(&self) -> bool {
+        self.counts_done
+    }
+
     /// Whether [`Self::count`] has to run before anything can be emitted.
     pub fn needs_count(&self) -> bool {
         !self.counts_done && self.pending.is_none()
@@ -165,7 +179,7 @@ impl Tessellator {
             recorder.encoder().copy_buffer_to_buffer(&slab.chunks, 0, &staging, offset, slab.chunks.size());
             offset += slab.chunks.size();
         }
-        self.pending = Some(PendingCounts { staging, mapped: std::sync::mpsc::channel().1 });
+        self.pending = Some(PendingCounts { staging, mapped: None });
     }
 
     fn record_nets(&self, recorder: &mut Recorder) {
@@ -198,12 +212,12 @@ impl Tessellator {
 
     /// Asks for the counts after the recorder was submitted; [`Self::poll_counts`] says when they are here.
     pub fn request_counts(&mut self) {
-        if let Some(pending) = &mut self.pending {
+        if let Some(pending) = self.pending.as_mut().filter(|pending| pending.mapped.is_none()) {
             let (sender, receiver) = std::sync::mpsc::channel();
             pending.staging.map_async(wgpu::MapMode::Read, .., move |result| {
                 let _ = sender.send(result);
             });
-            pending.mapped = receiver;
+            pending.mapped = Some(receiver);
         }
     }
 
@@ -212,10 +226,12 @@ impl Tessellator {
     /// # Errors
     /// The device was lost.
     pub fn poll_counts(&mut self) -> Result<bool, GpuError> {
-        let Some(pending) = &self.pending else { return Ok(self.counts_done) };
-        match pending.mapped.try_recv() {
+        let Some(mapped) = self.pending.as_ref().and_then(|pending| pending.mapped.as_ref()) else {
+            return Ok(self.counts_done);
+        };
+        match mapped.try_recv() {
             Err(TryRecvError::Empty) => Ok(false),
-            Err(TryRecvError::Disconnected) => Err(GpuError::Readback("the counts were never asked for".into())),
+            Err(error @ TryRecvError::Disconnected) => Err(GpuError::Readback(error.to_string())),
             Ok(result) => self.take_counts(result).map(|()| true),
         }
     }
@@ -229,7 +245,7 @@ impl Tessellator {
         Ok(())
     }
 
-    /// Waits for the counts.
+    /// Waits for the counts, if they are on their way.
     ///
     /// # Errors
     /// The device was lost.
@@ -237,9 +253,9 @@ impl Tessellator {
         self.request_counts();
         wait(&self.gpu);
         self.gpu.check()?;
-        let Some(pending) = &self.pending else { return Ok(()) };
+        let Some(mapped) = self.pending.as_ref().and_then(|pending| pending.mapped.as_ref()) else { return Ok(()) };
         // Another thread that polls may still be running the callback.
-        match pending.mapped.recv() {
+        match mapped.recv() {
             Ok(result) => self.take_counts(result),
             Err(error) => Err(GpuError::Readback(error.to_string())),
         }

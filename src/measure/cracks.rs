@@ -37,7 +37,7 @@ pub struct CrackedEdge {
     pub gap: f64,
     /// Those two positions.
     pub widest: [Vec3; 2],
-    /// Every side's points, in the edge's direction.
+    /// The points of every side that differs from those before it, in the edge's direction.
     pub sides: Vec<Vec<Vec3>>,
 }
 
@@ -122,33 +122,45 @@ impl Rims {
     }
 }
 
+/// Distinct sides of one edge that are compared with one another; more are compared with the first alone.
+const PAIRED_SIDES: usize = 64;
+
 /// How many points were compared, and the crack if any differs.
 fn compare_sides(edge: u32, sides: &[Vec<[f32; 3]>]) -> (u64, Option<CrackedEdge>) {
     let Some((first, others)) = sides.split_first() else { return (0, None) };
-    let mut crack = CrackedEdge { edge, different_bits: 0, gap: 0.0, widest: [Vec3::ZERO; 2], sides: Vec::new() };
-    let mut compared = 0;
+    let compared = others.iter().map(|other| first.len().max(other.len()) as u64).sum();
+    let different: u64 = others.iter().map(|other| different_points(first, other)).sum();
+    if different == 0 {
+        return (compared, None);
+    }
+    let mut distinct: Vec<&Vec<[f32; 3]>> = vec![first];
     for other in others {
-        compared += first.len().max(other.len()) as u64;
-        // Points that one side doesn't have differ from whatever is there.
-        crack.different_bits += first.len().abs_diff(other.len()) as u32;
-        for (a, b) in first.iter().zip(other) {
-            if a.map(f32::to_bits) != b.map(f32::to_bits) {
-                let (a, b) = (Vec3::from(*a), Vec3::from(*b));
+        if distinct.iter().take(PAIRED_SIDES).all(|known| different_points(known, other) > 0) {
+            distinct.push(other);
+        }
+    }
+    let (mut gap, mut widest) = (0.0, [Vec3::ZERO; 2]);
+    for (index, side) in distinct.iter().enumerate() {
+        let earlier = if index < PAIRED_SIDES { index } else { 1 };
+        for other in &distinct[..earlier] {
+            for (a, b) in side.iter().zip(*other).map(|(a, b)| (Vec3::from(*a), Vec3::from(*b))) {
                 let distance = a.as_dvec3().distance(b.as_dvec3());
                 // Positions that are not finite are as far apart as can be.
-                let gap = if distance.is_nan() { f64::INFINITY } else { distance };
-                if crack.different_bits == 0 || gap > crack.gap {
-                    (crack.gap, crack.widest) = (gap, [a, b]);
+                let distance = if distance.is_nan() { f64::INFINITY } else { distance };
+                if distance >= gap {
+                    (gap, widest) = (distance, [a, b]);
                 }
-                crack.different_bits += 1;
             }
         }
     }
-    if crack.different_bits == 0 {
-        return (compared, None);
-    }
-    crack.sides = sides.iter().map(|side| side.iter().copied().map(Vec3::from).collect()).collect();
-    (compared, Some(crack))
+    let sides = distinct.iter().map(|side| side.iter().copied().map(Vec3::from).collect()).collect();
+    (compared, Some(CrackedEdge { edge, different_bits: different as u32, gap, widest, sides }))
+}
+
+/// Points that differ in at least one bit; those that one side doesn't have differ from whatever is there.
+fn different_points(a: &[[f32; 3]], b: &[[f32; 3]]) -> u64 {
+    let differ = |(a, b): &(&[f32; 3], &[f32; 3])| a.map(f32::to_bits) != b.map(f32::to_bits);
+    a.iter().zip(b).filter(differ).count() as u64 + a.len().abs_diff(b.len()) as u64
 }
 
 impl Cracks {
@@ -219,6 +231,19 @@ mod tests {
         let side = topology.patches[5].sides[1];
         assert_eq!((cracks.different_bits, cracks.edges.len()), (1, 1));
         assert_eq!(cracks.edges[0].edge, topology.sides[side as usize].edge);
+    }
+
+    #[test]
+    fn the_largest_gap_may_lie_between_any_two_sides() {
+        let side = |x: f32| vec![[0.0; 3], [x, 0.0, 0.0], [0.0; 3]];
+        let (compared, crack) = compare_sides(7, &[side(0.0), side(-0.25), side(0.5), side(0.5)]);
+        let crack = crack.expect("they differ");
+        assert_eq!((compared, crack.different_bits, crack.edge), (9, 3, 7));
+        assert_eq!((crack.gap, crack.sides.len()), (0.75, 3));
+        let (_, none) = compare_sides(0, &[side(1.0), side(1.0)]);
+        assert_eq!(none, None);
+        let (_, nan) = compare_sides(0, &[side(1.0), side(f32::NAN)]);
+        assert_eq!(nan.map(|crack| crack.gap), Some(f64::INFINITY));
     }
 
     #[test]

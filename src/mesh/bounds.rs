@@ -22,7 +22,8 @@ impl Bounds {
             return Self::default();
         }
         let center = min * 0.5 + max * 0.5;
-        let radius = positions.map(|p| p.distance(center)).fold(0.0, f32::max);
+        // In f64: squares of very small or large lengths leave f32.
+        let radius = positions.map(|p| p.as_dvec3().distance(center.as_dvec3())).fold(0.0, f64::max) as f32;
         Self { min, max, radius }
     }
 
@@ -34,7 +35,7 @@ impl Bounds {
 
     /// The length of the box's diagonal.
     pub fn diagonal(&self) -> f32 {
-        self.min.distance(self.max)
+        self.min.as_dvec3().distance(self.max.as_dvec3()) as f32
     }
 
     /// The greatest distance of a corner from [`center`](Self::center): at most half the diagonal, often less.
@@ -61,6 +62,14 @@ mod tests {
         assert_eq!(bounds.center(), Vec3::ONE);
         assert_eq!(bounds.radius(), 1.0);
         assert_eq!(bounds.diagonal(), 12_f32.sqrt());
+    }
+
+    #[test]
+    fn tiny_and_huge_meshes_have_a_size() {
+        for scale in [1e-25, 1e20] {
+            let bounds = Bounds::of([Vec3::ZERO, Vec3::X * scale].into_iter());
+            assert!((bounds.diagonal() / scale - 1.0).abs() < 1e-6 && (bounds.radius() / scale - 0.5).abs() < 1e-6);
+        }
     }
 
     #[test]

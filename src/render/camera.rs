@@ -34,24 +34,23 @@ pub enum Standpoint {
 }
 
 impl Camera {
-    /// Sees all of `bounds`, from the front, the right and a little above.
-    pub fn framing(bounds: &Bounds) -> Self {
+    /// Sees all of `bounds` in a viewport of this size, from the front, the right and a little above.
+    pub fn framing(bounds: &Bounds, viewport: Vec2) -> Self {
         let mut camera =
             Self { target: Vec3::ZERO, azimuth: 30.0, elevation: 20.0, distance: 1.0, orthographic: false };
-        camera.frame(bounds);
+        camera.frame(bounds, viewport);
         camera
     }
 
-    /// Moves the target and the distance so that the bounding sphere fills the view; the angles stay.
-    pub fn frame(&mut self, bounds: &Bounds) {
-        self.target = bounds.center();
-        self.distance = Self::framing_distance(bounds.radius());
-    }
-
-    /// From where a sphere of this radius just fills the height of the view.
-    pub fn framing_distance(radius: f32) -> f32 {
+    /// Moves the target and the distance so that the bounding sphere just fills the viewport's shorter side; the angles
+    /// stay.
+    pub fn frame(&mut self, bounds: &Bounds, viewport: Vec2) {
+        let radius = bounds.radius();
         let radius = if radius > 0.0 && radius.is_finite() { radius } else { 1.0 };
-        radius / (0.5 * FIELD_OF_VIEW).to_radians().sin()
+        let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
+        let half_angle = ((0.5 * FIELD_OF_VIEW).to_radians().tan() * aspect.min(1.0)).atan();
+        self.target = bounds.center();
+        self.distance = radius / half_angle.sin();
     }
 
     /// Turns to look along an axis.
@@ -145,7 +144,7 @@ mod tests {
     fn the_target_is_in_the_middle_and_up_is_up() {
         let viewport = vec2(800.0, 600.0);
         for orthographic in [false, true] {
-            let camera = Camera { orthographic, ..Camera::framing(&unit_bounds()) };
+            let camera = Camera { orthographic, ..Camera::framing(&unit_bounds(), viewport) };
             let clip = camera.clip_from_object(viewport, &unit_bounds());
             let at = |p| project(clip, viewport, p).expect("in front of the eye");
             assert!(at(Vec3::ZERO).distance(vec2(400.0, 300.0)) < 1e-2);
@@ -154,9 +153,20 @@ mod tests {
     }
 
     #[test]
+    fn a_framed_sphere_touches_the_shorter_side() {
+        for viewport in [vec2(800.0, 600.0), vec2(200.0, 700.0)] {
+            let bounds = unit_bounds();
+            let camera = Camera { azimuth: 0.0, elevation: 0.0, ..Camera::framing(&bounds, viewport) };
+            let half_angle = (bounds.radius() / camera.distance).asin();
+            let reach = half_angle.tan() * camera.distance / camera.units_per_pixel(viewport.y);
+            assert!((reach - 0.5 * viewport.min_element()).abs() < 0.5, "{reach} px of {viewport}");
+        }
+    }
+
+    #[test]
     fn zooming_keeps_what_is_under_the_pointer() {
         let viewport = vec2(800.0, 600.0);
-        let mut camera = Camera::framing(&unit_bounds());
+        let mut camera = Camera::framing(&unit_bounds(), viewport);
         let [right, up, _] = camera.axes();
         let pointer = vec2(650.0, 120.0);
         let unit = camera.units_per_pixel(viewport.y);
@@ -170,7 +180,7 @@ mod tests {
     fn depth_is_reversed_and_has_the_whole_mesh() {
         let viewport = vec2(400.0, 400.0);
         for orthographic in [false, true] {
-            let camera = Camera { orthographic, ..Camera::framing(&unit_bounds()) };
+            let camera = Camera { orthographic, ..Camera::framing(&unit_bounds(), viewport) };
             let clip = camera.clip_from_object(viewport, &unit_bounds());
             let depth = |p: Vec3| {
                 let c = clip * p.extend(1.0);

@@ -42,8 +42,8 @@ impl Vertex {
         self.key[1] >> 2
     }
 
-    /// U and V in 16.16 fixed point.
-    pub fn uv(&self) -> [u32; 2] {
+    /// Its domain point: U and V in 16.16 fixed point.
+    pub fn domain(&self) -> [u32; 2] {
         [self.key[0] & 0x1ffff, (self.key[0] >> 17) | ((self.key[1] & 3) << 15)]
     }
 }
@@ -227,7 +227,7 @@ mod tests {
         for patch in [0, 1, (1 << 30) - 1] {
             for uv in [[0, 0], [65536, 0], [0, 65536], [32767, 32768], [21845, 21845]] {
                 let vertex = Vertex { key: pack_key(patch, uv), ..Zeroable::zeroed() };
-                assert_eq!((vertex.patch(), vertex.uv()), (patch, uv));
+                assert_eq!((vertex.patch(), vertex.domain()), (patch, uv));
             }
         }
     }

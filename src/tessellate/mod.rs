@@ -1,5 +1,5 @@
 //! The mathematics on the CPU: the reference that the shaders are held against. `shaders/X.wgsl` is the twin of `X.rs`;
-//! `mesh.rs` has none of its own: it does for a whole mesh what the passes do.
+//! `mesh.rs` does for a whole mesh what `shaders/pass_*.wgsl` do, and is their twin.
 
 mod cull;
 pub mod domain;
@@ -14,7 +14,7 @@ pub use factors::{
     FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count, process,
     round_pow2, segments, triangle_count,
 };
-pub use lod::{Lod, LodView, paper_edge_factor, project_and_scale};
+pub use lod::{Lod, LodView, at_least_one, paper_edge_factor, project_and_scale};
 pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv,

@@ -261,6 +261,9 @@ fn twins_have_the_same_functions_in_the_same_order() {
     let twins = [
         (include_str!("../../src/tessellate/factors.rs"), include_str!("../../shaders/factors.wgsl")),
         (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
+        (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),
+        (include_str!("../../src/tessellate/lod.rs"), include_str!("../../shaders/lod.wgsl")),
+        (include_str!("../../src/tessellate/cull.rs"), include_str!("../../shaders/cull.wgsl")),
     ];
     for (rust, wgsl) in twins {
         assert!(!function_names(wgsl).is_empty());

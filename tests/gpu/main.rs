@@ -41,7 +41,7 @@ pub fn scene(shape: Shape) -> (Loaded, Scene) {
 pub fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
     let engine = engine();
     let target = Target::new(&engine.gpu, size).expect("a small picture");
-    let camera = Camera::framing(&scene.bounds);
+    let camera = Camera::framing(&scene.bounds, target.viewport());
     let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
     if settings.overlays.cracks {

@@ -10,11 +10,14 @@ use pnaen::tessellate::{Clip, Inputs, Lod, Partitioning, Surface, Tessellated, V
 
 use crate::{engine, loaded, picture, scene};
 
+/// Width and height in px.
+const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
+
 const SURFACES: [Surface; 3] = [Surface::Flat, Surface::Pn, Surface::PnAen];
 
 fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
     let bounds = loaded.mesh.bounds();
-    settings.inputs(Camera::framing(&bounds).lod_view(glam::vec2(640.0, 480.0), &bounds))
+    settings.inputs(Camera::framing(&bounds, VIEWPORT).lod_view(VIEWPORT, &bounds))
 }
 
 fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
@@ -168,7 +171,7 @@ fn only_what_changed_is_recomputed() {
     let engine = engine();
     let (_, mut scene) = scene(Shape::Torus);
     let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
-    let mut camera = Camera::framing(&scene.bounds);
+    let mut camera = Camera::framing(&scene.bounds, target.viewport());
     let mut settings = Settings::default();
     let passes = |scene: &mut Scene, camera: &Camera, settings: &Settings| {
         let mut timing = Timing::Submissions(Vec::new());
@@ -198,8 +201,8 @@ fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
     let (loaded, mut scene) = scene(Shape::Torus);
     let bounds = loaded.mesh.bounds();
     // Close to the rim: part of the torus lies behind the eye and beside the view.
-    let camera = Camera { distance: bounds.radius() * 0.9, ..Camera::framing(&bounds) };
-    let view = camera.lod_view(glam::vec2(640.0, 480.0), &bounds);
+    let camera = Camera { distance: bounds.radius() * 0.9, ..Camera::framing(&bounds, VIEWPORT) };
+    let view = camera.lod_view(VIEWPORT, &bounds);
     let off = Settings::default();
     let on = Settings { clip: Clip::Paper, ..off };
     let whole = on_gpu(&mut scene, &off.inputs(view));
@@ -224,7 +227,7 @@ fn the_passes_are_timed_one_by_one() {
     let engine = engine();
     let (_, mut scene) = scene(Shape::CubeSplit);
     let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
-    let camera = Camera::framing(&scene.bounds);
+    let camera = Camera::framing(&scene.bounds, target.viewport());
     let times = engine.time(&mut scene, &target, &camera, &Settings::default()).expect("a draw");
     assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), pnaen::gpu::PASSES);
     assert!(times.iter().all(|time| time.ms >= 0.0 && time.ms.is_finite()));
@@ -235,7 +238,7 @@ fn an_empty_view_emits_nothing_and_draws_the_background() {
     let engine = engine();
     let (_, mut scene) = scene(Shape::CubeSplit);
     let target = Target::new(&engine.gpu, [32, 32]).expect("a small picture");
-    let mut camera = Camera::framing(&scene.bounds);
+    let mut camera = Camera::framing(&scene.bounds, target.viewport());
     camera.target -= camera.axes()[2] * camera.distance * 3.0;
     let settings = Settings { clip: Clip::Paper, background: [10, 200, 30], ..Settings::default() };
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");

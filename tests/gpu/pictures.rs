@@ -117,8 +117,11 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
     let (loaded, mut scene) = scene(Shape::CubeSmooth);
     let engine = engine();
     let target = pnaen::render::Target::new(&engine.gpu, [400, 400]).expect("a small picture");
-    let camera =
-        pnaen::render::Camera { azimuth: 0.0, elevation: 0.0, ..pnaen::render::Camera::framing(&scene.bounds) };
+    let camera = pnaen::render::Camera {
+        azimuth: 0.0,
+        elevation: 0.0,
+        ..pnaen::render::Camera::framing(&scene.bounds, target.viewport())
+    };
     let overlays = Overlays { barycentric: true, ..Overlays::default() };
     let settings = Settings { surface: Surface::Flat, overlays, ..Settings::default() };
     let mut timing = pnaen::gpu::Timing::Off;
