@@ -1,7 +1,5 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use serde::{Deserialize, Serialize};
-
 use crate::tessellate::{Clip, Inputs, Lod, LodView, Partitioning, Surface};
 
 /// The smallest and largest tessellation factor.
@@ -12,8 +10,7 @@ pub const PIXELS_RANGE: std::ops::RangeInclusive<f32> = 1.0..=256.0;
 pub const ARENA_BYTES: u64 = 256 << 20;
 
 /// The whole state of a view but mesh and camera.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     pub surface: Surface,
     /// Tessellation factor under uniform LOD, 1 to 64.
@@ -47,8 +44,7 @@ impl Default for Settings {
 }
 
 /// What is drawn over the shaded surface; any of them together.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overlays {
     /// Edges of the tessellated triangles.
     pub wireframe: bool,

@@ -159,9 +159,13 @@ fn a_picture_is_held_against_its_reference() {
     let diff = image::open(folder.path("other-diff.png")).expect("a PNG file");
     assert_eq!((diff.width(), diff.height()), (160, 120));
     assert!(Path::new(&other).exists(), "the picture is written whatever it is held against");
-    let sized = render(&other, &["--size", "80x60", "--reference", &reference]);
-    // clap keeps the last of an option given twice, or refuses; either way this is a clear failure.
-    assert!(!sized.status.success());
+    sentence(
+        &["render", "shape:torus", "--size", "80x60", "-o", &other, "--reference", &reference],
+        &["reference.png", "80 x 60", "160 x 120", "--size 160x120"],
+    );
+    let before = std::fs::read(&reference).expect("a file");
+    sentence(&["render", "shape:cone", "-o", &reference, "--reference", &reference], &["would replace it"]);
+    assert_eq!(std::fs::read(&reference).expect("a file"), before);
 }
 
 #[test]
@@ -240,6 +244,41 @@ fn a_tessellated_mesh_can_be_opened_again() {
 }
 
 #[test]
+fn a_mesh_without_triangles_left_is_written_and_refused_for_what_it_is() {
+    let folder = Folder::new("empty");
+    let [degenerate, out] = ["degenerate.gltf", "out.glb"].map(|name| folder.path(name));
+    // Three corners on one point: a triangle that is left out. The buffer is 36 zero bytes.
+    let zeros = "A".repeat(48);
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],
+        "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{zeros}"}}]}}"#
+    );
+    std::fs::write(&degenerate, text).expect("a writable folder");
+    let stats = stats(&[&degenerate]);
+    assert_eq!((&stats["degenerate"], &stats["patches"], &stats["triangles_out"]), (&1.into(), &0.into(), &0.into()));
+    output(&["tessellate", &degenerate, "-o", &out]);
+    sentence(&["info", &out], &["no triangles"]);
+}
+
+#[test]
+fn more_than_a_file_holds_is_refused_before_it_is_made() {
+    let folder = Folder::new("huge");
+    let [torus, out] = ["torus.glb", "out.glb"].map(|name| folder.path(name));
+    output(&["tessellate", "shape:torus", "-o", &torus, "--factor", "20", "--partitioning", "integer"]);
+    for device in ["gpu", "cpu"] {
+        // 150 thousand triangles of 6144 each.
+        let arguments = ["tessellate", &torus, "-o", &out, "--factor", "64", "--device", device];
+        sentence(
+            &[&arguments[..], &["--partitioning", "integer"]].concat(),
+            &["out.glb", "943718400 triangles", "lower the factor"],
+        );
+    }
+}
+
+#[test]
 fn adjacency_has_nine_or_twelve_indices_a_patch() {
     for (indices, name) in [(9, "9"), (12, "12")] {
         let text = output(&["adjacency", "shape:cube-split", "--indices", name, "-o", "-"]);
@@ -269,6 +308,7 @@ fn failures_are_one_sentence_and_exit_code_1() {
     std::fs::write(&broken, "{\"asset\":").expect("a writable folder");
     sentence(&["info", "nowhere.glb"], &["nowhere.glb", "can't be read"]);
     sentence(&["info", &text], &["notes.txt", ".gltf or .glb"]);
+    sentence(&["info", &folder.path("")], &["is not a file"]);
     sentence(&["info", &broken], &["broken.gltf", "not a glTF 2.0 document"]);
     sentence(
         &["render", "shape:torus", "-o", &folder.path("no/such/folder/out.png")],

@@ -10,6 +10,7 @@ use crate::mesh::{Source, adjacency};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Indices a patch: 9 (corners and the neighbours' corners), or 12 (and dominant corners)
     #[arg(long, default_value_t = 9, value_parser = indices)]

@@ -7,6 +7,7 @@ use crate::mesh::{Info, Progress, Source};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// As JSON
     #[arg(long)]

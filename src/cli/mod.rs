@@ -28,6 +28,7 @@ pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
     /// What the window opens on: a .gltf or .glb file, or a shape made in code such as shape:cube-split
+    #[arg(value_parser = options::source())]
     pub file: Option<Source>,
 }
 
@@ -58,10 +59,8 @@ pub enum CliError {
     File { path: String, doing: &'static str, reason: String },
     #[error("{reference}: {reason}")]
     Reference { reference: String, reason: CompareError },
-    #[error(
-        "{picture} differs from {reference} by {difference:.4}, more than {threshold}: see {diff}, where the differences are bright"
-    )]
-    Different { picture: String, reference: String, difference: f64, threshold: f64, diff: String },
+    #[error("{picture} differs from {reference} by {difference:.4}, more than {threshold}{see}")]
+    Different { picture: String, reference: String, difference: f64, threshold: f64, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
     #[error("the output could not be written: {0}")]

@@ -3,9 +3,10 @@
 use std::str::FromStr;
 
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
-use crate::mesh::Bounds;
+use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
 use crate::settings::{FACTOR_RANGE, PIXELS_RANGE, Settings};
 use crate::tessellate::{Clip, Lod, Partitioning, Surface};
@@ -102,6 +103,11 @@ impl FromStr for CameraOption {
     }
 }
 
+/// Reads a mesh's source, whose path may be in any encoding.
+pub fn source() -> impl TypedValueParser<Value = Source> {
+    OsStringValueParser::new().try_map(Source::try_from)
+}
+
 /// An sRGB colour as RRGGBB.
 pub fn color(text: &str) -> Result<[u8; 3], String> {
     let digits = text.strip_prefix('#').unwrap_or(text);
@@ -110,6 +116,12 @@ pub fn color(text: &str) -> Result<[u8; 3], String> {
         .flatten();
     let [_, r, g, b] = value.ok_or("expected six hexadecimal digits, such as 2b2e33")?.to_be_bytes();
     Ok([r, g, b])
+}
+
+/// A difference from 0 to 1.
+pub fn threshold(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
+    number.ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
 /// A fraction from 0 to 1.

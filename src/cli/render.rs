@@ -16,6 +16,7 @@ use crate::settings::{ARENA_BYTES, Overlay, Settings};
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Picture to write, a PNG file
     #[arg(short, long, value_name = "OUT.png")]
@@ -38,8 +39,8 @@ pub struct Args {
     #[arg(long, value_name = "PNG")]
     pub reference: Option<PathBuf>,
     /// Difference that is still the same picture: 0 is none, 1 is all (1 minus structural similarity)
-    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::fraction)]
-    pub threshold: f32,
+    #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::threshold)]
+    pub threshold: f64,
 }
 
 impl Args {
@@ -76,6 +77,7 @@ fn default_surface_options() -> SurfaceOptions {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file)?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
@@ -101,30 +103,49 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         let stats = Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes);
         write_text(path, &to_json(&stats)?)?;
     }
-    match &args.reference {
-        Some(reference) => hold_against(args, &picture, reference),
+    match args.reference.as_deref().zip(reference) {
+        Some((path, reference)) => hold_against(args, &picture, path, &reference),
         None => Ok(()),
     }
 }
 
-fn hold_against(args: &Args, picture: &image::RgbaImage, path: &Path) -> Result<(), CliError> {
+/// Reads the reference before anything is drawn or written.
+fn read_reference(args: &Args, path: &Path) -> Result<image::RgbaImage, CliError> {
     let reference = image::open(path).map_err(|error| file_error(path, "read", &error))?.to_rgba8();
-    let comparison = compare(picture, &reference)
+    // Neither path resolves if there is no such file yet.
+    if std::fs::canonicalize(path).ok() == std::fs::canonicalize(&args.output).ok() {
+        return Err(file_error(path, "kept", &"the picture would replace it: write the picture elsewhere"));
+    }
+    Ok(reference)
+}
+
+fn hold_against(
+    args: &Args,
+    picture: &image::RgbaImage,
+    path: &Path,
+    reference: &image::RgbaImage,
+) -> Result<(), CliError> {
+    let comparison = compare(picture, reference)
         .map_err(|reason| CliError::Reference { reference: path.display().to_string(), reason })?;
-    let threshold = f64::from(args.threshold);
-    if comparison.difference <= threshold {
+    if comparison.difference <= args.threshold {
         return Ok(());
     }
     let mut name = args.output.file_stem().unwrap_or_default().to_owned();
     name.push("-diff.png");
     let diff = args.output.with_file_name(name);
-    write_picture(&diff, &comparison.map.into())?;
+    // Beside a device or a pipe is no place for a picture.
+    let see = if args.output.is_file() {
+        write_picture(&diff, &comparison.map.into())?;
+        format!(": see {}, where the differences are bright", diff.display())
+    } else {
+        String::new()
+    };
     Err(CliError::Different {
         picture: args.output.display().to_string(),
         reference: path.display().to_string(),
         difference: comparison.difference,
-        threshold,
-        diff: diff.display().to_string(),
+        threshold: args.threshold,
+        see,
     })
 }
 

@@ -15,6 +15,7 @@ use crate::tessellate;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file
     #[arg(short, long, value_name = "OUT.glb|OUT.obj")]
@@ -34,17 +35,24 @@ pub enum Device {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    Exported::check(&args.output, 0, 0)?;
     let loaded = load(&args.file)?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let bounds = mesh.bounds();
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
     let inputs = args.surface.settings().inputs(view);
     let tessellated = match args.device {
-        Device::Cpu => tessellate::tessellate(mesh, topology, &inputs, None),
+        Device::Cpu => {
+            let (vertices, triangles) = tessellate::totals(mesh, topology, &inputs);
+            Exported::check(&args.output, vertices, triangles)?;
+            tessellate::tessellate(mesh, topology, &inputs, None)
+        }
         Device::Gpu => {
             let engine = Engine::headless()?;
             let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
             engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+            let (vertices, triangles) = scene.tessellator.totals();
+            Exported::check(&args.output, vertices, triangles)?;
             engine.read_tessellated(&mut scene)?
         }
     };

@@ -29,9 +29,9 @@ pub enum ExportError {
     #[error("{path}: could not be written ({reason})")]
     Io { path: String, reason: std::io::Error },
     #[error(
-        "{path}: {triangles} triangles are more than a .glb file can hold (4 GiB): lower the factor, or write an .obj"
+        "{path}: {triangles} triangles are more than it can hold (4 GiB as .glb, 4 billion vertices as .obj): lower the factor"
     )]
-    TooLarge { path: String, triangles: usize },
+    TooLarge { path: String, triangles: u64 },
     #[error("{path}: a texture could not be encoded ({reason})")]
     Texture { path: String, reason: String },
 }
@@ -57,6 +57,21 @@ impl<'a> Exported<'a> {
         Self { mesh, positions, normals, uvs, triangles }
     }
 
+    /// Whether a file of that name can hold so many vertices and triangles: asked before they are read back.
+    ///
+    /// # Errors
+    /// Another ending than .glb or .obj, or more than the format holds.
+    pub fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
+        let shown = path.display().to_string();
+        match ending(path).as_str() {
+            // Indices of either are 32 bits here.
+            "obj" if vertices <= u64::from(u32::MAX) => Ok(()),
+            "glb" if glb::bytes(vertices, triangles) <= glb::MAX_BYTES => Ok(()),
+            "glb" | "obj" => Err(ExportError::TooLarge { path: shown, triangles }),
+            _ => Err(ExportError::Extension { path: shown }),
+        }
+    }
+
     /// Writes a .glb or .obj file, by the path's ending: beside it first, then renamed, so that a failure leaves what was
     /// there.
     ///
@@ -64,8 +79,7 @@ impl<'a> Exported<'a> {
     /// Another ending, a file that can't be written, or more than the format holds.
     pub fn write(&self, path: &Path) -> Result<(), ExportError> {
         let shown = path.display().to_string();
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        let bytes = match ending.as_str() {
+        let bytes = match ending(path).as_str() {
             "glb" => glb::encode(self, &shown)?,
             "obj" => obj::encode(self),
             _ => return Err(ExportError::Extension { path: shown }),
@@ -74,7 +88,12 @@ impl<'a> Exported<'a> {
     }
 }
 
-/// Writes a file beside its place, then renames it there. What is no file (a pipe, a device) is written directly.
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
+}
+
+/// Writes a file beside its place, then renames it there. What is no file (a pipe, a device) is written directly; a link
+/// stays one, and permissions stay what they were.
 ///
 /// # Errors
 /// The file system's.
@@ -82,10 +101,16 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     if path.exists() && !path.is_file() {
         return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }
-    let mut beside = path.as_os_str().to_owned();
+    let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let mut beside = place.as_os_str().to_owned();
     beside.push(format!(".{}.part", std::process::id()));
     let beside = Path::new(&beside);
-    let written = std::fs::write(beside, bytes).and_then(|()| std::fs::rename(beside, path));
+    let keep_permissions = || match std::fs::metadata(&place) {
+        Ok(metadata) => std::fs::set_permissions(beside, metadata.permissions()),
+        Err(_) => Ok(()),
+    };
+    let written = std::fs::write(beside, bytes).and_then(|()| keep_permissions());
+    let written = written.and_then(|()| std::fs::rename(beside, &place));
     if written.is_err() {
         let _ = std::fs::remove_file(beside);
     }

@@ -14,6 +14,8 @@ pub enum LoadError {
     Cancelled(#[from] Cancelled),
     #[error("{} can't be read because its name ends in {extension}; choose a .gltf or .glb file (glTF 2.0)", path.display())]
     UnknownFormat { path: PathBuf, extension: String },
+    #[error("{} is not a file; choose a .gltf or .glb file", path.display())]
+    NoFile { path: PathBuf },
     #[error("{} can't be read: {source}", path.display())]
     Io { path: PathBuf, source: io::Error },
     #[error("{}: {problem}", path.display())]
@@ -32,6 +34,11 @@ pub enum LoadError {
 /// becomes one of the mesh's warnings.
 pub fn load(path: &Path, progress: &Progress) -> Result<Mesh, LoadError> {
     progress.set(0.0);
+    // Reading a folder, a device or a pipe would fail later, or never end.
+    let file = std::fs::metadata(path).map_err(|source| LoadError::Io { path: path.to_owned(), source })?;
+    if !file.is_file() {
+        return Err(LoadError::NoFile { path: path.to_owned() });
+    }
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     let mesh = match extension.as_deref() {
         Some("gltf" | "glb") => load_gltf(path, progress)?,
@@ -65,9 +72,15 @@ mod tests {
 
     #[test]
     fn unknown_formats_name_the_known_ones() {
-        let expected = "can't be read because its name ends in .fbx; choose a .gltf or .glb file (glTF 2.0)";
-        assert_eq!(message("a.FBX"), format!("a.FBX {expected}"));
-        assert!(message("a").contains("no extension"));
+        let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+        let expected = "can't be read because its name ends in .toml; choose a .gltf or .glb file (glTF 2.0)";
+        assert_eq!(message(manifest), format!("{manifest} {expected}"));
+        assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
+    }
+
+    #[test]
+    fn a_folder_is_no_file() {
+        assert!(message(env!("CARGO_MANIFEST_DIR")).contains("is not a file"));
     }
 
     #[test]

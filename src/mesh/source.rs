@@ -1,5 +1,6 @@
 //! Where a mesh comes from: a shape made in code, or a file.
 
+use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -41,6 +42,18 @@ impl Source {
         match self {
             Self::Shape(shape) => shape.title().to_owned(),
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+        }
+    }
+}
+
+impl TryFrom<OsString> for Source {
+    type Error = UnknownShape;
+
+    /// As from text, but a path may be in any encoding.
+    fn try_from(text: OsString) -> Result<Self, UnknownShape> {
+        match text.to_str() {
+            Some(text) => text.parse(),
+            None => Ok(Self::File(text.into())),
         }
     }
 }

@@ -2,14 +2,12 @@
 
 use clap::ValueEnum;
 use glam::{Vec3, Vec4};
-use serde::{Deserialize, Serialize};
 
 use super::lod::LodView;
 use super::surface::ControlNet;
 
 /// Whether patches that cannot be seen are left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 #[repr(u32)]
 pub enum Clip {
     /// Every patch is drawn.

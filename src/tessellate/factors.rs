@@ -8,7 +8,6 @@
 use std::{fmt, str::FromStr};
 
 use bytemuck::{Pod, Zeroable};
-use serde::{Deserialize, Serialize};
 
 /// 1.0 in 16.16 fixed point.
 pub const FIXED_ONE: u32 = 0x1_0000;
@@ -29,8 +28,7 @@ const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
 const BITS_ONE_AND_STEP: u32 = 0x3f80_0080;
 
 /// How a factor between two whole numbers becomes segments.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Partitioning {
     /// Rounded up to a whole number of equal segments.

@@ -2,11 +2,9 @@
 
 use clap::ValueEnum;
 use glam::{Mat4, Vec2, Vec3};
-use serde::{Deserialize, Serialize};
 
 /// Where edge factors come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 #[repr(u32)]
 pub enum Lod {
     /// The same factor everywhere.

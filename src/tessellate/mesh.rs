@@ -100,6 +100,16 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, edge_factor
     out
 }
 
+/// Vertices and triangles that [`tessellate`] would emit, clipping aside.
+pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
+    let edge_factors = edge_factors(mesh, topology, inputs);
+    let counts = (0..topology.patches.len() as u32).map(|patch| {
+        let factors = patch_factors(topology, inputs.partitioning, &edge_factors, patch);
+        (u64::from(point_count(factors)), u64::from(triangle_count(factors)))
+    });
+    counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1))
+}
+
 /// One factor for each edge, as LOD gives them.
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     Nets::new(mesh, topology, inputs.surface).edge_factors(inputs)

@@ -15,7 +15,7 @@ pub use factors::{
     round_pow2, segments, triangle_count,
 };
 pub use lod::{Lod, LodView, at_least_one, paper_edge_factor, project_and_scale};
-pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate};
+pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv,
     pack_normal, patch_position, straight_control_point, unpack_normal,

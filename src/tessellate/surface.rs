@@ -5,7 +5,6 @@
 
 use clap::ValueEnum;
 use glam::{Vec2, Vec3, vec2, vec3};
-use serde::{Deserialize, Serialize};
 
 use super::factors::FIXED_ONE;
 
@@ -13,8 +12,7 @@ use super::factors::FIXED_ONE;
 const UNIT: f32 = 1.0 / FIXED_ONE as f32;
 
 /// Which surface a patch becomes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 #[repr(u32)]
 pub enum Surface {
     /// Flat dicing: more triangles, same shape.

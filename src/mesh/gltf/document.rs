@@ -110,6 +110,10 @@ fn simplify(value: &mut Value) -> Result<Vec<String>, Problem> {
     for node in objects(root, "nodes") {
         node.remove("camera");
     }
+    for scene in objects(root, "scenes") {
+        // A scene may be empty, but the crate wants to be told.
+        scene.entry("nodes").or_insert_with(|| json!([]));
+    }
     simplify_meshes(root)?;
     for material in objects(root, "materials") {
         material.retain(|key, _| ["name", "pbrMetallicRoughness"].contains(&key.as_str()));
