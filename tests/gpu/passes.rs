@@ -1,9 +1,11 @@
 //! The passes, held against the CPU's reference and against themselves.
 
+use std::sync::Arc;
+
 use pnaen::engine::Loaded;
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::measure::ulp;
-use pnaen::mesh::Shape;
+use pnaen::mesh::{Corner, Material, Mesh, Progress, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Clip, Inputs, Lod, Partitioning, Surface, Tessellated, tessellate, totals, unpack_normal};
@@ -153,6 +155,55 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
             picture(&mut whole, &settings, size) == picture(&mut cut, &settings, size),
             "{lod:?} {factor}: pictures"
         );
+    }
+}
+
+/// A flat sheet of so many quads either way, two triangles each.
+fn sheet(columns: u32, rows: u32) -> Loaded {
+    let corner = |i: u32, j: u32| Corner {
+        position: glam::vec3(i as f32, 0.0, j as f32),
+        normal: glam::Vec3::Y,
+        uv: glam::Vec2::ZERO,
+    };
+    let at = |i: u32, j: u32| i * (rows + 1) + j;
+    let corners = (0..=columns).flat_map(|i| (0..=rows).map(move |j| corner(i, j))).collect();
+    let cells = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
+    let quad = |(i, j)| [[at(i, j), at(i, j + 1), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i + 1, j)]];
+    let triangles: Vec<_> = cells.flat_map(quad).collect();
+    let mut material = Material::plain("plain", [1.0; 4]);
+    material.triangles = 0..triangles.len() as u32;
+    let mesh = Mesh { corners, triangles, materials: vec![material], ..Mesh::default() };
+    let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+    let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
+    Loaded { source: Source::default(), mesh, topology, load_ms: 0.0, topology_ms: 0.0 }
+}
+
+#[test]
+fn more_patches_than_one_scan_covers_are_one_mesh() {
+    let loaded = sheet(600, 500);
+    assert!(loaded.topology.patches.len() > 1 << 19, "more than one slab");
+    let mut scene = engine().scene(&loaded, 1 << 28).expect("it fits");
+    let settings = Settings { factor: 1.7, partitioning: Partitioning::Integer, ..Settings::default() };
+    let inputs = inputs(&loaded, &settings);
+    let gpu = on_gpu(&mut scene, &inputs);
+    assert_agree(&loaded, &gpu, &tessellate(&loaded.mesh, &loaded.topology, &inputs, None), "two slabs");
+    assert_eq!(engine().measure(&mut scene).expect("a readback").cracks.different_bits, 0);
+}
+
+#[test]
+fn an_eye_inside_the_mesh_gives_factors_and_no_cracks() {
+    let (loaded, mut scene) = scene(Shape::Torus);
+    let bounds = loaded.mesh.bounds();
+    let mut camera = Camera::framing(&bounds, VIEWPORT);
+    // Inside the tube, looking along it: control points lie behind the eye, and some nearly in its plane.
+    camera.target = glam::vec3(0.7, 0.0, 0.0);
+    camera.distance = 1e-3;
+    for clip in [Clip::Off, Clip::Paper] {
+        let settings = Settings { lod: Lod::Paper, clip, ..Settings::default() };
+        let inputs = settings.inputs(camera.lod_view(VIEWPORT, &bounds));
+        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+        assert!(edge_factors(&scene).iter().all(|&factor| factor >= 1.0), "{clip:?}");
+        assert_eq!(engine().measure(&mut scene).expect("a readback").cracks.different_bits, 0, "{clip:?}");
     }
 }
 
