@@ -1,4 +1,5 @@
 // A patch's control net from the buffers of the module that includes this: points, patches, curve_nets.
+// Its centre is what `centers_main` of the nets pass has put behind the points.
 
 fn load_net(patch_index: u32) -> ControlNet {
     var net: ControlNet;

@@ -48,15 +48,6 @@ fn centers_main(
     if index >= params.patch_count {
         return;
     }
-    var net_corners: array<vec3<f32>, 3>;
-    var net_edges: array<vec3<f32>, 6>;
-    for (var k = 0u; k < 3u; k++) {
-        let curve = patches[index].curves[k];
-        let net = curve_nets[curve >> 1u];
-        let reversed = (curve & 1u) == 1u;
-        net_corners[k] = points[patches[index].points[k]].xyz;
-        net_edges[2u * k] = select(net.ab, net.ba, reversed);
-        net_edges[2u * k + 1u] = select(net.ba, net.ab, reversed);
-    }
-    points[params.point_count + index] = vec4<f32>(center_control_point(net_corners, net_edges), 0.0);
+    let net = load_net(index);
+    points[params.point_count + index] = vec4<f32>(center_control_point(net.corners, net.edges), 0.0);
 }

@@ -16,7 +16,7 @@ const ROOMS: [&str; 6] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, CULL, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 9] = [
-    ("nets", &[include_str!("../../shaders/pass_nets.wgsl")]),
+    ("nets", &[LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
     ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
     ("scan", &[include_str!("../../shaders/pass_scan.wgsl")]),
