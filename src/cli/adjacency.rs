@@ -35,15 +35,12 @@ struct Adjacency {
 pub fn run(args: &Args) -> Result<(), CliError> {
     let loaded = load(&args.file)?;
     let (corners, topology) = (&loaded.mesh.corners, &loaded.topology);
-    let patches = 0..topology.patches.len() as u32;
+    let flat = if args.indices == 12 { adjacency::twelve_all(topology) } else { adjacency::nine_all(topology) };
     let adjacency = Adjacency {
         indices_per_patch: args.indices,
         positions: corners.iter().map(|c| c.position.to_array()).collect(),
         normals: corners.iter().map(|c| c.normal.to_array()).collect(),
-        patches: match args.indices {
-            12 => patches.map(|p| adjacency::twelve(topology, p).to_vec()).collect(),
-            _ => patches.map(|p| adjacency::nine(topology, p).to_vec()).collect(),
-        },
+        patches: flat.chunks(args.indices as usize).map(<[u32]>::to_vec).collect(),
     };
     let text = serde_json::to_string(&adjacency).map_err(|error| CliError::Output(error.into()))?;
     write_text(&args.output, &(text + "\n"))

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use image::RgbaImage;
 use pnaen::measure::compare;
-use pnaen::mesh::Shape;
+use pnaen::mesh::{EdgeKind, Shape};
+use pnaen::render::layout::{CRACK_COLOR, edge_color};
 use pnaen::settings::{Overlay, Overlays, Settings};
 use pnaen::tessellate::{Lod, Partitioning, Surface};
 
@@ -141,5 +142,26 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
             let brightest = (0..3).max_by_key(|&c| colour[c]).expect("three channels");
             assert_eq!(brightest, channel, "{colour:?} at {at}");
         }
+    }
+}
+
+#[test]
+fn lines_have_the_colours_of_their_legend() {
+    let legend = [
+        (Shape::Cylinder, Overlay::Adjacency, edge_color(EdgeKind::Smooth)),
+        (Shape::Cylinder, Overlay::Adjacency, edge_color(EdgeKind::Split)),
+        (Shape::Cylinder, Overlay::Adjacency, edge_color(EdgeKind::Seam)),
+        (Shape::Saddle, Overlay::Adjacency, edge_color(EdgeKind::Boundary)),
+        (Shape::CubeSplit, Overlay::Cracks, CRACK_COLOR),
+    ];
+    for (shape, overlay, color) in legend {
+        let (_, mut scene) = scene(shape);
+        let settings =
+            Settings { surface: Surface::Pn, overlays: [overlay].into_iter().collect(), ..Settings::default() };
+        let picture = picture(&mut scene, &settings, [640, 480]);
+        // Within what rounding from sRGB to linear light, in three digits, and back can do.
+        let near = |pixel: &image::Rgba<u8>| (0..3).all(|c| pixel.0[c].abs_diff(color[c]) <= 2);
+        let found = picture.pixels().filter(|pixel| near(pixel)).count();
+        assert!(found > 50, "{shape:?} {overlay:?}: {found} px of {color:?}");
     }
 }
