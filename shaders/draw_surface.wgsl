@@ -40,8 +40,8 @@ fn varyings(
     out.corner = corner;
     if (frame.overlays & OVERLAY_ADJACENCY) != 0u {
         // Kind of the edge where u, v, w is 0: opposite corner 0, 1, 2, which is side 1, 2, 0.
-        let edges = patches[patch_index].edges;
-        out.edge_kinds = vec3<u32>(edges[1] & 7u, edges[2] & 7u, edges[0] & 7u);
+        let sides = patches[patch_index].factors;
+        out.edge_kinds = vec3<u32>(sides[1] & 7u, sides[2] & 7u, sides[0] & 7u);
     }
     return out;
 }

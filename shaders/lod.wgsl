@@ -2,6 +2,7 @@
 
 const LOD_UNIFORM: u32 = 0u;
 const LOD_PAPER: u32 = 1u;
+const LOD_EDGE_LENGTH: u32 = 2u;
 
 struct LodView {
     clip_from_object: mat4x4<f32>,
@@ -34,4 +35,56 @@ fn paper_edge_factor(
     let pba = project_and_scale(view, pixels_per_segment, ba);
     let pb = project_and_scale(view, pixels_per_segment, b);
     return at_least_one(distance(pa, pab) + distance(pab, pba) + distance(pba, pb));
+}
+
+// Depth is reversed: z = w on the near plane.
+fn beyond_near(clip: vec4<f32>) -> bool {
+    return clip.z <= clip.w;
+}
+
+fn clip_row(view: LodView, row: u32) -> vec3<f32> {
+    let m = view.clip_from_object;
+    return vec3<f32>(m[0][row], m[1][row], m[2][row]);
+}
+
+fn pixels_per_unit(view: LodView) -> f32 {
+    return max(length(clip_row(view, 0u)) * view.half_viewport.x, length(clip_row(view, 1u)) * view.half_viewport.y);
+}
+
+// The control polygon at the nearest depth of the sphere around it; 1 if all of that is nearer than the near plane.
+fn near_edge_factor(
+    view: LodView,
+    pixels_per_segment: f32,
+    a: vec3<f32>,
+    ab: vec3<f32>,
+    ba: vec3<f32>,
+    b: vec3<f32>,
+) -> f32 {
+    let center = (a + b) * 0.5;
+    let radius = max(max(distance(a, center), distance(ab, center)), distance(ba, center));
+    let clip = view.clip_from_object * vec4<f32>(center, 1.0);
+    let depth = clip_row(view, 3u);
+    let past_near = depth - clip_row(view, 2u);
+    if clip.w - clip.z + radius * length(past_near) < 0.0 {
+        return 1.0;
+    }
+    let nearest = max(clip.w - radius * length(depth), clip.z);
+    let polygon = distance(a, ab) + distance(ab, ba) + distance(ba, b);
+    return at_least_one(polygon * pixels_per_unit(view) / nearest / pixels_per_segment);
+}
+
+fn edge_length_factor(
+    view: LodView,
+    pixels_per_segment: f32,
+    a: vec3<f32>,
+    ab: vec3<f32>,
+    ba: vec3<f32>,
+    b: vec3<f32>,
+) -> f32 {
+    let m = view.clip_from_object;
+    let ends = beyond_near(m * vec4<f32>(a, 1.0)) && beyond_near(m * vec4<f32>(b, 1.0));
+    if ends && beyond_near(m * vec4<f32>(ab, 1.0)) && beyond_near(m * vec4<f32>(ba, 1.0)) {
+        return paper_edge_factor(view, pixels_per_segment, a, ab, ba, b);
+    }
+    return near_edge_factor(view, pixels_per_segment, a, ab, ba, b);
 }

@@ -28,10 +28,10 @@ fn counts_main(
     // Factor i belongs to the edge opposite corner i: side i + 1.
     var edges: vec3<f32>;
     for (var i = 0u; i < 3u; i++) {
-        edges[i] = edge_factors[patches[patch_index].edges[(i + 1u) % 3u] >> 3u];
+        edges[i] = edge_factors[patches[patch_index].factors[(i + 1u) % 3u] >> 3u];
     }
     var factors = process(params.partitioning, edges, max(max(edges.x, edges.y), edges.z));
-    if params.clip == CLIP_PAPER && patch_is_clipped(params.view, load_net(patch_index)) {
+    if params.clip != CLIP_OFF && patch_is_unseen(params.clip, params.view, load_net(patch_index)) {
         factors = PatchFactors();
     }
     patch_factors[index] = factors;

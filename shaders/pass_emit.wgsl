@@ -63,21 +63,45 @@ fn place(u: u32, v: u32) -> Place {
     return Place(3u, 0u);
 }
 
-fn rim_position(patch_index: u32, side: u32, t: u32) -> vec3<f32> {
-    if t == 0u {
-        return points[patches[patch_index].points[side]].xyz;
-    }
-    if t == FIXED_ONE {
-        return points[patches[patch_index].points[(side + 1u) % 3u]].xyz;
-    }
+// What the domain shader makes of one domain point.
+struct DomainVertex {
+    position: vec3<f32>,
+    normal: vec3<f32>,
+    uv: vec2<f32>,
+}
+
+// Computed in the edge's own direction.
+fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
     let curve = patches[patch_index].curves[side];
     let reversed = (curve & 1u) == 1u;
-    let start = patches[patch_index].points[side];
-    let end = patches[patch_index].points[(side + 1u) % 3u];
-    let a = points[select(start, end, reversed)].xyz;
-    let b = points[select(end, start, reversed)].xyz;
+    let next = (side + 1u) % 3u;
+    let start = select(side, next, reversed);
+    let end = select(next, side, reversed);
+    let t = select(side_t, FIXED_ONE - side_t, reversed);
+    let a = points[patches[patch_index].points[start]].xyz;
+    let b = points[patches[patch_index].points[end]].xyz;
+    let at_a = corners[patches[patch_index].corners[start]];
+    let at_b = corners[patches[patch_index].corners[end]];
     let net = curve_nets[curve >> 1u];
-    return edge_position(params.surface, a, net.ab, net.ba, b, select(t, FIXED_ONE - t, reversed));
+    var position = edge_position(params.surface, a, net.ab, net.ba, b, t);
+    if t == 0u {
+        position = a;
+    }
+    if t == FIXED_ONE {
+        position = b;
+    }
+    return DomainVertex(position, edge_normal(at_a.normal, at_b.normal, t), edge_uv(at_a.uv, at_b.uv, t));
+}
+
+fn patch_vertex(patch_index: u32, u: u32, v: u32) -> DomainVertex {
+    let a = corners[patches[patch_index].corners[0]];
+    let b = corners[patches[patch_index].corners[1]];
+    let c = corners[patches[patch_index].corners[2]];
+    return DomainVertex(
+        patch_position(params.surface, load_net(patch_index), u, v),
+        linear_normal(array<vec3<f32>, 3>(a.normal, b.normal, c.normal), u, v),
+        linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v),
+    );
 }
 
 @compute @workgroup_size(256)
@@ -98,19 +122,15 @@ fn emit_vertices_main(
     let patch_index = slab.first_patch + entry;
     let uv = domain_point(patch_factors[entry], item - offsets[entry].x);
     let at = place(uv.x, uv.y);
-    var position: vec3<f32>;
-    if at.side == 3u {
-        position = patch_position(params.surface, load_net(patch_index), uv.x, uv.y);
+    var made: DomainVertex;
+    if at.side == 3u || params.edges == EDGES_AS_PUBLISHED {
+        made = patch_vertex(patch_index, uv.x, uv.y);
     } else {
-        position = rim_position(patch_index, at.side, at.t);
+        made = rim_vertex(patch_index, at.side, at.t);
     }
     let key = pack_key(patch_index, uv.x, uv.y);
-    let a = corners[patches[patch_index].corners[0]];
-    let b = corners[patches[patch_index].corners[1]];
-    let c = corners[patches[patch_index].corners[2]];
-    let normal = linear_normal(array<vec3<f32>, 3>(a.normal, b.normal, c.normal), uv.x, uv.y);
-    let texture_uv = linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), uv.x, uv.y);
-    vertices[index] = Vertex(position.x, position.y, position.z, key.x, key.y, pack_normal(normal), texture_uv);
+    let p = made.position;
+    vertices[index] = Vertex(p.x, p.y, p.z, key.x, key.y, pack_normal(made.normal), made.uv);
 }
 
 @compute @workgroup_size(256)

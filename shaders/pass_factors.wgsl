@@ -1,10 +1,11 @@
-// One factor an edge. An edge whose sides do not all share one curve takes the largest that any of its curves asks for.
+// One factor an edge, or as published one a curve. An edge whose sides do not all share one curve takes the largest that
+// any of its curves asks for.
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
-@group(0) @binding(4) var<storage, read> edge_curves: array<u32>;
+@group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<f32>;
 
 fn curve_factor(index: u32) -> f32 {
@@ -12,7 +13,10 @@ fn curve_factor(index: u32) -> f32 {
     let a = points[curve.points[0]].xyz;
     let b = points[curve.points[1]].xyz;
     let net = curve_nets[index];
-    return paper_edge_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+    if params.lod == LOD_PAPER {
+        return paper_edge_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+    }
+    return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
 }
 
 @compute @workgroup_size(256)
@@ -21,19 +25,19 @@ fn edge_factors_main(
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let edge = grid_index(workgroup, workgroups, local);
-    if edge >= params.edge_count {
+    let index = grid_index(workgroup, workgroups, local);
+    if index >= params.factor_count {
         return;
     }
     var factor = params.factor;
-    if params.lod == LOD_PAPER {
+    if params.lod != LOD_UNIFORM {
         factor = 1.0;
-        for (var curve = edge_curves[edge]; curve < edge_curves[edge + 1u]; curve++) {
+        for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
             factor = max(factor, curve_factor(curve));
         }
     }
     if params.partitioning == PARTITIONING_POW2 {
         factor = round_pow2(factor);
     }
-    edge_factors[edge] = factor;
+    edge_factors[index] = factor;
 }

@@ -60,10 +60,24 @@ fn patch_position(surface: u32, net: ControlNet, u: u32, v: u32) -> vec3<f32> {
         + net.center * (6.0 * x * y * z);
 }
 
+const CANCELLED: f32 = 1e-6;
+
+// A weighted sum of normals at unit length, or the one with the greatest weight where they cancel.
+fn unit_or(sum: vec3<f32>, nearest: vec3<f32>) -> vec3<f32> {
+    let length_squared = dot(sum, sum);
+    return select(nearest, sum * (1.0 / sqrt(length_squared)), length_squared > CANCELLED * CANCELLED);
+}
+
 fn linear_normal(normals: array<vec3<f32>, 3>, u: u32, v: u32) -> vec3<f32> {
-    let n = normals[0] * (f32(u) * UNIT) + normals[1] * (f32(v) * UNIT) + normals[2] * (f32(FIXED_ONE - u - v) * UNIT);
-    let length_squared = dot(n, n);
-    return select(vec3<f32>(0.0, 0.0, 1.0), n * inverseSqrt(length_squared), length_squared > 0.0);
+    let w = FIXED_ONE - u - v;
+    let nearest = select(select(normals[2], normals[1], v >= w), normals[0], u >= v && u >= w);
+    return unit_or(normals[0] * (f32(u) * UNIT) + normals[1] * (f32(v) * UNIT) + normals[2] * (f32(w) * UNIT), nearest);
+}
+
+// Called in the edge's own direction only.
+fn edge_normal(a: vec3<f32>, b: vec3<f32>, t: u32) -> vec3<f32> {
+    let nearest = select(b, a, 2u * t <= FIXED_ONE);
+    return unit_or(a * (f32(FIXED_ONE - t) * UNIT) + b * (f32(t) * UNIT), nearest);
 }
 
 // Octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
@@ -86,4 +100,8 @@ fn toward(x: f32) -> f32 {
 
 fn linear_uv(uvs: array<vec2<f32>, 3>, u: u32, v: u32) -> vec2<f32> {
     return uvs[0] * (f32(u) * UNIT) + uvs[1] * (f32(v) * UNIT) + uvs[2] * (f32(FIXED_ONE - u - v) * UNIT);
+}
+
+fn edge_uv(a: vec2<f32>, b: vec2<f32>, t: u32) -> vec2<f32> {
+    return a * (f32(FIXED_ONE - t) * UNIT) + b * (f32(t) * UNIT);
 }

@@ -11,8 +11,9 @@ struct Params {
     clip: u32,
     point_count: u32,
     patch_count: u32,
-    edge_count: u32,
+    factor_count: u32,
     curve_count: u32,
+    edges: u32,
 }
 
 // The run of patches that one scan covers, and what the arena holds.
@@ -31,8 +32,8 @@ struct Patch {
     corners: array<u32, 3>,
     // Curve of side k, times 2, plus 1 where the side runs against its edge's direction.
     curves: array<u32, 3>,
-    // Edge of side k, times 8, plus its kind.
-    edges: array<u32, 3>,
+    // Factor of side k, times 8, plus the kind of its edge.
+    factors: array<u32, 3>,
 }
 
 struct Corner {
@@ -92,6 +93,10 @@ struct DrawArgs {
     pull_first_vertex: u32,
     pull_first_instance: u32,
 }
+
+// Whether what an edge's sides agree on is computed by the edge, or by every patch for itself.
+const EDGES_PER_EDGE: u32 = 0u;
+const EDGES_AS_PUBLISHED: u32 = 1u;
 
 // U and V need 17 bits each; the patch gets the other 30.
 fn pack_key(patch_index: u32, u: u32, v: u32) -> vec2<u32> {

@@ -1,6 +1,6 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use crate::tessellate::{Clip, Inputs, Lod, LodView, Partitioning, Surface};
+use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface};
 
 /// The smallest and largest tessellation factor.
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
@@ -13,6 +13,7 @@ pub const ARENA_BYTES: u64 = 256 << 20;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     pub surface: Surface,
+    pub edges: Edges,
     /// Tessellation factor under uniform LOD, 1 to 64.
     pub factor: f32,
     pub partitioning: Partitioning,
@@ -31,6 +32,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             surface: Surface::PnAen,
+            edges: Edges::PerEdge,
             factor: 8.0,
             partitioning: Partitioning::FractionalOdd,
             lod: Lod::Uniform,
@@ -56,6 +58,10 @@ pub struct Overlays {
     pub adjacency: bool,
     /// Edges whose sides differ in position.
     pub cracks: bool,
+    /// Triangles that face away from the side that their patch faces.
+    pub folds: bool,
+    /// Open edges that another triangle's point lies on, and those points.
+    pub t_junctions: bool,
 }
 
 /// One of [`Overlays`], by name.
@@ -66,10 +72,20 @@ pub enum Overlay {
     Barycentric,
     Adjacency,
     Cracks,
+    Folds,
+    TJunctions,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 5] = [Self::Wireframe, Self::Patches, Self::Barycentric, Self::Adjacency, Self::Cracks];
+    pub const ALL: [Self; 7] = [
+        Self::Wireframe,
+        Self::Patches,
+        Self::Barycentric,
+        Self::Adjacency,
+        Self::Cracks,
+        Self::Folds,
+        Self::TJunctions,
+    ];
 }
 
 impl Overlays {
@@ -81,6 +97,8 @@ impl Overlays {
             Overlay::Barycentric => &mut self.barycentric,
             Overlay::Adjacency => &mut self.adjacency,
             Overlay::Cracks => &mut self.cracks,
+            Overlay::Folds => &mut self.folds,
+            Overlay::TJunctions => &mut self.t_junctions,
         }
     }
 }
@@ -96,7 +114,7 @@ impl FromIterator<Overlay> for Overlays {
 impl Settings {
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, factor, partitioning, lod, pixels, clip, .. } = *self;
-        Inputs { surface, factor, partitioning, lod, pixels, clip, view }
+        let Self { surface, edges, factor, partitioning, lod, pixels, clip, .. } = *self;
+        Inputs { surface, edges, factor, partitioning, lod, pixels, clip, view }
     }
 }

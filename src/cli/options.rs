@@ -9,7 +9,7 @@ use glam::Vec2;
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
 use crate::settings::{FACTOR_RANGE, PIXELS_RANGE, Settings};
-use crate::tessellate::{Clip, Lod, Partitioning, Surface};
+use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// What is tessellated how, and seen from where.
 #[derive(Clone, Debug, Args)]
@@ -17,19 +17,24 @@ pub struct SurfaceOptions {
     /// Surface that each triangle becomes
     #[arg(long, value_enum, default_value_t = Settings::default().surface)]
     pub surface: Surface,
+    /// Who computes what an edge's sides must agree on: the edge once, or every patch for itself as the white paper does
+    #[arg(long, value_enum, default_value_t = Settings::default().edges)]
+    pub edges: Edges,
     /// Tessellation factor under uniform LOD, 1 to 64
     #[arg(long, value_name = "F", default_value_t = Settings::default().factor, value_parser = factor)]
     pub factor: f32,
     /// How factors become segments: integer, pow2, fractional-odd or fractional-even
     #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning)]
     pub partitioning: Partitioning,
-    /// Where factors come from: the same everywhere, or the white paper's projected length of an edge's control polygon
+    /// Where factors come from: the same everywhere; the white paper's projected length of an edge's control polygon; or
+    /// that in a form that holds for edges near and behind the eye too
     #[arg(long, value_enum, default_value_t = Settings::default().lod)]
     pub lod: Lod,
-    /// Length of a segment on screen under --lod paper, in px, 1 to 256
+    /// Length of a segment on screen under adaptive LOD, in px, 1 to 256
     #[arg(long, value_name = "P", default_value_t = Settings::default().pixels, value_parser = pixels)]
     pub pixels: f32,
-    /// Whether patches out of view are left out: never, or by the white paper's test
+    /// Whether patches out of view are left out: never; by the white paper's test, which can drop visible ones; or by each
+    /// plane of the view on its own
     #[arg(long, value_enum, default_value_t = Settings::default().clip)]
     pub clip: Clip,
     /// Width and height of the view, in px
@@ -44,8 +49,8 @@ pub struct SurfaceOptions {
 impl SurfaceOptions {
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
-        let Self { surface, factor, partitioning, lod, pixels, clip, .. } = *self;
-        Settings { surface, factor, partitioning, lod, pixels, clip, ..Settings::default() }
+        let Self { surface, edges, factor, partitioning, lod, pixels, clip, .. } = *self;
+        Settings { surface, edges, factor, partitioning, lod, pixels, clip, ..Settings::default() }
     }
 
     pub fn camera(&self, bounds: &Bounds) -> Camera {

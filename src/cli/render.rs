@@ -71,9 +71,9 @@ impl Args {
 }
 
 fn default_surface_options() -> SurfaceOptions {
-    let Settings { surface, factor, partitioning, lod, pixels, clip, .. } = Settings::default();
+    let Settings { surface, edges, factor, partitioning, lod, pixels, clip, .. } = Settings::default();
     let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
-    SurfaceOptions { surface, factor, partitioning, lod, pixels, clip, size: options::Size([1280, 720]), camera }
+    SurfaceOptions { surface, edges, factor, partitioning, lod, pixels, clip, size: options::Size([1280, 720]), camera }
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {

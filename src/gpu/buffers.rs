@@ -15,14 +15,14 @@ pub struct MeshBuffers {
     pub patches: wgpu::Buffer,
     pub curves: wgpu::Buffer,
     pub curve_sides: wgpu::Buffer,
-    pub edge_curves: wgpu::Buffer,
+    pub factor_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
     pub edge_factors: wgpu::Buffer,
     pub sharing: Sharing,
     pub point_count: u32,
     pub patch_count: u32,
-    pub edge_count: u32,
+    pub factor_count: u32,
     pub curve_count: u32,
     pub material_count: u32,
 }
@@ -44,14 +44,14 @@ impl MeshBuffers {
             patches: filled(gpu, "patches", &patches(topology, &grouped))?,
             curves: filled(gpu, "curves", &curves)?,
             curve_sides: filled(gpu, "sides", &grouped.sides)?,
-            edge_curves: filled(gpu, "edges", &grouped.edge_curves)?,
+            factor_curves: filled(gpu, "edges", &grouped.factor_curves)?,
             material_patches: filled(gpu, "materials", &material_patches)?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
-            edge_factors: empty::<f32>(gpu, "edge factors", topology.edges.len())?,
+            edge_factors: empty::<f32>(gpu, "edge factors", grouped.factor_count() as usize)?,
             sharing,
             point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
-            edge_count: topology.edges.len() as u32,
+            factor_count: grouped.factor_count(),
             curve_count: curves.len() as u32,
             material_count: material_patches.len() as u32,
         })
@@ -65,7 +65,7 @@ impl MeshBuffers {
             &self.patches,
             &self.curves,
             &self.curve_sides,
-            &self.edge_curves,
+            &self.factor_curves,
             &self.material_patches,
             &self.curve_nets,
             &self.edge_factors,
@@ -91,15 +91,17 @@ fn curve(curve: &crate::mesh::Curve) -> Curve {
 }
 
 fn patches(topology: &Topology, grouped: &Curves) -> Vec<Patch> {
-    let side = |index: u32| topology.sides[index as usize];
+    let kind = |side: u32| topology.edges[topology.sides[side as usize].edge as usize].kind as u32;
     topology
         .patches
         .iter()
         .map(|patch| Patch {
             points: patch.corners.map(|c| topology.corner_points[c as usize]),
             corners: patch.corners,
-            curves: patch.sides.map(|s| grouped.side_curves[s as usize] << 1 | u32::from(side(s).reversed)),
-            edges: patch.sides.map(|s| side(s).edge << 3 | topology.edges[side(s).edge as usize].kind as u32),
+            curves: patch
+                .sides
+                .map(|s| grouped.side_curves[s as usize] << 1 | u32::from(grouped.runs_against(topology, s))),
+            factors: patch.sides.map(|s| grouped.factor(topology, s) << 3 | kind(s)),
         })
         .collect()
 }

@@ -27,9 +27,10 @@ pub struct Params {
     pub clip: u32,
     pub point_count: u32,
     pub patch_count: u32,
-    pub edge_count: u32,
+    pub factor_count: u32,
     pub curve_count: u32,
-    pub _pad: [u32; 2],
+    pub edges: u32,
+    pub _pad: u32,
 }
 
 /// The run of patches that one scan covers, and what the arena holds.
@@ -53,8 +54,8 @@ pub struct Patch {
     pub corners: [u32; 3],
     /// Curve of side k, times 2, plus 1 where the side runs against its edge's direction.
     pub curves: [u32; 3],
-    /// Edge of side k, times 8, plus its kind.
-    pub edges: [u32; 3],
+    /// Factor of side k, times 8, plus the kind of its edge.
+    pub factors: [u32; 3],
 }
 
 /// A corner's shading attributes.

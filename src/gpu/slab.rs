@@ -108,7 +108,7 @@ impl SlabPasses {
                     (1, &b.points),
                     (2, &b.curves),
                     (3, &b.curve_nets),
-                    (4, &b.edge_curves),
+                    (4, &b.factor_curves),
                     (5, &b.edge_factors),
                 ],
             ),

@@ -9,8 +9,8 @@ use super::pipelines::bind_group;
 use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
-use crate::mesh::{Mesh, Topology};
-use crate::tessellate::{Clip, Inputs, Lod, Surface, sharing};
+use crate::mesh::{Mesh, Sharing, Topology};
+use crate::tessellate::{Clip, Inputs, Lod, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -67,7 +67,7 @@ impl Tessellator {
         topology: Arc<Topology>,
         arena_bytes: u64,
     ) -> Result<Self, GpuError> {
-        let buffers = MeshBuffers::new(gpu, &mesh, &topology, sharing(Surface::PnAen))?;
+        let buffers = MeshBuffers::new(gpu, &mesh, &topology, Sharing::AllSides)?;
         let arena = Arena::new(gpu, buffers.patch_count, arena_bytes)?;
         let mut slabs = Vec::new();
         for first_patch in (0..buffers.patch_count.max(1)).step_by(SLAB_PATCHES as usize) {
@@ -101,8 +101,9 @@ impl Tessellator {
     /// # Errors
     /// The mesh's curves under another surface are larger than the adapter binds.
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
-        if sharing(inputs.surface) != self.buffers.sharing {
-            self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing(inputs.surface))?;
+        let sharing = sharing(inputs.surface, inputs.edges);
+        if sharing != self.buffers.sharing {
+            self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
             self.nets = None;
             self.nets_done = None;
             self.slabs.iter_mut().for_each(|slab| slab.groups = None);
@@ -143,9 +144,10 @@ impl Tessellator {
             clip: inputs.clip as u32,
             point_count: self.buffers.point_count,
             patch_count: self.buffers.patch_count,
-            edge_count: self.buffers.edge_count,
+            factor_count: self.buffers.factor_count,
             curve_count: self.buffers.curve_count,
-            _pad: [0; 2],
+            edges: inputs.edges as u32,
+            _pad: 0,
         }
     }
 
@@ -196,7 +198,7 @@ impl Tessellator {
         let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
         if slab.slab.first_patch == 0 {
             recorder.compute("factors", |pass| {
-                dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.edge_count));
+                dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.factor_count));
             });
         }
         recorder.compute("counts", |pass| {

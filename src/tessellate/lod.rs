@@ -1,7 +1,7 @@
 //! How many segments an edge gets. Twin: `shaders/lod.wgsl`.
 
 use clap::ValueEnum;
-use glam::{Mat4, Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// Where edge factors come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
@@ -9,8 +9,11 @@ use glam::{Mat4, Vec2, Vec3};
 pub enum Lod {
     /// The same factor everywhere.
     Uniform = 0,
-    /// Projected length of the control polygon over pixels per segment, at least 1 (McDonald and Kilgard 2010).
+    /// Projected length of the control polygon over pixels per segment, at least 1 (McDonald and Kilgard 2010). Divides
+    /// by w wherever a control point lies, so edges behind the eye or across its plane get any factor.
     Paper = 1,
+    /// As `Paper` for edges beyond the near plane; others are measured at the nearest depth of a sphere around them.
+    EdgeLength = 2,
 }
 
 /// The view that adaptive factors and clipping are computed for.
@@ -42,6 +45,46 @@ pub fn paper_edge_factor(view: &LodView, pixels_per_segment: f32, control_points
     at_least_one(a.distance(ab) + ab.distance(ba) + ba.distance(b))
 }
 
+/// Whether a clip-space position lies on the near plane or beyond (depth is reversed: z = w there).
+pub fn beyond_near(clip: Vec4) -> bool {
+    clip.z <= clip.w
+}
+
+/// The direction in which a clip-space coordinate (0 to 3: x, y, z, w) grows, times its growth a unit.
+pub fn clip_row(view: &LodView, row: usize) -> Vec3 {
+    view.clip_from_object.row(row).truncate()
+}
+
+/// Px that a unit across the view covers at depth (w) 1.
+pub fn pixels_per_unit(view: &LodView) -> f32 {
+    (clip_row(view, 0).length() * view.half_viewport.x).max(clip_row(view, 1).length() * view.half_viewport.y)
+}
+
+/// The factor of an edge that is not all beyond the near plane: the length of its control polygon in px, seen across at
+/// the nearest depth of the sphere around its control points; 1 if that sphere is all nearer than the near plane.
+pub fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]: [Vec3; 4]) -> f32 {
+    let center = (a + b) * 0.5;
+    let radius = a.distance(center).max(ab.distance(center)).max(ba.distance(center));
+    let clip = view.clip_from_object * center.extend(1.0);
+    let depth = clip_row(view, 3);
+    let past_near = depth - clip_row(view, 2);
+    if clip.w - clip.z + radius * past_near.length() < 0.0 {
+        return 1.0;
+    }
+    let nearest = (clip.w - radius * depth.length()).max(clip.z);
+    let length = a.distance(ab) + ab.distance(ba) + ba.distance(b);
+    at_least_one(length * pixels_per_unit(view) / nearest / pixels_per_segment)
+}
+
+/// The paper's factor where all four control points lie beyond the near plane, else [`near_edge_factor`].
+pub fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
+    let beyond = |p: Vec3| beyond_near(view.clip_from_object * p.extend(1.0));
+    if control_points.into_iter().all(beyond) {
+        return paper_edge_factor(view, pixels_per_segment, control_points);
+    }
+    near_edge_factor(view, pixels_per_segment, control_points)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -61,5 +104,44 @@ mod tests {
         assert_eq!([1.5, f32::INFINITY].map(at_least_one), [1.5, f32::INFINITY]);
         let view = LodView { clip_from_object: Mat4::ZERO, half_viewport: Vec2::ONE };
         assert_eq!(paper_edge_factor(&view, 1.0, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]), 1.0);
+    }
+
+    /// Looks along -Z from the origin, 1 unit a half viewport at depth 1, near plane at 0.1.
+    fn perspective() -> LodView {
+        let clip_from_object = Mat4::from_cols_array_2d(&[
+            [1.0, 0.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, -1.0],
+            [0.0, 0.0, 0.1, 0.0],
+        ]);
+        LodView { clip_from_object, half_viewport: Vec2::splat(100.0) }
+    }
+
+    fn straight(a: Vec3, b: Vec3) -> [Vec3; 4] {
+        [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]
+    }
+
+    #[test]
+    fn beyond_the_near_plane_both_forms_agree_to_the_bit() {
+        let edge = straight(vec3(-1.0, 0.0, -2.0), vec3(0.5, 1.0, -0.2));
+        let factors = [paper_edge_factor, edge_length_factor].map(|form| form(&perspective(), 8.0, edge));
+        assert_eq!(factors[0].to_bits(), factors[1].to_bits());
+    }
+
+    #[test]
+    fn an_edge_through_the_eyes_plane_is_measured_where_it_is_nearest() {
+        // From in front of the eye to behind it: the paper mirrors the far end, and may find any length.
+        let edge = straight(vec3(0.5, 0.0, -1.0), vec3(0.5, 0.0, 1.0));
+        let near = edge_length_factor(&perspective(), 8.0, edge);
+        assert!((near - 2.0 * 100.0 / 0.1 / 8.0).abs() < 1e-1, "{near}: 2 units at depth 0.1");
+        let passing = straight(vec3(-3.0, 0.0, -0.05), vec3(3.0, 0.0, -0.05));
+        assert!(edge_length_factor(&perspective(), 8.0, passing) > 64.0);
+    }
+
+    #[test]
+    fn an_edge_behind_the_eye_needs_no_segments() {
+        let behind = straight(vec3(-1.0, 0.0, 2.0), vec3(1.0, 0.0, 2.0));
+        assert_eq!(edge_length_factor(&perspective(), 1.0, behind), 1.0);
+        assert!(paper_edge_factor(&perspective(), 1.0, behind) > 90.0, "the paper sees it mirrored in front");
     }
 }

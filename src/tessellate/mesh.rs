@@ -1,19 +1,33 @@
 //! A whole mesh, tessellated on the CPU: what the passes do, in the same order, one patch after another.
 
 use bytemuck::{Pod, Zeroable};
-use glam::Vec3;
+use clap::ValueEnum;
+use glam::{Vec2, Vec3};
 
 use super::{
     Clip, ControlNet, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, Surface, center_control_point, domain_point,
-    domain_triangle, edge_control_point, edge_position, linear_normal, linear_uv, pack_normal, paper_edge_factor,
-    patch_is_clipped, patch_position, point_count, process, round_pow2, straight_control_point, triangle_count,
+    domain_triangle, edge_control_point, edge_length_factor, edge_normal, edge_position, edge_uv, linear_normal,
+    linear_uv, pack_normal, paper_edge_factor, patch_is_unseen, patch_position, point_count, process, round_pow2,
+    straight_control_point, triangle_count,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
+
+/// Who computes what the sides of an edge must agree on: control points, factor, positions and normals along it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[repr(u32)]
+pub enum Edges {
+    /// The edge itself, once, in its own direction: all sides get the same bits.
+    PerEdge = 0,
+    /// Every patch for itself, in its own direction, as the white paper's shaders do (McDonald and Kilgard 2010): the
+    /// same but for rounding, so that edges crack in their last bits.
+    AsPublished = 1,
+}
 
 /// What a tessellation is a function of, besides the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
     pub surface: Surface,
+    pub edges: Edges,
     pub factor: f32,
     pub partitioning: Partitioning,
     pub lod: Lod,
@@ -64,36 +78,30 @@ pub struct Tessellated {
 }
 
 /// Which sides share a curve under a surface.
-pub fn sharing(surface: Surface) -> Sharing {
-    match surface {
-        Surface::Pn => Sharing::EqualNormals,
-        Surface::Flat | Surface::PnAen => Sharing::AllSides,
+pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
+    match (edges, surface) {
+        (Edges::PerEdge, Surface::Pn) => Sharing::EqualNormals,
+        (Edges::PerEdge, Surface::Flat | Surface::PnAen) => Sharing::AllSides,
+        (Edges::AsPublished, Surface::PnAen) => Sharing::NoneAveraged,
+        (Edges::AsPublished, Surface::Flat | Surface::Pn) => Sharing::None,
     }
 }
 
-/// Tessellates the mesh. With `edge_factors`, one for each edge, those are used in place of the ones that LOD gives.
-pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, edge_factors: Option<&[f32]>) -> Tessellated {
-    let nets = Nets::new(mesh, topology, inputs.surface);
-    let own = edge_factors.is_none().then(|| nets.edge_factors(inputs));
-    let edge_factors = edge_factors.or(own.as_deref()).unwrap_or_default();
+/// Tessellates the mesh. With `factors`, those are used in place of the ones that LOD gives: one for each edge, or as
+/// published one for each curve (see [`Curves::factor`]).
+pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
+    let nets = Nets::new(mesh, topology, inputs);
+    let own = factors.is_none().then(|| nets.edge_factors(inputs));
+    let edge_factors = factors.or(own.as_deref()).unwrap_or_default();
     let mut out = Tessellated::default();
     for patch in 0..topology.patches.len() as u32 {
         let net = nets.patch(patch);
-        let mut factors = patch_factors(topology, inputs.partitioning, edge_factors, patch);
-        if inputs.clip == Clip::Paper && patch_is_clipped(&inputs.view, &net) {
+        let mut factors = nets.patch_factors(inputs.partitioning, edge_factors, patch);
+        if patch_is_unseen(inputs.clip, &inputs.view, &net) {
             factors = PatchFactors::zeroed();
         }
-        let corners = topology.patches[patch as usize].corners.map(|corner| &mesh.corners[corner as usize]);
         let base = out.vertices.len() as u32;
-        for i in 0..point_count(factors) {
-            let uv = domain_point(factors, i);
-            out.vertices.push(Vertex {
-                position: nets.position(patch, &net, uv).to_array(),
-                key: pack_key(patch, uv),
-                normal: pack_normal(linear_normal(corners.map(|corner| corner.normal), uv[0], uv[1])),
-                uv: linear_uv(corners.map(|corner| corner.uv), uv[0], uv[1]).to_array(),
-            });
-        }
+        out.vertices.extend((0..point_count(factors)).map(|i| nets.vertex(patch, &net, domain_point(factors, i))));
         out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
         out.patch_factors.push(factors);
     }
@@ -102,37 +110,34 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, edge_factor
 
 /// Vertices and triangles that [`tessellate`] would emit, clipping aside.
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
-    let edge_factors = edge_factors(mesh, topology, inputs);
+    let nets = Nets::new(mesh, topology, inputs);
+    let edge_factors = nets.edge_factors(inputs);
     let counts = (0..topology.patches.len() as u32).map(|patch| {
-        let factors = patch_factors(topology, inputs.partitioning, &edge_factors, patch);
+        let factors = nets.patch_factors(inputs.partitioning, &edge_factors, patch);
         (u64::from(point_count(factors)), u64::from(triangle_count(factors)))
     });
     counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1))
 }
 
-/// One factor for each edge, as LOD gives them.
+/// The factors that LOD gives: one for each edge, or as published one for each curve.
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
-    Nets::new(mesh, topology, inputs.surface).edge_factors(inputs)
-}
-
-/// Factor i belongs to the edge opposite corner i: side i + 1. Inside: the largest of the three.
-fn patch_factors(topology: &Topology, partitioning: Partitioning, edge_factors: &[f32], patch: u32) -> PatchFactors {
-    let sides = topology.patches[patch as usize].sides;
-    let edges = [1, 2, 0].map(|k: usize| edge_factors[topology.sides[sides[k] as usize].edge as usize]);
-    process(partitioning, edges, edges[0].max(edges[1]).max(edges[2]))
+    Nets::new(mesh, topology, inputs).edge_factors(inputs)
 }
 
 /// Control nets of a mesh: two control points a curve, one a patch.
 struct Nets<'a> {
+    mesh: &'a Mesh,
     topology: &'a Topology,
     surface: Surface,
+    edges: Edges,
     curves: Curves,
     curve_nets: Vec<[Vec3; 2]>,
 }
 
 impl<'a> Nets<'a> {
-    fn new(mesh: &Mesh, topology: &'a Topology, surface: Surface) -> Self {
-        let curves = Curves::build(mesh, topology, sharing(surface));
+    fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
+        let Inputs { surface, edges, .. } = *inputs;
+        let curves = Curves::build(mesh, topology, sharing(surface, edges));
         let net = |curve: &crate::mesh::Curve| {
             let [a, b] = curve.points.map(|p| topology.points[p as usize]);
             if surface == Surface::Flat {
@@ -149,30 +154,39 @@ impl<'a> Nets<'a> {
             [ab * share, ba * share]
         };
         let curve_nets = curves.curves.iter().map(net).collect();
-        Self { topology, surface, curves, curve_nets }
+        Self { mesh, topology, surface, edges, curves, curve_nets }
     }
 
-    /// One factor an edge: the largest that any of its curves asks for.
+    /// The largest factor that any of an edge's curves asks for; as published, what each curve asks for.
     fn edge_factors(&self, inputs: &Inputs) -> Vec<f32> {
-        let factor = |curve: usize| {
-            let [a, b] = self.curves.curves[curve].points.map(|p| self.topology.points[p as usize]);
-            let [ab, ba] = self.curve_nets[curve];
-            paper_edge_factor(&inputs.view, inputs.pixels, [a, ab, ba, b])
+        let asked = |form: fn(&LodView, f32, [Vec3; 4]) -> f32, curve: u32| {
+            let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
+            let [ab, ba] = self.curve_nets[curve as usize];
+            form(&inputs.view, inputs.pixels, [a, ab, ba, b])
         };
+        let largest = |form, curves: &[u32]| (curves[0]..curves[1]).map(|c| asked(form, c)).fold(1.0, f32::max);
         let edge = |curves: &[u32]| {
             let factor = match inputs.lod {
                 Lod::Uniform => inputs.factor,
-                Lod::Paper => (curves[0]..curves[1]).map(|curve| factor(curve as usize)).fold(1.0, f32::max),
+                Lod::Paper => largest(paper_edge_factor, curves),
+                Lod::EdgeLength => largest(edge_length_factor, curves),
             };
             if inputs.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
         };
-        self.curves.edge_curves.windows(2).map(edge).collect()
+        self.curves.factor_curves.windows(2).map(edge).collect()
+    }
+
+    /// Factor i belongs to the edge opposite corner i: side i + 1. Inside: the largest of the three.
+    fn patch_factors(&self, partitioning: Partitioning, edge_factors: &[f32], patch: u32) -> PatchFactors {
+        let sides = self.topology.patches[patch as usize].sides;
+        let edges = [1, 2, 0].map(|k: usize| edge_factors[self.curves.factor(self.topology, sides[k]) as usize]);
+        process(partitioning, edges, edges[0].max(edges[1]).max(edges[2]))
     }
 
     /// The curve of a patch's side, and whether the side runs against it.
     fn curve(&self, patch: u32, side: usize) -> (usize, bool) {
-        let side = self.topology.patches[patch as usize].sides[side] as usize;
-        (self.curves.side_curves[side] as usize, self.topology.sides[side].reversed)
+        let side = self.topology.patches[patch as usize].sides[side];
+        (self.curves.side_curves[side as usize] as usize, self.curves.runs_against(self.topology, side))
     }
 
     fn corner(&self, patch: u32, k: usize) -> Vec3 {
@@ -191,26 +205,40 @@ impl<'a> Nets<'a> {
         ControlNet { corners, edges, center: center_control_point(corners, edges) }
     }
 
-    fn position(&self, patch: u32, net: &ControlNet, [u, v]: [u32; 2]) -> Vec3 {
-        match place(u, v) {
-            Some((side, t)) => self.rim_position(patch, side, t),
-            None => patch_position(self.surface, net, u, v),
+    fn vertex(&self, patch: u32, net: &ControlNet, uv: [u32; 2]) -> Vertex {
+        let corners = self.topology.patches[patch as usize].corners.map(|c| self.mesh.corners[c as usize]);
+        let [u, v] = uv;
+        let (position, normal, texture_uv) = match place(u, v) {
+            Some((side, t)) if self.edges == Edges::PerEdge => self.rim(patch, side, t),
+            _ => (
+                patch_position(self.surface, net, u, v),
+                linear_normal(corners.map(|corner| corner.normal), u, v),
+                linear_uv(corners.map(|corner| corner.uv), u, v),
+            ),
+        };
+        Vertex {
+            position: position.to_array(),
+            key: pack_key(patch, uv),
+            normal: pack_normal(normal),
+            uv: texture_uv.to_array(),
         }
     }
 
-    /// A point on a patch's rim, computed in the edge's own direction.
-    fn rim_position(&self, patch: u32, side: usize, t: u32) -> Vec3 {
-        let (start, end) = (self.corner(patch, side), self.corner(patch, (side + 1) % 3));
-        if t == 0 {
-            return start;
-        }
-        if t == FIXED_ONE {
-            return end;
-        }
+    /// Position, normal and uv of a point on a patch's rim, computed in the edge's own direction.
+    fn rim(&self, patch: u32, side: usize, t: u32) -> (Vec3, Vec3, Vec2) {
         let (curve, reversed) = self.curve(patch, side);
+        let corners = self.topology.patches[patch as usize].corners;
+        let (start, end) = (side, (side + 1) % 3);
+        let (from, to, t) = if reversed { (end, start, FIXED_ONE - t) } else { (start, end, t) };
+        let (a, b) = (self.corner(patch, from), self.corner(patch, to));
         let [ab, ba] = self.curve_nets[curve];
-        let (a, b, t) = if reversed { (end, start, FIXED_ONE - t) } else { (start, end, t) };
-        edge_position(self.surface, a, ab, ba, b, t)
+        let [at_a, at_b] = [from, to].map(|k| self.mesh.corners[corners[k] as usize]);
+        let position = match t {
+            0 => a,
+            FIXED_ONE => b,
+            t => edge_position(self.surface, a, ab, ba, b, t),
+        };
+        (position, edge_normal(at_a.normal, at_b.normal, t), edge_uv(at_a.uv, at_b.uv, t))
     }
 }
 

@@ -8,15 +8,17 @@ mod lod;
 mod mesh;
 mod surface;
 
-pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped};
+pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outside, patch_is_unseen, planes_outside};
 pub use domain::{domain_point, domain_triangle};
 pub use factors::{
     FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count, process,
     round_pow2, segments, triangle_count,
 };
-pub use lod::{Lod, LodView, at_least_one, paper_edge_factor, project_and_scale};
-pub use mesh::{Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
+pub use lod::{
+    Lod, LodView, at_least_one, beyond_near, edge_length_factor, near_edge_factor, paper_edge_factor, project_and_scale,
+};
+pub use mesh::{Edges, Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
 pub use surface::{
-    ControlNet, Surface, center_control_point, edge_control_point, edge_position, linear_normal, linear_uv,
+    ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal, linear_uv,
     pack_normal, patch_position, straight_control_point, unpack_normal,
 };

@@ -81,11 +81,29 @@ pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec
         + net.center * (6.0 * x * y * z)
 }
 
-/// The shading normal at weights `u`, `v`: the corners' normals, linearly interpolated, unit length. Normals that cancel
-/// give +Z rather than NaN.
+/// Shorter sums of weighted unit normals than this are what rounding leaves of normals that cancel.
+const CANCELLED: f32 = 1e-6;
+
+/// A weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) where they cancel.
+pub fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {
+    let length_squared = sum.dot(sum);
+    if length_squared > CANCELLED * CANCELLED { sum * (1.0 / length_squared.sqrt()) } else { nearest }
+}
+
+/// The shading normal at weights `u`, `v`: the corners' normals, linearly interpolated, unit length. Where they cancel
+/// it is the nearest corner's.
 pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
-    let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
-    (normals[0] * x + normals[1] * y + normals[2] * z).normalize_or(Vec3::Z)
+    let w = FIXED_ONE - u - v;
+    let [a, b, c] = normals;
+    let nearest = if u >= v && u >= w { a } else if v >= w { b } else { c };
+    unit_or(a * (u as f32 * UNIT) + b * (v as f32 * UNIT) + c * (w as f32 * UNIT), nearest)
+}
+
+/// The shading normal at `t` (16.16) on the edge whose ends have normals `a` and `b`. Called in the edge's own
+/// direction only, as [`edge_position`] is.
+pub fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
+    let nearest = if 2 * t <= FIXED_ONE { a } else { b };
+    unit_or(a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT), nearest)
 }
 
 /// A unit normal in 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3). Off by
@@ -116,6 +134,11 @@ fn toward(x: f32) -> f32 {
 pub fn linear_uv(uvs: [Vec2; 3], u: u32, v: u32) -> Vec2 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     uvs[0] * x + uvs[1] * y + uvs[2] * z
+}
+
+/// The texture coordinate at `t` (16.16) on the edge whose ends have `a` and `b`.
+pub fn edge_uv(a: Vec2, b: Vec2, t: u32) -> Vec2 {
+    a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT)
 }
 
 #[cfg(test)]

@@ -64,10 +64,11 @@ fn shared_structs_have_one_layout() {
         clip,
         point_count,
         patch_count,
-        edge_count,
+        factor_count,
         curve_count,
+        edges,
     });
-    same!(Patch { points, corners, curves, edges });
+    same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
     same!(Curve { points, first_side, side_count });
     same!(CurveNet { ab, ba });
