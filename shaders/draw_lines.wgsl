@@ -2,13 +2,12 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
-const HALF_WIDTH: f32 = 2.0;
-const CRACK_COLOR: vec3<f32> = vec3<f32>(1.0, 0.046, 0.01);
-
 struct LineVaryings {
     @builtin(position) clip: vec4<f32>,
     // Px across the line, from its middle.
     @location(0) @interpolate(linear) across: f32,
+    @location(1) @interpolate(flat) color: vec3<f32>,
+    @location(2) @interpolate(flat) half_width: f32,
 }
 
 // Moves `a` along the segment until it lies in front of the eye.
@@ -25,6 +24,8 @@ fn line_vertex(
     @builtin(vertex_index) index: u32,
     @location(0) start: vec3<f32>,
     @location(1) end: vec3<f32>,
+    @location(2) color: vec3<f32>,
+    @location(3) half_width: f32,
 ) -> LineVaryings {
     let a = frame.clip_from_object * vec4<f32>(start, 1.0);
     let b = frame.clip_from_object * vec4<f32>(end, 1.0);
@@ -32,22 +33,22 @@ fn line_vertex(
     let to_clip = in_front(b, a);
     let half_viewport = 0.5 * frame.viewport;
     let along_px = (to_clip.xy / to_clip.w - from_clip.xy / from_clip.w) * half_viewport;
-    let length_px = max(length(along_px), 1e-6);
-    let along = along_px / length_px;
+    let length_px = length(along_px);
+    let along = select(vec2<f32>(1.0, 0.0), along_px / max(length_px, 1e-6), length_px > 1e-6);
     let across = vec2<f32>(-along.y, along.x);
     // Two triangles: corners 0 1 2 and 3 2 1; bit 0 picks the end, bit 1 the side.
     let corner = select(index, 6u - index, index >= 3u);
     let at_end = (corner & 1u) == 1u;
     let side = select(-1.0, 1.0, (corner & 2u) == 2u);
-    let reach = HALF_WIDTH + 1.0;
-    let cap = along * select(-HALF_WIDTH, HALF_WIDTH, at_end);
+    let reach = half_width + 1.0;
+    let cap = along * select(-half_width, half_width, at_end);
     let clip = select(from_clip, to_clip, at_end);
     let offset = (across * side * reach + cap) / half_viewport;
-    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, clip.zw), side * reach);
+    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, clip.zw), side * reach, color, half_width);
 }
 
 @fragment
 fn line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    let coverage = 1.0 - smoothstep(HALF_WIDTH - 0.5, HALF_WIDTH + 0.5, abs(in.across));
-    return vec4<f32>(CRACK_COLOR, coverage);
+    let coverage = 1.0 - smoothstep(in.half_width - 0.5, in.half_width + 0.5, abs(in.across));
+    return vec4<f32>(in.color, coverage);
 }

@@ -21,6 +21,8 @@ struct Varyings {
     // Barycentric coordinates in the drawn triangle; all 1 where they are not known.
     @location(4) corner: vec3<f32>,
     @location(5) @interpolate(flat) edge_kinds: vec3<u32>,
+    // 1 where the drawn triangle faces away from the side that its patch faces.
+    @location(6) @interpolate(flat) folded: u32,
 }
 
 fn varyings(
@@ -46,6 +48,24 @@ fn varyings(
     return out;
 }
 
+fn facing(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec3<f32> {
+    return cross(b - a, c - a);
+}
+
+// As in src/measure/folds.rs, in f32.
+fn is_folded(patch_index: u32, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
+    let at = patches[patch_index].points;
+    let patch_facing = facing(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
+    let own = facing(a, b, c);
+    let longest = max(max(distance(a, b), distance(b, c)), distance(c, a));
+    return dot(own, patch_facing) < 0.0 && length(own) > 8.0 * frame.ulp * longest;
+}
+
+fn vertex_position(index: u32) -> vec3<f32> {
+    let vertex = vertices[indices[index]];
+    return vec3<f32>(vertex.x, vertex.y, vertex.z);
+}
+
 fn unit_corner(k: u32) -> vec3<f32> {
     return vec3<f32>(f32(k == 0u), f32(k == 1u), f32(k == 2u));
 }
@@ -66,7 +86,13 @@ fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let key = vec2<u32>(vertex.key0, vertex.key1);
     let position = vec3<f32>(vertex.x, vertex.y, vertex.z);
     let normal = unpack_normal(vertex.normal);
-    return varyings(position, normal, vertex.uv, key_patch(key), key_uv(key), unit_corner(index % 3u));
+    var out = varyings(position, normal, vertex.uv, key_patch(key), key_uv(key), unit_corner(index % 3u));
+    if (frame.overlays & OVERLAY_FOLDS) != 0u {
+        let first = index - index % 3u;
+        let a = vertex_position(first);
+        out.folded = u32(is_folded(key_patch(key), a, vertex_position(first + 1u), vertex_position(first + 2u)));
+    }
+    return out;
 }
 
 @vertex
@@ -77,6 +103,9 @@ fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let domain = vec2<u32>(select(0u, FIXED_ONE, k == 0u), select(0u, FIXED_ONE, k == 1u));
     return varyings(position, corner.normal, corner.uv, index / 3u, domain, unit_corner(k));
 }
+
+// As the window's legend has it: src/render/layout.rs.
+const FOLD_COLOR: vec3<f32> = vec3<f32>(0.515, 0.061, 1.0);
 
 // Colours of edge kinds, as the window's legend has them: src/render/layout.rs.
 fn edge_color(kind: u32) -> vec3<f32> {
@@ -124,6 +153,9 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     var base = material.base_color.rgb * texel.rgb;
     if (frame.overlays & OVERLAY_BARYCENTRIC) != 0u {
         base = clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0));
+    }
+    if in.folded != 0u {
+        base = FOLD_COLOR;
     }
     let normal = normalize(select(-in.normal, in.normal, front));
     var color = shade(base, normal, in.position);

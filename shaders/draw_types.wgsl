@@ -11,6 +11,8 @@ struct Frame {
     viewport: vec2<f32>,
     // Bits of OVERLAY_*.
     overlays: u32,
+    // One unit in the last place of the mesh's largest coordinate.
+    ulp: f32,
 }
 
 struct Material {
@@ -22,3 +24,4 @@ const OVERLAY_WIREFRAME: u32 = 1u;
 const OVERLAY_PATCHES: u32 = 2u;
 const OVERLAY_BARYCENTRIC: u32 = 4u;
 const OVERLAY_ADJACENCY: u32 = 8u;
+const OVERLAY_FOLDS: u32 = 16u;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
-use crate::measure::{Cracks, Rims};
+use crate::measure::{AskedFactors, Measured, Survey};
 use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
-use crate::render::{Camera, Renderer, Scene, Target};
+use crate::render::{Camera, LeakCounter, Renderer, Scene, Target, is_beyond_near};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex};
 
@@ -44,20 +44,15 @@ pub struct Engine {
     pub gpu: Gpu,
     pub pipelines: Arc<ComputePipelines>,
     pub renderer: Arc<Renderer>,
-}
-
-/// What was emitted for a view, measured.
-#[derive(Clone, Debug)]
-pub struct Measured {
-    pub patches_culled: u32,
-    pub cracks: Cracks,
+    leaks: Arc<LeakCounter>,
 }
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
         let pipelines = Arc::new(ComputePipelines::new(&gpu));
         let renderer = Arc::new(Renderer::new(&gpu));
-        Self { gpu, pipelines, renderer }
+        let leaks = Arc::new(LeakCounter::new(&gpu));
+        Self { gpu, pipelines, renderer, leaks }
     }
 
     /// An engine on the machine's best adapter, without a window.
@@ -150,14 +145,47 @@ impl Engine {
         Ok(factors)
     }
 
-    /// Reads back the rims of all patches and compares them along every edge. The counts must be known.
+    /// The factors that LOD gave, before the tessellator clamped and rounded them.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn asked_factors(&self, scene: &Scene) -> Result<AskedFactors, GpuError> {
+        let (buffer, edges) = scene.tessellator.edge_factors();
+        let mut factors = cast::<f32>(&read_buffer(&self.gpu, buffer, 0, buffer.size())?);
+        factors.truncate(scene.tessellator.buffers().factor_count as usize);
+        Ok(AskedFactors::new(edges, factors))
+    }
+
+    /// Reads back all that is emitted and measures it. The counts must be known.
     ///
     /// # Errors
     /// The device was lost.
     pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
-        let mut rims = Rims::new(self.patch_factors(scene)?);
-        self.read_chunks(scene, false, |first_patch, vertices, _| rims.take(first_patch, vertices))?;
-        Ok(Measured { patches_culled: rims.culled(), cracks: rims.cracks(scene.tessellator.topology()) })
+        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.asked_factors(scene)?);
+        self.read_chunks(scene, true, |first, vertices, triangles| survey.take(first, vertices, triangles))?;
+        Ok(survey.finish())
+    }
+
+    /// Pixels through which one looks into what should be closed, seen from `camera`: see [`LeakCounter`]. None
+    /// where that says nothing: the mesh is open, or reaches the near plane. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn leaks(
+        &self,
+        scene: &mut Scene,
+        measured: &Measured,
+        size: [u32; 2],
+        camera: &Camera,
+    ) -> Result<Option<u64>, GpuError> {
+        let viewport = glam::vec2(size[0] as f32, size[1] as f32);
+        let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
+        if !scene.tessellator.topology().is_closed_and_oriented() || !is_beyond_near(clip_from_object, measured.extent)
+        {
+            return Ok(None);
+        }
+        self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)
     }
 
     /// The whole tessellated mesh, read back. The counts must be known.
@@ -165,7 +193,11 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn read_tessellated(&self, scene: &mut Scene) -> Result<Tessellated, GpuError> {
-        let mut out = Tessellated { patch_factors: self.patch_factors(scene)?, ..Tessellated::default() };
+        let mut out = Tessellated {
+            patch_factors: self.patch_factors(scene)?,
+            edge_factors: self.asked_factors(scene)?.into_factors(),
+            ..Tessellated::default()
+        };
         self.read_chunks(scene, true, |_, vertices, triangles| {
             let base = out.vertices.len() as u32;
             out.vertices.extend_from_slice(vertices);

@@ -1,30 +1,29 @@
-//! Cracks of what is shown, measured beside the window: chunk after chunk is copied back without waiting, and compared
-//! on a thread of its own.
+//! What is shown, measured beside the window: chunk after chunk is copied back without waiting, and looked at on a
+//! thread of its own.
 
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
-use crate::measure::{Cracks, Rims};
-use crate::mesh::{Progress, Topology};
+use crate::measure::{AskedFactors, Cracks, Measured, Survey};
+use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
-use crate::tessellate::{PatchFactors, Vertex};
+use crate::tessellate::{Edges, PatchFactors, Vertex};
 
-/// What is known about the cracks of the shown tessellation.
+/// What is known about the shown tessellation.
 #[derive(Default)]
 pub struct Measuring {
     /// Document and tessellation that were last asked for.
     of: Option<(u64, u64)>,
     copying: Option<Copying>,
     comparing: Option<Comparing>,
-    found: Option<Found>,
+    found: Option<Measured>,
     /// Counts results, and their absence.
     pub generation: u64,
 }
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<Found>,
+    found: Receiver<Measured>,
     wanted: Progress,
 }
 
@@ -34,36 +33,40 @@ impl Drop for Comparing {
     }
 }
 
-struct Found {
-    cracks: Cracks,
-    culled: u32,
-}
-
 /// A readback under way. Its parts go to the comparing thread in order.
 struct Copying {
     staging: wgpu::Buffer,
-    first_patch: Option<u32>,
+    part: PartKind,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
     next_chunk: usize,
     parts: Sender<Part>,
 }
 
+/// What a copy holds.
+#[derive(Clone, Copy)]
+enum PartKind {
+    /// As many bytes of patches' factors, then of those that LOD gave.
+    Factors { patch_bytes: usize, edges: Edges },
+    /// The output of patches from `first_patch` on: as many bytes of vertices, then indices.
+    Chunk { first_patch: u32, vertex_bytes: usize },
+}
+
+/// A copy on its way to the comparing thread.
 enum Part {
-    Factors(Vec<u8>),
-    Vertices(u32, Vec<u8>),
+    Copied(PartKind, Vec<u8>),
     /// All there is.
     End,
 }
 
 impl Measuring {
+    /// What is shown, once measured.
+    pub fn found(&self) -> Option<&Measured> {
+        self.found.as_ref()
+    }
+
     /// The cracks of what is shown, once measured.
     pub fn cracks(&self) -> Option<&Cracks> {
         self.found.as_ref().map(|found| &found.cracks)
-    }
-
-    /// How many patches emit nothing, once measured.
-    pub fn culled(&self) -> Option<u32> {
-        self.found.as_ref().map(|found| found.culled)
     }
 
     pub fn is_busy(&self) -> bool {
@@ -101,9 +104,10 @@ impl Measuring {
         let (parts, received) = channel();
         let (sender, found) = channel();
         let wanted = Progress::default();
-        let (topology, still_wanted) = (scene.tessellator.topology().clone(), wanted.clone());
+        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let still_wanted = wanted.clone();
         std::thread::spawn(move || {
-            if let Some(result) = compare(&received, &topology, &still_wanted) {
+            if let Some(result) = survey(&received, &mesh, &topology, &still_wanted) {
                 let _ = sender.send(result);
             }
         });
@@ -122,12 +126,8 @@ impl Measuring {
         }
         let Some(copying) = self.copying.take() else { return Ok(()) };
         let bytes = mapped_bytes(&copying.staging)?;
-        let part = match copying.first_patch {
-            None => Part::Factors(bytes),
-            Some(first_patch) => Part::Vertices(first_patch, bytes),
-        };
         // The comparing thread ends early only when the measurement was replaced.
-        let _ = copying.parts.send(part);
+        let _ = copying.parts.send(Part::Copied(copying.part, bytes));
         if copying.next_chunk < scene.tessellator.chunk_count() {
             self.copying = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
         } else {
@@ -138,34 +138,42 @@ impl Measuring {
 }
 
 fn copy_factors(gpu: &Gpu, scene: &Scene, parts: Sender<Part>) -> Copying {
-    let mut timing = Timing::Off;
-    let mut recorder = Recorder::new(gpu, &mut timing);
     let item = size_of::<PatchFactors>() as u64;
-    let total: u64 = scene.tessellator.patch_factors().map(|(_, count)| u64::from(count) * item).sum();
-    let staging = staging_buffer(gpu, total.max(4));
-    let mut offset = 0;
-    for (buffer, count) in scene.tessellator.patch_factors() {
-        let bytes = u64::from(count) * item;
-        recorder.encoder().copy_buffer_to_buffer(buffer, 0, &staging, offset, bytes);
-        offset += bytes;
-    }
-    recorder.submit();
-    let mapped = map(&staging);
-    Copying { staging, first_patch: None, mapped, next_chunk: 0, parts }
+    let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, u64::from(count) * item));
+    let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes).sum();
+    let (asked, edges) = scene.tessellator.edge_factors();
+    let asked_bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
+    let staging = copy(gpu, buffers.chain([(asked, asked_bytes)]));
+    let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges };
+    Copying { mapped: map(&staging), staging, part, next_chunk: 0, parts }
 }
 
 fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: Sender<Part>) -> Copying {
     let mut timing = Timing::Off;
     let mut recorder = Recorder::new(gpu, &mut timing);
     scene.tessellator.emit(&mut recorder, index);
-    let chunk = scene.tessellator.chunk(index);
-    let bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
-    let staging = staging_buffer(gpu, bytes.max(4));
-    recorder.encoder().copy_buffer_to_buffer(chunk.vertices, 0, &staging, 0, bytes);
-    let first_patch = Some(chunk.chunk.first_patch);
     recorder.submit();
-    let mapped = map(&staging);
-    Copying { staging, first_patch, mapped, next_chunk: index + 1, parts }
+    let chunk = scene.tessellator.chunk(index);
+    let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
+    let index_bytes = u64::from(chunk.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
+    let staging = copy(gpu, [(chunk.vertices, vertex_bytes), (chunk.indices, index_bytes)].into_iter());
+    let part = PartKind::Chunk { first_patch: chunk.chunk.first_patch, vertex_bytes: vertex_bytes as usize };
+    Copying { mapped: map(&staging), staging, part, next_chunk: index + 1, parts }
+}
+
+/// Copies the starts of buffers, one after another, where the host can read them.
+fn copy<'a>(gpu: &Gpu, buffers: impl Iterator<Item = (&'a wgpu::Buffer, u64)> + Clone) -> wgpu::Buffer {
+    let mut timing = Timing::Off;
+    let mut recorder = Recorder::new(gpu, &mut timing);
+    let total: u64 = buffers.clone().map(|(_, bytes)| bytes).sum();
+    let staging = staging_buffer(gpu, total.max(4));
+    let mut offset = 0;
+    for (buffer, bytes) in buffers {
+        recorder.encoder().copy_buffer_to_buffer(buffer, 0, &staging, offset, bytes);
+        offset += bytes;
+    }
+    recorder.submit();
+    staging
 }
 
 fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
@@ -176,20 +184,22 @@ fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
     mapped
 }
 
-/// Puts the parts together, and compares once all are there. `None` if no longer wanted.
-fn compare(parts: &Receiver<Part>, topology: &Arc<Topology>, wanted: &Progress) -> Option<Found> {
-    let Ok(Part::Factors(factors)) = parts.recv() else { return None };
-    let mut factors: Vec<PatchFactors> = bytemuck::pod_collect_to_vec(&factors);
-    factors.truncate(topology.patches.len());
-    let mut rims = Rims::new(factors);
+/// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted.
+fn survey(parts: &Receiver<Part>, mesh: &Mesh, topology: &Topology, wanted: &Progress) -> Option<Measured> {
+    let Ok(Part::Copied(PartKind::Factors { patch_bytes, edges }, bytes)) = parts.recv() else { return None };
+    let (factors, asked) = bytes.split_at(patch_bytes);
+    let asked = AskedFactors::new(edges, bytemuck::pod_collect_to_vec(asked));
+    let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
     loop {
         wanted.check().ok()?;
         match parts.recv().ok()? {
-            Part::Vertices(first_patch, bytes) => {
-                rims.take(first_patch, &bytemuck::pod_collect_to_vec::<u8, Vertex>(&bytes));
+            Part::Copied(PartKind::Chunk { first_patch, vertex_bytes }, bytes) => {
+                let (vertices, indices) = bytes.split_at(vertex_bytes);
+                let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
+                survey.take(first_patch, &vertices, &bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
             }
-            Part::Factors(_) | Part::End => break,
+            Part::Copied(PartKind::Factors { .. }, _) | Part::End => break,
         }
     }
-    Some(Found { culled: rims.culled(), cracks: rims.cracks(topology) })
+    Some(survey.finish())
 }

@@ -224,7 +224,8 @@ impl App {
             && document.scene.tessellator.is_counted()
             && self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?
         {
-            let lines = self.measuring.cracks().map(Cracks::lines).unwrap_or_default();
+            let topology = &document.loaded.topology;
+            let lines = self.measuring.found().map(|found| found.crack_lines(topology)).unwrap_or_default();
             document.scene.set_lines(&self.engine.gpu, &lines);
             self.viewport.outdated = self.settings.overlays.cracks;
         }

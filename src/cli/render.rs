@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{CliError, SurfaceOptions, file_error, load, options, to_json, write_text};
-use crate::engine::{Engine, Loaded, Measured};
+use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
-use crate::measure::{compare, ulp};
+use crate::measure::{Measured, compare, ulp};
 use crate::mesh::{EdgeCounts, Source};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Overlay, Settings};
@@ -89,7 +89,9 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
     let measured = if settings.overlays.cracks || args.stats.is_some() {
         let measured = engine.measure(&mut scene)?;
-        scene.set_lines(&engine.gpu, &measured.cracks.lines());
+        if settings.overlays.cracks {
+            scene.set_lines(&engine.gpu, &measured.crack_lines(&loaded.topology));
+        }
         Some(measured)
     } else {
         None
@@ -100,7 +102,8 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 
     if let (Some(path), Some(measured)) = (&args.stats, measured) {
         let passes = engine.time(&mut scene, &target, &camera, &settings)?;
-        let stats = Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes);
+        let leaks = engine.leaks(&mut scene, &measured, target.size, &camera)?;
+        let stats = Stats { leaks, ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes) };
         write_text(path, &to_json(&stats)?)?;
     }
     match args.reference.as_deref().zip(reference) {
@@ -172,6 +175,12 @@ struct Stats {
     vertices_out: u64,
     bytes: Bytes,
     cracks: CrackStats,
+    /// Px through which one looks into the mesh; none if it is open, or reaches the near plane.
+    leaks: Option<u64>,
+    /// Triangles that face away from the side that their patch faces.
+    folds: u64,
+    /// Vertices with a position or uv that is no finite number.
+    not_finite: u64,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -189,7 +198,10 @@ struct Bytes {
 #[derive(Debug, Serialize)]
 struct CrackStats {
     edge_points: u64,
+    edges_compared: u64,
     different_bits: u64,
+    different_factors: u64,
+    different_normals: u64,
     /// Object units.
     max_gap: f64,
     /// In units of the last place of the mesh's largest coordinate.
@@ -232,12 +244,18 @@ impl Stats {
             },
             cracks: CrackStats {
                 edge_points: cracks.edge_points,
+                edges_compared: cracks.edges_compared,
                 different_bits: cracks.different_bits,
+                different_factors: cracks.different_factors,
+                different_normals: cracks.different_normals,
                 max_gap: cracks.max_gap(),
                 max_gap_ulp: cracks.max_gap() / ulp(topology),
                 max_gap_px: cracks.max_gap_px(camera.clip_from_object(viewport, &scene.bounds), viewport),
                 edges: cracks.edges.len() as u64,
             },
+            leaks: None,
+            folds: measured.folds,
+            not_finite: measured.not_finite,
             ms,
         }
     }

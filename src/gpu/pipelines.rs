@@ -15,7 +15,7 @@ const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 const ROOMS: [&str; 6] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, CULL, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
-pub const SHADERS: [(&str, &[&str]); 9] = [
+pub const SHADERS: [(&str, &[&str]); 10] = [
     ("nets", &[LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
     ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
@@ -24,6 +24,7 @@ pub const SHADERS: [(&str, &[&str]); 9] = [
     ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
     ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
     ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
+    ("leaks", &[include_str!("../../shaders/draw_leaks.wgsl")]),
     ("lines", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_lines.wgsl")]),
 ];
 

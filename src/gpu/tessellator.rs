@@ -10,7 +10,7 @@ use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
 use crate::mesh::{Mesh, Sharing, Topology};
-use crate::tessellate::{Clip, Inputs, Lod, sharing};
+use crate::tessellate::{Clip, Edges, Inputs, Lod, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -346,8 +346,14 @@ impl Tessellator {
     }
 
     /// The factors of all patches, slab by slab.
-    pub fn patch_factors(&self) -> impl Iterator<Item = (&wgpu::Buffer, u32)> {
+    pub fn patch_factors(&self) -> impl Iterator<Item = (&wgpu::Buffer, u32)> + Clone {
         self.slabs.iter().map(|slab| (&slab.patch_factors, slab.slab.patch_count))
+    }
+
+    /// The factors that LOD gave, and whether they are the edges' or the sides'.
+    pub fn edge_factors(&self) -> (&wgpu::Buffer, Edges) {
+        let published = self.buffers.sharing.is_per_patch();
+        (&self.buffers.edge_factors, if published { Edges::AsPublished } else { Edges::PerEdge })
     }
 
     pub fn buffers(&self) -> &MeshBuffers {

@@ -1,18 +1,10 @@
-//! Cracks: for every edge, whether all sides put its points at the same place, to the last bit.
+//! Cracks: for every edge, whether all its sides agree on it to the last bit.
 
-use glam::{Mat4, Vec2, Vec3};
+use glam::{DVec3, Mat4, Vec2, Vec3};
 
-use crate::mesh::Topology;
-use crate::render::{LineSegment, project};
-use crate::tessellate::{PatchFactors, Vertex, outer_count, point_count, segments};
-
-/// The outer ring of every patch, gathered from the emitted vertices chunk by chunk.
-pub struct Rims {
-    factors: Vec<PatchFactors>,
-    /// Ring of patch p: `positions[starts[p]..starts[p + 1]]`, in the tessellator's order.
-    starts: Vec<u32>,
-    positions: Vec<[f32; 3]>,
-}
+use super::rims::{EdgeSide, RimPoint, Rims};
+use crate::mesh::{Mesh, Topology};
+use crate::render::project;
 
 /// What was found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,25 +12,33 @@ pub struct Cracks {
     /// Points of edges that were compared: on every edge with several sides, each point once for each side after the
     /// first.
     pub edge_points: u64,
-    /// Those that differ in at least one bit of one coordinate.
+    /// Edges that were compared: those with several sides.
+    pub edges_compared: u64,
+    /// Points whose positions differ in at least one bit of one coordinate.
     pub different_bits: u64,
-    /// Edges with such a point, the widest gap first.
+    /// Edges for which LOD gave the sides factors that differ in at least one bit.
+    pub different_factors: u64,
+    /// Points whose normals differ in at least one bit though the sides' own normals agree at both ends.
+    pub different_normals: u64,
+    /// Edges with any such difference, the widest gap first.
     pub edges: Vec<CrackedEdge>,
 }
 
 /// An edge whose sides disagree.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrackedEdge {
     /// Index in [`Topology::edges`].
     pub edge: u32,
-    /// Points that differ.
+    /// Points whose positions differ.
     pub different_bits: u32,
-    /// The largest distance between two sides' positions of one point, in object units.
+    /// Points whose normals differ, though they should not.
+    pub different_normals: u32,
+    pub different_factors: bool,
+    /// The largest distance between two sides, in object units: between their positions of one point, or if they have
+    /// different numbers of points, from a point of one to the other's line.
     pub gap: f64,
-    /// Those two positions.
+    /// The two positions so far apart.
     pub widest: [Vec3; 2],
-    /// The points of every side that differs from those before it, in the edge's direction.
-    pub sides: Vec<Vec<Vec3>>,
 }
 
 /// One unit in the last place of the largest coordinate in magnitude, in object units.
@@ -47,123 +47,35 @@ pub fn ulp(topology: &Topology) -> f64 {
     f64::from(largest.next_up()) - f64::from(largest)
 }
 
-impl Rims {
-    /// Room for the rims of patches with these factors.
-    pub fn new(factors: Vec<PatchFactors>) -> Self {
-        let mut starts = vec![0];
-        let mut end = 0;
-        for &patch in &factors {
-            end += outer_count(patch);
-            starts.push(end);
-        }
-        Self { factors, starts, positions: vec![[0.0; 3]; end as usize] }
-    }
-
-    /// Takes the vertices of patches from `first_patch` on; whole patches, in order.
-    pub fn take(&mut self, first_patch: u32, vertices: &[Vertex]) {
-        let mut rest = vertices;
-        for patch in first_patch as usize..self.factors.len() {
-            let count = point_count(self.factors[patch]) as usize;
-            if rest.len() < count {
-                break;
-            }
-            let (own, later) = rest.split_at(count);
-            let ring = &mut self.positions[self.starts[patch] as usize..self.starts[patch + 1] as usize];
-            ring.iter_mut().zip(own).for_each(|(to, vertex)| *to = vertex.position);
-            rest = later;
-        }
-    }
-
-    /// How many patches emit nothing.
-    pub fn culled(&self) -> u32 {
-        self.starts.windows(2).filter(|ring| ring[0] == ring[1]).count() as u32
-    }
-
-    /// The points of side `side` (from corner `side` to the next) of a patch, in the edge's direction; none if the patch
-    /// emits nothing.
-    fn side(&self, patch: u32, side: usize, reversed: bool) -> Option<Vec<[f32; 3]>> {
-        let patch = patch as usize;
-        let ring = &self.positions[self.starts[patch] as usize..self.starts[patch + 1] as usize];
-        if ring.is_empty() {
-            return None;
-        }
-        // The ring starts with factor 0's edge, which is side 1.
-        let lengths = self.factors[patch].outside.map(segments);
-        let factor = (side + 2) % 3;
-        let first: u32 = lengths[..factor].iter().sum();
-        let mut points: Vec<_> = (first..=first + lengths[factor]).map(|p| ring[p as usize % ring.len()]).collect();
-        if reversed {
-            points.reverse();
-        }
-        Some(points)
-    }
-
+impl Cracks {
     /// Compares every edge's sides.
-    pub fn cracks(&self, topology: &Topology) -> Cracks {
-        let mut cracks = Cracks::default();
-        for (index, edge) in topology.edges.iter().enumerate() {
+    pub fn find(mesh: &Mesh, topology: &Topology, rims: &Rims) -> Self {
+        let mut cracks = Self::default();
+        for (index, edge) in (0..).zip(&topology.edges) {
             if edge.sides.len() < 2 {
                 continue;
             }
-            let sides = edge.sides.clone().filter_map(|side| {
-                let side = &topology.sides[side as usize];
-                self.side(side.patch, usize::from(side.index), side.reversed)
-            });
-            let sides: Vec<_> = sides.collect();
-            let (points, crack) = compare_sides(index as u32, &sides);
-            cracks.edge_points += points;
-            if let Some(crack) = crack {
+            cracks.edges_compared += 1;
+            let sides = rims.edge(topology, index);
+            cracks.edge_points += points_compared(&sides);
+            let different_normals = different_normals(mesh, topology, index, &sides);
+            if let Some(crack) = compare(index, &sides, different_normals) {
                 cracks.different_bits += u64::from(crack.different_bits);
+                cracks.different_normals += u64::from(crack.different_normals);
+                cracks.different_factors += u64::from(crack.different_factors);
                 cracks.edges.push(crack);
             }
         }
-        cracks.edges.sort_by(|a, b| b.gap.total_cmp(&a.gap));
+        let bits = |edge: &CrackedEdge| (edge.different_bits, edge.different_normals);
+        cracks.edges.sort_by(|a, b| b.gap.total_cmp(&a.gap).then(bits(b).cmp(&bits(a))));
         cracks
     }
-}
 
-/// Distinct sides of one edge that are compared with one another; more are compared with the first alone.
-const PAIRED_SIDES: usize = 64;
-
-/// How many points were compared, and the crack if any differs.
-fn compare_sides(edge: u32, sides: &[Vec<[f32; 3]>]) -> (u64, Option<CrackedEdge>) {
-    let Some((first, others)) = sides.split_first() else { return (0, None) };
-    let compared = others.iter().map(|other| first.len().max(other.len()) as u64).sum();
-    let different: u64 = others.iter().map(|other| different_points(first, other)).sum();
-    if different == 0 {
-        return (compared, None);
+    /// Edges with a position or a factor that differs: those that can be seen through.
+    pub fn cracked(&self) -> impl Iterator<Item = &CrackedEdge> {
+        self.edges.iter().filter(|edge| edge.different_bits > 0 || edge.different_factors)
     }
-    let mut distinct: Vec<&Vec<[f32; 3]>> = vec![first];
-    for other in others {
-        if distinct.iter().take(PAIRED_SIDES).all(|known| different_points(known, other) > 0) {
-            distinct.push(other);
-        }
-    }
-    let (mut gap, mut widest) = (0.0, [Vec3::ZERO; 2]);
-    for (index, side) in distinct.iter().enumerate() {
-        let earlier = if index < PAIRED_SIDES { index } else { 1 };
-        for other in &distinct[..earlier] {
-            for (a, b) in side.iter().zip(*other).map(|(a, b)| (Vec3::from(*a), Vec3::from(*b))) {
-                let distance = a.as_dvec3().distance(b.as_dvec3());
-                // Positions that are not finite are as far apart as can be.
-                let distance = if distance.is_nan() { f64::INFINITY } else { distance };
-                if distance >= gap {
-                    (gap, widest) = (distance, [a, b]);
-                }
-            }
-        }
-    }
-    let sides = distinct.iter().map(|side| side.iter().copied().map(Vec3::from).collect()).collect();
-    (compared, Some(CrackedEdge { edge, different_bits: different as u32, gap, widest, sides }))
-}
 
-/// Points that differ in at least one bit; those that one side doesn't have differ from whatever is there.
-fn different_points(a: &[[f32; 3]], b: &[[f32; 3]]) -> u64 {
-    let differ = |(a, b): &(&[f32; 3], &[f32; 3])| a.map(f32::to_bits) != b.map(f32::to_bits);
-    a.iter().zip(b).filter(differ).count() as u64 + a.len().abs_diff(b.len()) as u64
-}
-
-impl Cracks {
     /// The widest gap, in object units.
     pub fn max_gap(&self) -> f64 {
         self.edges.first().map_or(0.0, |edge| edge.gap)
@@ -171,79 +83,219 @@ impl Cracks {
 
     /// The widest gap on screen, in px, of those that are the widest of their edge.
     pub fn max_gap_px(&self, clip_from_object: Mat4, viewport: Vec2) -> f64 {
-        let on_screen = |edge: &CrackedEdge| {
-            let [a, b] = edge.widest.map(|p| project(clip_from_object, viewport, p));
-            a.zip(b).map_or(0.0, |(a, b)| f64::from(a.distance(b)))
-        };
-        self.edges.iter().map(on_screen).fold(0.0, f64::max)
+        self.edges.iter().map(|edge| edge.gap_px(clip_from_object, viewport)).fold(0.0, f64::max)
     }
+}
 
-    /// Every side of every cracked edge, as lines.
-    pub fn lines(&self) -> Vec<LineSegment> {
-        let sides = self.edges.iter().flat_map(|edge| &edge.sides);
-        let segments = sides.flat_map(|side| side.windows(2));
-        segments.map(|ends| LineSegment { start: ends[0].to_array(), end: ends[1].to_array() }).collect()
+impl CrackedEdge {
+    /// The gap on screen, in px; 0 behind the eye.
+    pub fn gap_px(&self, clip_from_object: Mat4, viewport: Vec2) -> f64 {
+        let [a, b] = self.widest.map(|p| project(clip_from_object, viewport, p));
+        a.zip(b).map_or(0.0, |(a, b)| f64::from(a.distance(b)))
     }
+}
+
+/// Distinct sides of one edge that are compared with one another; more are compared with the first alone.
+const PAIRED_SIDES: usize = 64;
+
+fn points_compared(sides: &[EdgeSide]) -> u64 {
+    let Some((first, others)) = sides.split_first() else { return 0 };
+    others.iter().map(|other| first.points.len().max(other.points.len()) as u64).sum()
+}
+
+/// The crack, if anything differs.
+fn compare(edge: u32, sides: &[EdgeSide], different_normals: u32) -> Option<CrackedEdge> {
+    let (first, others) = sides.split_first()?;
+    let different_bits: u32 = others.iter().map(|other| different(first, other, same_position)).sum();
+    let differs = |other: &EdgeSide| other.factor.to_bits() != first.factor.to_bits() || other.word != first.word;
+    let different_factors = others.iter().any(differs);
+    if different_bits == 0 && different_normals == 0 && !different_factors {
+        return None;
+    }
+    let (gap, widest) = widest(sides);
+    Some(CrackedEdge { edge, different_bits, different_normals, different_factors, gap, widest })
+}
+
+/// The two positions that are farthest apart though they belong together, and how far, over all pairs of sides.
+fn widest(sides: &[EdgeSide]) -> (f64, [Vec3; 2]) {
+    let mut distinct: Vec<&EdgeSide> = Vec::new();
+    for side in sides {
+        if distinct.iter().take(PAIRED_SIDES).all(|known| different(known, side, same_position) > 0) {
+            distinct.push(side);
+        }
+    }
+    let (mut gap, mut at) = (0.0, [Vec3::ZERO; 2]);
+    for (index, side) in distinct.iter().enumerate() {
+        let earlier = if index < PAIRED_SIDES { index } else { 1 };
+        for other in &distinct[..earlier] {
+            let (distance, ends) = farthest(side, other);
+            if distance >= gap {
+                (gap, at) = (distance, ends);
+            }
+        }
+    }
+    (gap, at)
+}
+
+fn farthest(a: &EdgeSide, b: &EdgeSide) -> (f64, [Vec3; 2]) {
+    let larger = |x: (f64, [Vec3; 2]), y: (f64, [Vec3; 2])| if y.0 >= x.0 { y } else { x };
+    let none = (0.0, [Vec3::ZERO; 2]);
+    if a.points.len() == b.points.len() {
+        return a.positions().zip(b.positions()).map(|(p, q)| (distance(p, q), [p, q])).fold(none, larger);
+    }
+    let from_line = |line: &EdgeSide, p: Vec3| {
+        let line: Vec<Vec3> = line.positions().collect();
+        let near = line.windows(2).map(|ends| nearest(ends[0], ends[1], p)).map(|q| (distance(p, q), [p, q]));
+        near.fold((f64::INFINITY, [p, p]), |x, y| if y.0 < x.0 { y } else { x })
+    };
+    let both = a.positions().map(|p| from_line(b, p)).chain(b.positions().map(|p| from_line(a, p)));
+    both.fold(none, larger)
+}
+
+/// In object units; positions that are not finite are as far apart as can be.
+fn distance(a: Vec3, b: Vec3) -> f64 {
+    let distance = a.as_dvec3().distance(b.as_dvec3());
+    if distance.is_nan() { f64::INFINITY } else { distance }
+}
+
+/// The point of a line from `a` to `b` that is nearest to `p`.
+fn nearest(a: Vec3, b: Vec3, p: Vec3) -> Vec3 {
+    let [a, b, p]: [DVec3; 3] = [a, b, p].map(Vec3::as_dvec3);
+    let (along, length_squared) = ((p - a).dot(b - a), (b - a).length_squared());
+    let t = if length_squared > 0.0 { (along / length_squared).clamp(0.0, 1.0) } else { 0.0 };
+    a.lerp(b, t).as_vec3()
+}
+
+fn same_position(a: &RimPoint, b: &RimPoint) -> bool {
+    a.position.map(f32::to_bits) == b.position.map(f32::to_bits)
+}
+
+/// Points that are not the same; those that one side doesn't have differ from whatever is there.
+fn different(a: &EdgeSide, b: &EdgeSide, same: fn(&RimPoint, &RimPoint) -> bool) -> u32 {
+    let (a, b) = (&a.points, &b.points);
+    let differ = a.iter().zip(b).filter(|(a, b)| !same(a, b)).count();
+    (differ + a.len().abs_diff(b.len())) as u32
+}
+
+/// Points whose normals differ, over the sides whose source normals are those of an earlier side at both ends.
+fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeSide]) -> u32 {
+    let own = topology.edges[edge as usize].sides.clone().map(|side| &topology.sides[side as usize]);
+    let source = |patch: u32| {
+        let side = own.clone().find(|side| side.patch == patch);
+        side.map(|side| side.corners.map(|c| mesh.corners[c as usize].normal.to_array().map(f32::to_bits)))
+    };
+    let sources: Vec<_> = sides.iter().map(|side| source(side.patch)).collect();
+    let mut count = 0;
+    for (index, side) in sides.iter().enumerate() {
+        // Among many sides of one edge, the first few speak for the rest.
+        let earlier = sources[..index.min(PAIRED_SIDES)].iter().position(|known| *known == sources[index]);
+        if let Some(earlier) = earlier {
+            count += different(&sides[earlier], side, |a, b| a.normal == b.normal);
+        }
+    }
+    count
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::AskedFactors;
     use crate::mesh::Shape;
     use crate::settings::Settings;
-    use crate::tessellate::{Lod, LodView, Partitioning, Surface, tessellate};
+    use crate::tessellate::{Edges, Lod, LodView, Partitioning, Surface, tessellate};
 
-    fn rims(shape: Shape, surface: Surface, partitioning: Partitioning) -> (Topology, Rims) {
+    /// A view into which every shape fits, at an angle that treats no edge as its neighbour.
+    fn view() -> LodView {
+        let turned = Mat4::from_rotation_y(0.4) * Mat4::from_rotation_x(0.3) * 0.3;
+        let clip_from_object = Mat4 { w_axis: glam::vec4(0.1, 0.0, 0.5, 1.0), ..turned };
+        LodView { clip_from_object, half_viewport: Vec2::splat(300.0) }
+    }
+
+    fn rims(shape: Shape, settings: Settings) -> (Mesh, Topology, Rims) {
         let mesh = shape.build();
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
-        let view = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::splat(300.0) };
-        let settings = Settings { surface, partitioning, lod: Lod::Paper, ..Settings::default() };
-        let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
-        let mut rims = Rims::new(out.patch_factors);
+        let inputs = Settings { lod: Lod::Paper, ..settings }.inputs(view());
+        let out = tessellate(&mesh, &topology, &inputs, None);
+        let mut rims = Rims::new(out.patch_factors, AskedFactors::new(settings.edges, out.edge_factors));
         rims.take(0, &out.vertices);
-        (topology, rims)
+        (mesh, topology, rims)
+    }
+
+    fn cracks(shape: Shape, settings: Settings) -> Cracks {
+        let (mesh, topology, rims) = rims(shape, settings);
+        Cracks::find(&mesh, &topology, &rims)
     }
 
     #[test]
     fn averaging_over_sides_closes_what_split_normals_tear() {
         for partitioning in Partitioning::ALL {
-            let (topology, torn) = rims(Shape::CubeSplit, Surface::Pn, partitioning);
-            let torn = torn.cracks(&topology);
+            let settings = Settings { surface: Surface::Pn, partitioning, ..Settings::default() };
+            let torn = cracks(Shape::CubeSplit, settings);
             assert_eq!(torn.edges.len(), 12, "the cube's own edges, not its faces' diagonals");
             assert!(torn.max_gap() > 0.01);
             for surface in [Surface::Flat, Surface::PnAen] {
-                let (topology, closed) = rims(Shape::CubeSplit, surface, partitioning);
-                let closed = closed.cracks(&topology);
-                assert_eq!((closed.different_bits, closed.edges.len()), (0, 0));
-                assert!(closed.edge_points > 18);
+                let closed = cracks(Shape::CubeSplit, Settings { surface, ..settings });
+                assert_eq!((closed.different_bits, closed.different_normals, closed.different_factors), (0, 0, 0));
+                assert!(closed.edges.is_empty() && closed.edge_points > 18 && closed.edges_compared == 18);
             }
         }
     }
 
     #[test]
-    fn one_bit_of_one_point_is_a_crack() {
-        let (topology, mut rims) = rims(Shape::Torus, Surface::PnAen, Partitioning::FractionalOdd);
-        assert_eq!(rims.cracks(&topology).different_bits, 0);
+    fn as_published_edges_differ_in_their_last_bits() {
+        let published = Settings { edges: Edges::AsPublished, ..Settings::default() };
+        let found = cracks(Shape::Torus, published);
+        let points = found.different_bits as f64 / found.edge_points as f64;
+        let factors = found.different_factors as f64 / found.edges_compared as f64;
+        assert!(points > 0.2 && factors > 0.1, "{points} of points, {factors} of factors");
+        let close = |edge: &CrackedEdge| edge.gap < 1e-5 || edge.different_factors;
+        assert!(found.edges.iter().all(close), "only the last bits: the points themselves are the same");
+    }
+
+    #[test]
+    fn one_bit_of_one_point_or_normal_is_a_crack() {
+        let (mesh, topology, mut rims) = rims(Shape::Torus, Settings::default());
+        assert!(Cracks::find(&mesh, &topology, &rims).edges.is_empty());
         // The second point of patch 5's ring lies inside side 1.
-        let at = rims.starts[5] as usize + 1;
-        rims.positions[at][0] = rims.positions[at][0].next_up();
-        let cracks = rims.cracks(&topology);
+        let point = &mut rims.ring_mut(5)[1];
+        point.position[0] = point.position[0].next_up();
+        let cracks = Cracks::find(&mesh, &topology, &rims);
         let side = topology.patches[5].sides[1];
-        assert_eq!((cracks.different_bits, cracks.edges.len()), (1, 1));
+        assert_eq!((cracks.different_bits, cracks.different_normals, cracks.edges.len()), (1, 0, 1));
         assert_eq!(cracks.edges[0].edge, topology.sides[side as usize].edge);
+        rims.ring_mut(5)[1].normal ^= 1;
+        let cracks = Cracks::find(&mesh, &topology, &rims);
+        assert_eq!((cracks.different_bits, cracks.different_normals, cracks.edges.len()), (1, 1, 1));
+    }
+
+    #[test]
+    fn split_normals_may_differ() {
+        let cube = cracks(Shape::CubeSplit, Settings::default());
+        assert_eq!(cube.different_normals, 0, "where the source's differ, nobody promised anything");
+    }
+
+    fn side(points: &[[f32; 3]]) -> EdgeSide {
+        let points: Vec<_> = points.iter().map(|&position| RimPoint { position, normal: 0 }).collect();
+        EdgeSide { patch: 0, triangle: 0, factor: 2.0, word: 0, points }
     }
 
     #[test]
     fn the_largest_gap_may_lie_between_any_two_sides() {
-        let side = |x: f32| vec![[0.0; 3], [x, 0.0, 0.0], [0.0; 3]];
-        let (compared, crack) = compare_sides(7, &[side(0.0), side(-0.25), side(0.5), side(0.5)]);
-        let crack = crack.expect("they differ");
-        assert_eq!((compared, crack.different_bits, crack.edge), (9, 3, 7));
-        assert_eq!((crack.gap, crack.sides.len()), (0.75, 3));
-        let (_, none) = compare_sides(0, &[side(1.0), side(1.0)]);
-        assert_eq!(none, None);
-        let (_, nan) = compare_sides(0, &[side(1.0), side(f32::NAN)]);
-        assert_eq!(nan.map(|crack| crack.gap), Some(f64::INFINITY));
+        let bent = |x: f32| side(&[[0.0; 3], [x, 0.0, 0.0], [0.0; 3]]);
+        let sides = [bent(0.0), bent(-0.25), bent(0.5), bent(0.5)];
+        let crack = compare(7, &sides, 0).expect("they differ");
+        assert_eq!((points_compared(&sides), crack.different_bits, crack.edge, crack.gap), (9, 3, 7, 0.75));
+        assert_eq!(compare(0, &[bent(1.0), bent(1.0)], 0), None);
+        assert_eq!(compare(0, &[bent(1.0), bent(f32::NAN)], 0).map(|crack| crack.gap), Some(f64::INFINITY));
+    }
+
+    #[test]
+    fn sides_with_different_numbers_of_points_are_as_far_apart_as_their_lines() {
+        let coarse = side(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]]);
+        let fine = side(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.5, 0.0], [4.0, 0.0, 0.0]]);
+        let crack = compare(0, &[coarse, fine], 0).expect("they differ");
+        assert_eq!(crack.gap, 0.5);
+        assert_eq!(crack.widest.map(|p| p.y).into_iter().fold(0.0, f32::max), 0.5);
     }
 
     #[test]

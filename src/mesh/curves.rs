@@ -145,14 +145,21 @@ mod tests {
             let mesh = shape.build();
             let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
             let curves = Curves::build(&mesh, &topology, Sharing::NoneAveraged);
-            assert_eq!((curves.curves.len(), curves.factor_count() as usize), (topology.sides.len(), topology.sides.len()));
+            assert_eq!(
+                (curves.curves.len(), curves.factor_count() as usize),
+                (topology.sides.len(), topology.sides.len())
+            );
             for (index, patch) in topology.patches.iter().enumerate() {
                 let nine = adjacency::nine(&topology, index as u32);
                 for k in 0..3 {
                     let curve = curves.curves[curves.side_curves[patch.sides[k] as usize] as usize];
                     let asked = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];
                     assert_eq!(asked[0], [nine[k], nine[(k + 1) % 3]], "{shape:?}: its own corners first");
-                    assert_eq!(asked[asked.len() - 1], [nine[3 + 2 * k], nine[4 + 2 * k]], "{shape:?}: across the side");
+                    assert_eq!(
+                        asked[asked.len() - 1],
+                        [nine[3 + 2 * k], nine[4 + 2 * k]],
+                        "{shape:?}: across the side"
+                    );
                     assert!(!curves.runs_against(&topology, patch.sides[k]));
                 }
             }
@@ -163,7 +170,8 @@ mod tests {
     fn shared_curves_run_as_their_edge_does() {
         let mesh = Shape::CubeSplit.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
-        for (sharing, curves_per_split_edge) in [(Sharing::AllSides, 1), (Sharing::EqualNormals, 2), (Sharing::None, 2)] {
+        for (sharing, curves_per_split_edge) in [(Sharing::AllSides, 1), (Sharing::EqualNormals, 2), (Sharing::None, 2)]
+        {
             let curves = Curves::build(&mesh, &topology, sharing);
             let diagonals = if sharing.is_per_patch() { 2 * 6 } else { 6 };
             assert_eq!(curves.curves.len(), 12 * curves_per_split_edge + diagonals, "{sharing:?}");

@@ -150,6 +150,15 @@ impl Topology {
         counts
     }
 
+    /// Whether every edge has exactly two sides, which run it in opposite directions: what has an inside.
+    pub fn is_closed_and_oriented(&self) -> bool {
+        let opposed = |edge: &Edge| match self.edge_sides(edge) {
+            [a, b] => a.reversed != b.reversed,
+            _ => false,
+        };
+        !self.edges.is_empty() && self.edges.iter().all(opposed)
+    }
+
     /// The sides of an edge.
     pub fn edge_sides(&self, edge: &Edge) -> &[Side] {
         &self.sides[edge.sides.start as usize..edge.sides.end as usize]

@@ -19,7 +19,8 @@ pub struct Frame {
     pub viewport: [f32; 2],
     /// From [`overlay_bits`].
     pub overlays: u32,
-    pub _pad: u32,
+    /// One unit in the last place of the mesh's largest coordinate, in object units.
+    pub ulp: f32,
 }
 
 /// A material's constants.
@@ -30,12 +31,13 @@ pub struct Material {
     pub base_color: [f32; 4],
 }
 
-/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks are lines of their own.
+/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks and T-junctions are lines of their own.
 pub fn overlay_bits(overlays: &Overlays) -> u32 {
     u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
         | u32::from(overlays.barycentric) << 2
         | u32::from(overlays.adjacency) << 3
+        | u32::from(overlays.folds) << 4
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
@@ -50,5 +52,22 @@ pub fn edge_color(kind: EdgeKind) -> [u8; 3] {
     }
 }
 
-/// sRGB colour of a crack; `CRACK_COLOR` in `shaders/draw_lines.wgsl`.
+/// sRGB colour of a crack.
 pub const CRACK_COLOR: [u8; 3] = [255, 60, 25];
+
+/// sRGB colour of a T-junction.
+pub const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
+
+/// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface.wgsl` has the same in linear light.
+pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
+
+/// sRGB colour of the edge that is looked at.
+pub const SELECTION_COLOR: [u8; 3] = [255, 255, 255];
+
+/// sRGB bytes in linear light, 0 to 1.
+pub fn linear(srgb: [u8; 3]) -> [f32; 3] {
+    srgb.map(|byte| {
+        let x = f32::from(byte) / 255.0;
+        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+    })
+}

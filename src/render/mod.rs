@@ -2,11 +2,13 @@
 
 mod camera;
 pub mod layout;
+mod leaks;
 mod renderer;
 mod scene;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
+pub use leaks::{LeakCounter, is_beyond_near};
 pub use renderer::Renderer;
 pub use scene::{LineSegment, Scene};
 pub use target::Target;

@@ -2,7 +2,7 @@
 
 use wgpu::util::DeviceExt;
 
-use super::layout::{Frame, overlay_bits};
+use super::layout::{Frame, linear, overlay_bits};
 use super::scene::{LineSegment, upload};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::Vertex;
@@ -41,7 +41,7 @@ impl Renderer {
         let segment = wgpu::VertexBufferLayout {
             array_stride: size_of::<LineSegment>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3],
+            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32],
         };
         let lines = crate::gpu::shader_module(gpu, "lines");
         let lines = pipeline(gpu, &layouts[..1], &lines, ("line_vertex", "line_fragment"), &[Some(segment)], false);
@@ -99,9 +99,11 @@ impl Renderer {
                     self.draw_source(pass, scene, left);
                 }
                 if emitted {
-                    self.draw_chunk(pass, scene, right, settings.overlays.wireframe, &scene.tessellator.chunk(index));
+                    // These look at whole triangles.
+                    let pulled = settings.overlays.wireframe || settings.overlays.folds;
+                    self.draw_chunk(pass, scene, right, pulled, &scene.tessellator.chunk(index));
                 }
-                if last && settings.overlays.cracks {
+                if last {
                     self.draw_lines(pass, scene, right);
                 }
             });
@@ -119,7 +121,7 @@ impl Renderer {
             eye: eye.to_array(),
             viewport: viewport.to_array(),
             overlays: overlay_bits(&settings.overlays),
-            _pad: 0,
+            ulp: scene.ulp,
         }
     }
 
@@ -195,10 +197,7 @@ fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
 
 /// sRGB bytes as the linear colour that a clear takes.
 fn linear_color(srgb: [u8; 3]) -> wgpu::Color {
-    let [r, g, b] = srgb.map(|byte| {
-        let x = f64::from(byte) / 255.0;
-        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
-    });
+    let [r, g, b] = linear(srgb).map(f64::from);
     wgpu::Color { r, g, b, a: 1.0 }
 }
 

@@ -3,28 +3,44 @@
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
+use glam::Vec3;
 use image::imageops::FilterType;
 use wgpu::util::DeviceExt;
 
 use super::Renderer;
-use super::layout::Material;
+use super::layout::{Material, linear};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
+use crate::measure::ulp;
 use crate::mesh::{Bounds, Mesh, Texture, Topology};
 
 /// One mesh on the device, its materials, and the lines drawn over it.
 pub struct Scene {
     pub tessellator: Tessellator,
     pub bounds: Bounds,
+    /// See [`ulp`].
+    pub(super) ulp: f32,
     pub(super) materials: Vec<wgpu::BindGroup>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
 }
 
-/// A piece of a line drawn through everything, in object units.
+/// A piece of a line drawn through everything; a dot where it starts and ends at one place.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct LineSegment {
+    /// Object units.
     pub start: [f32; 3],
     pub end: [f32; 3],
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Px to either side.
+    pub half_width: f32,
+}
+
+impl LineSegment {
+    /// A line of the usual width in an sRGB colour.
+    pub fn new(start: Vec3, end: Vec3, color: [u8; 3]) -> Self {
+        Self { start: start.to_array(), end: end.to_array(), color: linear(color), half_width: 2.0 }
+    }
 }
 
 impl Scene {
@@ -56,7 +72,8 @@ impl Scene {
             material_group(gpu, renderer, material.base_color, &view)
         });
         let materials = materials.collect();
-        Ok(Self { tessellator, bounds: mesh.bounds(), materials, lines: None })
+        let ulp = ulp(tessellator.topology()) as f32;
+        Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None })
     }
 
     /// Replaces the lines drawn over the mesh.

@@ -97,7 +97,8 @@ mod tests {
 
     #[test]
     fn every_plane_has_a_bit_of_its_own() {
-        let outside = [[-2.0, 0.0, 0.5], [2.0, 0.0, 0.5], [0.0, -2.0, 0.5], [0.0, 2.0, 0.5], [0.0, 0.0, -1.0], [0.0, 0.0, 2.0]];
+        let outside =
+            [[-2.0, 0.0, 0.5], [2.0, 0.0, 0.5], [0.0, -2.0, 0.5], [0.0, 2.0, 0.5], [0.0, 0.0, -1.0], [0.0, 0.0, 2.0]];
         for (bit, position) in outside.into_iter().enumerate() {
             assert_eq!(planes_outside(Vec3::from(position).extend(1.0)), 1 << bit);
         }

@@ -75,6 +75,8 @@ pub struct Tessellated {
     pub triangles: Vec<[u32; 3]>,
     /// One for each patch.
     pub patch_factors: Vec<PatchFactors>,
+    /// As LOD gave them: one for each edge, or as published one for each side.
+    pub edge_factors: Vec<f32>,
 }
 
 /// Which sides share a curve under a surface.
@@ -91,12 +93,11 @@ pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
 /// published one for each curve (see [`Curves::factor`]).
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let nets = Nets::new(mesh, topology, inputs);
-    let own = factors.is_none().then(|| nets.edge_factors(inputs));
-    let edge_factors = factors.or(own.as_deref()).unwrap_or_default();
+    let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs), <[f32]>::to_vec);
     let mut out = Tessellated::default();
     for patch in 0..topology.patches.len() as u32 {
         let net = nets.patch(patch);
-        let mut factors = nets.patch_factors(inputs.partitioning, edge_factors, patch);
+        let mut factors = nets.patch_factors(inputs.partitioning, &edge_factors, patch);
         if patch_is_unseen(inputs.clip, &inputs.view, &net) {
             factors = PatchFactors::zeroed();
         }
@@ -105,6 +106,7 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
         out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
         out.patch_factors.push(factors);
     }
+    out.edge_factors = edge_factors;
     out
 }
 

@@ -19,6 +19,6 @@ pub use lod::{
 };
 pub use mesh::{Edges, Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
 pub use surface::{
-    ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal, linear_uv,
-    pack_normal, patch_position, straight_control_point, unpack_normal,
+    ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,
+    linear_uv, pack_normal, patch_position, straight_control_point, unpack_normal,
 };

@@ -95,7 +95,13 @@ pub fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {
 pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
     let w = FIXED_ONE - u - v;
     let [a, b, c] = normals;
-    let nearest = if u >= v && u >= w { a } else if v >= w { b } else { c };
+    let nearest = if u >= v && u >= w {
+        a
+    } else if v >= w {
+        b
+    } else {
+        c
+    };
     unit_or(a * (u as f32 * UNIT) + b * (v as f32 * UNIT) + c * (w as f32 * UNIT), nearest)
 }
 

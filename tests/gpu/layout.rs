@@ -87,7 +87,7 @@ fn shared_structs_have_one_layout() {
         pull_first_instance,
     });
     same!(DomainParams { partitioning, set_count });
-    same!(Frame { clip_from_object, key_light, fill_light, eye, viewport, overlays });
+    same!(Frame { clip_from_object, key_light, fill_light, eye, viewport, overlays, ulp });
     same!(Material { base_color });
 }
 

@@ -46,7 +46,8 @@ pub fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image:
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
     if settings.overlays.cracks {
         let measured = engine.measure(scene).expect("a readback");
-        scene.set_lines(&engine.gpu, &measured.cracks.lines());
+        let lines = measured.crack_lines(scene.tessellator.topology());
+        scene.set_lines(&engine.gpu, &lines);
     }
     engine.draw(scene, &target, &camera, settings, &mut Timing::Off).expect("a draw");
     target.read(&engine.gpu).expect("a readback")

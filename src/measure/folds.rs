@@ -1,0 +1,59 @@
+//! Folds: emitted triangles that face away from the side that their patch faces. They show where a control net turns
+//! over: the white paper's "negative curvature", and the puffing of PN triangles at tight corners.
+
+use glam::{DVec3, Vec3};
+
+use crate::mesh::Topology;
+use crate::tessellate::Vertex;
+
+/// A triangle lower than this many units in the last place is a line as far as anyone can tell: it faces nowhere.
+const LEAST_HEIGHT_ULP: f64 = 8.0;
+
+/// Twice a triangle's area times the direction that it faces.
+fn facing([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// Whether an emitted triangle faces away from `patch_facing`, clearly enough for rounding not to be the reason; `ulp`
+/// is one unit in the last place of the mesh's largest coordinate.
+fn is_folded(patch_facing: DVec3, triangle: [DVec3; 3], ulp: f64) -> bool {
+    let [a, b, c] = triangle;
+    let own = facing(triangle);
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    own.dot(patch_facing) < 0.0 && own.length() > LEAST_HEIGHT_ULP * ulp * longest
+}
+
+/// How many of these triangles (indices into `vertices`) are folded.
+pub fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
+    let at = |index: u32| Vec3::from(vertices[index as usize].position).as_dvec3();
+    let (mut patch, mut patch_facing) = (u32::MAX, DVec3::ZERO);
+    let folded = triangles.iter().filter(|triangle| {
+        // Triangles come patch after patch.
+        let own = vertices[triangle[0] as usize].patch();
+        if own != patch {
+            (patch, patch_facing) = (own, facing(corners(topology, own)));
+        }
+        is_folded(patch_facing, triangle.map(at), ulp)
+    });
+    folded.count() as u64
+}
+
+fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
+    let corners = topology.patches[patch as usize].corners;
+    corners.map(|corner| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_faces_away_is_folded_unless_it_is_a_line() {
+        let up = DVec3::Z;
+        let [o, x, y] = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        assert!(!is_folded(up, [o, x, y], 1e-7));
+        assert!(is_folded(up, [o, y, x], 1e-7));
+        let flat = [o, 1e-7 * y, x];
+        assert!(is_folded(up, flat, 1e-9) && !is_folded(up, flat, 1e-7), "an ULP high");
+    }
+}

@@ -1,0 +1,147 @@
+//! The outer ring of every patch, gathered from what was emitted: what the sides of an edge have made of it.
+
+use glam::Vec3;
+
+use crate::mesh::{Side, Topology};
+use crate::tessellate::{Edges, PatchFactors, Vertex, outer_count, point_count, segments};
+
+/// A vertex on a patch's outline.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RimPoint {
+    /// Object units.
+    pub position: [f32; 3],
+    /// See [`crate::tessellate::pack_normal`].
+    pub normal: u32,
+}
+
+/// The outer ring of every patch, and the factors it was emitted with.
+#[derive(Clone, Debug, Default)]
+pub struct Rims {
+    factors: Vec<PatchFactors>,
+    /// Ring of patch p: `points[starts[p]..starts[p + 1]]`, in the tessellator's order.
+    starts: Vec<u32>,
+    points: Vec<RimPoint>,
+    asked: AskedFactors,
+}
+
+/// The factors that LOD gave, before the tessellator clamped and rounded them: one an edge, or as published one a side
+/// (an index into [`Topology::sides`]).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct AskedFactors {
+    factors: Vec<f32>,
+    per_side: bool,
+}
+
+impl AskedFactors {
+    pub fn new(edges: Edges, factors: Vec<f32>) -> Self {
+        Self { factors, per_side: edges == Edges::AsPublished }
+    }
+
+    pub fn into_factors(self) -> Vec<f32> {
+        self.factors
+    }
+
+    /// The factor that a side asked for.
+    fn of(&self, topology: &Topology, side: u32) -> f32 {
+        let index = if self.per_side { side } else { topology.sides[side as usize].edge };
+        self.factors.get(index as usize).copied().unwrap_or(f32::NAN)
+    }
+}
+
+/// What one side has made of an edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EdgeSide {
+    /// Index into [`Topology::patches`].
+    pub patch: u32,
+    /// Index into the mesh's triangles.
+    pub triangle: u32,
+    /// As LOD gave it, before the tessellator clamped and rounded it.
+    pub factor: f32,
+    /// What the tessellator made of it: its word in [`PatchFactors`].
+    pub word: u32,
+    /// In the edge's direction, ends included.
+    pub points: Vec<RimPoint>,
+}
+
+impl EdgeSide {
+    /// Pieces that the side was cut into.
+    pub fn segments(&self) -> u32 {
+        segments(self.word)
+    }
+
+    /// Where its points lie, in object units.
+    pub fn positions(&self) -> impl Iterator<Item = Vec3> {
+        self.points.iter().map(|point| Vec3::from(point.position))
+    }
+}
+
+impl Rims {
+    /// Room for the rims of patches with these factors.
+    pub fn new(factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
+        let mut starts = vec![0];
+        let mut end = 0;
+        for &patch in &factors {
+            end += outer_count(patch);
+            starts.push(end);
+        }
+        Self { factors, starts, points: vec![RimPoint::default(); end as usize], asked }
+    }
+
+    /// Takes the vertices of patches from `first_patch` on; whole patches, in order.
+    pub fn take(&mut self, first_patch: u32, vertices: &[Vertex]) {
+        let mut rest = vertices;
+        for patch in first_patch as usize..self.factors.len() {
+            let count = point_count(self.factors[patch]) as usize;
+            if rest.len() < count {
+                break;
+            }
+            let (own, later) = rest.split_at(count);
+            let ring = &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize];
+            ring.iter_mut().zip(own).for_each(|(to, v)| *to = RimPoint { position: v.position, normal: v.normal });
+            rest = later;
+        }
+    }
+
+    /// How many patches emit nothing.
+    pub fn culled(&self) -> u32 {
+        self.starts.windows(2).filter(|ring| ring[0] == ring[1]).count() as u32
+    }
+
+    /// What the sides of an edge (an index into [`Topology::edges`]) have made of it. Patches that emit nothing are left
+    /// out.
+    pub fn edge(&self, topology: &Topology, edge: u32) -> Vec<EdgeSide> {
+        topology.edges[edge as usize].sides.clone().filter_map(|side| self.side(topology, side)).collect()
+    }
+
+    fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
+        let Side { patch, index: k, reversed, .. } = topology.sides[index as usize];
+        let ring = self.ring(patch);
+        if ring.is_empty() {
+            return None;
+        }
+        // The ring starts with factor 0's edge, which is side 1.
+        let words = self.factors[patch as usize].outside;
+        let factor = (usize::from(k) + 2) % 3;
+        let first: u32 = words[..factor].iter().map(|&word| segments(word)).sum();
+        let last = first + segments(words[factor]);
+        let mut points: Vec<_> = (first..=last).map(|p| ring[p as usize % ring.len()]).collect();
+        if reversed {
+            points.reverse();
+        }
+        let triangle = topology.patches[patch as usize].triangle;
+        Some(EdgeSide { patch, triangle, factor: self.asked.of(topology, index), word: words[factor], points })
+    }
+
+    /// A patch's ring, in the tessellator's order.
+    fn ring(&self, patch: u32) -> &[RimPoint] {
+        let patch = patch as usize;
+        &self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
+    }
+
+    /// For tests that break something: a point of a patch's ring.
+    #[cfg(test)]
+    pub fn ring_mut(&mut self, patch: u32) -> &mut [RimPoint] {
+        let patch = patch as usize;
+        &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
+    }
+}

@@ -1,0 +1,90 @@
+//! Everything that is measured on what was emitted, gathered chunk by chunk, wherever it was emitted.
+
+use glam::Vec3;
+
+use super::cracks::{Cracks, ulp};
+use super::folds;
+use super::rims::{AskedFactors, Rims};
+use crate::mesh::{Mesh, Topology};
+use crate::render::LineSegment;
+use crate::render::layout::CRACK_COLOR;
+use crate::tessellate::{PatchFactors, Tessellated, Vertex};
+
+/// What has been seen so far.
+pub struct Survey<'a> {
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    ulp: f64,
+    rims: Rims,
+    folds: u64,
+    not_finite: u64,
+    extent: [Vec3; 2],
+}
+
+/// What was emitted, measured.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    pub patches_culled: u32,
+    pub cracks: Cracks,
+    /// Triangles that face away from the side that their patch faces.
+    pub folds: u64,
+    /// Vertices with a position or uv that is no finite number.
+    pub not_finite: u64,
+    /// Least and greatest coordinates of what was emitted, in object units.
+    pub extent: [Vec3; 2],
+    pub rims: Rims,
+}
+
+impl<'a> Survey<'a> {
+    /// A survey of patches with these factors.
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
+        let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let rims = Rims::new(factors, asked);
+        Self { mesh, topology, ulp: ulp(topology), rims, folds: 0, not_finite: 0, extent }
+    }
+
+    /// Takes the output of patches from `first_patch` on; whole patches, in order. Triangles are indices into `vertices`.
+    pub fn take(&mut self, first_patch: u32, vertices: &[Vertex], triangles: &[[u32; 3]]) {
+        self.rims.take(first_patch, vertices);
+        self.folds += folds::count(self.topology, self.ulp, vertices, triangles);
+        for vertex in vertices {
+            let position = Vec3::from(vertex.position);
+            if !(position.is_finite() && vertex.uv.iter().all(|x| x.is_finite())) {
+                self.not_finite += 1;
+                continue;
+            }
+            self.extent = [self.extent[0].min(position), self.extent[1].max(position)];
+        }
+    }
+
+    /// Compares the sides of every edge, once all is taken.
+    pub fn finish(self) -> Measured {
+        Measured {
+            patches_culled: self.rims.culled(),
+            cracks: Cracks::find(self.mesh, self.topology, &self.rims),
+            folds: self.folds,
+            not_finite: self.not_finite,
+            extent: self.extent,
+            rims: self.rims,
+        }
+    }
+}
+
+impl Measured {
+    /// Measures what the CPU made.
+    pub fn of(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
+        let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), asked);
+        survey.take(0, &out.vertices, &out.triangles);
+        survey.finish()
+    }
+
+    /// Every side of every cracked edge, as lines.
+    pub fn crack_lines(&self, topology: &Topology) -> Vec<LineSegment> {
+        let sides = self.cracks.cracked().flat_map(|edge| self.rims.edge(topology, edge.edge));
+        let lines = sides.flat_map(|side| {
+            let points: Vec<_> = side.positions().collect();
+            points.windows(2).map(|ends| LineSegment::new(ends[0], ends[1], CRACK_COLOR)).collect::<Vec<_>>()
+        });
+        lines.collect()
+    }
+}
