@@ -1,6 +1,5 @@
 //! What is odd about a mesh, and the numbers that `pnaen info` prints.
 
-use std::collections::HashMap;
 use std::fmt;
 
 use glam::DVec3;
@@ -8,6 +7,7 @@ use serde::Serialize;
 
 use super::Mesh;
 use super::bounds::Bounds;
+use super::grid::Grid;
 use super::topology::{EdgeCounts, EdgeKind, Topology};
 
 /// How near ends must be to count as a near miss, as a part of the bounding diagonal.
@@ -38,17 +38,17 @@ struct Open {
 ///
 /// Near linear: middles are hashed on a grid, and an edge is compared with the first 256 edges of each grid cell around it.
 pub fn near_misses(topology: &Topology) -> Vec<NearMiss> {
-    let tolerance = NEAR * f64::from(Bounds::of(topology.points.iter().copied()).diagonal());
+    let tolerance = Bounds::of(topology.points.iter().copied()).part(NEAR);
     let mut misses = Vec::new();
-    let mut grid: HashMap<[i64; 3], Vec<Open>> = HashMap::new();
+    let mut grid: Grid<Open> = Grid::new(tolerance);
     let long = |open: &Open| open.ends[0].distance(open.ends[1]) > 2.0 * tolerance;
     for open in boundary(topology).filter(long) {
-        let cell = cell(open.ends[0].midpoint(open.ends[1]), tolerance);
-        for near in around(cell).iter().filter_map(|cell| grid.get(cell)) {
+        let middle = open.ends[0].midpoint(open.ends[1]);
+        for near in grid.near(middle) {
             let found = near.iter().take(TRIES).filter_map(|earlier| compare(earlier, &open, tolerance));
             misses.extend(found);
         }
-        grid.entry(cell).or_default().push(open);
+        grid.at(middle).push(open);
     }
     misses.sort_by_key(|miss| miss.edges);
     misses
@@ -68,18 +68,6 @@ fn compare(a: &Open, b: &Open, tolerance: f64) -> Option<NearMiss> {
     let reversed = against < along;
     let distance = along.min(against);
     (distance <= tolerance).then_some(NearMiss { edges: [a.edge, b.edge], reversed, distance: distance as f32 })
-}
-
-/// Cells are two tolerances wide, so middles a tolerance apart lie in neighbouring cells at most.
-fn cell(middle: DVec3, tolerance: f64) -> [i64; 3] {
-    (middle / (2.0 * tolerance)).to_array().map(|x| x.floor() as i64)
-}
-
-fn around([x, y, z]: [i64; 3]) -> [[i64; 3]; 27] {
-    std::array::from_fn(|i| {
-        let [dx, dy, dz] = [i / 9, i / 3 % 3, i % 3].map(|step| step as i64 - 1);
-        [x.saturating_add(dx), y.saturating_add(dy), z.saturating_add(dz)]
-    })
 }
 
 /// A mesh in numbers.

@@ -5,6 +5,7 @@ pub mod bounds;
 pub mod curves;
 pub mod diagnose;
 mod gltf;
+mod grid;
 pub mod load;
 pub mod merge;
 pub mod normals;
