@@ -13,7 +13,9 @@ pub mod normals;
 pub mod progress;
 pub mod shapes;
 pub mod source;
+pub mod t_junctions;
 pub mod topology;
+mod tree;
 pub mod weld;
 
 use std::ops::Range;
@@ -29,6 +31,7 @@ pub use load::{LoadError, load};
 pub use progress::{Cancelled, Progress};
 pub use shapes::{Shape, UnknownShape};
 pub use source::Source;
+pub use t_junctions::{TJunction, t_junctions};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
 /// A triangle's vertex: a position in object units, a unit normal and a texture coordinate (uv, in texture widths and
