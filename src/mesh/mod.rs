@@ -9,8 +9,10 @@ mod grid;
 pub mod joins;
 pub mod load;
 pub mod merge;
+pub mod normal_faults;
 pub mod normals;
 pub mod progress;
+pub mod repairs;
 pub mod shapes;
 pub mod source;
 pub mod t_junctions;
@@ -28,7 +30,9 @@ pub use diagnose::{Info, NearMiss, near_misses};
 pub use gltf::Problem as GltfProblem;
 pub use joins::{Joins, joins};
 pub use load::{LoadError, load};
+pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress};
+pub use repairs::Repairs;
 pub use shapes::{Shape, UnknownShape};
 pub use source::Source;
 pub use t_junctions::{TJunction, t_junctions};
@@ -54,6 +58,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Each owns one contiguous range of `triangles`; the ranges follow one another and cover all of them.
     pub materials: Vec<Material>,
+    /// What had to be mended, in numbers.
+    pub repairs: Repairs,
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,
 }
