@@ -3,12 +3,13 @@
 pub mod adjacency;
 pub mod bounds;
 pub mod curves;
-pub mod diagnose;
 mod gltf;
 mod grid;
+pub mod info;
 pub mod joins;
 pub mod load;
 pub mod merge;
+pub mod near_misses;
 pub mod normal_faults;
 pub mod normals;
 pub mod progress;
@@ -26,10 +27,11 @@ use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
 pub use curves::{Curve, Curves, Sharing};
-pub use diagnose::{Info, NearMiss, near_misses};
 pub use gltf::Problem as GltfProblem;
+pub use info::Info;
 pub use joins::{Joins, joins};
 pub use load::{LoadError, load};
+pub use near_misses::{NearMiss, near_misses};
 pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress};
 pub use repairs::Repairs;
