@@ -300,6 +300,57 @@ fn info_is_for_people_and_for_programs() {
     assert_eq!((&json["edges"]["boundary"], &json["closed"]), (&24.into(), &false.into()));
 }
 
+/// Writes triangles as a glTF document with a buffer next to it.
+fn write_triangles(folder: &Folder, triangles: &[[[f32; 3]; 3]], normal: [f32; 3]) -> String {
+    let positions = triangles.as_flattened().as_flattened();
+    let count = positions.len() / 3;
+    let floats = positions.iter().copied().chain(normal.into_iter().cycle().take(positions.len()));
+    let bytes: Vec<u8> = floats.flat_map(f32::to_le_bytes).collect();
+    let view = |i: usize| serde_json::json!({ "buffer": 0, "byteOffset": i * 12 * count, "byteLength": 12 * count });
+    let accessor =
+        |i: usize| serde_json::json!({ "bufferView": i, "componentType": 5126, "count": count, "type": "VEC3" });
+    let document = serde_json::json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1 } }] }],
+        "accessors": [accessor(0), accessor(1)], "bufferViews": [view(0), view(1)],
+        "buffers": [{ "byteLength": bytes.len(), "uri": "data.bin" }],
+    });
+    std::fs::write(folder.path("data.bin"), bytes).expect("a writable folder");
+    let path = folder.path("triangles.gltf");
+    std::fs::write(&path, document.to_string()).expect("a writable folder");
+    path
+}
+
+#[test]
+fn info_tells_what_is_odd_and_what_a_weld_tolerance_changes() {
+    let folder = Folder::new("odd");
+    // One triangle above the edge from 0 to 4 along x, two below that meet at 1 on it and miss its ends by 1e-4.
+    let gap = 1e-4;
+    let triangles = [
+        [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]],
+        [[1.0, 0.0, 0.0], [0.0, -gap, 0.0], [1.0, -2.0, 0.0]],
+        [[4.0, -gap, 0.0], [1.0, 0.0, 0.0], [1.0, -2.0, 0.0]],
+    ];
+    let path = write_triangles(&folder, &triangles, [0.0, 0.0, -2.0]);
+    let text = output(&["info", &path]);
+    assert!(text.contains("T-junctions   1 ") && text.contains("  at 1 0 0 between 0 0 0 and 4 0 0\n"), "{text}");
+    let info = |options: &[&str]| -> Value {
+        serde_json::from_str(&output(&[&["info", &path, "--json"], options].concat())).expect("JSON")
+    };
+    let (exact, welded) = (info(&[]), info(&["--weld", "1e-4"]));
+    assert_eq!((&exact["weld"], &exact["points"], &exact["t_junctions"]), (&0.0.into(), &7.into(), &1.into()));
+    assert_eq!((&welded["points"], &welded["t_junctions"]), (&5.into(), &1.into()));
+    let expected = serde_json::json!([[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]], [1.0, 0.0, 0.0]]);
+    let junction = &welded["t_junctions_at"][0];
+    assert_eq!((&junction["edge"], &junction["point"]), (&expected[0], &expected[1]));
+    assert_eq!(junction["t"], 0.25);
+    assert_eq!(
+        (&exact["repairs"]["normals_rescaled"], &exact["normal_faults"]["against_face"]),
+        (&9.into(), &9.into())
+    );
+    assert!(exact["warnings"][0].as_str().is_some_and(|warning| warning.contains("length isn't 1")), "{exact}");
+}
+
 #[test]
 fn failures_are_one_sentence_and_exit_code_1() {
     let folder = Folder::new("failures");
@@ -347,6 +398,8 @@ fn wrong_usage_exits_with_2() {
         &["domain", "--partitioning", "thirds", "--factors", "1,1,1,1"],
         &["domain", "--partitioning", "integer", "--factors", "1,1,1"],
         &["adjacency", "shape:torus", "--indices", "10", "-o", "-"],
+        &["info", "shape:torus", "--weld", "0.2"],
+        &["info", "shape:torus", "--weld", "-1"],
         &["frobnicate", "--hard"],
     ] {
         failure(arguments, 2);

@@ -68,6 +68,14 @@ impl SurfaceOptions {
     }
 }
 
+/// Which points are one.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct WeldOption {
+    /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
+    #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
+    pub weld: f32,
+}
+
 /// Width and height in px.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub [u32; 2]);
@@ -134,6 +142,11 @@ pub fn fraction(text: &str) -> Result<f32, String> {
     within(text, 0.0..=1.0)
 }
 
+/// A weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
+pub fn weld(text: &str) -> Result<f32, String> {
+    within(text, 0.0..=0.1)
+}
+
 fn factor(text: &str) -> Result<f32, String> {
     within(text, FACTOR_RANGE)
 }
@@ -166,6 +179,8 @@ mod tests {
         for bad in ["1", "1,2,0", "1,2,3,4", "nan,0", "a,b"] {
             assert!(bad.parse::<CameraOption>().is_err(), "{bad}");
         }
+        assert!(weld("0").is_ok() && weld("1e-7") == Ok(1e-7) && weld("0.1").is_ok());
+        assert!(weld("0.11").is_err() && weld("-1e-7").is_err() && weld("nan").is_err() && weld("").is_err());
         assert!(factor("nan").is_err() && factor("65").is_err() && factor("0.5").is_err() && factor("64").is_ok());
     }
 }

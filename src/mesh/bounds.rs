@@ -38,6 +38,11 @@ impl Bounds {
         self.min.as_dvec3().distance(self.max.as_dvec3()) as f32
     }
 
+    /// A length relative to the diagonal, in object units. In f64: the diagonal itself may leave f32.
+    pub(super) fn part(&self, relative: f64) -> f64 {
+        relative * self.min.as_dvec3().distance(self.max.as_dvec3())
+    }
+
     /// The greatest distance of a corner from [`center`](Self::center): at most half the diagonal, often less.
     pub fn radius(&self) -> f32 {
         self.radius
@@ -70,6 +75,12 @@ mod tests {
             let bounds = Bounds::of([Vec3::ZERO, Vec3::X * scale].into_iter());
             assert!((bounds.diagonal() / scale - 1.0).abs() < 1e-6 && (bounds.radius() / scale - 0.5).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn a_part_of_the_largest_diagonal_is_finite() {
+        let part = Bounds::of([Vec3::MAX, Vec3::MIN].into_iter()).part(1e-5);
+        assert!((part / (2e-5 * 3_f64.sqrt() * f64::from(f32::MAX)) - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -65,6 +65,9 @@ pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Res
     warnings.extend(scene.primitives.warnings());
     progress.set(0.8);
     let mut mesh = scene.builder.finish(name.to_owned(), progress)?;
+    // What reaches the builder has been turned and is of unit length: only the reader knows what the file said.
+    mesh.repairs.normals_rescaled += scene.primitives.rescaled;
+    warnings.extend(mesh.repairs.warnings());
     mesh.warnings = warnings;
     Ok(mesh)
 }

@@ -2,17 +2,18 @@
 
 use std::collections::HashMap;
 
-use super::normals;
+use super::normals::{self, Given};
 use super::weld::{plus_zero2, plus_zero3};
-use super::{Corner, Material, Mesh, Progress};
+use super::{Corner, Material, Mesh, Progress, Repairs};
 use crate::mesh::progress::Cancelled;
 use glam::{Vec2, Vec3};
 
-/// A corner as a file or a shape gives it: the normal may be missing.
+/// A corner as a file or a shape gives it: the normal may be missing, or not fit for use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LooseCorner {
     pub position: Vec3,
-    /// Of unit length, or none: then [`MeshBuilder::finish`] makes one.
+    /// Of any length, or none. [`MeshBuilder::finish`] brings it to unit length, or makes one where this has no
+    /// direction (see [`Given`]).
     pub normal: Option<Vec3>,
     pub uv: Vec2,
 }
@@ -59,15 +60,18 @@ impl MeshBuilder {
     }
 
     /// The mesh: triangles grouped by material, in the order they came; corners with the same bits (-0 counts as 0)
-    /// merged, in the order of first use; materials without triangles left out; missing normals made (see
-    /// [`normals::smooth`]). Linear in triangles.
+    /// merged, in the order of first use; materials without triangles left out. Normals that are missing or have no
+    /// direction are made (see [`normals::smooth`]), others brought to unit length (see [`Given`]); coordinates of
+    /// positions nearer to 0 than f32's least normal number become 0, since devices may take them for it. All that is
+    /// counted in the mesh's `repairs`, and said in its `warnings`. Linear in triangles.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn finish(mut self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
         self.groups.retain(|(_, triangles)| !triangles.is_empty());
+        let repairs = self.repair();
         self.make_missing_normals(progress)?;
-        let mut mesh = Mesh { name, ..Mesh::default() };
+        let mut mesh = Mesh { name, repairs, warnings: repairs.warnings(), ..Mesh::default() };
         let mut ids = HashMap::new();
         for (mut material, triangles) in self.groups {
             progress.check()?;
@@ -79,6 +83,25 @@ impl MeshBuilder {
             mesh.materials.push(material);
         }
         Ok(mesh)
+    }
+
+    /// Makes positions and normals fit for use. Normals without a direction are none afterwards.
+    fn repair(&mut self) -> Repairs {
+        let mut repairs = Repairs::default();
+        for corner in self.groups.iter_mut().flat_map(|(_, triangles)| triangles).flatten() {
+            let flushed = Vec3::from(corner.position.to_array().map(|x| if x.is_subnormal() { 0.0 } else { x }));
+            repairs.denormals += u32::from(flushed != corner.position);
+            corner.position = flushed;
+            let given = corner.normal.map(Given::new);
+            match given {
+                None => repairs.normals_made += 1,
+                Some(Given::None) => repairs.normals_replaced += 1,
+                Some(Given::Rescaled(_)) => repairs.normals_rescaled += 1,
+                Some(Given::Unit(_)) => {}
+            }
+            corner.normal = given.and_then(Given::unit);
+        }
+        repairs
     }
 
     fn make_missing_normals(&mut self, progress: &Progress) -> Result<(), Cancelled> {
@@ -150,5 +173,37 @@ mod tests {
         let mesh = builder.finish(String::new(), &Progress::new()).unwrap();
         let normals: Vec<_> = mesh.corners.iter().map(|c| c.normal).collect();
         assert_eq!(normals, [Vec3::X, Vec3::Z, Vec3::Z]);
+        assert_eq!(mesh.repairs, Repairs { normals_made: 1, ..Repairs::default() });
+        assert!(mesh.warnings.is_empty());
+    }
+
+    fn one(corners: [LooseCorner; 3]) -> Mesh {
+        let mut builder = MeshBuilder::new();
+        let material = builder.material(Material::plain("plain", [1.0; 4]));
+        builder.triangle(material, corners);
+        builder.finish(String::new(), &Progress::new()).unwrap()
+    }
+
+    #[test]
+    fn bad_normals_are_mended_and_counted() {
+        let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+        let bad = [[0.0, -1e-30, 0.0], [f32::NAN, 0.0, 0.0], [0.0, 0.0, 0.0]];
+        for (corner, normal) in corners.iter_mut().zip(bad) {
+            corner.normal = Some(normal.into());
+        }
+        let mesh = one(corners);
+        assert_eq!(mesh.corners.iter().map(|c| c.normal).collect::<Vec<_>>(), [Vec3::NEG_Y, Vec3::Z, Vec3::Z]);
+        assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
+        assert_eq!(mesh.warnings, mesh.repairs.warnings());
+    }
+
+    #[test]
+    fn coordinates_that_devices_drop_are_dropped_here_too() {
+        let least = f32::MIN_POSITIVE;
+        let mesh = one([corner(least.next_down(), -1e-45), corner(least, 1.0), corner(-least, 0.0)]);
+        let positions: Vec<_> = mesh.corners.iter().map(|c| [c.position.x, c.position.y].map(f32::to_bits)).collect();
+        assert_eq!(positions, [[0.0, 0.0], [least, 1.0], [-least, 0.0]].map(|xy| xy.map(f32::to_bits)));
+        assert_eq!(mesh.repairs, Repairs { denormals: 1, ..Repairs::default() });
+        assert_eq!(mesh.warnings.len(), 1);
     }
 }

@@ -3,15 +3,22 @@
 pub mod adjacency;
 pub mod bounds;
 pub mod curves;
-pub mod diagnose;
 mod gltf;
+mod grid;
+pub mod info;
+pub mod joins;
 pub mod load;
 pub mod merge;
+pub mod near_misses;
+pub mod normal_faults;
 pub mod normals;
 pub mod progress;
+pub mod repairs;
 pub mod shapes;
 pub mod source;
+pub mod t_junctions;
 pub mod topology;
+mod tree;
 pub mod weld;
 
 use std::ops::Range;
@@ -20,12 +27,17 @@ use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
 pub use curves::{Curve, Curves, Sharing};
-pub use diagnose::{Info, NearMiss, near_misses};
 pub use gltf::Problem as GltfProblem;
+pub use info::Info;
+pub use joins::{Joins, joins};
 pub use load::{LoadError, load};
+pub use near_misses::{NearMiss, near_misses};
+pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress};
+pub use repairs::Repairs;
 pub use shapes::{Shape, UnknownShape};
 pub use source::Source;
+pub use t_junctions::{TJunction, t_junctions};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
 /// A triangle's vertex: a position in object units, a unit normal and a texture coordinate (uv, in texture widths and
@@ -48,6 +60,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Each owns one contiguous range of `triangles`; the ranges follow one another and cover all of them.
     pub materials: Vec<Material>,
+    /// What had to be mended, in numbers.
+    pub repairs: Repairs,
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,
 }

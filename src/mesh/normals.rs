@@ -1,4 +1,5 @@
-//! Normals for corners that came without: smooth where faces meet at up to 60 degrees, creased elsewhere.
+//! What normals are taken as they come, and normals for corners that came without a good one: smooth where faces meet
+//! at up to 60 degrees, creased elsewhere.
 
 use std::collections::HashMap;
 
@@ -16,6 +17,48 @@ const FAN_LIMIT: usize = 256;
 
 /// Cells along each axis of the direction grid for such points: about 1.3 degrees each.
 const CELLS: f64 = 45.0;
+
+/// How far a normal's length may be from 1 without a word.
+const LENGTH_TOLERANCE: f64 = 1e-3;
+
+/// How far the square of a normal's length may be from 1 without any change: more than a normal in f32 can help.
+const ROUNDING: f64 = 1e-6;
+
+/// A normal as it was given, made fit for use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Given {
+    /// It was zero or not finite: as good as none.
+    None,
+    /// It was of unit length to within 1e-3, and is now to within rounding.
+    Unit(Vec3),
+    /// It was of another length, and is of unit length now.
+    Rescaled(Vec3),
+}
+
+impl Given {
+    /// The rule for every normal that is given. One whose length is 1 to within half a millionth keeps its bits; all
+    /// others are normalised in f64, where neither 1e-45 nor 1e38 is out of range.
+    pub fn new(normal: Vec3) -> Self {
+        let wide = normal.as_dvec3();
+        let square = wide.length_squared();
+        let Some(unit) = wide.try_normalize().filter(|_| normal.is_finite()) else { return Self::None };
+        if (square - 1.0).abs() < ROUNDING {
+            Self::Unit(normal)
+        } else if (square.sqrt() - 1.0).abs() <= LENGTH_TOLERANCE {
+            Self::Unit(unit.as_vec3())
+        } else {
+            Self::Rescaled(unit.as_vec3())
+        }
+    }
+
+    /// The normal in unit length, if there is one.
+    pub fn unit(self) -> Option<Vec3> {
+        match self {
+            Self::None => None,
+            Self::Unit(normal) | Self::Rescaled(normal) => Some(normal),
+        }
+    }
+}
 
 /// A triangle as one of a point's faces.
 #[derive(Clone, Copy, Debug, Default)]
@@ -145,6 +188,35 @@ mod tests {
         let triangles: Vec<[Vec3; 3]> = mesh.triangles.iter().map(|t| [at(&t[0]), at(&t[1]), at(&t[2])]).collect();
         let normals = smooth(&triangles, &Progress::new()).unwrap();
         (triangles, normals)
+    }
+
+    #[test]
+    fn normals_of_any_length_keep_their_direction() {
+        for scale in [1e-45, 1e-30, 1e-3, 0.99, 1.01, 1e30, f32::MAX] {
+            assert_eq!(Given::new(Vec3::NEG_Y * scale), Given::Rescaled(Vec3::NEG_Y), "{scale}");
+        }
+        let Given::Rescaled(unit) = Given::new(Vec3::MAX) else { panic!("the longest of all has a direction") };
+        assert!(unit.distance(Vec3::splat(3_f32.sqrt().recip())) < 1e-6);
+    }
+
+    #[test]
+    fn normals_without_a_direction_are_none() {
+        let bad = [Vec3::ZERO, -Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::new(1.0, 0.0, f32::NEG_INFINITY)];
+        for normal in bad.into_iter().chain([Vec3::new(f32::NAN, 1.0, 0.0)]) {
+            assert_eq!((Given::new(normal), Given::new(normal).unit()), (Given::None, None), "{normal}");
+        }
+    }
+
+    #[test]
+    fn lengths_near_1_pass_in_silence() {
+        let slant = Vec3::new(0.6, 0.0, 0.8);
+        for (length, given) in
+            [(1.0, 1.0), (1.0 + 4e-7, 1.0 + 4e-7), (1.0 - 4e-7, 1.0 - 4e-7), (1.0009, 1.0), (0.9991, 1.0)]
+        {
+            assert_eq!(Given::new(Vec3::X * length), Given::Unit(Vec3::X * given));
+        }
+        assert!(matches!(Given::new(slant * 1.0011), Given::Rescaled(unit) if unit.distance(slant) < 1e-7));
+        assert!(matches!(Given::new(slant * 0.9989), Given::Rescaled(unit) if unit.distance(slant) < 1e-7));
     }
 
     #[test]

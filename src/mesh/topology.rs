@@ -6,7 +6,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::progress::{Cancelled, Progress};
-use super::weld::weld;
+use super::weld::weld_within;
 use super::{Corner, Mesh};
 
 /// A mesh's patches and the edges between them.
@@ -15,7 +15,7 @@ use super::{Corner, Mesh};
 /// edge's sides by patch. So the same mesh always gives the same topology.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// Welded positions (see [`weld`]), in object units.
+    /// Welded positions (see [`weld_within`]), in object units.
     pub points: Vec<Vec3>,
     /// The point of each of the mesh's corners.
     pub corner_points: Vec<u32>,
@@ -108,12 +108,23 @@ struct Half {
 }
 
 impl Topology {
-    /// Welds the corners and finds the edges. Linear in triangles, whatever the number of patches around a point.
+    /// [`build_within`](Self::build_within) without a tolerance: corners at exactly equal positions share a point.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build(mesh: &Mesh, progress: &Progress) -> Result<Self, Cancelled> {
-        let (points, corner_points) = weld(mesh.corners.iter().map(|corner| corner.position));
+        Self::build_within(mesh, 0.0, progress)
+    }
+
+    /// Welds the corners within a tolerance (see [`weld_within`]) and finds the edges. The tolerance is relative to the
+    /// mesh's bounding diagonal; 0 joins only exactly equal positions. Triangles whose corners it brings together are
+    /// degenerate. Linear in triangles, whatever the number of patches around a point.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
+        let distance = mesh.bounds().part(tolerance.into());
+        let (points, corner_points) = weld_within(mesh.corners.iter().map(|corner| corner.position), distance);
         progress.check()?;
         let patches = patches(mesh, &corner_points);
         progress.check()?;

@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
+
+use super::grid::Grid;
 
 /// Points by exact position: two positions are one point when all three coordinates have the same value (-0 equals 0;
 /// no tolerance). Points come in the order of their first appearance, with +0 for every zero.
@@ -22,6 +24,43 @@ pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) 
         })
         .collect();
     (points, point_of)
+}
+
+/// Points within a tolerance, in object units. Distinct positions come in the order of their first appearance; each
+/// becomes the nearest earlier point within the tolerance (the earlier one of two equally near), or a new point where
+/// it lies. So no point stands for anything more than one tolerance away, however long a chain of near positions is,
+/// and two points are always more than one tolerance apart.
+///
+/// A tolerance that isn't above 0 gives exactly [`weld`]. Returns the points, and for each position the index of its
+/// point. Linear in expectation: only so many points that far apart fit into one cell of the grid.
+pub fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+    // Equal positions first: they must stay together though a nearer point may turn up between them.
+    let (distinct, mut point_of) = weld(positions);
+    if tolerance.is_nan() || tolerance <= 0.0 {
+        return (distinct, point_of);
+    }
+    let mut grid: Grid<(DVec3, u32)> = Grid::new(tolerance);
+    let mut points = Vec::new();
+    let mut merged = Vec::with_capacity(distinct.len());
+    for position in distinct {
+        let place = position.as_dvec3();
+        let point = nearest(&grid, place, tolerance).unwrap_or_else(|| {
+            let point = points.len() as u32;
+            points.push(position);
+            grid.at(place).push((place, point));
+            point
+        });
+        merged.push(point);
+    }
+    point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
+    (points, point_of)
+}
+
+/// The nearest point within the tolerance, the lowest of those equally near.
+fn nearest(grid: &Grid<(DVec3, u32)>, place: DVec3, tolerance: f64) -> Option<u32> {
+    let distances = grid.near(place).flatten().map(|&(point, i)| (point.distance(place), i));
+    let within = distances.filter(|(distance, _)| *distance <= tolerance);
+    within.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, i)| i)
 }
 
 /// The same value with +0 for -0, so that equal values have equal bits.
@@ -55,7 +94,87 @@ mod tests {
         assert_eq!((points.len(), of), (2, vec![0, 1, 0]));
     }
 
+    #[test]
+    fn the_nearest_point_wins_and_the_earlier_of_two() {
+        let at = |x: &[f32]| x.iter().map(|&x| Vec3::X * x).collect::<Vec<_>>();
+        let (points, of) = weld_within(at(&[0.0, 1.5, 1.0, 0.75, 0.5]), 1.0);
+        assert_eq!((points, of), (at(&[0.0, 1.5]), vec![0, 1, 1, 0, 0]));
+    }
+
+    #[test]
+    fn a_chain_of_near_positions_drags_nothing_together() {
+        let chain = (0..100).map(|i| Vec3::Y * (i as f32 / 4.0));
+        let (points, of) = weld_within(chain, 0.5);
+        // 0, 0.25 and 0.5 are one; 0.75 is too far from 0, and 1 goes with it.
+        assert_eq!((points.len(), &of[..7]), (34, &[0, 0, 0, 1, 1, 1, 2][..]));
+    }
+
+    #[test]
+    fn equal_positions_stay_together_whatever_comes_between() {
+        let (points, of) = weld_within([0.0, 0.9, 1.5, 0.9].map(|x| Vec3::X * x), 1.0);
+        assert_eq!((points.len(), of), (2, vec![0, 0, 1, 0]));
+    }
+
+    #[test]
+    fn the_tolerance_itself_counts_as_within() {
+        for (x, points) in [(0.25_f32, 1), (0.25_f32.next_up(), 2)] {
+            assert_eq!(weld_within([Vec3::ZERO, Vec3::X * x], 0.25).0.len(), points);
+        }
+    }
+
+    #[test]
+    fn no_tolerance_is_the_exact_weld() {
+        let positions = [1.0, -0.0, 0.0, 1e-45, 1e38, 1.0].map(Vec3::splat);
+        for tolerance in [0.0, -1.0, f64::NAN] {
+            assert_eq!(weld_within(positions, tolerance), weld(positions));
+        }
+    }
+
+    #[test]
+    fn huge_and_tiny_coordinates_weld_alike() {
+        for scale in [1e-30_f32, 1e-7, 1.0, 1e7, 1e30] {
+            let positions = [0.0, 1.0, 1.0001, 2.0].map(|x| Vec3::ONE * (x * scale));
+            let (points, of) = weld_within(positions, 1e-3 * f64::from(scale));
+            assert_eq!((points.len(), of), (3, vec![0, 1, 1, 2]), "{scale}");
+        }
+        let (points, _) = weld_within([1e30, 2e30, 1e-30, 2e-30].map(Vec3::splat), 1e-40);
+        assert_eq!(points.len(), 4);
+        assert_eq!(weld_within([-f32::MAX, 0.0, f32::MAX].map(Vec3::splat), f64::INFINITY).1, [0, 0, 0]);
+    }
+
+    #[test]
+    fn many_positions_on_one_spot_stay_fast() {
+        let spot = (0..300_000).map(|i| Vec3::new(1.0 + 1e-7 * (i % 1000) as f32, 1.0 + 1e-7 * (i / 1000) as f32, 1.0));
+        let (points, _) = weld_within(spot, 1e-3);
+        assert_eq!(points.len(), 1);
+    }
+
     proptest! {
+        #[test]
+        fn the_grid_welds_as_trying_all_does(
+            grid in prop::collection::vec(prop::array::uniform3(-6_i8..6), 0..60),
+            tolerance in 0_u8..7,
+        ) {
+            let positions = grid.iter().map(|p| Vec3::from(p.map(f32::from))).collect::<Vec<_>>();
+            let tolerance = f64::from(tolerance) / 2.0;
+            let (points, of) = weld_within(positions.iter().copied(), tolerance);
+            let mut expected: Vec<Vec3> = Vec::new();
+            let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+            for (position, &point) in positions.iter().zip(&of) {
+                let slow = *known.entry(plus_zero3(*position).to_array().map(f32::to_bits)).or_insert_with(|| {
+                    let apart = |i: &u32| expected[*i as usize].as_dvec3().distance(position.as_dvec3());
+                    // The first of the least: `min_by` keeps it.
+                    let near = (0..expected.len() as u32).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+                    near.filter(|i| apart(i) <= tolerance).unwrap_or_else(|| {
+                        expected.push(*position);
+                        expected.len() as u32 - 1
+                    })
+                });
+                prop_assert_eq!(point, slow);
+            }
+            prop_assert_eq!(points, expected);
+        }
+
         #[test]
         fn points_and_positions_agree(grid in prop::collection::vec((-2i8..2, -2i8..2, -2i8..2), 0..60)) {
             let positions: Vec<Vec3> = grid.iter().map(|&(x, y, z)| Vec3::new(x.into(), y.into(), z.into())).collect();

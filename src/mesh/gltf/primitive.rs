@@ -13,13 +13,14 @@ pub struct Primitives {
     read: usize,
     points: usize,
     lines: usize,
-    /// Primitives without normals, vertices with bad ones, ...
+    /// Primitives without normals, vertices with bad uvs or weights.
     without_normals: usize,
-    bad_normals: usize,
     bad_uvs: usize,
     bad_weights: usize,
     /// Indices at the end of lists that make no whole triangle.
     left_over: usize,
+    /// Corners of triangles whose normal wasn't of unit length in the file.
+    pub rescaled: u32,
 }
 
 impl Primitives {
@@ -62,13 +63,15 @@ impl Primitives {
             let ordered = if vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
             ordered.map(|vertex| vertices.corners[vertex as usize])
         };
-        Ok(triangles(primitive.mode(), &indices).into_iter().map(corners).collect())
+        let triangles = triangles(primitive.mode(), &indices);
+        let vertex_rescaled = |vertex: &&u32| vertices.rescaled[**vertex as usize];
+        self.rescaled += triangles.as_flattened().iter().filter(vertex_rescaled).count() as u32;
+        Ok(triangles.into_iter().map(corners).collect())
     }
 
     fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
         self.read += 1;
         self.without_normals += usize::from(repairs.no_normals > 0);
-        self.bad_normals += repairs.bad_normals;
         self.bad_uvs += repairs.bad_uvs;
         self.bad_weights += repairs.bad_weights;
         if mode == Mode::Triangles {
@@ -76,11 +79,10 @@ impl Primitives {
         }
     }
 
-    /// What was left out or repaired, one sentence each.
+    /// What was left out or repaired, one sentence each; what the mesh's own repairs count is not among them.
     pub fn warnings(&self) -> Vec<String> {
         let sentences = [
             (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
-            (self.bad_normals, "normals of no direction, replaced by ones that are smooth within 60 degrees"),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
             (self.bad_weights, "vertices with unusable joints or weights, left unskinned"),
             (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),

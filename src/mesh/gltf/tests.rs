@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
+use crate::mesh::Repairs;
 use crate::mesh::topology::Topology;
 
 /// A document under construction: one buffer, a view and an accessor for each list.
@@ -272,7 +273,43 @@ fn bad_normals_are_made_and_counted() {
     draft.primitive(json!({ "attributes": { "POSITION": at, "NORMAL": normals } }));
     let mesh = draft.read().unwrap();
     assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
-    assert_eq!(mesh.warnings, ["normals of no direction, replaced by ones that are smooth within 60 degrees: 2."]);
+    let replaced = "normals of no direction, replaced by ones that are smooth within 60 degrees: 2.";
+    assert_eq!(mesh.warnings, [replaced, "normals whose length isn't 1, brought to it: 1."]);
+    assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
+    // A transform that has nothing to do with it.
+    draft.root["nodes"][0]["scale"] = json!([1.0, 3.0, -1.0]);
+    let turned = draft.read().unwrap();
+    assert_eq!((turned.repairs, turned.warnings), (mesh.repairs, mesh.warnings));
+    // One that leaves no direction: nothing counts twice.
+    draft.root["nodes"][0]["scale"] = json!([0.0, 0.0, 1.0]);
+    assert_eq!(draft.read().unwrap().repairs, Repairs { normals_replaced: 3, ..Repairs::default() });
+}
+
+#[test]
+fn repairs_are_counted_in_corners() {
+    let mut draft = Draft::new();
+    let at = draft.vectors(&[[0.0, 1e-40, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
+    let normals = draft.vectors(&[[0.0, 0.0, 1.0], [0.0, 0.0, 1e-30], [0.0, 0.0, 1e30], [0.0; 3]]);
+    let indices = draft.indices(&[0, 1, 2, 2, 1, 3, 0, 1, 2]);
+    draft.primitive(json!({ "attributes": { "POSITION": at, "NORMAL": normals }, "indices": indices }));
+    let unlit = draft.vectors(&TRIANGLE);
+    draft.primitive(json!({ "attributes": { "POSITION": unlit } }));
+    let mesh = draft.read().unwrap();
+    let expected = Repairs { normals_made: 3, normals_replaced: 1, normals_rescaled: 6, denormals: 2 };
+    assert_eq!((mesh.repairs, mesh.warnings.len()), (expected, 4), "{:?}", mesh.warnings);
+    assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
+    assert_eq!(mesh.corners[0].position, Vec3::ZERO);
+}
+
+#[test]
+fn morphing_is_no_fault_of_the_normals() {
+    let mut draft = triangle();
+    let target = draft.vectors(&[[0.0, 3.0, 3.0]; 3]);
+    draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "NORMAL": target }]);
+    draft.root["meshes"][0]["weights"] = json!([1.0]);
+    let mesh = draft.read().unwrap();
+    assert!(mesh.corners.iter().all(|corner| corner.normal.distance(Vec3::new(0.0, 0.6, 0.8)) < 1e-7));
+    assert_eq!((mesh.repairs, mesh.warnings.len()), (Repairs::default(), 0));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use super::{Accessors, Problem};
 use crate::mesh::merge::LooseCorner;
+use crate::mesh::normals::Given;
 
 /// How the primitive's node stands.
 pub struct Pose<'a> {
@@ -22,6 +23,8 @@ pub struct Vertices {
     pub corners: Vec<LooseCorner>,
     /// The vertex went through a mirroring transform, so its triangles must be wound the other way.
     pub mirrored: Vec<bool>,
+    /// The vertex's normal has a direction, but wasn't of unit length in the file.
+    pub rescaled: Vec<bool>,
     pub repairs: Repairs,
 }
 
@@ -30,8 +33,6 @@ pub struct Vertices {
 pub struct Repairs {
     /// The primitive had no normals at all.
     pub no_normals: usize,
-    /// A normal had no direction: zero or not finite.
-    pub bad_normals: usize,
     /// A uv was not finite and is (0, 0) now.
     pub bad_uvs: usize,
     /// Weights didn't sum to anything, or named a joint that isn't there; the vertex was left as the mesh has it.
@@ -58,10 +59,12 @@ pub fn read(
 ) -> Result<Vertices, Problem> {
     let attributes = Source { primitive, name, accessors };
     let mut values = attributes.read(uv_set)?;
+    // Before morphing, which leaves no normal at unit length and is no fault.
+    let rescaled = rescaled(values.normals.as_deref(), values.positions.len());
     attributes.morph(&mut values, pose.weights)?;
     let mut repairs = Repairs::default();
     let matrices = attributes.matrices(pose, values.positions.len(), &mut repairs)?;
-    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), repairs };
+    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), rescaled, repairs };
     for i in 0..values.positions.len() {
         let matrix = matrices.get(i).unwrap_or(&pose.global);
         vertices.push(&values, i, matrix, name)?;
@@ -77,34 +80,39 @@ impl Vertices {
             return Err(Problem::Primitive { primitive: name.to_owned(), reason });
         }
         let linear = DMat3::from_mat4(*matrix);
-        let normal = values.normals.as_ref().map(|normals| turned(normals[i], &linear));
-        match normal {
-            None => self.repairs.no_normals += 1,
-            Some(None) => self.repairs.bad_normals += 1,
-            Some(Some(_)) => {}
-        }
+        // One without a direction goes on as zero: the builder makes another and counts it.
+        let turned = |normal| turned(normal, &linear).unwrap_or(Vec3::ZERO);
+        let normal = values.normals.as_ref().map(|normals| turned(normals[i]));
+        self.repairs.no_normals += usize::from(normal.is_none());
+        self.rescaled[i] &= normal != Some(Vec3::ZERO);
         let mut uv = values.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs[i].into());
         if !uv.is_finite() {
             uv = Vec2::ZERO;
             self.repairs.bad_uvs += 1;
         }
-        self.corners.push(LooseCorner { position, normal: normal.flatten(), uv });
+        self.corners.push(LooseCorner { position, normal, uv });
         self.mirrored.push(linear.determinant() < 0.0);
         Ok(())
     }
 }
 
+/// Which normals aren't of unit length (see [`Given`]).
+fn rescaled(normals: Option<&[Vec3]>, count: usize) -> Vec<bool> {
+    let rescaled = |normal: &Vec3| matches!(Given::new(*normal), Given::Rescaled(_));
+    normals.map_or_else(|| vec![false; count], |normals| normals.iter().map(rescaled).collect())
+}
+
 /// A normal through the inverse transpose of a linear map, of unit length; none if that has no direction.
 fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
-    let normal = normal.as_dvec3();
-    if *linear == DMat3::IDENTITY && (normal.length_squared() - 1.0).abs() < 1e-6 {
-        return Some(normal.as_vec3());
+    let normal = Given::new(normal).unit()?;
+    if *linear == DMat3::IDENTITY {
+        return Some(normal);
     }
     // The cofactors are the inverse transpose times the determinant, and exist where the inverse doesn't.
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-    (sign * (cofactors * normal)).try_normalize().map(DVec3::as_vec3)
+    (sign * (cofactors * normal.as_dvec3())).try_normalize().map(DVec3::as_vec3)
 }
 
 /// Where a primitive's attributes come from.

@@ -135,6 +135,42 @@ fn a_fan_of_300_000_triangles() {
     }
 }
 
+/// A mesh of two triangles that share an edge but for a gap along x.
+fn split_square(scale: f32, gap: f32) -> Mesh {
+    let mut mesh = mesh(&[0, 1, 2, 3, 4, 5], &[[0, 1, 2], [3, 4, 5]]);
+    let at = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0 + gap, 1.0], [0.0, 1.0]];
+    for (corner, [x, y]) in mesh.corners.iter_mut().zip(at) {
+        corner.position = scale * Vec3::new(x, y, 0.0);
+    }
+    mesh
+}
+
+#[test]
+fn a_gap_closes_within_the_tolerance() {
+    for scale in [1e-7, 1.0, 1e7] {
+        let mesh = split_square(scale, 1e-3);
+        let within = |tolerance| Topology::build_within(&mesh, tolerance, &Progress::new()).unwrap();
+        // The diagonal is 1.415 long, so the gap is 7.07e-4 of it.
+        assert_eq!(within(7e-4).edge_counts(), EdgeCounts { boundary: 6, ..Default::default() }, "{scale}");
+        let closed = within(7.2e-4);
+        check(&mesh, &closed);
+        assert_eq!(closed.edge_counts(), EdgeCounts { smooth: 1, boundary: 4, ..Default::default() }, "{scale}");
+        assert_eq!(closed.points[2], mesh.corners[2].position, "the first corner speaks for the point");
+        assert_eq!((closed.corner_points[4], closed.point_corners[2]), (2, 2));
+    }
+}
+
+#[test]
+fn triangles_that_the_tolerance_flattens_are_degenerate() {
+    let mesh = Shape::Moebius.build();
+    let all = Topology::build_within(&mesh, 1.0, &Progress::new()).unwrap();
+    assert_eq!((all.points.len(), all.degenerate, all.patches.len(), all.edges.len()), (1, 96, 0, 0));
+    let strip = Topology::build_within(&mesh, 1e-3, &Progress::new()).unwrap();
+    assert_eq!(strip.edge_counts(), build(&mesh).edge_counts(), "its own twist is wider than that");
+    let nothing = Topology::build_within(&Mesh::default(), 0.1, &Progress::new()).unwrap();
+    assert_eq!((nothing.points.len(), nothing.edges.len()), (0, 0));
+}
+
 #[test]
 fn a_cancel_is_heard() {
     let progress = Progress::new();

@@ -1,0 +1,261 @@
+//! The numbers that `pnaen info` prints.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::near_misses::near_misses;
+use super::progress::{Cancelled, Progress};
+use super::t_junctions::{TJunction, t_junctions};
+use super::topology::{EdgeCounts, Topology};
+use super::{Mesh, NormalFaults, Repairs};
+
+/// T-junctions that are printed for people.
+const SHOWN: usize = 10;
+
+/// A mesh in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Info {
+    pub name: String,
+    pub triangles: u32,
+    /// Within what points were welded, relative to the bounding diagonal; 0 is exactly.
+    pub weld: f32,
+    /// Triangles left out because two corners lie on one point.
+    pub degenerate: u32,
+    pub corners: u32,
+    pub points: u32,
+    pub materials: Vec<MaterialInfo>,
+    pub edges: EdgeCounts,
+    /// See [`near_misses`].
+    pub near_misses: u32,
+    /// See [`t_junctions`].
+    pub t_junctions: u32,
+    /// Where they are, in their order.
+    pub t_junctions_at: Vec<TJunctionInfo>,
+    pub repairs: Repairs,
+    pub normal_faults: NormalFaults,
+    pub bounds: BoundsInfo,
+    /// Points in use - edges + patches.
+    pub euler_characteristic: i64,
+    /// Every edge has exactly two sides.
+    pub closed: bool,
+    pub warnings: Vec<String>,
+}
+
+/// A material in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct MaterialInfo {
+    pub name: String,
+    pub triangles: u32,
+    /// Width and height in px, where there is a texture.
+    pub texture: Option<[u32; 2]>,
+}
+
+/// A T-junction with positions, in object units.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct TJunctionInfo {
+    /// The edge's ends, in its own direction.
+    pub edge: [[f32; 3]; 2],
+    pub point: [f32; 3],
+    /// Where along the edge, 0 to 1.
+    pub t: f32,
+    /// Between the point and the edge.
+    pub distance: f32,
+}
+
+/// The bounding box, in object units.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct BoundsInfo {
+    pub min: [f32; 3],
+    pub max: [f32; 3],
+    pub diagonal: f32,
+}
+
+impl Info {
+    /// Gathers the numbers of a mesh and of the topology built from it; `weld` is the tolerance of
+    /// [`Topology::build_within`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub fn of(mesh: &Mesh, topology: &Topology, weld: f32, progress: &Progress) -> Result<Self, Cancelled> {
+        let edges = topology.edge_counts();
+        let bounds = mesh.bounds();
+        let t_junctions = t_junctions(topology, progress)?;
+        Ok(Self {
+            name: mesh.name.clone(),
+            triangles: mesh.triangles.len() as u32,
+            weld,
+            degenerate: topology.degenerate,
+            corners: mesh.corners.len() as u32,
+            points: topology.points.len() as u32,
+            materials: mesh.materials.iter().map(material).collect(),
+            edges,
+            near_misses: near_misses(topology).len() as u32,
+            t_junctions: t_junctions.len() as u32,
+            t_junctions_at: t_junctions.iter().map(|junction| t_junction(topology, junction)).collect(),
+            repairs: mesh.repairs,
+            normal_faults: NormalFaults::of(mesh, topology),
+            bounds: BoundsInfo { min: bounds.min.into(), max: bounds.max.into(), diagonal: bounds.diagonal() },
+            euler_characteristic: euler_characteristic(topology),
+            closed: edges.total() > 0 && edges.boundary == 0 && edges.non_manifold == 0,
+            warnings: mesh.warnings.clone(),
+        })
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.write_mesh(f)?;
+        self.write_odd(f)?;
+        let [x, y, z] = self.bounds.min;
+        let [to_x, to_y, to_z] = self.bounds.max;
+        writeln!(f, "from          {x} {y} {z} (object units)")?;
+        writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", self.bounds.diagonal)?;
+        for material in &self.materials {
+            let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
+            writeln!(f, "material      {}: {} triangles{texture}", material.name, material.triangles)?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning       {warning}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Info {
+    /// What the mesh consists of.
+    fn write_mesh(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let EdgeCounts { smooth, split, seam, boundary, non_manifold } = self.edges;
+        let welded = match self.weld {
+            weld if weld > 0.0 => format!("within {weld} of the bounding diagonal"),
+            _ => "where exactly equal".to_owned(),
+        };
+        writeln!(f, "{}", self.name)?;
+        writeln!(f, "triangles     {} ({} degenerate, left out)", self.triangles, self.degenerate)?;
+        writeln!(f, "points        {} (welded {welded})", self.points)?;
+        writeln!(f, "corners       {}", self.corners)?;
+        writeln!(f, "edges         {}", self.edges.total())?;
+        writeln!(f, "  smooth        {smooth}")?;
+        writeln!(f, "  split normal  {split}")?;
+        writeln!(f, "  uv seam       {seam}")?;
+        writeln!(f, "  boundary      {boundary}")?;
+        writeln!(f, "  non-manifold  {non_manifold}")?;
+        let closed = if self.closed { "closed" } else { "open" };
+        writeln!(f, "surface       {closed}, Euler characteristic {}", self.euler_characteristic)
+    }
+
+    /// What is odd about it.
+    fn write_odd(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Repairs { normals_made, normals_replaced, normals_rescaled, denormals } = self.repairs;
+        let NormalFaults { against_face, opposite, along_edge } = self.normal_faults;
+        writeln!(f, "near misses   {} (pairs of open edges that nearly meet)", self.near_misses)?;
+        writeln!(f, "T-junctions   {} (points inside open edges, which no tessellation closes)", self.t_junctions)?;
+        for TJunctionInfo { edge: [from, to], point, .. } in self.t_junctions_at.iter().take(SHOWN) {
+            let [point, from, to] = [point, from, to].map(|[x, y, z]| format!("{x} {y} {z}"));
+            writeln!(f, "  at {point} between {from} and {to}")?;
+        }
+        if self.t_junctions_at.len() > SHOWN {
+            writeln!(f, "  and {} more", self.t_junctions_at.len() - SHOWN)?;
+        }
+        writeln!(f, "repairs       (triangles' corners)")?;
+        writeln!(f, "  made          {normals_made} (had no normal)")?;
+        writeln!(f, "  replaced      {normals_replaced} (normal zero or not finite)")?;
+        writeln!(f, "  rescaled      {normals_rescaled} (normal not of length 1)")?;
+        writeln!(f, "  denormal      {denormals} (coordinates so small that they are 0 now)")?;
+        writeln!(f, "normals")?;
+        writeln!(f, "  against face  {against_face} (corners whose normal opposes their triangle's)")?;
+        writeln!(f, "  opposite      {opposite} (edges where two sides' normals oppose each other)")?;
+        writeln!(f, "  along edge    {along_edge} (corners whose normal runs along an edge)")
+    }
+}
+
+fn t_junction(topology: &Topology, junction: &TJunction) -> TJunctionInfo {
+    let at = |point: u32| topology.points[point as usize].to_array();
+    let TJunction { edge, point, t, distance } = *junction;
+    TJunctionInfo { edge: topology.edges[edge as usize].points.map(at), point: at(point), t, distance }
+}
+
+fn material(material: &super::Material) -> MaterialInfo {
+    MaterialInfo {
+        name: material.name.clone(),
+        triangles: material.triangles.len() as u32,
+        texture: material.texture.as_ref().map(|texture| texture.size),
+    }
+}
+
+/// Points in use - edges + patches: 2 for whatever is like a sphere, 0 for a torus.
+fn euler_characteristic(topology: &Topology) -> i64 {
+    let mut used = vec![false; topology.points.len()];
+    for edge in &topology.edges {
+        for point in edge.points {
+            used[point as usize] = true;
+        }
+    }
+    let points = used.iter().filter(|used| **used).count();
+    points as i64 - topology.edges.len() as i64 + topology.patches.len() as i64
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+    use crate::mesh::Corner;
+    use crate::mesh::shapes::Shape;
+
+    fn info(mesh: &Mesh, weld: f32) -> Info {
+        let progress = Progress::new();
+        let topology = Topology::build_within(mesh, weld, &progress).unwrap();
+        Info::of(mesh, &topology, weld, &progress).unwrap()
+    }
+
+    #[test]
+    fn info_of_a_torus() {
+        let mesh = Shape::Torus.build();
+        let info = info(&mesh, 0.0);
+        assert_eq!((info.triangles, info.points, info.euler_characteristic, info.closed), (256, 128, 0, true));
+        assert_eq!((info.materials.len(), info.materials[0].triangles), (1, 256));
+        let json = serde_json::to_value(&info).unwrap();
+        assert_eq!(json["edges"]["seam"], 24);
+    }
+
+    #[test]
+    fn info_of_nothing() {
+        let info = info(&Mesh::default(), 0.0);
+        assert_eq!((info.triangles, info.euler_characteristic, info.closed), (0, 0, false));
+    }
+
+    /// A triangle over the edge from 0 to 16 along x, and twelve with their tips on it.
+    fn comb() -> Mesh {
+        let corner = |x: f32, y: f32| Corner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z, uv: Vec2::ZERO };
+        let tooth = |i: u32| [corner(i as f32, 0.0), corner(i as f32 - 0.5, -1.0), corner(i as f32 + 0.5, -1.0)];
+        let mut corners = vec![corner(0.0, 0.0), corner(16.0, 0.0), corner(8.0, 1.0)];
+        corners.extend((1..13).flat_map(tooth));
+        let triangles = (0..13).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Mesh { corners, triangles, ..Mesh::default() }
+    }
+
+    #[test]
+    fn t_junctions_are_told_with_their_positions() {
+        let info = info(&comb(), 0.0);
+        assert_eq!((info.t_junctions, info.t_junctions_at.len()), (12, 12));
+        let json = serde_json::to_value(&info).unwrap();
+        let third = serde_json::json!({
+            "edge": [[0.0, 0.0, 0.0], [16.0, 0.0, 0.0]], "point": [3.0, 0.0, 0.0], "t": 0.1875, "distance": 0.0,
+        });
+        assert_eq!(json["t_junctions_at"][2], third);
+        let text = info.to_string();
+        assert!(text.contains("T-junctions   12 "), "{text}");
+        assert!(text.contains("\n  at 3 0 0 between 0 0 0 and 16 0 0\n"), "{text}");
+        assert!(text.contains("at 10 0 0") && !text.contains("at 11 0 0") && text.contains("and 2 more"), "{text}");
+    }
+
+    #[test]
+    fn the_tolerance_and_what_it_does_are_told() {
+        let exact = info(&comb(), 0.0).to_string();
+        assert!(exact.contains("(welded where exactly equal)"), "{exact}");
+        let rough = info(&comb(), 0.1);
+        assert!(rough.weld == 0.1 && rough.points < 39 && rough.degenerate > 0, "{rough:?}");
+        assert!(rough.to_string().contains("(welded within 0.1 of the bounding diagonal)"));
+    }
+}

@@ -1,0 +1,122 @@
+//! What a weld tolerance would do, before one chooses it.
+
+use serde::Serialize;
+
+use super::Mesh;
+use super::progress::{Cancelled, Progress};
+use super::topology::{EdgeKind, Topology};
+
+/// What welding within a tolerance changes, compared with the exact weld.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Joins {
+    /// Relative to the bounding diagonal.
+    pub tolerance: f32,
+    /// Boundary edges of the exact topology that are joined to another: their side ends up on an edge with two sides
+    /// or more. Edges of triangles that collapse are not among them.
+    pub edges: u32,
+    /// Triangles that are patches of the exact topology and degenerate within the tolerance.
+    pub collapsed: u32,
+}
+
+/// The tolerances that are tried, relative to the bounding diagonal: from what the last bits of f32 leave open to what
+/// visibly changes a mesh.
+pub const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// What each of [`TOLERANCES`] would join and collapse, in their order. Builds a topology for each; `progress` goes
+/// from 0 to 1 meanwhile.
+///
+/// # Errors
+/// [`Cancelled`] when `progress` says so.
+pub fn joins(mesh: &Mesh, progress: &Progress) -> Result<Vec<Joins>, Cancelled> {
+    progress.set(0.0);
+    let exact = Topology::build(mesh, progress)?;
+    let mut joins = Vec::with_capacity(TOLERANCES.len());
+    for tolerance in TOLERANCES {
+        let part = (joins.len() + 1) as f32 / (TOLERANCES.len() + 1) as f32;
+        progress.set(part);
+        let welded = Topology::build_within(mesh, tolerance, progress)?;
+        let collapsed = welded.degenerate - exact.degenerate;
+        joins.push(Joins { tolerance, edges: joined(&exact, &welded), collapsed });
+    }
+    progress.set(1.0);
+    Ok(joins)
+}
+
+/// Boundary edges of `exact` whose side shares its edge in `welded`.
+fn joined(exact: &Topology, welded: &Topology) -> u32 {
+    let open = exact.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
+    let shared = open.filter(|edge| {
+        let side = exact.sides[edge.sides.start as usize];
+        let triangle = exact.patches[side.patch as usize].triangle;
+        // Patches are in the order of their triangles, whichever are left out.
+        let Ok(patch) = welded.patches.binary_search_by_key(&triangle, |patch| patch.triangle) else { return false };
+        let side = welded.sides[welded.patches[patch].sides[side.index as usize] as usize];
+        welded.edges[side.edge as usize].sides.len() > 1
+    });
+    shared.count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+    use crate::mesh::Corner;
+    use crate::mesh::shapes::Shape;
+
+    /// Triangles with corners of their own.
+    fn soup(triangles: &[[[f32; 2]; 3]]) -> Mesh {
+        let corner = |&[x, y]: &[f32; 2]| Corner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z, uv: Vec2::ZERO };
+        let corners = triangles.as_flattened().iter().map(corner).collect();
+        let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Mesh { corners, triangles, ..Mesh::default() }
+    }
+
+    fn counts(mesh: &Mesh) -> Vec<[u32; 2]> {
+        let joins = joins(mesh, &Progress::new()).unwrap();
+        assert!(joins.iter().map(|join| join.tolerance).eq(TOLERANCES));
+        joins.iter().map(|join| [join.edges, join.collapsed]).collect()
+    }
+
+    #[test]
+    fn a_gap_joins_from_the_first_tolerance_that_spans_it() {
+        // A square of diagonal 1.41 in two halves, 1e-4 apart.
+        let gap = 1e-4;
+        let mesh = soup(&[[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], [[0.0, gap], [1.0, 1.0 + gap], [0.0, 1.0]]]);
+        assert_eq!(counts(&mesh), [[0, 0], [0, 0], [0, 0], [2, 0], [2, 0], [2, 0]]);
+    }
+
+    #[test]
+    fn what_collapses_is_not_joined() {
+        // A sliver 1e-3 wide and 1e-4 too high between two halves: it joins both, then vanishes, and they meet.
+        let (w, gap) = (1e-3, 1e-4);
+        let mesh = soup(&[
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            [[1.0, gap], [1.0 + w, gap], [0.0, 1.0 + gap]],
+            [[1.0 + w, 0.0], [1.0, 1.0], [0.0, 1.0]],
+        ]);
+        assert_eq!(counts(&mesh), [[0, 0], [0, 0], [0, 0], [4, 0], [2, 1], [2, 1]]);
+    }
+
+    #[test]
+    fn duplicates_and_closed_edges_are_joined_already() {
+        let triangle = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        assert_eq!(counts(&soup(&[triangle, triangle])), [[0, 0]; 6]);
+        assert_eq!(counts(&Shape::Torus.build()), [[0, 0]; 6]);
+        assert_eq!(counts(&Shape::Moebius.build()), [[0, 0]; 6], "its boundary is nowhere near itself");
+        assert_eq!(counts(&Mesh::default()), [[0, 0]; 6]);
+    }
+
+    #[test]
+    fn triangles_on_one_point_were_degenerate_before() {
+        let point = [[0.5, 0.5]; 3];
+        assert_eq!(counts(&soup(&[point, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], point])), [[0, 0]; 6]);
+    }
+
+    #[test]
+    fn a_cancel_is_heard() {
+        let progress = Progress::new();
+        progress.cancel();
+        assert_eq!(joins(&Shape::Torus.build(), &progress), Err(Cancelled));
+    }
+}

@@ -1,0 +1,162 @@
+//! Normals that are legal but suspicious: the surface over them folds, tears or bulges.
+
+use std::collections::HashSet;
+
+use glam::{DVec3, Vec3};
+use serde::Serialize;
+
+use super::Mesh;
+use super::topology::{Edge, Patch, Topology};
+
+/// Two unit vectors whose dot product is beyond this, either way, count as parallel: within 2.6 degrees.
+const PARALLEL: f64 = 0.999;
+
+/// Sides of one edge that are compared with each other. More than that is noise, and comparing all would be quadratic.
+const TRIES: usize = 256;
+
+/// How many normals are suspicious. All three may be meant, as in a Möbius strip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct NormalFaults {
+    /// Corners of patches whose normal points to the inside of the triangle's own plane (dot product below 0). A
+    /// triangle without area has no inside.
+    pub against_face: u32,
+    /// Edges at one end of which two sides have opposite normals (dot product below -0.999): their mean has no
+    /// direction.
+    pub opposite: u32,
+    /// Corners of patches whose normal is parallel to one of the two edges there (dot product beyond 0.999): the
+    /// edge's control point has nowhere to go.
+    pub along_edge: u32,
+}
+
+impl NormalFaults {
+    /// Counts them, in f64, with the edges as welded. Linear: of an edge with more than 256 sides the first 256 are
+    /// compared.
+    pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
+        let mut faults = Self::default();
+        for patch in &topology.patches {
+            faults.add(mesh, topology, patch);
+        }
+        let opposed = |edge: &&Edge| (0..2).any(|end| opposed(mesh, topology, edge, end));
+        faults.opposite = topology.edges.iter().filter(opposed).count() as u32;
+        faults
+    }
+
+    fn add(&mut self, mesh: &Mesh, topology: &Topology, patch: &Patch) {
+        let point = |corner: u32| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3();
+        let at = patch.corners.map(point);
+        let face = (at[1] - at[0]).cross(at[2] - at[0]);
+        for (k, corner) in patch.corners.into_iter().enumerate() {
+            let normal = mesh.corners[corner as usize].normal.as_dvec3();
+            let parallel = |other: DVec3| (other - at[k]).normalize_or_zero().dot(normal).abs() > PARALLEL;
+            self.against_face += u32::from(face.dot(normal) < 0.0);
+            self.along_edge += u32::from(parallel(at[(k + 1) % 3]) || parallel(at[(k + 2) % 3]));
+        }
+    }
+}
+
+/// Whether two sides of an edge have opposite normals at one of its ends.
+fn opposed(mesh: &Mesh, topology: &Topology, edge: &Edge, end: usize) -> bool {
+    let normal = |corner: u32| mesh.corners[corner as usize].normal;
+    let normals = topology.edge_sides(edge).iter().take(TRIES).map(|side| normal(side.corners[end]));
+    let mut seen = HashSet::new();
+    let distinct: Vec<Vec3> = normals.filter(|normal| seen.insert(normal.to_array().map(f32::to_bits))).collect();
+    let opposite = |a: &Vec3, b: &Vec3| a.as_dvec3().dot(b.as_dvec3()) < -PARALLEL;
+    distinct.iter().enumerate().any(|(i, a)| distinct[..i].iter().any(|b| opposite(a, b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::mesh::shapes::Shape;
+    use crate::mesh::{Corner, Progress};
+
+    fn faults(mesh: &Mesh) -> NormalFaults {
+        NormalFaults::of(mesh, &Topology::build(mesh, &Progress::new()).unwrap())
+    }
+
+    /// Triangles over the edge from 0 to X, one for each pair of normals at its ends; their tips have the face's own.
+    fn book(normals: &[[Vec3; 2]]) -> Mesh {
+        let corner = |position: Vec3, normal: Vec3| Corner { position, normal, uv: Vec2::ZERO };
+        let pages = normals.iter().enumerate().flat_map(|(i, normals)| {
+            let tip = Vec3::new(0.5, 1.0, i as f32);
+            let face = Vec3::X.cross(tip).normalize();
+            [corner(Vec3::ZERO, normals[0]), corner(Vec3::X, normals[1]), corner(tip, face)]
+        });
+        let triangles = (0..normals.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Mesh { corners: pages.collect(), triangles, ..Mesh::default() }
+    }
+
+    #[test]
+    fn good_normals_are_no_faults() {
+        for shape in Shape::ALL.into_iter().filter(|shape| *shape != Shape::Moebius) {
+            assert_eq!(faults(&shape.build()), NormalFaults::default(), "{shape}");
+        }
+        assert_eq!(faults(&Mesh::default()), NormalFaults::default());
+    }
+
+    #[test]
+    fn a_moebius_strip_opposes_itself_at_its_join() {
+        assert_eq!(faults(&Shape::Moebius.build()), NormalFaults { opposite: 2, ..NormalFaults::default() });
+    }
+
+    #[test]
+    fn a_shape_inside_out_is_against_every_face() {
+        let mut mesh = Shape::Torus.build();
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+        assert_eq!(faults(&mesh), NormalFaults { against_face: 3 * 256, ..NormalFaults::default() });
+    }
+
+    #[test]
+    fn a_normal_along_an_edge_counts_its_corner_once() {
+        let within = Vec3::new(1.0, 0.0, 0.04).normalize();
+        let beyond = Vec3::new(1.0, 0.0, 0.05).normalize();
+        for (normal, along_edge) in [(Vec3::X, 1), (Vec3::NEG_X, 1), (within, 1), (beyond, 0), (Vec3::Z, 0)] {
+            let found = faults(&book(&[[Vec3::Z, normal]]));
+            assert_eq!(found, NormalFaults { along_edge, ..NormalFaults::default() }, "{normal}");
+        }
+        // Corner 0's two edges are nearly one: still one corner.
+        let mut sliver = book(&[[Vec3::X, Vec3::Z]]);
+        sliver.corners[2].position = Vec3::new(2.0, 0.01, 0.0);
+        assert_eq!(faults(&sliver).along_edge, 1);
+    }
+
+    #[test]
+    fn opposite_normals_need_not_be_neighbours() {
+        let (up, tilted) = (Vec3::Z, Vec3::new(0.0, -1.0, 1.0).normalize());
+        let opposite = |normals: &[[Vec3; 2]]| faults(&book(normals)).opposite;
+        assert_eq!(opposite(&[[up, up], [up, -up]]), 1);
+        assert_eq!(opposite(&[[up, up], [tilted, tilted], [-up, up]]), 1);
+        assert_eq!(opposite(&[[up, up], [tilted, up], [-tilted, up]]), 1);
+        assert_eq!(opposite(&[[up, -up], [tilted, -up]]), 0, "opposite at different ends");
+        let nearly = |y: f32| Vec3::new(0.0, y, -1.0).normalize();
+        assert_eq!(opposite(&[[up, up], [nearly(0.044), up]]), 1);
+        assert_eq!(opposite(&[[up, up], [nearly(0.046), up]]), 0);
+    }
+
+    #[test]
+    fn triangles_without_area_oppose_nothing() {
+        let mut flat = book(&[[Vec3::Z, Vec3::NEG_Z]]);
+        flat.corners[2].position = Vec3::X * 2.0;
+        assert_eq!(faults(&flat), NormalFaults::default());
+        flat.corners[2].position = Vec3::X;
+        assert_eq!(faults(&flat), NormalFaults::default(), "a degenerate one isn't a patch");
+    }
+
+    #[test]
+    fn size_plays_no_part() {
+        for scale in [1e-30, 1e-7, 1e7, 1e30] {
+            let mut mesh = book(&[[Vec3::NEG_Z, Vec3::X]]);
+            mesh.corners.iter_mut().for_each(|corner| corner.position *= scale);
+            assert_eq!(faults(&mesh), NormalFaults { against_face: 1, along_edge: 1, opposite: 0 }, "{scale}");
+        }
+    }
+
+    #[test]
+    fn an_edge_of_300_000_sides() {
+        let tilts = (0..300_000).map(|i| Vec3::new(0.0, -1e-6 * i as f32, 1.0).normalize());
+        let pages: Vec<_> = tilts.map(|normal| [normal, Vec3::Z]).collect();
+        assert_eq!(faults(&book(&pages)).opposite, 0);
+    }
+}

@@ -1,0 +1,191 @@
+use glam::{Vec2, Vec3};
+use proptest::prelude::*;
+
+use super::*;
+use crate::mesh::shapes::Shape;
+use crate::mesh::{Corner, Mesh};
+
+/// Triangles over corners at these places.
+fn topology(places: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
+    let corner = |&position: &Vec3| Corner { position, normal: Vec3::Z, uv: Vec2::ZERO };
+    let mesh = Mesh { corners: places.iter().map(corner).collect(), triangles: triangles.to_vec(), ..Mesh::default() };
+    Topology::build(&mesh, &Progress::new()).unwrap()
+}
+
+fn found(topology: &Topology) -> Vec<TJunction> {
+    t_junctions(topology, &Progress::new()).unwrap()
+}
+
+/// Two columns of quads that meet at x = 1: one quad high on the left, `parts` on the right, over `scale` units.
+fn strip(parts: u32, scale: f32) -> Topology {
+    let mut places = vec![Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(1.0, 1.0, 0.0)];
+    let mut triangles = vec![[0, 2, 3], [0, 3, 1]];
+    for i in 0..=parts {
+        let y = i as f32 / parts as f32;
+        places.extend([Vec3::new(1.0, y, 0.0), Vec3::new(2.0, y, 0.0)]);
+    }
+    for i in 0..parts {
+        let first = 4 + 2 * i;
+        triangles.extend([[first, first + 1, first + 3], [first, first + 3, first + 2]]);
+    }
+    let places: Vec<_> = places.iter().map(|place| *place * scale).collect();
+    topology(&places, &triangles)
+}
+
+#[test]
+fn a_refined_side_has_a_t_junction_at_every_point_between() {
+    for scale in [1e-7, 1.0, 1e7] {
+        let topology = strip(5, scale);
+        let found = found(&topology);
+        assert_eq!(found.len(), 4, "{found:?}");
+        let edge = &topology.edges[found[0].edge as usize];
+        assert_eq!(
+            edge.points.map(|point| topology.points[point as usize] / scale),
+            [Vec3::X, Vec3::new(1.0, 1.0, 0.0)]
+        );
+        for (junction, i) in found.iter().zip(1..) {
+            let y = i as f32 / 5.0;
+            assert_eq!(junction.edge, found[0].edge);
+            assert!((junction.t - y).abs() < 1e-6 && junction.distance <= 1e-7 * scale, "{junction:?}");
+            assert!((topology.points[junction.point as usize] / scale).distance(Vec3::new(1.0, y, 0.0)) < 1e-6);
+        }
+    }
+    assert_eq!(found(&strip(1, 1.0)), [], "a side that isn't refined");
+}
+
+#[test]
+fn shapes_have_none() {
+    for shape in [Shape::Saddle, Shape::Moebius, Shape::Torus, Shape::Cone] {
+        let mesh = shape.build();
+        assert_eq!(found(&Topology::build(&mesh, &Progress::new()).unwrap()), [], "{shape}");
+    }
+    assert_eq!(found(&Topology::default()), []);
+    assert_eq!(found(&topology(&[Vec3::ONE; 3], &[[0, 1, 2]])), [], "a triangle on one point");
+    let square = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    assert_eq!(found(&topology(&square, &[[0, 1, 2], [0, 1, 2]])), [], "duplicates close each other");
+}
+
+/// A triangle whose edge runs from 0 to 1 along x, and one whose tip is at `tip`. The bounding diagonal is about 3, the
+/// tolerance 3e-5.
+fn touched(tip: Vec3) -> Vec<TJunction> {
+    let places =
+        [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, 0.0), tip, Vec3::new(0.4, -0.2, 2.0), Vec3::new(0.6, -0.2, 2.0)];
+    found(&topology(&places, &[[0, 1, 2], [3, 4, 5]]))
+}
+
+#[test]
+fn near_misses_are_none() {
+    let hit = touched(Vec3::new(0.25, 0.0, 0.0));
+    assert_eq!((hit.len(), hit[0].point, hit[0].t, hit[0].distance), (1, 3, 0.25, 0.0));
+    let near = touched(Vec3::new(0.25, -2e-5, 0.0));
+    assert_eq!((near.len(), near[0].t, near[0].distance), (1, 0.25, 2e-5));
+    assert_eq!(touched(Vec3::new(0.25, -4e-5, 0.0)), [], "too far from the edge");
+    assert_eq!(touched(Vec3::new(2e-5, 0.0, 0.0)), [], "within the tolerance of an end");
+    assert_eq!(touched(Vec3::new(4e-5, 0.0, 0.0)).len(), 1, "past it");
+    assert_eq!(touched(Vec3::new(-4e-5, 0.0, 0.0)), [], "beyond the end");
+    assert_eq!(touched(Vec3::X), [], "a shared point");
+}
+
+#[test]
+fn the_tolerance_itself_counts() {
+    let ends = [DVec3::ZERO, DVec3::X];
+    assert_eq!(inside(ends, DVec3::new(0.5, 0.25, 0.0), 0.25), Some((0.5, 0.25)));
+    assert_eq!(inside(ends, DVec3::new(0.5, 0.25_f64.next_up(), 0.0), 0.25), None);
+    assert_eq!(inside(ends, DVec3::X * 0.25, 0.25), None);
+    assert_eq!(inside(ends, DVec3::X * 0.25_f64.next_up(), 0.25), Some((0.25_f64.next_up(), 0.0)));
+}
+
+#[test]
+fn a_slivers_own_corner_is_none() {
+    let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-7, 0.0)];
+    assert_eq!(found(&topology(&places, &[[0, 1, 2]])), []);
+}
+
+#[test]
+fn a_long_edge_along_many_short_ones() {
+    let found = found(&strip(10_000, 1.0));
+    assert_eq!(found.len(), 9_999);
+    assert!(found.windows(2).all(|pair| pair[0].t < pair[1].t));
+}
+
+/// Many loose triangles from an apex to a rim: long edges that all meet, and points on one spot or along a line.
+fn loose_fan(n: u32, rim: impl Fn(u32) -> Vec3) -> Topology {
+    let places: Vec<_> = (0..n).flat_map(|i| [Vec3::ZERO, rim(2 * i), rim(2 * i + 1)]).collect();
+    let triangles: Vec<_> = (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    topology(&places, &triangles)
+}
+
+#[test]
+fn long_edges_and_crowded_spots_stay_fast() {
+    let n = 100_000;
+    let crowd = loose_fan(n, |i| Vec3::new(1.0, 1.0, 5e-11 * i as f32));
+    assert_eq!((found(&crowd).len(), crowd.points.len()), (0, 200_001), "all on two spots");
+    let round = loose_fan(n, |i| Vec2::from((i as f32 * 3e-5).sin_cos()).extend(0.0));
+    assert_eq!((found(&round).len(), round.points.len()), (0, 200_001), "all along a line");
+}
+
+#[test]
+fn a_fan_of_300_000_triangles() {
+    let n = 300_000;
+    let rim = |i: u32| Vec2::from((i as f32 * 2e-5).sin_cos()).extend(0.0);
+    let places: Vec<_> = (0..=n).map(|i| if i == n { Vec3::Z } else { rim(i) }).collect();
+    let triangles: Vec<_> = (0..n - 1).map(|i| [n, i, i + 1]).collect();
+    assert_eq!(found(&topology(&places, &triangles)).len(), 0);
+}
+
+#[test]
+fn edges_on_top_of_each_other_are_cut_off() {
+    // Every triangle's edge from 0 to x = i passes all lower points.
+    let n = 3_000;
+    let triangles: Vec<_> = (0..n).map(|i| [0, i + 1, n + 1 + i]).collect();
+    let above = (0..n).map(|i| Vec3::new(0.0, 1.0, i as f32));
+    let places: Vec<_> = (0..=n).map(|i| Vec3::X * i as f32).chain(above).collect();
+    assert_eq!(found(&topology(&places, &triangles)).len(), MOST);
+}
+
+#[test]
+fn a_cancel_is_heard() {
+    let progress = Progress::new();
+    let topology = strip(3, 1.0);
+    progress.cancel();
+    assert_eq!(t_junctions(&topology, &progress), Err(Cancelled));
+}
+
+/// All boundary edges against all boundary points.
+fn slow(topology: &Topology, tolerance: f64) -> Vec<(u32, u32)> {
+    let open = || (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind == EdgeKind::Boundary);
+    let at = |point: u32| topology.points[point as usize].as_dvec3();
+    let mut found = Vec::new();
+    for (i, edge) in open() {
+        let mut points: Vec<u32> = open().flat_map(|(_, other)| other.points).collect();
+        points.sort_unstable();
+        points.dedup();
+        let mut on: Vec<_> = points
+            .into_iter()
+            .filter(|&point| !uses(topology, edge, point))
+            .filter_map(|point| Some((inside(edge.points.map(at), at(point), tolerance)?.0, point)))
+            .collect();
+        on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.extend(on.into_iter().map(|(_, point)| (i, point)));
+    }
+    found
+}
+
+proptest! {
+    #[test]
+    fn the_tree_finds_what_trying_all_finds(
+        places in prop::collection::vec((prop::array::uniform3(-3_i8..4), -3_i8..4), 3..40),
+        triangles in prop::collection::vec(prop::array::uniform3(0_usize..40), 1..30),
+    ) {
+        // Whole places, so that many lie on edges, moved by about the tolerance.
+        let places: Vec<_> = places
+            .iter()
+            .map(|&(place, off)| Vec3::from(place.map(f32::from)) + Vec3::Y * (3e-5 * f32::from(off)))
+            .collect();
+        let triangles: Vec<_> = triangles.iter().map(|t| t.map(|i| (i % places.len()) as u32)).collect();
+        let topology = topology(&places, &triangles);
+        let tolerance = Bounds::of(topology.points.iter().copied()).part(NEAR);
+        let found: Vec<_> = found(&topology).iter().map(|junction| (junction.edge, junction.point)).collect();
+        prop_assert_eq!(found, slow(&topology, tolerance));
+    }
+}
