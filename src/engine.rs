@@ -14,23 +14,26 @@ use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex};
 #[derive(Clone, Debug)]
 pub struct Loaded {
     pub source: Source,
+    /// Within which part of the bounding diagonal points were welded; 0 where they are exactly equal.
+    pub weld: f32,
     pub mesh: Arc<Mesh>,
     pub topology: Arc<Topology>,
     pub load_ms: f64,
     pub topology_ms: f64,
 }
 
-/// Reads a mesh and builds its topology. Needs no device.
+/// Reads a mesh and builds its topology, its points welded within `weld` of the bounding diagonal. Needs no device.
 ///
 /// # Errors
 /// What the file holds can't be shown, or `progress` was cancelled.
-pub fn load(source: &Source, progress: &Progress) -> Result<Loaded, LoadError> {
+pub fn load(source: &Source, weld: f32, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     let mesh = source.load(progress)?;
     let loaded = Instant::now();
-    let topology = Topology::build(&mesh, progress)?;
+    let topology = Topology::build_within(&mesh, weld, progress)?;
     Ok(Loaded {
         source: source.clone(),
+        weld,
         mesh: Arc::new(mesh),
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,
@@ -68,7 +71,14 @@ impl Engine {
     /// # Errors
     /// The mesh is larger than the adapter binds.
     pub fn scene(&self, loaded: &Loaded, arena_bytes: u64) -> Result<Scene, GpuError> {
-        let (mesh, topology) = (loaded.mesh.clone(), loaded.topology.clone());
+        self.scene_of(loaded.mesh.clone(), loaded.topology.clone(), arena_bytes)
+    }
+
+    /// As [`Self::scene`], for a mesh that was not loaded.
+    ///
+    /// # Errors
+    /// The mesh is larger than the adapter binds.
+    pub fn scene_of(&self, mesh: Arc<Mesh>, topology: Arc<Topology>, arena_bytes: u64) -> Result<Scene, GpuError> {
         Scene::new(&self.gpu, &self.renderer, self.pipelines.clone(), mesh, topology, arena_bytes)
     }
 

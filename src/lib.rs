@@ -14,4 +14,5 @@ pub mod measure;
 pub mod mesh;
 pub mod render;
 pub mod settings;
+pub mod stability;
 pub mod tessellate;

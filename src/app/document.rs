@@ -63,7 +63,7 @@ impl Drop for Load {
 }
 
 fn load(engine: &Engine, source: &Source, progress: &Progress, generation: u64) -> Result<Document, Option<String>> {
-    let loaded = match engine::load(source, progress) {
+    let loaded = match engine::load(source, 0.0, progress) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => return Err(Some(error.to_string())),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::{CliError, load, write_text};
+use super::{CliError, WeldOption, load, write_text};
 use crate::mesh::{Source, adjacency};
 
 #[derive(Debug, clap::Args)]
@@ -12,6 +12,8 @@ pub struct Args {
     /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
     #[arg(value_parser = super::options::source())]
     pub file: Source,
+    #[command(flatten)]
+    pub weld: WeldOption,
     /// Indices a patch: 9 (corners and the neighbours' corners), or 12 (and dominant corners)
     #[arg(long, default_value_t = 9, value_parser = indices)]
     pub indices: u32,
@@ -33,7 +35,7 @@ struct Adjacency {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    let loaded = load(&args.file)?;
+    let loaded = load(&args.file, args.weld)?;
     let (corners, topology) = (&loaded.mesh.corners, &loaded.topology);
     let flat = if args.indices == 12 { adjacency::twelve_all(topology) } else { adjacency::nine_all(topology) };
     let adjacency = Adjacency {

@@ -14,7 +14,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use thiserror::Error;
 
-pub use options::SurfaceOptions;
+pub use options::{SurfaceOptions, WeldOption};
 
 use crate::export::ExportError;
 use crate::gpu::GpuError;
@@ -116,8 +116,8 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 }
 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
-fn load(source: &Source) -> Result<crate::engine::Loaded, CliError> {
-    let loaded = crate::engine::load(source, &crate::mesh::Progress::default())?;
+fn load(source: &Source, weld: WeldOption) -> Result<crate::engine::Loaded, CliError> {
+    let loaded = crate::engine::load(source, weld.weld, &crate::mesh::Progress::default())?;
     for warning in &loaded.mesh.warnings {
         let _ = writeln!(std::io::stderr(), "pnaen: warning: {warning}");
     }

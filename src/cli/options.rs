@@ -37,6 +37,8 @@ pub struct SurfaceOptions {
     /// plane of the view on its own
     #[arg(long, value_enum, default_value_t = Settings::default().clip)]
     pub clip: Clip,
+    #[command(flatten)]
+    pub weld: WeldOption,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     pub size: Size,
@@ -69,7 +71,7 @@ impl SurfaceOptions {
 }
 
 /// Which points are one.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]

@@ -73,12 +73,12 @@ impl Args {
 fn default_surface_options() -> SurfaceOptions {
     let Settings { surface, edges, factor, partitioning, lod, pixels, clip, .. } = Settings::default();
     let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
-    SurfaceOptions { surface, edges, factor, partitioning, lod, pixels, clip, size: options::Size([1280, 720]), camera }
+    SurfaceOptions { surface, edges, factor, partitioning, lod, pixels, clip, weld: options::WeldOption::default(), size: options::Size([1280, 720]), camera }
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
-    let loaded = load(&args.file)?;
+    let loaded = load(&args.file, args.surface.weld)?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
     let target = Target::new(&engine.gpu, args.surface.size.0)?;

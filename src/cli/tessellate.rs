@@ -36,7 +36,7 @@ pub enum Device {
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     Exported::check(&args.output, 0, 0)?;
-    let loaded = load(&args.file)?;
+    let loaded = load(&args.file, args.surface.weld)?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let bounds = mesh.bounds();
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);

@@ -1,0 +1,285 @@
+//! The cases: what each is, why it breaks tessellators, and what is looked at.
+
+use super::{Subject, meshes};
+use crate::mesh::{Mesh, Shape};
+
+/// A mesh that breaks tessellators, and what is measured on it.
+#[derive(Clone, Copy)]
+pub struct Case {
+    pub name: &'static str,
+    /// What it is, and what becomes of it: a paragraph.
+    pub about: &'static str,
+    pub mesh: fn() -> Mesh,
+    /// Within which part of the diagonal points are welded.
+    pub weld: f32,
+    pub probe: Probe,
+    /// How its picture is taken.
+    pub look: Look,
+}
+
+impl Case {
+    /// The case, ready to run.
+    pub fn subject(&self) -> Subject {
+        let Self { name, mesh, weld, probe, look, .. } = *self;
+        Subject { name: name.to_owned(), mesh: mesh(), weld, probe, look }
+    }
+}
+
+/// What is measured besides the agreement of edges, which is measured on every case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Probe {
+    /// Nothing more.
+    Edges,
+    /// Triangles that the control nets turn over.
+    Folds,
+    /// How far the surface jumps as the factor grows.
+    Sweep,
+    /// How long segments get, and what clipping takes away, where [`Look`] looks from.
+    View,
+    /// Whether as many T-junctions are found as there are.
+    TJunctions(u32),
+    /// Open edges that the exact weld leaves, and that the case's tolerance leaves.
+    Weld,
+}
+
+/// Where the picture of a case is taken from, and with what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Degrees.
+    pub azimuth: f32,
+    pub elevation: f32,
+    /// In bounding radii from the target; 0 for as far as shows all.
+    pub distance: f32,
+    /// The target, in bounding radii from the middle.
+    pub target: [f32; 3],
+    /// The tessellation factor of the picture.
+    pub factor: f32,
+}
+
+/// From the front, the right and above, as the window does.
+pub const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
+
+const CASE: Case =
+    Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
+
+/// Every case, in the order of the documentation.
+pub const CASES: [Case; 29] = [
+    Case {
+        name: "split-normals",
+        about: "A cube whose faces have normals of their own. Under PN each face follows its own normals, and all twelve \
+                edges tear. PN-AEN takes the mean of both sides' control points, and they close; as published up to \
+                the last bits, by edge to the bit.",
+        mesh: || Shape::CubeSplit.build(),
+        ..CASE
+    },
+    Case {
+        name: "smooth-torus",
+        about: "A torus with smooth normals: nothing is wrong with it. Yet as published about half of all edge points \
+                and a quarter of all edge LODs differ in their last bits, since the two patches add the same numbers \
+                up in opposite orders. An edge that is computed once, in its own direction, has one answer.",
+        mesh: || Shape::Torus.build(),
+        ..CASE
+    },
+    Case {
+        name: "non-manifold",
+        about: "Five half-planes around one edge. The paper's index buffer has room for one neighbour across an edge, so \
+                as published these are left as PN leaves them, torn. By edge, the control points are the mean over all \
+                five sides.",
+        mesh: meshes::fins,
+        look: Look { azimuth: 20.0, elevation: 35.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "reversed-neighbours",
+        about: "An icosphere of whose triangles every third is wound the other way. The edge has its own direction, \
+                so it makes no difference which way its sides run.",
+        mesh: meshes::reversed_neighbours,
+        ..CASE
+    },
+    Case {
+        name: "moebius",
+        about: "A strip with half a twist: at its join, neighbours run the shared edge in the same direction, and \
+                normals flip. Control points are even in the normal, so opposite normals agree on them.",
+        mesh: || Shape::Moebius.build(),
+        look: Look { elevation: 35.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "duplicates",
+        about: "A torus with every other triangle twice, some once more the other way round, and triangles of two \
+                corners among them. Edges get up to five sides, which all share one curve; triangles without three \
+                distinct points are left out and counted.",
+        mesh: meshes::duplicates,
+        ..CASE
+    },
+    Case {
+        name: "slivers",
+        about: "A cube drawn out to a needle, with triangles a million times longer than wide.",
+        mesh: meshes::slivers,
+        look: Look { azimuth: 60.0, distance: 1.2, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "signed-zeros",
+        about: "A saddle in which every other triangle writes zero as -0. The two are one place and one normal: points \
+                and corners are compared by value, and stored with +0.",
+        mesh: meshes::signed_zeros,
+        ..CASE
+    },
+    Case {
+        name: "mirrored",
+        about: "Half a torus and its mirror image, as a mirrored instance makes it: the halves share the points \
+                between them, where coordinates differ in the sign of zero.",
+        mesh: meshes::mirrored,
+        ..CASE
+    },
+    Case {
+        name: "borders",
+        about: "An open sheet: edges of one side are plain PN, and no neighbour can differ from them.",
+        mesh: || Shape::Saddle.build(),
+        ..CASE
+    },
+    Case {
+        name: "zero-normals",
+        about: "A third of the corners has a normal of length zero, which says nothing: those get smooth normals \
+                (angle-weighted over faces within 60 degrees), and `info` counts them.",
+        mesh: meshes::zero_normals,
+        ..CASE
+    },
+    Case {
+        name: "nan-normals",
+        about: "Half of the corners has a normal that holds NaN or infinity: treated as zero normals are.",
+        mesh: meshes::nan_normals,
+        ..CASE
+    },
+    Case {
+        name: "long-normals",
+        about: "Normals of lengths from 1e-30 to 1e30 are brought to length 1 in double precision, and counted.",
+        mesh: meshes::long_normals,
+        ..CASE
+    },
+    Case {
+        name: "opposite-normals",
+        about: "Every other triangle has its normals the other way, so that normals oppose each other across its edges. \
+                Control points are even in the normal and stay; shading flips, as the file asks; nothing cancels to \
+                NaN. `info` counts such edges.",
+        mesh: meshes::opposite_normals,
+        ..CASE
+    },
+    Case {
+        name: "edge-normals",
+        about: "Normals that run along an edge. The tangent plane is then perpendicular to the edge, and the control \
+                point falls onto the corner: degenerate, but finite and shared. `info` counts such corners.",
+        mesh: meshes::edge_normals,
+        ..CASE
+    },
+    Case {
+        name: "inward-normals",
+        about: "Normals that point against their faces. The surface is the same, since control points are even in the \
+                normal; it is shaded as the file asks. `info` counts such corners.",
+        mesh: meshes::inward_normals,
+        ..CASE
+    },
+    Case {
+        name: "huge",
+        about: "A torus with coordinates of 1e7, where one unit in the last place is a whole unit.",
+        mesh: meshes::huge,
+        ..CASE
+    },
+    Case {
+        name: "tiny",
+        about: "A torus with coordinates of 1e-7.",
+        mesh: meshes::tiny,
+        ..CASE
+    },
+    Case {
+        name: "far-away",
+        about: "A torus of one unit's radius, eight thousand units from the origin: its last bits are a thousandth of \
+                it, so what differs as published is seen.",
+        mesh: meshes::far_away,
+        ..CASE
+    },
+    Case {
+        name: "denormals",
+        about: "A saddle with coordinates below the least normal number of f32. A device may take them for zero, and \
+                another may not: they become 0 when a mesh is made, and are counted.",
+        mesh: meshes::denormals,
+        ..CASE
+    },
+    Case {
+        name: "near-seam",
+        about: "A torus cut in two, one half moved by a millionth of its size. Welded exactly it stays open; within a \
+                tolerance (`--weld 1e-5`, here) it closes, and to the bit.",
+        mesh: meshes::near_seam,
+        weld: 1e-5,
+        probe: Probe::Weld,
+        ..CASE
+    },
+    Case {
+        name: "t-junction",
+        about: "A large quad beside four small ones: three points lie on its edge. No tessellation closes that, as the \
+                edge is cut without knowing of the points. They are found, listed and highlighted instead.",
+        mesh: meshes::t_junction,
+        probe: Probe::TJunctions(meshes::T_JUNCTIONS),
+        look: Look { azimuth: 40.0, elevation: 50.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "folds",
+        about: "A thin slab with smooth normals. At its tight corners the control nets turn over (the white paper's \
+                negative curvature), and the surface puffs and folds: triangles that face away from the side their \
+                patch faces are counted and highlighted. That is the surface, not a crack; only other normals help.",
+        mesh: meshes::folds,
+        probe: Probe::Folds,
+        look: Look { factor: 12.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "sweep",
+        about: "The factor grows from 1 to 64 in steps of 1/64. Under fractional partitioning every surface point moves \
+                a little; under integer and pow2 new points appear in the middle of edges, and the surface pops.",
+        mesh: || Shape::CubeSplit.build(),
+        probe: Probe::Sweep,
+        ..CASE
+    },
+    Case {
+        name: "eye-inside",
+        about: "The eye is inside a sphere. Some control points lie behind it: the paper's clip test finds every control \
+                point outside on some side, and drops patches that fill the view; its LOD divides by w and mirrors \
+                what is behind. Each plane of the view on its own, and depths that stay positive, have neither fault.",
+        mesh: || Shape::Icosphere.build(),
+        probe: Probe::View,
+        look: Look { azimuth: 30.0, elevation: 20.0, distance: 0.35, target: [0.1, 0.2, 0.0], factor: 0.0 },
+        ..CASE
+    },
+    Case {
+        name: "near-plane",
+        about: "Two large triangles under the eye, which reach behind it: every edge in view crosses the near plane.",
+        mesh: meshes::ground,
+        probe: Probe::View,
+        look: Look { azimuth: 20.0, elevation: 12.0, distance: 0.12, target: [0.0; 3], factor: 0.0 },
+        ..CASE
+    },
+    Case {
+        name: "behind-eye",
+        about: "The eye stands over an edge of the ground and looks along it: one end far ahead, the other far behind, \
+                where dividing by w mirrors it back in front.",
+        mesh: meshes::ground,
+        probe: Probe::View,
+        look: Look { azimuth: 2.0, elevation: 4.0, distance: 0.2, target: [0.66, 0.01, 0.0], factor: 0.0 },
+        ..CASE
+    },
+    Case {
+        name: "soup",
+        about: "Sixty random triangles over fourteen points: edges with many sides wound either way, triangles on top of \
+                each other, random normals, zero and NaN among them.",
+        mesh: || meshes::soup(1),
+        ..CASE
+    },
+    Case {
+        name: "shared-apex",
+        about: "A cone: twelve normals meet at its apex, and a crease runs around its cap.",
+        mesh: || Shape::Cone.build(),
+        ..CASE
+    },
+];

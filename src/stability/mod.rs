@@ -1,0 +1,156 @@
+//! Cases that break tessellators, and what each method makes of them: run, measured, and held against what this program
+//! promises. Stands on [`crate::engine`] as the two faces do, since a case is tessellated and drawn like any mesh.
+
+pub mod cases;
+mod meshes;
+mod picture;
+mod report;
+mod run;
+mod views;
+
+pub use cases::{CASES, Case, LOOK, Look, Probe};
+pub use meshes::soup;
+pub use picture::picture;
+pub use report::{LEGEND, Line, Verdict, lines, page, table};
+pub use run::{Effort, run};
+
+use serde::Serialize;
+
+use crate::mesh::Mesh;
+use crate::settings::Settings;
+use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+
+/// What is run: a case, or any other mesh.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    pub name: String,
+    pub mesh: Mesh,
+    /// Within which part of the bounding diagonal points are welded.
+    pub weld: f32,
+    pub probe: Probe,
+    pub look: Look,
+}
+
+impl Subject {
+    /// A mesh of which no more is known.
+    pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
+        Self { name, mesh, weld, probe: Probe::Edges, look: LOOK }
+    }
+}
+
+/// A way to tessellate that cases are held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Method {
+    Flat,
+    Pn,
+    PnAenAsPublished,
+    PnAen,
+}
+
+impl Method {
+    pub const ALL: [Self; 4] = [Self::Flat, Self::Pn, Self::PnAenAsPublished, Self::PnAen];
+
+    /// The name in tables and files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Pn => "PN",
+            Self::PnAenAsPublished => "PN-AEN as published",
+            Self::PnAen => "PN-AEN",
+        }
+    }
+
+    /// The settings that mean this method, at one factor.
+    pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
+        let surface = match self {
+            Self::Flat => Surface::Flat,
+            Self::Pn => Surface::Pn,
+            Self::PnAenAsPublished | Self::PnAen => Surface::PnAen,
+        };
+        let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
+        Settings { surface, edges, partitioning, factor, ..Settings::default() }
+    }
+
+    /// The same with adaptive LOD and clipping: the paper's own for what is as published.
+    pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
+        let (lod, clip) = match self {
+            Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
+            _ => (Lod::EdgeLength, Clip::Frustum),
+        };
+        Settings { lod, clip, pixels, ..self.settings(partitioning, 1.0) }
+    }
+}
+
+/// What is measured. All are 0 where all is well, but for [`Self::Segment`] and [`Self::Jump`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    /// Points of edges whose positions differ in at least one bit.
+    Points,
+    /// Edges for which LOD gave the sides different factors.
+    Factors,
+    /// Points of edges whose normals differ though the source's agree.
+    Normals,
+    /// Vertices that are no finite numbers.
+    NotFinite,
+    /// Pixels through which one looks into a closed mesh.
+    Leaks,
+    /// Triangles that face away from the side that their patch faces.
+    Folds,
+    /// Pixels that clipping changes.
+    Missing,
+    /// The longest visible segment over the length asked for, on edges that could be cut finer.
+    Segment,
+    /// T-junctions that were made and not found, or found and not made.
+    TJunctions,
+    /// Open edges of a mesh that should be closed.
+    OpenEdges,
+    /// The largest step of any surface point as the factor grows by 1/64, as a part of the mesh's diagonal.
+    Jump,
+}
+
+impl Quantity {
+    /// What a number of it counts.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Points => "edge points that differ",
+            Self::Factors => "edges whose factors differ",
+            Self::Normals => "edge normals that differ",
+            Self::NotFinite => "vertices not finite",
+            Self::Leaks => "px leaking",
+            Self::Folds => "folded triangles",
+            Self::Missing => "px clipped away",
+            Self::Segment => "times the segment asked for",
+            Self::TJunctions => "T-junctions missed",
+            Self::OpenEdges => "open edges left",
+            Self::Jump => "of the diagonal a step",
+        }
+    }
+
+    /// The most that still holds.
+    pub const fn limit(self) -> f64 {
+        match self {
+            // Segments are equal along the curve, not on screen: perspective makes the near ones longer.
+            Self::Segment => 4.0,
+            // Twice what the fractional modes were measured at; integer and pow2 jump ten times as far.
+            Self::Jump => 0.004,
+            _ => 0.0,
+        }
+    }
+}
+
+/// One measurement, the worst of its kind over factors and views.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    pub case: String,
+    pub method: &'static str,
+    /// The adapter's name, or `cpu`.
+    pub device: String,
+    pub partitioning: &'static str,
+    pub measured: f64,
+    pub unit: &'static str,
+    /// Whether this program promises that it holds.
+    pub promised: bool,
+    pub holds: bool,
+    #[serde(skip)]
+    pub quantity: Quantity,
+}

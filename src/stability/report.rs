@@ -1,0 +1,194 @@
+//! What came out, for people: a table, and a page that explains each case.
+
+use std::fmt::Write;
+
+use super::{Case, Quantity, Row};
+
+/// What one method made of one case: the worst over devices and partitionings of each quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pub case: String,
+    pub method: &'static str,
+    pub worst: Vec<(Quantity, f64)>,
+    pub verdict: Verdict,
+}
+
+/// How a method fared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// Everything measured holds.
+    Holds,
+    /// Something does not that nobody promised: what is published fails there.
+    Fails,
+    /// Something does not that this program promises.
+    BreaksPromise,
+}
+
+impl Verdict {
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Fails => "fails",
+            Self::BreaksPromise => "BREAKS A PROMISE",
+        }
+    }
+
+    fn of(row: &Row) -> Self {
+        match (row.holds, row.promised) {
+            (true, _) => Self::Holds,
+            (false, false) => Self::Fails,
+            (false, true) => Self::BreaksPromise,
+        }
+    }
+}
+
+/// One line for each case and method, in the rows' order.
+pub fn lines(rows: &[Row]) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    for row in rows {
+        let known = lines.iter().position(|line| line.case == row.case && line.method == row.method);
+        let index = known.unwrap_or_else(|| {
+            let verdict = Verdict::Holds;
+            lines.push(Line { case: row.case.clone(), method: row.method, worst: Vec::new(), verdict });
+            lines.len() - 1
+        });
+        let line = &mut lines[index];
+        line.verdict = line.verdict.max(Verdict::of(row));
+        match line.worst.iter_mut().find(|(quantity, _)| *quantity == row.quantity) {
+            Some((_, worst)) => *worst = worst.max(row.measured),
+            None => line.worst.push((row.quantity, row.measured)),
+        }
+    }
+    lines
+}
+
+/// The quantities that every case has, which get columns.
+const COLUMNS: [(Quantity, &str); 5] = [
+    (Quantity::Points, "points"),
+    (Quantity::Factors, "factors"),
+    (Quantity::Normals, "normals"),
+    (Quantity::NotFinite, "not finite"),
+    (Quantity::Leaks, "leaks px"),
+];
+
+impl Line {
+    fn cell(&self, quantity: Quantity) -> String {
+        let found = self.worst.iter().find(|(known, _)| *known == quantity);
+        found.map_or_else(|| "-".to_owned(), |(_, worst)| number(*worst))
+    }
+
+    /// What has no column.
+    fn rest(&self) -> String {
+        let rest = self.worst.iter().filter(|(quantity, _)| COLUMNS.iter().all(|(column, _)| column != quantity));
+        rest.map(|(quantity, worst)| format!("{} {}", number(*worst), quantity.unit())).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Whole numbers whole, others in three digits.
+fn number(x: f64) -> String {
+    if x.fract() == 0.0 && x.abs() < 1e15 {
+        format!("{x}")
+    } else if x >= 0.1 {
+        format!("{x:.2}")
+    } else {
+        format!("{x:.2e}")
+    }
+}
+
+/// What the columns mean.
+pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+     sides got different factors; normals: edge points whose normals differ though the source's agree; not finite: \
+     vertices; leaks: px through which one looks into a closed mesh. The worst over factors, views, partitionings and \
+     devices.";
+
+/// Lines as a table for a terminal.
+pub fn table(lines: &[Line]) -> String {
+    let mut text = format!("{:<20} {:<20}", "case", "method");
+    for (_, column) in COLUMNS {
+        let _ = write!(text, " {column:>10}");
+    }
+    text += "  verdict\n";
+    let mut last = "";
+    for line in lines {
+        let case = if line.case == last { "" } else { &line.case };
+        last = &line.case;
+        let _ = write!(text, "{case:<20} {:<20}", line.method);
+        for (quantity, _) in COLUMNS {
+            let _ = write!(text, " {:>10}", line.cell(quantity));
+        }
+        let _ = write!(text, "  {}", line.verdict.text());
+        let rest = line.rest();
+        let _ = writeln!(text, "{}{rest}", if rest.is_empty() { "" } else { ": " });
+    }
+    text
+}
+
+/// A page in Markdown: each case with what it is about, its picture `NAME.png`, and its lines.
+pub fn page(cases: &[&Case], lines: &[Line], adapter: &str) -> String {
+    let mut text = String::from("# Where tessellation breaks\n\n");
+    let _ = writeln!(
+        text,
+        "Every case that `pnaen stability` runs, as it wrote them down with `pnaen stability -o DIR`, on the CPU and on \
+         {adapter}. In each picture, from left to right: {}. Cracks are red, folded triangles violet, T-junctions \
+         yellow.\n\n{}\n",
+        super::Method::ALL.map(super::Method::name).join(", "),
+        capitalised(LEGEND)
+    );
+    for case in cases {
+        let _ = writeln!(text, "## {}\n\n{}\n\n![{}]({}.png)\n", case.name, case.about, case.name, case.name);
+        let header: Vec<_> = COLUMNS.iter().map(|(_, column)| *column).collect();
+        let _ = writeln!(text, "| method | {} | also | |\n| --- |{} --- | --- |", header.join(" | "), " ---: |".repeat(header.len()));
+        for line in lines.iter().filter(|line| line.case == case.name) {
+            let cells: Vec<_> = COLUMNS.iter().map(|(quantity, _)| line.cell(*quantity)).collect();
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {} |",
+                line.method,
+                cells.join(" | "),
+                line.rest(),
+                line.verdict.text()
+            );
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(method: &'static str, quantity: Quantity, measured: f64, promised: bool) -> Row {
+        let (case, device) = ("split".to_owned(), "cpu".to_owned());
+        let holds = measured <= quantity.limit();
+        Row { case, method, device, partitioning: "pow2", measured, unit: quantity.unit(), promised, holds, quantity }
+    }
+
+    #[test]
+    fn a_line_has_the_worst_of_its_rows() {
+        let rows = [
+            row("PN", Quantity::Points, 0.0, false),
+            row("PN", Quantity::Points, 7.0, false),
+            row("PN-AEN", Quantity::Points, 0.0, true),
+            row("PN", Quantity::Segment, 2.5, true),
+        ];
+        let lines = lines(&rows);
+        assert_eq!(lines.len(), 2);
+        assert_eq!(lines[0].worst, [(Quantity::Points, 7.0), (Quantity::Segment, 2.5)]);
+        assert_eq!((lines[0].verdict, lines[1].verdict), (Verdict::Fails, Verdict::Holds));
+        let text = table(&lines);
+        assert!(text.contains("fails: 2.50 times the segment asked for"), "{text}");
+        let broken = row("PN-AEN", Quantity::Points, 1.0, true);
+        assert_eq!(super::lines(&[broken])[0].verdict, Verdict::BreaksPromise);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!([0.0, 12.0, 0.2567, 0.000123].map(number), ["0", "12", "0.26", "1.23e-4"]);
+    }
+}

@@ -1,0 +1,261 @@
+//! Runs a case: every method, in every partitioning, on every device asked for.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::{DVec2, Vec4};
+
+use super::{Method, Probe, Quantity, Row, Subject, views};
+use crate::engine::Engine;
+use crate::gpu::{GpuError, Timing};
+use crate::measure::{AskedFactors, Measured, SWEEP_STEP, sweep};
+use crate::mesh::{Bounds, Mesh, Progress, Topology, t_junctions};
+use crate::render::{Camera, Scene, Target};
+use crate::settings::{ARENA_BYTES, Settings};
+use crate::tessellate::{Clip, FACTOR_ODD, FIXED_ONE, Lod, LodView, Partitioning, tessellate};
+
+/// How much is tried, and where.
+#[derive(Clone, Debug)]
+pub struct Effort {
+    /// Uniform factors.
+    pub factors: Vec<f32>,
+    /// Cameras for adaptive LOD and clipping; the first of one sequence.
+    pub cameras: u32,
+    /// Whether the reference on the CPU runs too.
+    pub cpu: bool,
+    /// The last factor of a sweep, which starts at 1.
+    pub sweep_to: f32,
+}
+
+impl Default for Effort {
+    fn default() -> Self {
+        Self { factors: vec![1.0, 2.4, 7.0, 16.0], cameras: 6, cpu: true, sweep_to: 64.0 }
+    }
+}
+
+/// Length of a segment that adaptive LOD is asked for, in px.
+const PIXELS: f32 = 8.0;
+
+/// The worst of each quantity over a method's factors and views.
+#[derive(Clone, Debug, Default)]
+struct Worst(BTreeMap<Quantity, f64>);
+
+impl Worst {
+    fn take(&mut self, quantity: Quantity, measured: f64) {
+        let worst = self.0.entry(quantity).or_insert(measured);
+        *worst = worst.max(measured);
+    }
+
+    fn take_all(&mut self, measured: &Measured) {
+        self.take(Quantity::Points, measured.cracks.different_bits as f64);
+        self.take(Quantity::Factors, measured.cracks.different_factors as f64);
+        self.take(Quantity::Normals, measured.cracks.different_normals as f64);
+        self.take(Quantity::NotFinite, measured.not_finite as f64);
+    }
+}
+
+/// A case on its way: its mesh, and the same on the device.
+struct Running<'a> {
+    case: &'a Subject,
+    mesh: Arc<Mesh>,
+    topology: Arc<Topology>,
+    bounds: Bounds,
+    device: Option<(&'a Engine, Scene, Target)>,
+}
+
+/// Runs a case on the CPU (if the effort says so) and on the engine's device (if there is one).
+///
+/// # Errors
+/// The device fails, or the mesh is larger than it binds.
+pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
+    let mesh = Arc::new(case.mesh.clone());
+    // Nobody else holds these handles, so nobody can cancel.
+    let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());
+    let device = match engine {
+        Some(engine) => {
+            let scene = engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES)?;
+            Some((engine, scene, Target::new(&engine.gpu, views::SIZE)?))
+        }
+        None => None,
+    };
+    let bounds = mesh.bounds();
+    let mut running = Running { case, mesh, topology, bounds, device };
+    let mut rows = running.topology_rows();
+    for method in Method::ALL {
+        for partitioning in Partitioning::ALL {
+            if effort.cpu {
+                let worst = running.on_cpu(method, partitioning, effort);
+                rows.extend(running.rows(method, partitioning, "cpu", &worst));
+            }
+            if let Some((engine, ..)) = running.device {
+                let worst = running.on_device(method, partitioning, effort)?;
+                rows.extend(running.rows(method, partitioning, &engine.gpu.info.name, &worst));
+            }
+        }
+    }
+    Ok(rows)
+}
+
+impl Running<'_> {
+    /// What a method is tried with: settings and cameras, under uniform factors and then under adaptive LOD.
+    fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<(Settings, Camera)> {
+        let look = views::look(&self.bounds, &self.case.look, views::viewport());
+        let uniform = effort.factors.iter().map(|&factor| (method.settings(partitioning, factor), look));
+        let adaptive = method.adaptive(partitioning, PIXELS);
+        let random = (0..effort.cameras).map(|index| (adaptive, views::random(&self.bounds, index)));
+        uniform.chain(random).chain((self.case.probe == Probe::View).then_some((adaptive, look))).collect()
+    }
+
+    fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
+        let mut worst = Worst::default();
+        for (settings, camera) in self.trials(method, partitioning, effort) {
+            let view = camera.lod_view(views::viewport(), &self.bounds);
+            let out = tessellate(&self.mesh, &self.topology, &settings.inputs(view), None);
+            let asked = AskedFactors::new(settings.edges, out.edge_factors.clone());
+            self.take(&mut worst, &Measured::of(&self.mesh, &self.topology, asked, &out), &settings, &view);
+        }
+        if self.case.probe == Probe::Sweep {
+            let view = LodView { clip_from_object: glam::Mat4::IDENTITY, half_viewport: views::viewport() };
+            let inputs = method.settings(partitioning, 1.0).inputs(view);
+            let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=effort.sweep_to, SWEEP_STEP);
+            let largest = swept.largest().map_or(0.0, |step| step.jump);
+            worst.take(Quantity::Jump, largest / f64::from(self.bounds.diagonal()));
+        }
+        worst
+    }
+
+    fn on_device(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Worst, GpuError> {
+        let mut worst = Worst::default();
+        for (settings, camera) in self.trials(method, partitioning, effort) {
+            let view = camera.lod_view(views::viewport(), &self.bounds);
+            let Some((engine, scene, _)) = &mut self.device else { break };
+            engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
+            let measured = engine.measure(scene)?;
+            if let Some(leaks) = engine.leaks(scene, &measured, views::SIZE, &camera)? {
+                worst.take(Quantity::Leaks, leaks as f64);
+            }
+            self.take(&mut worst, &measured, &settings, &view);
+            if self.case.probe == Probe::View && settings.clip != Clip::Off {
+                let missing = self.missing(&settings, &camera)?;
+                worst.take(Quantity::Missing, missing as f64);
+            }
+        }
+        Ok(worst)
+    }
+
+    fn take(&self, worst: &mut Worst, measured: &Measured, settings: &Settings, view: &LodView) {
+        worst.take_all(measured);
+        match self.case.probe {
+            Probe::Folds => worst.take(Quantity::Folds, measured.folds as f64),
+            Probe::View if settings.lod != Lod::Uniform => {
+                worst.take(Quantity::Segment, longest_segment(&self.topology, measured, view) / f64::from(PIXELS));
+            }
+            _ => {}
+        }
+    }
+
+    /// Pixels that look different with and without clipping.
+    fn missing(&mut self, settings: &Settings, camera: &Camera) -> Result<u64, GpuError> {
+        let Some((engine, scene, target)) = &mut self.device else { return Ok(0) };
+        let mut picture = |settings: &Settings| {
+            engine.draw(scene, target, camera, settings, &mut Timing::Off)?;
+            target.read(&engine.gpu)
+        };
+        let clipped = picture(settings)?;
+        let whole = picture(&Settings { clip: Clip::Off, ..*settings })?;
+        Ok(clipped.pixels().zip(whole.pixels()).filter(|(a, b)| a != b).count() as u64)
+    }
+
+    fn rows(&self, method: Method, partitioning: Partitioning, device: &str, worst: &Worst) -> Vec<Row> {
+        let row = |(&quantity, &measured): (&Quantity, &f64)| Row {
+            promised: promised(method, partitioning, quantity),
+            ..row(&self.case.name, method.name(), device, partitioning.name(), quantity, measured)
+        };
+        worst.0.iter().map(row).collect()
+    }
+
+    /// What belongs to the mesh, whatever it becomes.
+    fn topology_rows(&self) -> Vec<Row> {
+        let name = &self.case.name;
+        let edges = |topology: &Topology| f64::from(topology.edge_counts().boundary);
+        match self.case.probe {
+            Probe::TJunctions(made) => {
+                let found = t_junctions(&self.topology, &Progress::new()).map_or(0, |found| found.len());
+                let missed = f64::from(made.abs_diff(found as u32));
+                vec![row(name, "search", "cpu", "any", Quantity::TJunctions, missed)]
+            }
+            Probe::Weld => {
+                let exact = Topology::build(&self.mesh, &Progress::new()).unwrap_or_default();
+                let open = row(name, "exact weld", "cpu", "any", Quantity::OpenEdges, edges(&exact));
+                let closed = row(name, "weld 1e-5", "cpu", "any", Quantity::OpenEdges, edges(&self.topology));
+                vec![Row { promised: false, ..open }, closed]
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+fn row(case: &str, method: &'static str, device: &str, partitioning: &'static str, quantity: Quantity, measured: f64) -> Row {
+    Row {
+        case: case.to_owned(),
+        method,
+        device: device.to_owned(),
+        partitioning,
+        measured,
+        unit: quantity.unit(),
+        promised: true,
+        holds: measured <= quantity.limit(),
+        quantity,
+    }
+}
+
+/// What this program promises of a method.
+fn promised(method: Method, partitioning: Partitioning, quantity: Quantity) -> bool {
+    let fractional = matches!(partitioning, Partitioning::FractionalOdd | Partitioning::FractionalEven);
+    match quantity {
+        Quantity::NotFinite => true,
+        Quantity::Jump => fractional,
+        // A surface that bends may fold; only a flat one can't.
+        Quantity::Folds => method == Method::Flat,
+        // PN tears where normals are split: that is PN.
+        Quantity::Points | Quantity::Leaks => matches!(method, Method::Flat | Method::PnAen),
+        _ => method != Method::PnAenAsPublished,
+    }
+}
+
+/// The longest piece of an edge on screen, in px, over edges that the tessellator could have cut finer.
+fn longest_segment(topology: &Topology, measured: &Measured, view: &LodView) -> f64 {
+    // Fractional odd ends at 63 segments, the others at 64.
+    let most = (63 * FIXED_ONE) & !FACTOR_ODD;
+    let mut longest = 0.0_f64;
+    for edge in 0..topology.edges.len() as u32 {
+        for side in measured.rims.edge(topology, edge).iter().filter(|side| side.word & !FACTOR_ODD < most) {
+            let clip: Vec<Vec4> = side.positions().map(|p| view.clip_from_object * p.extend(1.0)).collect();
+            longest = clip.windows(2).map(|ends| visible_length(ends[0], ends[1], view)).fold(longest, f64::max);
+        }
+    }
+    longest
+}
+
+/// The length in px of the part of a line that lies in the view volume.
+fn visible_length(a: Vec4, b: Vec4, view: &LodView) -> f64 {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    let planes = |p: Vec4| [p.w + p.x, p.w - p.x, p.w + p.y, p.w - p.y, p.z, p.w - p.z].map(f64::from);
+    for (inside_a, inside_b) in planes(a).into_iter().zip(planes(b)) {
+        match (inside_a < 0.0, inside_b < 0.0) {
+            (true, true) => return 0.0,
+            (true, false) => from = from.max(inside_a / (inside_a - inside_b)),
+            (false, true) => to = to.min(inside_a / (inside_a - inside_b)),
+            (false, false) => {}
+        }
+    }
+    if from >= to {
+        return 0.0;
+    }
+    let (a, b) = (a.as_dvec4(), b.as_dvec4());
+    let at = |t: f64| {
+        let p = a.lerp(b, t);
+        DVec2::new(p.x, p.y) / p.w * view.half_viewport.as_dvec2()
+    };
+    at(from).distance(at(to))
+}

@@ -1,0 +1,70 @@
+//! Where cases are looked at from.
+
+use glam::{Vec2, Vec3, vec2};
+
+use super::Look;
+use crate::mesh::Bounds;
+use crate::render::Camera;
+
+/// Width and height in px of what is measured on screen.
+pub const SIZE: [u32; 2] = [320, 240];
+
+/// The same, as the cameras take it.
+pub fn viewport() -> Vec2 {
+    vec2(SIZE[0] as f32, SIZE[1] as f32)
+}
+
+/// Camera `index` of a sequence that goes all around the mesh, near and far, inside too, every eighth time without
+/// perspective: Halton's low-discrepancy sequence, so that the first few already differ much.
+pub fn random(bounds: &Bounds, index: u32) -> Camera {
+    let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(index + 1, base));
+    let radius = bounds.radius();
+    Camera {
+        target: bounds.center() + radius * Vec3::new(x - 0.5, y - 0.5, depth - 0.5),
+        azimuth: 360.0 * turn,
+        elevation: (2.0 * height - 1.0).asin().to_degrees().clamp(-89.0, 89.0),
+        distance: radius * (0.25 + 6.0 * depth * depth),
+        orthographic: index % 8 == 7,
+    }
+}
+
+/// The camera that a case's picture is taken with.
+pub fn look(bounds: &Bounds, look: &Look, viewport: Vec2) -> Camera {
+    let mut camera = Camera::framing(bounds, viewport);
+    (camera.azimuth, camera.elevation) = (look.azimuth, look.elevation);
+    if look.distance > 0.0 {
+        camera.distance = look.distance * bounds.radius();
+        camera.target = bounds.center() + bounds.radius() * Vec3::from(look.target);
+    }
+    camera
+}
+
+/// The digits of `index` in some base, mirrored at the point: 0 to 1 (Halton 1960).
+fn radical_inverse(mut index: u32, base: u32) -> f32 {
+    let (mut sum, mut digit) = (0.0, 1.0);
+    while index > 0 {
+        digit /= base as f32;
+        sum += digit * (index % base) as f32;
+        index /= base;
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_mirrored() {
+        assert_eq!([1, 2, 3, 4].map(|i| radical_inverse(i, 2)), [0.5, 0.25, 0.75, 0.125]);
+    }
+
+    #[test]
+    fn some_cameras_are_inside_and_most_are_not() {
+        let bounds = Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter());
+        let cameras: Vec<_> = (0..200).map(|index| random(&bounds, index)).collect();
+        let inside = cameras.iter().filter(|camera| camera.eye().length() < bounds.radius()).count();
+        assert!((10..120).contains(&inside), "{inside}");
+        assert!(cameras.iter().all(|camera| camera.distance > 0.0 && camera.elevation.abs() < 90.0));
+    }
+}
