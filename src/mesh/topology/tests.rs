@@ -180,6 +180,26 @@ fn a_cancel_is_heard() {
 
 proptest! {
     #[test]
+    fn a_tolerance_leaves_a_whole_topology(
+        points in prop::collection::vec(0_u32..9, 12),
+        triangles in prop::collection::vec(prop::array::uniform3(0_u32..12), 0..80),
+        tolerance in 0_f32..0.5,
+    ) {
+        let mesh = mesh(&points, &triangles);
+        let topology = Topology::build_within(&mesh, tolerance, &Progress::new()).unwrap();
+        check(&mesh, &topology);
+        prop_assert!(topology.degenerate >= build(&mesh).degenerate);
+        let within = mesh.bounds().part(tolerance.into());
+        for (corner, &point) in mesh.corners.iter().zip(&topology.corner_points) {
+            let apart = corner.position.as_dvec3().distance(topology.points[point as usize].as_dvec3());
+            prop_assert!(apart <= within, "{apart} beyond {within}");
+        }
+        for (point, &corner) in topology.points.iter().zip(&topology.point_corners) {
+            prop_assert_eq!(*point, mesh.corners[corner as usize].position);
+        }
+    }
+
+    #[test]
     fn every_side_belongs_to_one_edge(
         points in prop::collection::vec(0_u32..9, 12),
         triangles in prop::collection::vec(prop::array::uniform3(0_u32..12), 0..80),
