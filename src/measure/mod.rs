@@ -2,6 +2,8 @@
 
 mod cracks;
 mod picture;
+mod sweep;
 
 pub use cracks::{CrackedEdge, Cracks, Rims, ulp};
 pub use picture::{CompareError, Comparison, compare};
+pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};
