@@ -23,6 +23,8 @@ pub const SWEEP_STEP: f32 = 1.0 / 64.0;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     pub partitioning: Partitioning,
+    /// From one factor to the next.
+    pub step: f32,
     /// In the order of their factors.
     pub steps: Vec<SweepStep>,
 }
@@ -75,7 +77,7 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
             });
         }
     });
-    Sweep { partitioning: inputs.partitioning, steps }
+    Sweep { partitioning: inputs.partitioning, step, steps }
 }
 
 /// Segments of a patch's side in the grid of places: it has mid-edges and the centre, and is coarser than the finest
