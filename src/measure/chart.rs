@@ -20,7 +20,7 @@ use crate::settings::FACTOR_RANGE;
 use crate::tessellate::Partitioning;
 
 /// The smallest and largest side of a chart, in px.
-pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=8192;
+pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
 
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ChartError {
@@ -303,6 +303,6 @@ mod tests {
     fn a_size_that_is_no_charts_is_refused() {
         assert_eq!(sweep_chart(&[], 1.0, [319, 400]).err(), Some(ChartError::Size(319, 400)));
         let Err(error) = sweep_chart(&[], 1.0, [400, 9000]) else { panic!("9000 px are too many") };
-        assert_eq!(error.to_string(), "a chart of 400 x 9000 px: each side must be 320 to 8192 px");
+        assert_eq!(error.to_string(), "a chart of 400 x 9000 px: each side must be 320 to 4096 px");
     }
 }
