@@ -5,6 +5,7 @@ mod domain;
 mod info;
 mod options;
 mod render;
+mod stability;
 mod tessellate;
 
 use std::io::Write;
@@ -42,6 +43,8 @@ pub enum Command {
     Domain(domain::Args),
     /// Write the index buffer of PN-AEN patches
     Adjacency(adjacency::Args),
+    /// Try what breaks tessellators, and say what holds and what fails
+    Stability(stability::Args),
     /// Say what a file holds, and what of it was left out
     Info(info::Args),
 }
@@ -63,6 +66,10 @@ pub enum CliError {
     Different { picture: String, reference: String, difference: f64, threshold: f64, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
+    #[error(transparent)]
+    Picture(#[from] crate::stability::PictureError),
+    #[error("{count} of the table's lines break a promise, the first: {method} on {case}")]
+    Promise { count: usize, case: String, method: &'static str },
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }
@@ -74,6 +81,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Tessellate(args) => tessellate::run(&args),
         Command::Domain(args) => domain::run(&args),
         Command::Adjacency(args) => adjacency::run(&args),
+        Command::Stability(args) => stability::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {
@@ -103,6 +111,14 @@ fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
         return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(CliError::Output);
     }
     crate::export::write_whole(path, text.as_bytes()).map_err(|error| file_error(path, "written", &error))
+}
+
+/// Writes a PNG file, whatever its name ends in.
+fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let encoded = picture.write_to(&mut png, image::ImageFormat::Png);
+    encoded.map_err(|error| file_error(path, "encoded", &error))?;
+    crate::export::write_whole(path, png.get_ref()).map_err(|error| file_error(path, "written", &error))
 }
 
 /// Serialised on several lines, with a line end.

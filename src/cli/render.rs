@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{CliError, SurfaceOptions, file_error, load, options, to_json, write_text};
+use super::{CliError, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
 use crate::measure::{Measured, compare, ulp};
-use crate::mesh::{EdgeCounts, Source};
-use crate::render::{Camera, Scene, Target};
+use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
+use crate::render::{Camera, Scene, Target, t_junction_lines};
 use crate::settings::{ARENA_BYTES, Overlay, Settings};
 
 #[derive(Debug, clap::Args)]
@@ -73,7 +73,18 @@ impl Args {
 fn default_surface_options() -> SurfaceOptions {
     let Settings { surface, edges, factor, partitioning, lod, pixels, clip, .. } = Settings::default();
     let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
-    SurfaceOptions { surface, edges, factor, partitioning, lod, pixels, clip, weld: options::WeldOption::default(), size: options::Size([1280, 720]), camera }
+    SurfaceOptions {
+        surface,
+        edges,
+        factor,
+        partitioning,
+        lod,
+        pixels,
+        clip,
+        weld: options::WeldOption::default(),
+        size: options::Size([1280, 720]),
+        camera,
+    }
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
@@ -89,13 +100,19 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
     let measured = if settings.overlays.cracks || args.stats.is_some() {
         let measured = engine.measure(&mut scene)?;
-        if settings.overlays.cracks {
-            scene.set_lines(&engine.gpu, &measured.crack_lines(&loaded.topology));
-        }
         Some(measured)
     } else {
         None
     };
+    let mut lines = match &measured {
+        Some(measured) if settings.overlays.cracks => measured.crack_lines(&loaded.topology),
+        _ => Vec::new(),
+    };
+    if settings.overlays.t_junctions {
+        let junctions = t_junctions(&loaded.topology, &Progress::default()).map_err(LoadError::from)?;
+        lines.extend(t_junction_lines(&loaded.topology, &junctions));
+    }
+    scene.set_lines(&engine.gpu, &lines);
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;
     let picture = target.read(&engine.gpu)?;
     write_picture(&args.output, &picture.clone().into())?;
@@ -150,14 +167,6 @@ fn hold_against(
         threshold: args.threshold,
         see,
     })
-}
-
-/// Writes a PNG file, whatever its name ends in.
-fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    let encoded = picture.write_to(&mut png, image::ImageFormat::Png);
-    encoded.map_err(|error| file_error(path, "encoded", &error))?;
-    crate::export::write_whole(path, png.get_ref()).map_err(|error| file_error(path, "written", &error))
 }
 
 /// What was done and what it cost. Times are medians in ms.

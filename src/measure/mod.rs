@@ -1,12 +1,16 @@
 //! What a tessellation did, measured on what was really emitted.
 
+mod chart;
 mod cracks;
 mod folds;
 mod picture;
 mod rims;
 mod survey;
+mod sweep;
 
+pub use chart::{CHART_RANGE, ChartError, sweep_chart, write_text};
 pub use cracks::{CrackedEdge, Cracks, ulp};
 pub use picture::{CompareError, Comparison, compare};
 pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims};
 pub use survey::{Measured, Survey};
+pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};

@@ -3,12 +3,14 @@
 mod camera;
 pub mod layout;
 mod leaks;
+mod marks;
 mod renderer;
 mod scene;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
 pub use leaks::{LeakCounter, is_beyond_near};
+pub use marks::t_junction_lines;
 pub use renderer::Renderer;
 pub use scene::{LineSegment, Scene};
 pub use target::Target;

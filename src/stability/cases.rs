@@ -59,8 +59,7 @@ pub struct Look {
 /// From the front, the right and above, as the window does.
 pub const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
 
-const CASE: Case =
-    Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
+const CASE: Case = Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
 
 /// Every case, in the order of the documentation.
 pub const CASES: [Case; 29] = [
@@ -186,12 +185,7 @@ pub const CASES: [Case; 29] = [
         mesh: meshes::huge,
         ..CASE
     },
-    Case {
-        name: "tiny",
-        about: "A torus with coordinates of 1e-7.",
-        mesh: meshes::tiny,
-        ..CASE
-    },
+    Case { name: "tiny", about: "A torus with coordinates of 1e-7.", mesh: meshes::tiny, ..CASE },
     Case {
         name: "far-away",
         about: "A torus of one unit's radius, eight thousand units from the origin: its last bits are a thousandth of \
@@ -238,7 +232,7 @@ pub const CASES: [Case; 29] = [
         name: "sweep",
         about: "The factor grows from 1 to 64 in steps of 1/64. Under fractional partitioning every surface point moves \
                 a little; under integer and pow2 new points appear in the middle of edges, and the surface pops.",
-        mesh: || Shape::CubeSplit.build(),
+        mesh: meshes::roof,
         probe: Probe::Sweep,
         ..CASE
     },

@@ -94,7 +94,9 @@ pub fn mirrored() -> Mesh {
         }
         corner
     };
-    let half = triangles(Shape::Torus).into_iter().filter(|(_, corners)| corners.iter().map(|c| c.position.x).sum::<f32>() > 0.0);
+    let half = triangles(Shape::Torus)
+        .into_iter()
+        .filter(|(_, corners)| corners.iter().map(|c| c.position.x).sum::<f32>() > 0.0);
     let both = half.flat_map(|(_, corners)| {
         let flip = vec3(-1.0, 1.0, 1.0);
         let own = corners.map(on_plane);
@@ -178,6 +180,16 @@ pub fn near_seam() -> Mesh {
     mesh(triangles(Shape::Torus).into_iter().map(|(_, corners)| moved(corners)))
 }
 
+/// Two triangles that meet at a ridge, with normals of their own that lean apart.
+pub fn roof() -> Mesh {
+    let ends = [vec3(0.0, 0.3, 1.0), vec3(0.0, 0.3, -1.0)];
+    let side = |x: f32, [a, b]: [Vec3; 2]| {
+        let at = |p: Vec3| corner(p, (vec3(0.6 * x, 1.0, 0.0) + 0.5 * p).normalize());
+        [at(a), at(vec3(x, -0.3, 0.0)), at(b)]
+    };
+    mesh([side(1.0, ends), side(-1.0, [ends[1], ends[0]])])
+}
+
 /// How many points lie on open edges of [`t_junction`].
 pub const T_JUNCTIONS: u32 = 3;
 
@@ -212,9 +224,8 @@ pub fn ground() -> Mesh {
 pub fn soup(seed: u32) -> Mesh {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995);
     let points: Vec<Vec3> = (0..14).map(|_| random.vector()).collect();
-    let triangles: Vec<_> = (0..60)
-        .map(|_| [0; 3].map(|_: i32| corner(points[random.below(14)], random.normal())))
-        .collect();
+    let triangles: Vec<_> =
+        (0..60).map(|_| [0; 3].map(|_: i32| corner(points[random.below(14)], random.normal()))).collect();
     mesh(triangles)
 }
 
@@ -264,12 +275,12 @@ mod tests {
         let edges = topology(&fins).edges;
         assert_eq!(edges.iter().map(|edge| edge.sides.len()).max(), Some(5));
         let reversed = topology(&reversed_neighbours());
-        let alike = |edge: &&crate::mesh::Edge| {
-            matches!(reversed.edge_sides(edge), [a, b] if a.reversed == b.reversed)
-        };
+        let alike = |edge: &&crate::mesh::Edge| matches!(reversed.edge_sides(edge), [a, b] if a.reversed == b.reversed);
         assert!(reversed.edges.iter().filter(alike).count() > 20);
         assert!(topology(&duplicates()).degenerate > 10);
-        assert!(topology(&signed_zeros()).edge_counts().boundary == topology(&Shape::Saddle.build()).edge_counts().boundary);
+        assert!(
+            topology(&signed_zeros()).edge_counts().boundary == topology(&Shape::Saddle.build()).edge_counts().boundary
+        );
         assert!(topology(&mirrored()).is_closed_and_oriented());
         assert!(topology(&far_away()).is_closed_and_oriented());
         assert!(zero_normals().repairs.normals_replaced > 50 && nan_normals().repairs.normals_replaced > 50);
@@ -277,7 +288,9 @@ mod tests {
         assert!(denormals().repairs.denormals > 5);
         let seam = near_seam();
         assert!(topology(&seam).edge_counts().boundary > 20);
-        assert!(Topology::build_within(&seam, 1e-5, &Progress::new()).expect("nobody cancels").is_closed_and_oriented());
+        assert!(
+            Topology::build_within(&seam, 1e-5, &Progress::new()).expect("nobody cancels").is_closed_and_oriented()
+        );
     }
 
     #[test]

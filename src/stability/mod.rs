@@ -10,7 +10,7 @@ mod views;
 
 pub use cases::{CASES, Case, LOOK, Look, Probe};
 pub use meshes::soup;
-pub use picture::picture;
+pub use picture::{PictureError, picture};
 pub use report::{LEGEND, Line, Verdict, lines, page, table};
 pub use run::{Effort, run};
 

@@ -137,7 +137,12 @@ pub fn page(cases: &[&Case], lines: &[Line], adapter: &str) -> String {
     for case in cases {
         let _ = writeln!(text, "## {}\n\n{}\n\n![{}]({}.png)\n", case.name, case.about, case.name, case.name);
         let header: Vec<_> = COLUMNS.iter().map(|(_, column)| *column).collect();
-        let _ = writeln!(text, "| method | {} | also | |\n| --- |{} --- | --- |", header.join(" | "), " ---: |".repeat(header.len()));
+        let _ = writeln!(
+            text,
+            "| method | {} | also | |\n| --- |{} --- | --- |",
+            header.join(" | "),
+            " ---: |".repeat(header.len())
+        );
         for line in lines.iter().filter(|line| line.case == case.name) {
             let cells: Vec<_> = COLUMNS.iter().map(|(quantity, _)| line.cell(*quantity)).collect();
             let _ = writeln!(

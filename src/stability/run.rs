@@ -195,7 +195,14 @@ impl Running<'_> {
     }
 }
 
-fn row(case: &str, method: &'static str, device: &str, partitioning: &'static str, quantity: Quantity, measured: f64) -> Row {
+fn row(
+    case: &str,
+    method: &'static str,
+    device: &str,
+    partitioning: &'static str,
+    quantity: Quantity,
+    measured: f64,
+) -> Row {
     Row {
         case: case.to_owned(),
         method,

@@ -11,8 +11,8 @@ mod surface;
 pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outside, patch_is_unseen, planes_outside};
 pub use domain::{domain_point, domain_triangle};
 pub use factors::{
-    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count, process,
-    round_pow2, segments, triangle_count,
+    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count,
+    process, round_pow2, segments, triangle_count,
 };
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, edge_length_factor, near_edge_factor, paper_edge_factor, project_and_scale,

@@ -1,0 +1,323 @@
+//! Factor sweeps as a picture.
+//!
+//! It is drawn at twice its size and then halved, which smooths edges that the plotting library leaves jagged.
+
+use std::ops::Range;
+
+use image::imageops::{self, FilterType};
+use image::{ImageBuffer, RgbImage};
+use plotters::backend::BitMapBackend;
+use plotters::coord::Shift;
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::coord::combinators::LogCoord;
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+use thiserror::Error;
+
+use super::{Sweep, SweepStep};
+use crate::settings::FACTOR_RANGE;
+use crate::tessellate::Partitioning;
+
+/// The smallest and largest side of a chart, in px.
+pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
+
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ChartError {
+    #[error("a chart of {0} x {1} px: each side must be {min} to {max} px", min = CHART_RANGE.start(), max = CHART_RANGE.end())]
+    Size(u32, u32),
+    #[error("the chart could not be drawn: {0}")]
+    Failed(String),
+}
+
+type Picture<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+/// In points of the chart, or in px.
+type Element<'b, C> = DynElement<'static, BitMapBackend<'b>, C>;
+type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingBackend>::ErrorType>>;
+
+/// Draws the largest jump of each step over the factor, both axes logarithmic. Partitionings that pop are stems, one a
+/// pop; fractional ones are lines. Jumps are parts of `diagonal`, the mesh's, in object units; a jump of 0 is at the
+/// bottom. `size` is width and height in px.
+///
+/// # Errors
+/// Sizes outside [`CHART_RANGE`].
+pub fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -> Result<RgbImage, ChartError> {
+    if !(CHART_RANGE.contains(&width) && CHART_RANGE.contains(&height)) {
+        return Err(ChartError::Size(width, height));
+    }
+    let failed = |reason: &dyn ToString| ChartError::Failed(reason.to_string());
+    let size = (width * DENSITY, height * DENSITY);
+    register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+        .map_err(|_| failed(&"its font is bad"))?;
+    let mut drawn: RgbImage = ImageBuffer::new(size.0, size.1);
+    {
+        let picture = BitMapBackend::with_buffer(&mut drawn, size).into_drawing_area();
+        draw(&picture, sweeps, diagonal).map_err(|error| failed(&error))?;
+        picture.present().map_err(|error| failed(&error))?;
+    }
+    Ok(imageops::resize(&drawn, width, height, FilterType::Triangle))
+}
+
+/// Writes a line of text in dark ink, `size` px high, its top left at `at` (px), into a picture.
+///
+/// # Errors
+/// The font can't be used.
+pub fn write_text(picture: &mut RgbImage, at: [i32; 2], size: u32, text: &str) -> Result<(), ChartError> {
+    let failed = |reason: &dyn ToString| ChartError::Failed(reason.to_string());
+    register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+        .map_err(|_| failed(&"its font is bad"))?;
+    let dimensions = picture.dimensions();
+    let area = BitMapBackend::with_buffer(picture, dimensions).into_drawing_area();
+    let style = (FONT, size as i32).into_font().color(&INK);
+    area.draw_text(text, &style, (at[0], at[1])).map_err(|error| failed(&error))?;
+    area.present().map_err(|error| failed(&error))
+}
+
+/// Drawn px a px of the chart, along each side.
+const DENSITY: u32 = 2;
+/// The name that the plotting library looks for where it isn't told another.
+const FONT: &str = "sans-serif";
+const INK: RGBColor = RGBColor(40, 40, 40);
+
+/// Px of the chart as px drawn.
+const fn px(length: i32) -> i32 {
+    length * DENSITY as i32
+}
+
+fn font(size: i32) -> TextStyle<'static> {
+    (FONT, px(size)).into_font().color(&INK)
+}
+
+fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
+    picture.fill(&WHITE)?;
+    let (low, high) = (f64::from(*FACTOR_RANGE.start()), f64::from(*FACTOR_RANGE.end()));
+    let decades = decades(sweeps, diagonal);
+    // Room at the ends, so that rounding loses no tick.
+    let mut chart = ChartBuilder::on(picture)
+        .margin(px(12))
+        .x_label_area_size(px(42))
+        .y_label_area_size(px(62))
+        .build_cartesian_2d(
+            (low..high * 1.001).log_scale().base(2.0),
+            (decades.start * 0.999..decades.end * 1.001).log_scale(),
+        )?;
+    axes(&mut chart, sweeps)?;
+    for sweep in sweeps {
+        let points = parts(sweep, diagonal, decades.start);
+        let look = Look::of(sweep.partitioning);
+        look.draw(&mut chart, &points, decades.start, legend_text(sweep, diagonal))?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font(font(14))
+        .legend_area_size(px(40))
+        .margin(px(8))
+        .background_style(WHITE.mix(0.9))
+        .border_style(INK.mix(0.3))
+        .draw()
+}
+
+/// The powers of ten around all jumps that aren't 0, none of which is quite at an end.
+fn decades(sweeps: &[Sweep], diagonal: f64) -> Range<f64> {
+    let jumps = sweeps.iter().flat_map(|sweep| &sweep.steps).map(|step| step.jump / diagonal);
+    let [least, most] = jumps
+        .filter(|part| *part > 0.0 && part.is_finite())
+        .fold([f64::INFINITY, 0.0], |[least, most], part| [least.min(part), most.max(part)]);
+    if most == 0.0 {
+        return 1e-9..1e-1;
+    }
+    let bottom = (least * 0.9).log10().floor();
+    10f64.powf(bottom)..10f64.powf((most * 1.1).log10().ceil().max(bottom + 1.0))
+}
+
+fn axes(chart: &mut Chart, sweeps: &[Sweep]) -> Drawn {
+    let jump = match sweeps.first() {
+        Some(sweep) if sweep.step > 0.0 && sweep.step < 1.0 => {
+            format!("Largest jump per step of 1/{}", 1.0 / sweep.step)
+        }
+        _ => "Largest jump per step".to_owned(),
+    };
+    chart
+        .configure_mesh()
+        .x_desc("Tessellation factor (segments an edge)")
+        .y_desc(format!("{jump} (mesh diagonals)"))
+        .axis_desc_style(font(15))
+        .label_style(font(14))
+        .x_labels(7)
+        .y_labels(10)
+        .x_label_formatter(&|factor| format!("{factor:.0}"))
+        .y_label_formatter(&|part| format!("{part:.0e}"))
+        .set_all_tick_mark_size(px(5))
+        .max_light_lines(1)
+        .bold_line_style(INK.mix(0.15).stroke_width(DENSITY))
+        .light_line_style(TRANSPARENT)
+        .axis_style(INK.stroke_width(DENSITY))
+        .draw()
+}
+
+/// The steps as points of the chart, factor and part of the diagonal.
+fn parts(sweep: &Sweep, diagonal: f64, bottom: f64) -> Vec<(f64, f64)> {
+    let point = |step: &SweepStep| (f64::from(step.factor), (step.jump / diagonal).max(bottom));
+    sweep.steps.iter().map(point).collect()
+}
+
+fn legend_text(sweep: &Sweep, diagonal: f64) -> String {
+    match sweep.largest() {
+        Some(step) if step.jump > 0.0 => format!("{}, up to {:.1e}", sweep.partitioning, step.jump / diagonal),
+        _ => format!("{}, no jump", sweep.partitioning),
+    }
+}
+
+/// How a partitioning is told from the others: by shape, and by colour (Okabe and Ito 2008).
+#[derive(Clone, Copy)]
+struct Look {
+    color: RGBColor,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy)]
+enum Shape {
+    /// Stems with filled circles.
+    Discs,
+    /// Stems with diagonal crosses.
+    Crosses,
+    Line,
+    Dashes,
+}
+
+impl Look {
+    fn of(partitioning: Partitioning) -> Self {
+        let (color, shape) = match partitioning {
+            Partitioning::Integer => (RGBColor(213, 94, 0), Shape::Discs),
+            Partitioning::Pow2 => (RGBColor(0, 114, 178), Shape::Crosses),
+            Partitioning::FractionalOdd => (RGBColor(0, 158, 115), Shape::Line),
+            Partitioning::FractionalEven => (RGBColor(0, 0, 0), Shape::Dashes),
+        };
+        Self { color, shape }
+    }
+
+    /// Draws points of the chart and enters them in the legend.
+    fn draw<'a, 'b: 'a>(self, chart: &mut Chart<'a, 'b>, points: &[(f64, f64)], bottom: f64, label: String) -> Drawn {
+        let elements: Vec<Element<'b, _>> = match self.shape {
+            Shape::Line | Shape::Dashes => vec![self.path(highest_of_columns(chart, points))],
+            Shape::Discs | Shape::Crosses => {
+                let pops = points.iter().filter(|(_, part)| *part > bottom);
+                pops.flat_map(|&(factor, part)| {
+                    [self.path(vec![(factor, bottom), (factor, part)]), self.marker((factor, part))]
+                })
+                .collect()
+            }
+        };
+        chart.draw_series(elements)?.label(label).legend(move |at| self.sample(at));
+        Ok(())
+    }
+
+    /// A line along points, in px or of the chart. Stems are thin and pale, so that lines show before them.
+    fn path<'b, C: Clone + 'static>(self, points: Vec<C>) -> Element<'b, C> {
+        let thick = self.color.stroke_width(DENSITY * 2);
+        match self.shape {
+            Shape::Line => PathElement::new(points, thick).into_dyn(),
+            Shape::Dashes => DashedPathElement::new(points, px(7), px(4), thick).into_dyn(),
+            Shape::Discs | Shape::Crosses => {
+                PathElement::new(points, self.color.mix(0.4).stroke_width(DENSITY)).into_dyn()
+            }
+        }
+    }
+
+    /// What stands on a stem.
+    fn marker<'b, C: Clone + 'static>(self, at: C) -> Element<'b, C> {
+        match self.shape {
+            Shape::Crosses => Cross::new(at, px(4), self.color.stroke_width(DENSITY * 2)).into_dyn(),
+            _ => Circle::new(at, px(3), self.color.filled()).into_dyn(),
+        }
+    }
+
+    /// The entry in the legend, right of a px.
+    fn sample<'b>(self, (x, y): (i32, i32)) -> Element<'b, (i32, i32)> {
+        match self.shape {
+            Shape::Line | Shape::Dashes => self.path(vec![(x, y), (x + px(32), y)]),
+            Shape::Discs | Shape::Crosses => self.marker((x + px(16), y)),
+        }
+    }
+}
+
+/// For every column of px, its highest point: a line through all would smear where steps are narrower than a px.
+fn highest_of_columns(chart: &Chart, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let column = |point: &(f64, f64)| chart.backend_coord(point).0 / DENSITY as i32;
+    let columns = points.chunk_by(|a, b| column(a) == column(b));
+    columns.filter_map(|points| points.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sweep with these jumps at these factors.
+    fn sweep(partitioning: Partitioning, jumps: &[(f32, f64)]) -> Sweep {
+        let step = |&(factor, jump): &(f32, f64)| SweepStep { factor, jump, patch: 0, place: [0, 0] };
+        Sweep { partitioning, step: 1.0 / 64.0, steps: jumps.iter().map(step).collect() }
+    }
+
+    fn has(picture: &RgbImage, color: RGBColor) -> bool {
+        picture.pixels().any(|pixel| pixel.0 == [color.0, color.1, color.2])
+    }
+
+    /// The middles of the discs left of the legend, in px from the upper left corner.
+    fn discs(picture: &RgbImage) -> Vec<[f64; 2]> {
+        let RGBColor(r, g, b) = Look::of(Partitioning::Integer).color;
+        let mut found: Vec<_> = picture.enumerate_pixels().filter(|(_, _, pixel)| pixel.0 == [r, g, b]).collect();
+        found.retain(|(x, _, _)| *x < picture.width() * 6 / 10);
+        found.sort_by_key(|(x, _, _)| *x);
+        let mean = |disc: &[(u32, u32, &image::Rgb<u8>)]| {
+            let count = disc.len() as f64;
+            [
+                disc.iter().map(|px| f64::from(px.0)).sum::<f64>() / count,
+                disc.iter().map(|px| f64::from(px.1)).sum::<f64>() / count,
+            ]
+        };
+        found.chunk_by(|a, b| b.0 - a.0 <= 1).map(mean).collect()
+    }
+
+    #[test]
+    fn equal_ratios_are_equal_distances() {
+        let pops = sweep(Partitioning::Integer, &[(2.0, 0.5), (3.0, 0.0), (4.0, 0.05), (8.0, 0.005)]);
+        for size in [[640, 400], [960, 600]] {
+            let picture = sweep_chart(std::slice::from_ref(&pops), 5.0, size).expect("it draws");
+            assert_eq!(picture.dimensions(), size.into());
+            let [a, b, c] = discs(&picture).try_into().expect("three pops and not a fourth");
+            for axis in 0..2 {
+                let [before, after] = [b[axis] - a[axis], c[axis] - b[axis]];
+                assert!(before > 30.0 && (before - after).abs() <= 1.0, "{a:?} {b:?} {c:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_partitioning_has_its_colour() {
+        let jumps = [(2.0, 0.5), (4.0, 0.05), (8.0, 0.1), (32.0, 0.01)];
+        for shown in Partitioning::ALL {
+            let picture = sweep_chart(&[sweep(shown, &jumps)], 1.0, [640, 400]).expect("it draws");
+            for partitioning in Partitioning::ALL {
+                assert_eq!(has(&picture, Look::of(partitioning).color), partitioning == shown, "{partitioning}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_to_show_is_a_chart_too() {
+        let still = sweep(Partitioning::FractionalEven, &[(1.5, 0.0), (2.0, 0.0)]);
+        for sweeps in [&[][..], &[still]] {
+            let picture = sweep_chart(sweeps, 0.0, [320, 320]).expect("it draws");
+            assert!(has(&picture, WHITE) && picture.pixels().any(|pixel| pixel.0[0] < 100));
+        }
+    }
+
+    #[test]
+    fn a_size_that_is_no_charts_is_refused() {
+        assert_eq!(sweep_chart(&[], 1.0, [319, 400]).err(), Some(ChartError::Size(319, 400)));
+        let Err(error) = sweep_chart(&[], 1.0, [400, 9000]) else { panic!("9000 px are too many") };
+        assert_eq!(error.to_string(), "a chart of 400 x 9000 px: each side must be 320 to 4096 px");
+    }
+}

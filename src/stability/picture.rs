@@ -1,0 +1,89 @@
+//! A case's picture: every method side by side, or for a sweep the chart.
+
+use std::sync::Arc;
+
+use glam::Vec2;
+use image::{DynamicImage, RgbImage, imageops};
+use thiserror::Error;
+
+use super::{Method, Probe, Subject, views};
+use crate::engine::Engine;
+use crate::gpu::{GpuError, Timing};
+use crate::measure::{ChartError, SWEEP_STEP, sweep, sweep_chart, write_text};
+use crate::mesh::{Progress, Topology, t_junctions};
+use crate::render::{LineSegment, Target, t_junction_lines};
+use crate::settings::{ARENA_BYTES, Overlays, Settings};
+use crate::tessellate::{LodView, Partitioning};
+
+/// Why there is no picture.
+#[derive(Debug, Error)]
+pub enum PictureError {
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+}
+
+/// Width and height of one method's part, in px.
+const PART: [u32; 2] = [300, 240];
+/// Between parts and around them, and room for a line of text, in px.
+const GAP: u32 = 4;
+const CAPTION: u32 = 24;
+
+/// Draws the methods in a row, each under its name: 1,220 by 272 px. A sweep is its chart, 960 by 600 px, under PN-AEN.
+///
+/// # Errors
+/// The device fails.
+pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImage, PictureError> {
+    if case.probe == Probe::Sweep {
+        return chart(case, sweep_to);
+    }
+    let [width, height] = PART;
+    let count = Method::ALL.len() as u32;
+    let white = image::Rgb([255; 3]);
+    let mut row = RgbImage::from_pixel(count * (width + GAP) + GAP, height + 2 * GAP + CAPTION, white);
+    for (index, part) in parts(case, engine)?.into_iter().enumerate() {
+        let left = GAP + index as u32 * (width + GAP);
+        imageops::replace(&mut row, &part, left.into(), (GAP + CAPTION).into());
+        write_text(&mut row, [left as i32 + 2, GAP as i32 + 2], 18, Method::ALL[index].name())?;
+    }
+    Ok(row)
+}
+
+fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
+    let mesh = Arc::new(case.mesh.clone());
+    // Nobody else holds these handles, so nobody can cancel.
+    let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());
+    let junctions = t_junctions(&topology, &Progress::new()).unwrap_or_default();
+    let mut scene = engine.scene_of(mesh, topology.clone(), ARENA_BYTES)?;
+    let target = Target::new(&engine.gpu, PART)?;
+    let viewport = Vec2::from(PART.map(|side| side as f32));
+    let camera = views::look(&scene.bounds, &case.look, viewport);
+    let overlays = Overlays { wireframe: true, cracks: true, folds: true, t_junctions: true, ..Overlays::default() };
+    let part = |method: Method| {
+        let settings = if case.probe == Probe::View {
+            method.adaptive(Partitioning::FractionalOdd, 8.0)
+        } else {
+            method.settings(Partitioning::FractionalOdd, case.look.factor)
+        };
+        let settings = Settings { overlays, ..settings };
+        let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
+        engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+        let mut lines: Vec<LineSegment> = engine.measure(&mut scene)?.crack_lines(&topology);
+        lines.extend(t_junction_lines(&topology, &junctions));
+        scene.set_lines(&engine.gpu, &lines);
+        engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;
+        Ok(DynamicImage::from(target.read(&engine.gpu)?).to_rgb8())
+    };
+    Method::ALL.into_iter().map(part).collect()
+}
+
+fn chart(case: &Subject, sweep_to: f32) -> Result<RgbImage, PictureError> {
+    let topology = Topology::build_within(&case.mesh, case.weld, &Progress::new()).unwrap_or_default();
+    let view = LodView { clip_from_object: glam::Mat4::IDENTITY, half_viewport: Vec2::ONE };
+    let swept = Partitioning::ALL.map(|partitioning| {
+        let inputs = Method::PnAen.settings(partitioning, 1.0).inputs(view);
+        sweep(&case.mesh, &topology, &inputs, 1.0..=sweep_to, SWEEP_STEP)
+    });
+    Ok(sweep_chart(&swept, case.mesh.bounds().diagonal().into(), [960, 600])?)
+}
