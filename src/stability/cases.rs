@@ -220,12 +220,13 @@ pub const CASES: [Case; 29] = [
     },
     Case {
         name: "folds",
-        about: "A thin slab with smooth normals. At its tight corners the control nets turn over (the white paper's \
-                negative curvature), and the surface puffs and folds: triangles that face away from the side their \
-                patch faces are counted and highlighted. That is the surface, not a crack; only other normals help.",
-        mesh: meshes::folds,
+        about: "A star whose corners' normals lie nearly in its plane, as normals averaged or baked at tight corners do. \
+                There the control nets turn over (the white paper's negative curvature): triangles that face away from \
+                the side their patch faces are counted and highlighted. That is the surface, not a crack; only other \
+                normals help.",
+        mesh: meshes::star,
         probe: Probe::Folds,
-        look: Look { factor: 12.0, ..LOOK },
+        look: Look { azimuth: 15.0, elevation: 60.0, factor: 12.0, ..LOOK },
         ..CASE
     },
     Case {
@@ -243,7 +244,7 @@ pub const CASES: [Case; 29] = [
                 what is behind. Each plane of the view on its own, and depths that stay positive, have neither fault.",
         mesh: || Shape::Icosphere.build(),
         probe: Probe::View,
-        look: Look { azimuth: 30.0, elevation: 20.0, distance: 0.35, target: [0.1, 0.2, 0.0], factor: 0.0 },
+        look: Look { azimuth: 30.0, elevation: 20.0, distance: 0.08, target: [-0.4465, -0.323, -0.77], factor: 0.0 },
         ..CASE
     },
     Case {
@@ -251,16 +252,18 @@ pub const CASES: [Case; 29] = [
         about: "Two large triangles under the eye, which reach behind it: every edge in view crosses the near plane.",
         mesh: meshes::ground,
         probe: Probe::View,
-        look: Look { azimuth: 20.0, elevation: 12.0, distance: 0.12, target: [0.0; 3], factor: 0.0 },
+        look: Look { azimuth: 20.0, elevation: 35.0, distance: 0.12, target: [0.1, 0.0, 0.3], factor: 0.0 },
         ..CASE
     },
     Case {
         name: "behind-eye",
-        about: "The eye stands over an edge of the ground and looks along it: one end far ahead, the other far behind, \
-                where dividing by w mirrors it back in front.",
+        about: "The eye stands just above the end of a long edge, which runs on beneath and far behind it. Dividing by w \
+                mirrors what is behind back onto the near end, so that the edge seems short: as published it gets a few \
+                segments, of which a single one crosses the picture. The robust form sees an edge that touches the \
+                eye, and cuts it as finely as it can.",
         mesh: meshes::ground,
         probe: Probe::View,
-        look: Look { azimuth: 2.0, elevation: 4.0, distance: 0.2, target: [0.66, 0.01, 0.0], factor: 0.0 },
+        look: Look { azimuth: 186.0, elevation: 9.0, distance: 0.05, target: [0.7, 0.0, 0.7], factor: 0.0 },
         ..CASE
     },
     Case {

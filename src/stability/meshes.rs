@@ -207,9 +207,16 @@ pub fn t_junction() -> Mesh {
     mesh(all)
 }
 
-/// A thin slab with smooth normals: its control nets turn over at the tight corners.
-pub fn folds() -> Mesh {
-    scaled(Shape::CubeSmooth, vec3(1.0, 0.08, 1.0), Vec3::ZERO)
+/// A flat star, its tips' normals nearly in its plane and turned sideways, its notches' leaning inwards.
+pub fn star() -> Mesh {
+    let at = |k: usize| {
+        let angle = std::f32::consts::TAU * k as f32 / 10.0;
+        let (out, sideways) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.0, angle.cos()));
+        let (radius, lean) = if k % 2 == 0 { (1.0, out * 2.0 + sideways) } else { (0.35, out * -2.0) };
+        corner(out * radius, (Vec3::Y + lean).normalize())
+    };
+    let middle = corner(Vec3::ZERO, Vec3::Y);
+    mesh((0..10).map(|k| [middle, at((k + 1) % 10), at(k)]))
 }
 
 /// A ground of two large triangles that rises towards its corners.

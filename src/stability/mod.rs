@@ -81,7 +81,8 @@ impl Method {
     }
 }
 
-/// What is measured. All are 0 where all is well, but for [`Self::Segment`] and [`Self::Jump`].
+/// What is measured. All are 0 where all is well, but for [`Self::Segment`], [`Self::Jump`] and
+/// [`Self::Pop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// Points of edges whose positions differ in at least one bit.
@@ -104,8 +105,11 @@ pub enum Quantity {
     TJunctions,
     /// Open edges of a mesh that should be closed.
     OpenEdges,
-    /// The largest step of any surface point as the factor grows by 1/64, as a part of the mesh's diagonal.
+    /// The largest step of any surface point as the factor grows by 1/64, as a part of the mesh's diagonal, under
+    /// fractional partitioning.
     Jump,
+    /// The same under integer and pow2 partitioning.
+    Pop,
 }
 
 impl Quantity {
@@ -122,7 +126,8 @@ impl Quantity {
             Self::Segment => "times the segment asked for",
             Self::TJunctions => "T-junctions missed",
             Self::OpenEdges => "open edges left",
-            Self::Jump => "of the diagonal a step",
+            Self::Jump => "of the diagonal at most in a fractional step",
+            Self::Pop => "of the diagonal at most in a pop",
         }
     }
 
@@ -131,8 +136,8 @@ impl Quantity {
         match self {
             // Segments are equal along the curve, not on screen: perspective makes the near ones longer.
             Self::Segment => 4.0,
-            // Twice what the fractional modes were measured at; integer and pow2 jump ten times as far.
-            Self::Jump => 0.004,
+            // Several times what fractional modes were measured at, and far below what integer and pow2 were.
+            Self::Jump | Self::Pop => 0.004,
             _ => 0.0,
         }
     }

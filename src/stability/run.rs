@@ -102,8 +102,13 @@ impl Running<'_> {
         let look = views::look(&self.bounds, &self.case.look, views::viewport());
         let uniform = effort.factors.iter().map(|&factor| (method.settings(partitioning, factor), look));
         let adaptive = method.adaptive(partitioning, PIXELS);
-        let random = (0..effort.cameras).map(|index| (adaptive, views::random(&self.bounds, index)));
-        uniform.chain(random).chain((self.case.probe == Probe::View).then_some((adaptive, look))).collect()
+        let unclipped = Settings { clip: Clip::Off, ..adaptive };
+        // The paper's clip test drops whole patches, beside which nothing else would be seen: it has cases of its own.
+        let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
+        let random = (0..effort.cameras).map(|index| (everywhere, views::random(&self.bounds, index)));
+        let views = [(unclipped, look), (adaptive, look)];
+        let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
+        uniform.chain(random).chain(views).collect()
     }
 
     fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
@@ -119,7 +124,8 @@ impl Running<'_> {
             let inputs = method.settings(partitioning, 1.0).inputs(view);
             let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=effort.sweep_to, SWEEP_STEP);
             let largest = swept.largest().map_or(0.0, |step| step.jump);
-            worst.take(Quantity::Jump, largest / f64::from(self.bounds.diagonal()));
+            let quantity = if is_fractional(partitioning) { Quantity::Jump } else { Quantity::Pop };
+            worst.take(quantity, largest / f64::from(self.bounds.diagonal()));
         }
         worst
     }
@@ -135,7 +141,7 @@ impl Running<'_> {
                 worst.take(Quantity::Leaks, leaks as f64);
             }
             self.take(&mut worst, &measured, &settings, &view);
-            if self.case.probe == Probe::View && settings.clip != Clip::Off {
+            if self.case.probe == Probe::View && settings.clip != Clip::Off && settings.lod != Lod::Uniform {
                 let missing = self.missing(&settings, &camera)?;
                 worst.take(Quantity::Missing, missing as f64);
             }
@@ -145,9 +151,12 @@ impl Running<'_> {
 
     fn take(&self, worst: &mut Worst, measured: &Measured, settings: &Settings, view: &LodView) {
         worst.take_all(measured);
+        let look = views::look(&self.bounds, &self.case.look, views::viewport());
+        let is_look = *view == look.lod_view(views::viewport(), &self.bounds);
         match self.case.probe {
             Probe::Folds => worst.take(Quantity::Folds, measured.folds as f64),
-            Probe::View if settings.lod != Lod::Uniform => {
+            // What is left out has no segments to measure, and a random view may be anywhere.
+            Probe::View if settings.lod != Lod::Uniform && settings.clip == Clip::Off && is_look => {
                 worst.take(Quantity::Segment, longest_segment(&self.topology, measured, view) / f64::from(PIXELS));
             }
             _ => {}
@@ -168,7 +177,7 @@ impl Running<'_> {
 
     fn rows(&self, method: Method, partitioning: Partitioning, device: &str, worst: &Worst) -> Vec<Row> {
         let row = |(&quantity, &measured): (&Quantity, &f64)| Row {
-            promised: promised(method, partitioning, quantity),
+            promised: promised(method, quantity),
             ..row(&self.case.name, method.name(), device, partitioning.name(), quantity, measured)
         };
         worst.0.iter().map(row).collect()
@@ -216,12 +225,15 @@ fn row(
     }
 }
 
+fn is_fractional(partitioning: Partitioning) -> bool {
+    matches!(partitioning, Partitioning::FractionalOdd | Partitioning::FractionalEven)
+}
+
 /// What this program promises of a method.
-fn promised(method: Method, partitioning: Partitioning, quantity: Quantity) -> bool {
-    let fractional = matches!(partitioning, Partitioning::FractionalOdd | Partitioning::FractionalEven);
+fn promised(method: Method, quantity: Quantity) -> bool {
     match quantity {
-        Quantity::NotFinite => true,
-        Quantity::Jump => fractional,
+        Quantity::NotFinite | Quantity::Jump => true,
+        Quantity::Pop => false,
         // A surface that bends may fold; only a flat one can't.
         Quantity::Folds => method == Method::Flat,
         // PN tears where normals are split: that is PN.

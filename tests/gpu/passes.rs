@@ -175,7 +175,7 @@ fn sheet(columns: u32, rows: u32) -> Loaded {
     let mesh = Mesh { corners, triangles, materials: vec![material], ..Mesh::default() };
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
-    Loaded { source: Source::default(), mesh, topology, load_ms: 0.0, topology_ms: 0.0 }
+    Loaded { source: Source::default(), weld: 0.0, mesh, topology, load_ms: 0.0, topology_ms: 0.0 }
 }
 
 #[test]
