@@ -154,11 +154,12 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     if (frame.overlays & OVERLAY_BARYCENTRIC) != 0u {
         base = clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0));
     }
-    if in.folded != 0u {
-        base = FOLD_COLOR;
-    }
     let normal = normalize(select(-in.normal, in.normal, front));
     var color = shade(base, normal, in.position);
+    if in.folded != 0u {
+        // Unlit: folds mostly face away from the light.
+        color = FOLD_COLOR;
+    }
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let nearest = min(min(to_sides.x, to_sides.y), to_sides.z);
         // Triangles of a px or two would be nothing but lines: those fade, and the surface stays readable.

@@ -226,7 +226,7 @@ pub const CASES: [Case; 29] = [
                 normals help.",
         mesh: meshes::star,
         probe: Probe::Folds,
-        look: Look { azimuth: 15.0, elevation: 60.0, factor: 12.0, ..LOOK },
+        look: Look { azimuth: -66.0, elevation: 15.0, distance: 0.7, target: [-0.45, 0.0, 0.25], factor: 14.0 },
         ..CASE
     },
     Case {
@@ -242,9 +242,9 @@ pub const CASES: [Case; 29] = [
         about: "The eye is inside a sphere. Some control points lie behind it: the paper's clip test finds every control \
                 point outside on some side, and drops patches that fill the view; its LOD divides by w and mirrors \
                 what is behind. Each plane of the view on its own, and depths that stay positive, have neither fault.",
-        mesh: || Shape::Icosphere.build(),
+        mesh: || Shape::Icosahedron.build(),
         probe: Probe::View,
-        look: Look { azimuth: 30.0, elevation: 20.0, distance: 0.08, target: [-0.4465, -0.323, -0.77], factor: 0.0 },
+        look: Look { azimuth: 30.0, elevation: 20.0, distance: 0.1, target: [-0.3, -0.35, -0.75], factor: 0.0 },
         ..CASE
     },
     Case {
