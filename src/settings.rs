@@ -112,9 +112,43 @@ impl FromIterator<Overlay> for Overlays {
 }
 
 impl Settings {
+    /// Changes who computes what an edge's sides agree on. As published, LOD and clipping are the white paper's too, and
+    /// otherwise the forms that hold near the eye.
+    pub fn set_edges(&mut self, edges: Edges) {
+        if edges == self.edges {
+            return;
+        }
+        self.edges = edges;
+        let published = edges == Edges::AsPublished;
+        if self.lod != Lod::Uniform {
+            self.lod = if published { Lod::Paper } else { Lod::EdgeLength };
+        }
+        if self.clip != Clip::Off {
+            self.clip = if published { Clip::Paper } else { Clip::Frustum };
+        }
+    }
+
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
         let Self { surface, edges, factor, partitioning, lod, pixels, clip, .. } = *self;
         Inputs { surface, edges, factor, partitioning, lod, pixels, clip, view }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_published_takes_lod_and_clipping_along() {
+        let adaptive = Settings { lod: Lod::EdgeLength, clip: Clip::Frustum, ..Settings::default() };
+        let mut settings = adaptive;
+        settings.set_edges(Edges::AsPublished);
+        assert_eq!((settings.lod, settings.clip), (Lod::Paper, Clip::Paper));
+        settings.set_edges(Edges::PerEdge);
+        assert_eq!(settings, adaptive);
+        let mut uniform = Settings::default();
+        uniform.set_edges(Edges::AsPublished);
+        assert_eq!((uniform.lod, uniform.clip), (Lod::Uniform, Clip::Off));
     }
 }

@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
-use pnaen::tessellate::{Clip, Lod, Partitioning, Surface};
+use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Longer than anything here takes on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -45,6 +45,13 @@ fn click(harness: &mut Harness<App>, label: &str) {
     settle(harness);
 }
 
+/// Picks an entry of a list.
+fn choose(harness: &mut Harness<App>, list: &str, entry: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, list).click();
+    settle(harness);
+    click(harness, entry);
+}
+
 fn vase() -> Source {
     Source::File(PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")))
 }
@@ -63,9 +70,7 @@ fn it_opens_on_a_cube_without_cracks() {
 #[test]
 fn choosing_pn_lights_up_the_cracks() {
     let mut harness = window(None);
-    harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
-    settle(&mut harness);
-    click(&mut harness, "PN");
+    choose(&mut harness, "Surface", "PN");
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
     settle(&mut harness);
     let app = harness.state();
@@ -97,8 +102,7 @@ fn every_switch_does_what_it_says() {
         ("Barycentric colours", |app| app.settings().overlays.barycentric),
         ("Adjacency edges", |app| app.settings().overlays.adjacency),
         ("Cracks", |app| app.settings().overlays.cracks),
-        ("Adaptive LOD", |app| app.settings().lod == Lod::Paper),
-        ("Clip patches out of view", |app| app.settings().clip == Clip::Paper),
+        ("Folds", |app| app.settings().overlays.folds),
         ("Split view", |app| app.settings().split.is_some()),
     ] {
         assert!(!is_on(harness.state()), "{label} is on already");
@@ -111,10 +115,72 @@ fn every_switch_does_what_it_says() {
     assert!(harness.state().settings().overlays.wireframe);
     press(&mut harness, egui::Key::W);
     assert!(!harness.state().settings().overlays.wireframe);
-    harness.get_by_role_and_label(Role::ComboBox, "Partitioning").click();
-    settle(&mut harness);
-    click(&mut harness, "Power of two");
+    choose(&mut harness, "Partitioning", "Power of two");
     assert_eq!(harness.state().settings().partitioning, Partitioning::Pow2);
+    choose(&mut harness, "LOD", "Edge length");
+    assert_eq!(harness.state().settings().lod, Lod::EdgeLength);
+    choose(&mut harness, "Clipping", "Frustum");
+    assert_eq!(harness.state().settings().clip, Clip::Frustum);
+    choose(&mut harness, "Edges", "As published");
+    let settings = *harness.state().settings();
+    assert_eq!((settings.edges, settings.lod, settings.clip), (Edges::AsPublished, Lod::Paper, Clip::Paper));
+}
+
+#[test]
+fn the_worst_edges_are_listed_and_one_click_frames_one() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let app = harness.state();
+    let cracks = app.cracks().expect("measured").clone();
+    let before = *app.camera();
+    // The list shows the widest gap first; its third row is as good as any.
+    let edge = cracks.edges[2].edge;
+    let row = format!("{edge:<8}split normal");
+    harness.get_by_label_contains(&row).click();
+    settle(&mut harness);
+    let app = harness.state();
+    assert_eq!(app.selected_edge(), Some(edge));
+    let topology = &app.loaded().expect("a mesh").topology;
+    let [a, b] = topology.edges[edge as usize].points.map(|point| topology.points[point as usize]);
+    assert_ne!(*app.camera(), before);
+    assert!(app.camera().target.distance((a + b) / 2.0) < 1e-6, "the edge is in the middle");
+    // Named, with its two triangles, both sides' factors and points.
+    harness.get_by_label(&format!("Edge {edge}"));
+    harness.get_all_by_label("split normal");
+    for side in topology.edge_sides(&topology.edges[edge as usize]) {
+        let triangle = topology.patches[side.patch as usize].triangle;
+        harness.get_by_label(&format!("Triangle {triangle}"));
+    }
+    assert_eq!(harness.get_all_by_label("8.00000 / 9").count(), 2, "factor and segments of both sides");
+    harness.get_by_label("Deselect").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().selected_edge(), None);
+}
+
+#[test]
+fn as_published_edges_crack_and_once_an_edge_they_close() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    press(&mut harness, egui::Key::E);
+    let cracked = harness.state().cracks().expect("measured").different_bits;
+    assert!(cracked > 1000, "{cracked}");
+    press(&mut harness, egui::Key::E);
+    assert_eq!(harness.state().cracks().expect("measured").different_bits, 0);
+}
+
+#[test]
+fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
+    let mut harness = window(Some(Source::Shape(Shape::Saddle)));
+    let start = Instant::now();
+    while harness.state().is_checking() {
+        assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
+        harness.step();
+    }
+    press(&mut harness, egui::Key::Num3);
+    let camera = *harness.state().camera();
+    choose(&mut harness, "Weld", "1e-5: joins nothing");
+    let app = harness.state();
+    assert_eq!(app.loaded().map(|loaded| loaded.weld), Some(1e-5));
+    assert_eq!(*app.camera(), camera, "the view stays");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+use super::checks::Checks;
 use crate::engine::{self, Engine, Loaded};
 use crate::mesh::{EdgeCounts, LoadError, Progress, Source};
 use crate::render::Scene;
@@ -12,6 +13,7 @@ pub struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
     pub edges: EdgeCounts,
+    pub checks: Checks,
     /// Tells one loaded document from the next, also of one file.
     pub generation: u64,
 }
@@ -26,8 +28,8 @@ pub struct Load {
 }
 
 impl Load {
-    /// Loads on a thread of its own.
-    pub fn start(engine: &Engine, context: &egui::Context, source: Source, keep_view: bool) -> Self {
+    /// Loads on a thread of its own, points welded within `weld` of the bounding diagonal.
+    pub fn start(engine: &Engine, context: &egui::Context, source: Source, weld: f32, keep_view: bool) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let (sender, done) = channel();
@@ -35,7 +37,7 @@ impl Load {
         let (engine, context) = (engine.clone(), context.clone());
         let (wanted, own_progress) = (source.clone(), progress.clone());
         std::thread::spawn(move || {
-            let result = load(&engine, &wanted, &own_progress, generation);
+            let result = load(&engine, &context, &wanted, weld, &own_progress, generation);
             // Nobody is waiting any more if the load was replaced.
             let _ = sender.send(result);
             context.request_repaint();
@@ -62,13 +64,21 @@ impl Drop for Load {
     }
 }
 
-fn load(engine: &Engine, source: &Source, progress: &Progress, generation: u64) -> Result<Document, Option<String>> {
-    let loaded = match engine::load(source, 0.0, progress) {
+fn load(
+    engine: &Engine,
+    context: &egui::Context,
+    source: &Source,
+    weld: f32,
+    progress: &Progress,
+    generation: u64,
+) -> Result<Document, Option<String>> {
+    let loaded = match engine::load(source, weld, progress) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => return Err(Some(error.to_string())),
     };
     let scene = engine.scene(&loaded, ARENA_BYTES).map_err(|error| Some(error.to_string()))?;
     let edges = loaded.topology.edge_counts();
-    Ok(Document { loaded, scene, edges, generation })
+    let checks = Checks::start(context, loaded.mesh.clone(), loaded.topology.clone());
+    Ok(Document { loaded, scene, edges, checks, generation })
 }

@@ -6,14 +6,14 @@ use super::App;
 use crate::mesh::{Shape, Source};
 use crate::render::Standpoint;
 use crate::settings::{FACTOR_RANGE, Overlay};
-use crate::tessellate::Lod;
+use crate::tessellate::{Edges, Lod};
 
 const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
 const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 20] = [
+pub const KEYS: [(&str, &str); 23] = [
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
     ("Wheel, Page Up, Page Down", "zoom (the wheel: to the pointer)"),
@@ -26,13 +26,16 @@ pub const KEYS: [(&str, &str); 20] = [
     ("B", "barycentric colours"),
     ("A", "adjacency edges"),
     ("C", "cracks"),
+    ("O", "folds"),
+    ("T", "T-junctions"),
     ("S", "split view"),
+    ("E", "edges as published, or computed once"),
     ("L", "adaptive LOD"),
     ("Z", "freeze the LOD camera"),
     ("R", "reload the file"),
     ("Ctrl+O", "open a file"),
     ("Ctrl+L", "type a path to open"),
-    ("Esc", "cancel loading, close a message"),
+    ("Esc", "cancel loading, close a message, deselect"),
     ("Ctrl+Q", "quit"),
 ];
 
@@ -170,6 +173,7 @@ impl App {
             self.error = None;
             self.typed_path = None;
             self.shows_keys = false;
+            self.selected_edge = None;
         }
         if context.egui_wants_keyboard_input() {
             return;
@@ -190,10 +194,14 @@ impl App {
         if pressed(context, Key::Z) {
             self.toggle_frozen();
         }
+        if pressed(context, Key::E) {
+            let published = self.settings.edges == Edges::AsPublished;
+            self.settings.set_edges(if published { Edges::PerEdge } else { Edges::AsPublished });
+        }
     }
 
     fn overlay_keys(&mut self, context: &egui::Context) {
-        for (key, overlay) in [Key::W, Key::P, Key::B, Key::A, Key::C].into_iter().zip(Overlay::ALL) {
+        for (key, overlay) in [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T].into_iter().zip(Overlay::ALL) {
             if pressed(context, key) {
                 let switch = self.settings.overlays.get_mut(overlay);
                 *switch = !*switch;

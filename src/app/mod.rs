@@ -1,11 +1,16 @@
 //! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
 
+mod checks;
 mod document;
+mod facts;
 mod measuring;
 mod menu;
 mod panels;
+mod status;
 mod text;
 mod viewport;
+mod widgets;
+mod worst;
 
 use std::sync::Arc;
 
@@ -21,7 +26,7 @@ use crate::tessellate::LodView;
 
 use document::{Document, Load};
 use measuring::Measuring;
-use viewport::Viewport;
+use viewport::{Marked, Viewport};
 
 #[derive(Debug, Error)]
 pub enum WindowError {
@@ -86,6 +91,10 @@ pub struct App {
     dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
     viewport: Viewport,
     measuring: Measuring,
+    /// What lines are over the mesh.
+    marked: Option<Marked>,
+    /// The edge that is looked at, in the topology of what is shown.
+    selected_edge: Option<u32>,
     /// What is being typed as a path to open, while that window is open.
     typed_path: Option<String>,
     shows_keys: bool,
@@ -113,6 +122,8 @@ impl App {
             load: None,
             dialog: None,
             measuring: Measuring::default(),
+            marked: None,
+            selected_edge: None,
             typed_path: None,
             shows_keys: false,
             error: None,
@@ -122,10 +133,19 @@ impl App {
         Ok(app)
     }
 
-    /// Starts to load a mesh beside the window; a load that is under way is cancelled.
+    /// Starts to load a mesh beside the window; a load that is under way is cancelled. The mesh that is open keeps its
+    /// view and its weld tolerance.
     pub fn open(&mut self, context: &egui::Context, source: Source) {
-        let keep_view = self.document.as_ref().is_some_and(|document| document.loaded.source == source);
-        self.load = Some(Load::start(&self.engine, context, source, keep_view));
+        let same = self.document.as_ref().filter(|document| document.loaded.source == source);
+        let (keep_view, weld) = (same.is_some(), same.map_or(0.0, |document| document.loaded.weld));
+        self.load = Some(Load::start(&self.engine, context, source, weld, keep_view));
+    }
+
+    /// Loads the same mesh again with another weld tolerance, a part of its bounding diagonal.
+    pub fn weld(&mut self, context: &egui::Context, weld: f32) {
+        if let Some(source) = self.document.as_ref().map(|document| document.loaded.source.clone()) {
+            self.load = Some(Load::start(&self.engine, context, source, weld, true));
+        }
     }
 
     /// Loads the same mesh again; settings and camera stay.
@@ -148,6 +168,16 @@ impl App {
         self.measuring.cracks()
     }
 
+    /// The edge that is looked at.
+    pub fn selected_edge(&self) -> Option<u32> {
+        self.selected_edge
+    }
+
+    /// What is shown, as loaded.
+    pub fn loaded(&self) -> Option<&crate::engine::Loaded> {
+        self.document.as_ref().map(|document| &document.loaded)
+    }
+
     /// Vertices and triangles of what is shown.
     pub fn totals(&self) -> Option<(u64, u64)> {
         self.document.as_ref().map(|document| document.scene.tessellator.totals())
@@ -168,6 +198,11 @@ impl App {
         self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy()
     }
 
+    /// Whether the mesh is still being looked through: that doesn't change the picture by itself.
+    pub fn is_checking(&self) -> bool {
+        self.document.as_ref().is_some_and(|document| document.checks.is_busy())
+    }
+
     fn take_loaded(&mut self, context: &egui::Context) {
         let Some(load) = &mut self.load else { return };
         let Some(result) = load.take() else { return };
@@ -185,6 +220,7 @@ impl App {
                     self.error = None;
                 }
                 self.measuring = Measuring::default();
+                self.selected_edge = None;
             }
             Err(Some(error)) => {
                 self.error = Some(error);

@@ -10,8 +10,8 @@ use glam::{Mat4, Vec2, vec2};
 use super::{App, Document};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
-use crate::measure::Cracks;
-use crate::render::{Camera, Target};
+use crate::measure::{CrackedEdge, Cracks};
+use crate::render::{Camera, Target, t_junction_lines};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, LodView};
 
@@ -34,6 +34,18 @@ struct Wanted {
     clip_from_object: Mat4,
     /// Width and height in px.
     viewport: Vec2,
+}
+
+/// What the lines over the mesh are a function of.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Marked {
+    document: u64,
+    measured: u64,
+    cracks: bool,
+    t_junctions: bool,
+    selected_edge: Option<u32>,
+    /// Counts the times that they changed.
+    generation: u64,
 }
 
 /// The picture and what it cost.
@@ -95,6 +107,11 @@ impl Viewport {
     /// The largest gap of these cracks in px, seen as the last picture was.
     pub fn gap_px(&self, cracks: &Cracks) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| cracks.max_gap_px(drawn.clip_from_object, drawn.viewport))
+    }
+
+    /// The gap of one edge in px, seen as the last picture was.
+    pub fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
+        self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
     /// Bytes of the textures drawn into.
@@ -203,13 +220,14 @@ impl App {
         let _ = self.engine.gpu.device.poll(wgpu::PollType::Poll);
         self.viewport.fit(&self.render_state, &self.engine, size)?;
         self.viewport.land(&self.engine);
+        self.mark();
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
         let view = self.frozen.unwrap_or_else(|| self.camera.lod_view(viewport, &document.scene.bounds));
         let inputs = self.settings.inputs(view);
         let wanted = Wanted {
             document: document.generation,
-            lines: if self.settings.overlays.cracks { self.measuring.generation } else { 0 },
+            lines: self.marked.map_or(0, |marked| marked.generation),
             camera: self.camera,
             settings: self.settings,
             inputs,
@@ -219,20 +237,41 @@ impl App {
         self.viewport.draw(&self.engine, document, &wanted)?;
         let shown = self.viewport.drawn.as_ref() == Some(&wanted);
         self.viewport.outdated = !shown;
-        if shown
-            && self.viewport.in_flight.is_none()
-            && document.scene.tessellator.is_counted()
-            && self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?
-        {
-            let topology = &document.loaded.topology;
-            let lines = self.measuring.found().map(|found| found.crack_lines(topology)).unwrap_or_default();
-            document.scene.set_lines(&self.engine.gpu, &lines);
-            self.viewport.outdated = self.settings.overlays.cracks;
+        if shown && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
+            self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?;
         }
         if self.is_busy() {
             context.request_repaint();
         }
         Ok(())
+    }
+
+    /// Puts the lines over the mesh that belong there by now: cracks, T-junctions, the selected edge.
+    fn mark(&mut self) {
+        let Some(document) = &self.document else { return };
+        let overlays = self.settings.overlays;
+        let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
+        let wanted = Marked {
+            document: document.generation,
+            measured: if overlays.cracks || self.selected_edge.is_some() { self.measuring.generation } else { 0 },
+            cracks: overlays.cracks,
+            t_junctions: junctions.is_some(),
+            selected_edge: self.selected_edge,
+            generation: self.marked.map_or(0, |marked| marked.generation),
+        };
+        if self.marked == Some(wanted) {
+            return;
+        }
+        let topology = document.loaded.topology.clone();
+        let mut lines = self.selection_lines(&topology);
+        if let Some(found) = self.measuring.found().filter(|_| overlays.cracks) {
+            lines.extend(found.crack_lines(&topology));
+        }
+        lines.extend(t_junction_lines(&topology, junctions.unwrap_or_default()));
+        self.marked = Some(Marked { generation: wanted.generation + 1, ..wanted });
+        if let Some(document) = &mut self.document {
+            document.scene.set_lines(&self.engine.gpu, &lines);
+        }
     }
 
     fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, points: Vec2) {

@@ -175,6 +175,17 @@ impl Topology {
         &self.sides[edge.sides.start as usize..edge.sides.end as usize]
     }
 
+    /// The direction that an edge's patches face together: the sum of their facings, by area; zero where they cancel.
+    pub fn edge_facing(&self, edge: &Edge) -> Vec3 {
+        let facing = |side: &Side| {
+            let corners = self.patches[side.patch as usize].corners;
+            let [a, b, c] = corners.map(|c| self.points[self.corner_points[c as usize] as usize].as_dvec3());
+            (b - a).cross(c - a)
+        };
+        let sum: glam::DVec3 = self.edge_sides(edge).iter().map(facing).sum();
+        sum.normalize_or_zero().as_vec3()
+    }
+
     /// Makes edges, and tells patches and sides of each other, from halves ordered by their points.
     fn connect(&mut self, halves: &[Half], corners: &[Corner]) {
         self.sides.reserve(halves.len());

@@ -53,6 +53,17 @@ impl Camera {
         self.distance = radius / half_angle.sin();
     }
 
+    /// Puts an edge in the middle, about a third of the view long, seen from where it faces (or from where one is, if it
+    /// faces nowhere). `bounds` are the mesh's.
+    pub fn frame_edge(&mut self, [a, b]: [Vec3; 2], facing: Vec3, bounds: &Bounds) {
+        self.target = a * 0.5 + b * 0.5;
+        self.distance = (3.0 * a.distance(b)).max(1e-4 * bounds.radius());
+        if facing != Vec3::ZERO {
+            self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
+            self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
+        }
+    }
+
     /// Turns to look along an axis.
     pub fn look_from(&mut self, standpoint: Standpoint) {
         (self.azimuth, self.elevation) = match standpoint {
@@ -161,6 +172,20 @@ mod tests {
             let reach = half_angle.tan() * camera.distance / camera.units_per_pixel(viewport.y);
             assert!((reach - 0.5 * viewport.min_element()).abs() < 0.5, "{reach} px of {viewport}");
         }
+    }
+
+    #[test]
+    fn a_framed_edge_is_in_the_middle_and_faces_the_eye() {
+        let viewport = vec2(800.0, 600.0);
+        let mut camera = Camera::framing(&unit_bounds(), viewport);
+        let (ends, facing) = ([vec3(0.5, 1.0, 0.0), vec3(0.7, 1.0, 0.1)], vec3(0.3, 0.8, -0.5).normalize());
+        camera.frame_edge(ends, facing, &unit_bounds());
+        assert!(camera.axes()[2].distance(facing) < 1e-5);
+        let clip = camera.clip_from_object(viewport, &unit_bounds());
+        let [a, b] = ends.map(|p| project(clip, viewport, p).expect("in front of the eye"));
+        assert!((a + b).distance(viewport) < 2.0);
+        let length = a.distance(b);
+        assert!((150.0..400.0).contains(&length), "{length} px");
     }
 
     #[test]

@@ -1,0 +1,64 @@
+//! What is looked for in a mesh beside the window, once it is loaded: bad normals, T-junctions, edges that nearly meet.
+
+use std::sync::{Arc, OnceLock};
+
+use crate::mesh::{Joins, Mesh, NormalFaults, Progress, TJunction, Topology, joins, t_junctions};
+
+/// Checks under way or done; dropping them stops them.
+#[derive(Default)]
+pub struct Checks {
+    found: Arc<Found>,
+    wanted: Progress,
+}
+
+#[derive(Default)]
+struct Found {
+    normal_faults: OnceLock<NormalFaults>,
+    t_junctions: OnceLock<Vec<TJunction>>,
+    joins: OnceLock<Vec<Joins>>,
+}
+
+impl Checks {
+    /// Starts them on a thread of their own; each result repaints the window.
+    pub fn start(context: &egui::Context, mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
+        let checks = Self::default();
+        let (found, wanted, context) = (checks.found.clone(), checks.wanted.clone(), context.clone());
+        std::thread::spawn(move || {
+            let _ = found.normal_faults.set(NormalFaults::of(&mesh, &topology));
+            if let Ok(all) = t_junctions(&topology, &wanted) {
+                let _ = found.t_junctions.set(all);
+            }
+            context.request_repaint();
+            if let Ok(all) = joins(&mesh, &wanted) {
+                let _ = found.joins.set(all);
+            }
+            context.request_repaint();
+        });
+        checks
+    }
+
+    /// Normals that are legal but suspicious, once counted.
+    pub fn normal_faults(&self) -> Option<&NormalFaults> {
+        self.found.normal_faults.get()
+    }
+
+    /// All T-junctions, once found.
+    pub fn t_junctions(&self) -> Option<&[TJunction]> {
+        self.found.t_junctions.get().map(Vec::as_slice)
+    }
+
+    /// What each tolerance would join, once tried.
+    pub fn joins(&self) -> Option<&[Joins]> {
+        self.found.joins.get().map(Vec::as_slice)
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.found.joins.get().is_none()
+    }
+}
+
+impl Drop for Checks {
+    fn drop(&mut self) {
+        self.wanted.cancel();
+    }
+}

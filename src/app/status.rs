@@ -1,0 +1,84 @@
+//! Below: what it cost.
+
+use egui::RichText;
+
+use super::App;
+use super::text::{grouped, mebibytes};
+use super::widgets::status;
+use crate::render::layout::CRACK_COLOR;
+
+impl App {
+    pub(super) fn status_line(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            ui.set_min_height(22.0);
+            let Some(document) = &self.document else {
+                ui.weak("nothing is open");
+                return;
+            };
+            let scene = &document.scene;
+            let totals = scene.tessellator.is_counted().then(|| scene.tessellator.totals());
+            let (vertices, triangles) = totals.map_or_else(
+                || ("…".to_owned(), "…".to_owned()),
+                |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
+            );
+            let patches = document.loaded.topology.patches.len() as u64;
+            let drawn = patches - u64::from(self.measuring.found().map_or(0, |found| found.patches_culled));
+            let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
+            status(
+                ui,
+                120.0,
+                format!("{} of {} patches", grouped(drawn), grouped(patches)),
+                "Patches drawn, of all; the rest is clipped.",
+            );
+            status(
+                ui,
+                170.0,
+                format!("{} to {} triangles", grouped(before.0), triangles),
+                "Before and after tessellation.",
+            );
+            status(
+                ui,
+                160.0,
+                format!("{} to {} vertices", grouped(before.1), vertices),
+                "Before and after tessellation.",
+            );
+            self.status_of_cracks(ui);
+            let bytes = scene.tessellator.buffers().bytes()
+                + scene.tessellator.work_bytes()
+                + scene.tessellator.arena_bytes()
+                + self.viewport.bytes();
+            status(ui, 76.0, mebibytes(bytes), "Memory on the device: topology, output and picture.");
+            let (ms, hover) = self.times();
+            status(ui, 112.0, ms, &hover);
+            ui.weak(&self.engine.gpu.info.name).on_hover_text("Graphics adapter.");
+        });
+    }
+
+    /// Tessellation and drawing, by the last run of each pass and the GPU's own clock; or else the last whole picture.
+    fn times(&self) -> (String, String) {
+        let times = &self.viewport.times;
+        let Some(draw) = times.iter().find(|time| time.pass == "draw") else {
+            let ms = self.viewport.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
+            let why = "From submitting the last picture to its completion; this adapter can't time single passes.";
+            return (ms, why.into());
+        };
+        let all: f64 = times.iter().map(|time| time.ms).sum();
+        let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
+        let hover =
+            format!("Tessellation and drawing: each pass's last run, by the GPU's own clock.\n{}", passes.join("\n"));
+        (format!("{:.2} + {:.2} ms", all - draw.ms, draw.ms), hover)
+    }
+
+    fn status_of_cracks(&self, ui: &mut egui::Ui) {
+        let hover = "Edges whose sides put a point at different positions.";
+        match self.measuring.cracks() {
+            None => status(ui, 86.0, "cracks …", hover),
+            Some(cracks) if cracks.edges.is_empty() => status(ui, 86.0, "cracks 0", hover),
+            Some(cracks) => {
+                let text = RichText::new(format!("cracks {}", grouped(cracks.edges.len() as u64)));
+                let [r, g, b] = CRACK_COLOR;
+                status(ui, 86.0, text.color(egui::Color32::from_rgb(r, g, b)).strong(), hover);
+            }
+        }
+    }
+}
