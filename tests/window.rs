@@ -135,7 +135,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
     let before = *app.camera();
     // The list shows the widest gap first; its third row is as good as any.
     let edge = cracks.edges[2].edge;
-    let row = format!("{edge:<8}split normal");
+    let row = format!("{edge:<6}split normal");
     harness.get_by_label_contains(&row).click();
     settle(&mut harness);
     let app = harness.state();

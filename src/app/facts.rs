@@ -21,13 +21,13 @@ pub(super) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
 impl App {
     pub(super) fn facts_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            heading(ui, "Edges");
-            self.edge_legend(ui);
             heading(ui, "Cracks");
             self.crack_facts(ui);
             self.worst_edges(ui);
             self.edge_details(ui);
             self.t_junction_list(ui);
+            heading(ui, "Edges");
+            self.edge_legend(ui);
             heading(ui, "Mesh");
             self.mesh_facts(ui);
             self.pass_times(ui);

@@ -12,7 +12,7 @@ use crate::render::LineSegment;
 use crate::render::layout::SELECTION_COLOR;
 
 /// Rows that a list shows at once.
-const ROWS: f32 = 8.0;
+const ROWS: f32 = 6.0;
 
 impl App {
     /// A list of edges; a click frames one.
@@ -22,15 +22,16 @@ impl App {
             return;
         }
         ui.add_space(4.0);
-        let header = format!("{:<8}{:<13}{:>10}", "edge", "kind", "gap units");
-        ui.label(RichText::new(header).monospace().weak())
-            .on_hover_text("Edges whose sides disagree in a position, factor or normal, the widest gap first.");
+        let header = format!("{:<6}{:<13}{:>8}", "edge", "kind", "gap");
+        ui.label(RichText::new(header).monospace().weak()).on_hover_text(
+            "Edges whose sides disagree in a position, factor or normal, the widest gap (object units) first.",
+        );
         let topology = &document.loaded.topology;
         let mut clicked = None;
         let text = |row: usize| {
             let crack = &cracks.edges[row];
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
-            (crack.edge, format!("{:<8}{kind:<13}{:>10}", crack.edge, short(crack.gap)))
+            (crack.edge, format!("{:<6}{kind:<13}{:>8}", crack.edge, short(crack.gap)))
         };
         rows(ui, "worst edges", cracks.edges.len(), |ui, row| {
             let (edge, text) = text(row);
@@ -59,9 +60,16 @@ impl App {
         let (Some(edge), Some(document)) = (self.selected_edge, &self.document) else { return };
         let topology = &document.loaded.topology;
         let kind = kind_name(topology.edges[edge as usize].kind);
-        heading(ui, &format!("Edge {edge}"));
-        let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
         let mut closed = false;
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(format!("Edge {edge}")).strong());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                closed = ui.small_button("Deselect").on_hover_text("Closes this section (Esc).").clicked();
+            });
+        });
+        ui.separator();
+        let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "What the edge's sides have in common.");
             if let Some(crack) = self.measuring.cracks().and_then(|cracks| cracks.edges.iter().find(|c| c.edge == edge))
@@ -77,9 +85,6 @@ impl App {
             }
         });
         point_rows(ui, &sides);
-        if ui.button("Deselect").on_hover_text("Closes this section (Esc).").clicked() {
-            closed = true;
-        }
         if closed {
             self.selected_edge = None;
         }
@@ -94,10 +99,11 @@ impl App {
         heading(ui, "T-junctions");
         ui.label(format!("{} points on open edges", grouped(junctions.len() as u64)))
             .on_hover_text("No tessellation closes these: the edge is cut without knowing of the point.");
+        ui.label(RichText::new(format!("{:<9}{:<9}{:>9}", "point", "edge", "at")).monospace().weak());
         let mut clicked: Option<TJunction> = None;
         rows(ui, "t-junctions", junctions.len(), |ui, row| {
             let TJunction { edge, point, t, .. } = junctions[row];
-            let text = RichText::new(format!("point {point:<8} edge {edge:<8} {t:.3}")).monospace();
+            let text = RichText::new(format!("{point:<9}{edge:<9}{t:>9.3}")).monospace();
             let response = ui.selectable_label(self.selected_edge == Some(edge), text);
             if response.on_hover_text("Where along the edge the point lies. A click frames the edge.").clicked() {
                 clicked = Some(junctions[row]);
@@ -153,7 +159,7 @@ fn rows(ui: &mut egui::Ui, name: &str, count: usize, mut row: impl FnMut(&mut eg
 fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     let Some((first, others)) = sides.split_first() else { return };
     let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);
-    ui.label(RichText::new(format!("{:<8}{:>23}", "point", "apart, units")).monospace().weak());
+    ui.label(RichText::new(format!("{:<6}{:>21}", "point", "apart, units")).monospace().weak());
     rows(ui, "points", count, |ui, index| {
         let place = |side: &EdgeSide| side.positions().nth(index);
         let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
@@ -161,7 +167,7 @@ fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
             .map(|gap| gap.map_or(f64::NAN, |gap| gap))
             .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
         let text = if gap.is_nan() { "not on all sides".to_owned() } else { short(gap) };
-        ui.label(RichText::new(format!("{index:<8}{text:>23}")).monospace()).on_hover_ui(|ui| {
+        ui.label(RichText::new(format!("{index:<6}{text:>21}")).monospace()).on_hover_ui(|ui| {
             for side in sides {
                 let text = match place(side) {
                     Some(p) => format!("triangle {}: {:e} {:e} {:e}", side.triangle, p.x, p.y, p.z),
