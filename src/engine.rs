@@ -191,8 +191,9 @@ impl Engine {
     ) -> Result<Option<u64>, GpuError> {
         let viewport = glam::vec2(size[0] as f32, size[1] as f32);
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
-        if !scene.tessellator.topology().is_closed_and_oriented() || !is_beyond_near(clip_from_object, measured.extent)
-        {
+        // What clipping left out isn't in what was measured; its corners say whether it lies behind the near plane.
+        let whole = [measured.extent[0].min(scene.bounds.min), measured.extent[1].max(scene.bounds.max)];
+        if !scene.tessellator.topology().is_closed_and_oriented() || !is_beyond_near(clip_from_object, whole) {
             return Ok(None);
         }
         self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)

@@ -178,7 +178,7 @@ mod tests {
     fn a_framed_edge_is_in_the_middle_and_faces_the_eye() {
         let viewport = vec2(800.0, 600.0);
         let mut camera = Camera::framing(&unit_bounds(), viewport);
-        let (ends, facing) = ([vec3(0.5, 1.0, 0.0), vec3(0.7, 1.0, 0.1)], vec3(0.3, 0.8, -0.5).normalize());
+        let (ends, facing) = ([vec3(0.5, 1.0, 0.0), vec3(0.7, 1.0, 0.1)], vec3(0.3, 0.8, -0.6).normalize());
         camera.frame_edge(ends, facing, &unit_bounds());
         assert!(camera.axes()[2].distance(facing) < 1e-5);
         let clip = camera.clip_from_object(viewport, &unit_bounds());

@@ -80,7 +80,15 @@ impl Line {
     /// What has no column.
     fn rest(&self) -> String {
         let rest = self.worst.iter().filter(|(quantity, _)| COLUMNS.iter().all(|(column, _)| column != quantity));
-        rest.map(|(quantity, worst)| format!("{} {}", number(*worst), quantity.unit())).collect::<Vec<_>>().join(", ")
+        rest.map(|(quantity, worst)| phrase(*quantity, *worst)).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// What was measured, in words.
+fn phrase(quantity: Quantity, measured: f64) -> String {
+    match quantity {
+        Quantity::Segment if measured == 0.0 => "what is in view is as fine as can be".to_owned(),
+        _ => format!("{} {}", number(measured), quantity.unit()),
     }
 }
 

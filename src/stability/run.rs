@@ -54,6 +54,15 @@ impl Worst {
     }
 }
 
+/// What is tried once.
+struct Trial {
+    settings: Settings,
+    /// Decides factors and what is clipped; leaks are looked for from here.
+    camera: Camera,
+    /// And from here, where that changes nothing else.
+    also_from: Vec<Camera>,
+}
+
 /// A case on its way: its mesh, and the same on the device.
 struct Running<'a> {
     case: &'a Subject,
@@ -97,23 +106,30 @@ pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<V
 }
 
 impl Running<'_> {
-    /// What a method is tried with: settings and cameras, under uniform factors and then under adaptive LOD.
-    fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<(Settings, Camera)> {
+    /// What a method is tried with: uniform factors, and then adaptive LOD.
+    fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<Trial> {
         let look = views::look(&self.bounds, &self.case.look, views::viewport());
-        let uniform = effort.factors.iter().map(|&factor| (method.settings(partitioning, factor), look));
+        let random = |index| views::random(&self.bounds, index);
+        let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| Trial {
+            settings: method.settings(partitioning, factor),
+            camera: look,
+            // The factors share the cameras out between them.
+            also_from: (turn as u32..effort.cameras).step_by(effort.factors.len()).map(random).collect(),
+        });
         let adaptive = method.adaptive(partitioning, PIXELS);
         let unclipped = Settings { clip: Clip::Off, ..adaptive };
         // The paper's clip test drops whole patches, beside which nothing else would be seen: it has cases of its own.
         let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
-        let random = (0..effort.cameras).map(|index| (everywhere, views::random(&self.bounds, index)));
-        let views = [(unclipped, look), (adaptive, look)];
+        let seen = |settings, camera| Trial { settings, camera, also_from: Vec::new() };
+        let random = (0..effort.cameras).map(|index| seen(everywhere, random(index)));
+        let views = [seen(unclipped, look), seen(adaptive, look)];
         let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
         uniform.chain(random).chain(views).collect()
     }
 
     fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
         let mut worst = Worst::default();
-        for (settings, camera) in self.trials(method, partitioning, effort) {
+        for Trial { settings, camera, .. } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let out = tessellate(&self.mesh, &self.topology, &settings.inputs(view), None);
             let asked = AskedFactors::new(settings.edges, out.edge_factors.clone());
@@ -132,13 +148,15 @@ impl Running<'_> {
 
     fn on_device(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Worst, GpuError> {
         let mut worst = Worst::default();
-        for (settings, camera) in self.trials(method, partitioning, effort) {
+        for Trial { settings, camera, also_from } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let Some((engine, scene, _)) = &mut self.device else { break };
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
             let measured = engine.measure(scene)?;
-            if let Some(leaks) = engine.leaks(scene, &measured, views::SIZE, &camera)? {
-                worst.take(Quantity::Leaks, leaks as f64);
+            for camera in also_from.iter().chain([&camera]) {
+                if let Some(leaks) = engine.leaks(scene, &measured, views::SIZE, camera)? {
+                    worst.take(Quantity::Leaks, leaks as f64);
+                }
             }
             self.take(&mut worst, &measured, &settings, &view);
             if self.case.probe == Probe::View && settings.clip != Clip::Off && settings.lod != Lod::Uniform {

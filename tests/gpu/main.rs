@@ -6,6 +6,7 @@ mod domain;
 mod layout;
 mod passes;
 mod pictures;
+mod stability;
 
 use std::sync::OnceLock;
 

@@ -8,7 +8,9 @@ use pnaen::measure::ulp;
 use pnaen::mesh::{Corner, Material, Mesh, Progress, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{Clip, Inputs, Lod, Partitioning, Surface, Tessellated, tessellate, totals, unpack_normal};
+use pnaen::tessellate::{
+    Clip, Edges, Inputs, Lod, Partitioning, Surface, Tessellated, beyond_near, tessellate, totals, unpack_normal,
+};
 
 use crate::{engine, loaded, picture, scene};
 
@@ -58,12 +60,13 @@ fn uniform_factors_agree_with_the_cpu() {
         let (loaded, mut scene) = scene(shape);
         for surface in SURFACES {
             for partitioning in Partitioning::ALL {
-                for factor in [1.0, 5.3] {
-                    let settings = Settings { surface, partitioning, factor, ..Settings::default() };
+                for (edges, factor) in [(Edges::PerEdge, 1.0), (Edges::PerEdge, 5.3), (Edges::AsPublished, 5.3)] {
+                    let settings = Settings { surface, edges, partitioning, factor, ..Settings::default() };
                     let inputs = inputs(&loaded, &settings);
                     let gpu = on_gpu(&mut scene, &inputs);
                     let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
-                    assert_agree(&loaded, &gpu, &cpu, &format!("{shape:?} {surface:?} {partitioning} {factor}"));
+                    let what = format!("{shape:?} {surface:?} {edges:?} {partitioning} {factor}");
+                    assert_agree(&loaded, &gpu, &cpu, &what);
                     let counted = totals(&loaded.mesh, &loaded.topology, &inputs);
                     assert_eq!(scene.tessellator.totals(), counted, "known before anything is emitted");
                 }
@@ -74,16 +77,27 @@ fn uniform_factors_agree_with_the_cpu() {
 
 #[test]
 fn adaptive_factors_agree_with_the_cpu() {
-    for shape in [Shape::CubeSplit, Shape::Torus, Shape::Cone, Shape::Moebius] {
+    let paper = Settings { lod: Lod::Paper, clip: Clip::Paper, ..Settings::default() };
+    let published = Settings { edges: Edges::AsPublished, ..paper };
+    let robust = Settings { lod: Lod::EdgeLength, clip: Clip::Frustum, ..paper };
+    let tried = [
+        (Shape::CubeSplit, paper),
+        (Shape::CubeSplit, published),
+        (Shape::Torus, paper),
+        (Shape::Cone, robust),
+        (Shape::Cone, published),
+        (Shape::Moebius, paper),
+        (Shape::Moebius, published),
+    ];
+    for (shape, settings) in tried {
         let (loaded, mut scene) = scene(shape);
         for surface in SURFACES {
             for partitioning in Partitioning::ALL {
-                let settings =
-                    Settings { surface, partitioning, lod: Lod::Paper, clip: Clip::Paper, ..Settings::default() };
+                let settings = Settings { surface, partitioning, ..settings };
                 let inputs = inputs(&loaded, &settings);
                 let gpu = on_gpu(&mut scene, &inputs);
                 let factors = edge_factors(&scene);
-                let what = format!("{shape:?} {surface:?} {partitioning}");
+                let what = format!("{shape:?} {surface:?} {partitioning} {:?} {:?}", settings.edges, settings.lod);
                 // Division and square root may differ in the last bits, and a factor's rounding with them: the
                 // tessellation is compared at the GPU's factors; those are held against the formula below.
                 let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, Some(&factors));
@@ -104,6 +118,36 @@ fn adaptive_factors_are_those_of_the_formula() {
     for (gpu, cpu) in edge_factors(&scene).into_iter().zip(own) {
         // Two divisions, a matrix and a square root, each to within a few ULP.
         assert!((gpu - cpu).abs() <= 1e-5 * cpu, "{gpu} {cpu}");
+    }
+}
+
+#[test]
+fn factors_by_edge_length_are_those_of_the_formula_behind_the_eye_too() {
+    let (loaded, mut scene) = scene(Shape::Torus);
+    let bounds = loaded.mesh.bounds();
+    // The eye is inside the tube: some edges lie before it, some behind, some across its plane.
+    let camera = Camera { target: glam::vec3(0.7, 0.0, 0.0), distance: 0.3, ..Camera::framing(&bounds, VIEWPORT) };
+    let view = camera.lod_view(VIEWPORT, &bounds);
+    let beyond = |point: u32| beyond_near(view.clip_from_object * loaded.topology.points[point as usize].extend(1.0));
+    let mut kinds = [0; 3];
+    for edge in &loaded.topology.edges {
+        kinds[edge.points.into_iter().filter(|&point| beyond(point)).count()] += 1;
+    }
+    assert!(
+        kinds.into_iter().all(|count| count > 5),
+        "edges with no, one and two ends beyond the near plane: {kinds:?}"
+    );
+    for edges in [Edges::PerEdge, Edges::AsPublished] {
+        let settings = Settings { lod: Lod::EdgeLength, edges, pixels: 6.0, ..Settings::default() };
+        let inputs = settings.inputs(view);
+        on_gpu(&mut scene, &inputs);
+        let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
+        let device = edge_factors(&scene);
+        assert_eq!(device.len(), own.len(), "{edges:?}");
+        for (gpu, cpu) in device.into_iter().zip(own) {
+            // As above; and the nearest depth, of an edge about as long as it is far, may lose a digit more.
+            assert!((gpu - cpu).abs() <= 1e-4 * cpu, "{edges:?}: {gpu} {cpu}");
+        }
     }
 }
 

@@ -5,11 +5,13 @@ use std::path::{Path, PathBuf};
 
 use image::RgbaImage;
 use pnaen::measure::compare;
-use pnaen::mesh::{EdgeKind, Shape};
-use pnaen::render::layout::{CRACK_COLOR, edge_color};
+use pnaen::mesh::{EdgeKind, Progress, Shape, t_junctions};
+use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR, edge_color};
+use pnaen::render::{Camera, Scene, Target, t_junction_lines};
 use pnaen::settings::{Overlay, Overlays, Settings};
 use pnaen::tessellate::{Lod, Partitioning, Surface};
 
+use crate::stability::{case, seen};
 use crate::{engine, picture, scene};
 
 const SIZE: [u32; 2] = [200, 160];
@@ -145,6 +147,12 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
     }
 }
 
+/// How many px have an sRGB colour, within what rounding from it to linear light, in three digits, and back can do.
+fn pixels_of(picture: &RgbaImage, color: [u8; 3]) -> usize {
+    let near = |pixel: &image::Rgba<u8>| (0..3).all(|c| pixel.0[c].abs_diff(color[c]) <= 2);
+    picture.pixels().filter(|pixel| near(pixel)).count()
+}
+
 #[test]
 fn lines_have_the_colours_of_their_legend() {
     let legend = [
@@ -158,10 +166,46 @@ fn lines_have_the_colours_of_their_legend() {
         let (_, mut scene) = scene(shape);
         let settings =
             Settings { surface: Surface::Pn, overlays: [overlay].into_iter().collect(), ..Settings::default() };
-        let picture = picture(&mut scene, &settings, [640, 480]);
-        // Within what rounding from sRGB to linear light, in three digits, and back can do.
-        let near = |pixel: &image::Rgba<u8>| (0..3).all(|c| pixel.0[c].abs_diff(color[c]) <= 2);
-        let found = picture.pixels().filter(|pixel| near(pixel)).count();
+        let found = pixels_of(&picture(&mut scene, &settings, [640, 480]), color);
         assert!(found > 50, "{shape:?} {overlay:?}: {found} px of {color:?}");
     }
+}
+
+#[test]
+fn folds_are_marked_and_nothing_else_is() {
+    let target = Target::new(&engine().gpu, [640, 480]).expect("a small picture");
+    let (mut star, camera) = case("folds");
+    let marked = |scene: &mut Scene, camera: &Camera, surface, folds| {
+        let overlays = Overlays { folds, ..Overlays::default() };
+        let settings = Settings { surface, overlays, factor: 14.0, ..Settings::default() };
+        pixels_of(&seen(scene, &target, &settings, camera), FOLD_COLOR)
+    };
+    for surface in [Surface::Pn, Surface::PnAen] {
+        let pixels = marked(&mut star, &camera, surface, true);
+        assert!(pixels > 1000, "{surface:?}: {pixels} px");
+        assert_eq!(marked(&mut star, &camera, surface, false), 0, "{surface:?}, not asked for");
+    }
+    assert_eq!(marked(&mut star, &camera, Surface::Flat, true), 0, "what is flat has no folds");
+    let (_, mut torus) = scene(Shape::Torus);
+    let inside = Camera { target: glam::vec3(0.7, 0.0, 0.0), distance: 0.1, ..camera };
+    for camera in [camera, inside] {
+        let pixels = marked(&mut torus, &camera, Surface::PnAen, true);
+        assert_eq!(pixels, 0, "a torus has none, though half of it faces away from the eye");
+    }
+}
+
+#[test]
+fn t_junctions_are_marked_where_there_are_some() {
+    let target = Target::new(&engine().gpu, [640, 480]).expect("a small picture");
+    let marked = |scene: &mut Scene, camera: &Camera| {
+        let topology = scene.tessellator.topology().clone();
+        let junctions = t_junctions(&topology, &Progress::default()).expect("nobody cancels");
+        scene.set_lines(&engine().gpu, &t_junction_lines(&topology, &junctions));
+        let picture = seen(scene, &target, &Settings::default(), camera);
+        (junctions.len(), pixels_of(&picture, T_JUNCTION_COLOR))
+    };
+    let (mut sheet, camera) = case("t-junction");
+    let (found, pixels) = marked(&mut sheet, &camera);
+    assert!(found == 3 && pixels > 200, "{pixels} px for {found} T-junctions");
+    assert_eq!(marked(&mut scene(Shape::Saddle).1, &camera), (0, 0));
 }
