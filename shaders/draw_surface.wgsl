@@ -61,9 +61,21 @@ fn is_folded(patch_index: u32, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool
     return dot(own, patch_facing) < 0.0 && length(own) > 8.0 * frame.ulp * longest;
 }
 
+// Whether the pattern runs back here, so that it is not the surface that turns this triangle over.
+fn runs_back(a: vec2<u32>, b: vec2<u32>, c: vec2<u32>) -> bool {
+    let ab = vec2<f32>(vec2<i32>(b) - vec2<i32>(a));
+    let ac = vec2<f32>(vec2<i32>(c) - vec2<i32>(a));
+    return ab.x * ac.y - ab.y * ac.x <= 0.0;
+}
+
 fn vertex_position(index: u32) -> vec3<f32> {
     let vertex = vertices[indices[index]];
     return vec3<f32>(vertex.x, vertex.y, vertex.z);
+}
+
+fn vertex_domain(index: u32) -> vec2<u32> {
+    let vertex = vertices[indices[index]];
+    return key_uv(vec2<u32>(vertex.key0, vertex.key1));
 }
 
 fn unit_corner(k: u32) -> vec3<f32> {
@@ -89,8 +101,10 @@ fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     var out = varyings(position, normal, vertex.uv, key_patch(key), key_uv(key), unit_corner(index % 3u));
     if (frame.overlays & OVERLAY_FOLDS) != 0u {
         let first = index - index % 3u;
+        let back = runs_back(vertex_domain(first), vertex_domain(first + 1u), vertex_domain(first + 2u));
         let a = vertex_position(first);
-        out.folded = u32(is_folded(key_patch(key), a, vertex_position(first + 1u), vertex_position(first + 2u)));
+        let opposes = is_folded(key_patch(key), a, vertex_position(first + 1u), vertex_position(first + 2u));
+        out.folded = u32(opposes && !back);
     }
     return out;
 }

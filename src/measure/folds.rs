@@ -23,6 +23,15 @@ fn is_folded(patch_facing: DVec3, triangle: [DVec3; 3], ulp: f64) -> bool {
     own.dot(patch_facing) < 0.0 && own.length() > LEAST_HEIGHT_ULP * ulp * longest
 }
 
+/// Twice the area of a triangle in the domain, in units of 2^-32; positive where it runs the way its patch does. In
+/// 16.16 fixed point the tessellator's rows run back by a few 2^-16 where a new point has just come up: such a triangle
+/// is turned over by the pattern, not by the surface.
+fn domain_area([a, b, c]: [[u32; 2]; 3]) -> i64 {
+    let from_a = |p: [u32; 2]| [0, 1].map(|k| i64::from(p[k]) - i64::from(a[k]));
+    let (ab, ac) = (from_a(b), from_a(c));
+    ab[0] * ac[1] - ab[1] * ac[0]
+}
+
 /// How many of these triangles (indices into `vertices`) are folded.
 pub fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
     let at = |index: u32| Vec3::from(vertices[index as usize].position).as_dvec3();
@@ -33,7 +42,8 @@ pub fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u
         if own != patch {
             (patch, patch_facing) = (own, facing(corners(topology, own)));
         }
-        is_folded(patch_facing, triangle.map(at), ulp)
+        let domain = triangle.map(|index| vertices[index as usize].domain());
+        is_folded(patch_facing, triangle.map(at), ulp) && domain_area(domain) > 0
     });
     folded.count() as u64
 }
@@ -46,6 +56,10 @@ fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::{Progress, Shape};
+    use crate::settings::Settings;
+    use crate::tessellate::{LodView, Partitioning, Surface, tessellate};
+    use glam::{Mat4, Vec2};
 
     #[test]
     fn what_faces_away_is_folded_unless_it_is_a_line() {
@@ -55,5 +69,23 @@ mod tests {
         assert!(is_folded(up, [o, y, x], 1e-7));
         let flat = [o, 1e-7 * y, x];
         assert!(is_folded(up, flat, 1e-9) && !is_folded(up, flat, 1e-7), "an ULP high");
+    }
+    #[test]
+    fn what_the_pattern_turns_over_is_no_fold() {
+        let mesh = Shape::Icosahedron.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        // Just above 21, the points that have just come up lie 2^-16 behind the ones that they come from.
+        let factor = 21.0 + 3.0 / 65536.0;
+        let settings = Settings {
+            surface: Surface::Flat,
+            partitioning: Partitioning::FractionalOdd,
+            factor,
+            ..Settings::default()
+        };
+        let view = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::ONE };
+        let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
+        let domains = out.triangles.iter().map(|triangle| triangle.map(|index| out.vertices[index as usize].domain()));
+        assert!(domains.map(domain_area).any(|area| area < 0), "the pattern turns nothing over at {factor}");
+        assert_eq!(count(&topology, 1e-9, &out.vertices, &out.triangles), 0);
     }
 }

@@ -212,7 +212,7 @@ pub fn star() -> Mesh {
     let at = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 10.0;
         let (out, sideways) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.0, angle.cos()));
-        let (radius, lean) = if k % 2 == 0 { (1.0, out * 3.0 + sideways * 1.6) } else { (0.35, out * -3.0) };
+        let (radius, lean) = if k.is_multiple_of(2) { (1.0, out * 3.0 + sideways * 1.6) } else { (0.35, out * -3.0) };
         corner(out * radius, (Vec3::Y + lean).normalize())
     };
     let middle = corner(Vec3::ZERO, Vec3::Y);

@@ -1,7 +1,11 @@
 //! Runs a case: every method, in every partitioning, on every device asked for.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::num::NonZero;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
 
 use glam::{DVec2, Vec4};
 
@@ -72,6 +76,9 @@ struct Running<'a> {
     device: Option<(&'a Engine, Scene, Target)>,
 }
 
+/// At most so many methods and partitionings of a case run at a time, each with an arena of its own on the device.
+const MOST_AT_A_TIME: usize = 8;
+
 /// Runs a case on the CPU (if the effort says so) and on the engine's device (if there is one).
 ///
 /// # Errors
@@ -80,32 +87,60 @@ pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<V
     let mesh = Arc::new(case.mesh.clone());
     // Nobody else holds these handles, so nobody can cancel.
     let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());
-    let device = match engine {
-        Some(engine) => {
-            let scene = engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES)?;
-            Some((engine, scene, Target::new(&engine.gpu, views::SIZE)?))
+    let pairs = |method| Partitioning::ALL.map(move |partitioning| (method, partitioning));
+    let jobs: Vec<_> = Method::ALL.into_iter().flat_map(pairs).collect();
+    let (next, done) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
+    let work = || -> Result<(), GpuError> {
+        let mut running = Running::new(case, mesh.clone(), topology.clone(), engine)?;
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(&(method, partitioning)) = jobs.get(index) else { return Ok(()) };
+            let rows = running.job(method, partitioning, effort)?;
+            done.lock().unwrap_or_else(PoisonError::into_inner).insert(index, rows);
         }
-        None => None,
     };
-    let bounds = mesh.bounds();
-    let mut running = Running { case, mesh, topology, bounds, device };
-    let mut rows = running.topology_rows();
-    for method in Method::ALL {
-        for partitioning in Partitioning::ALL {
-            if effort.cpu {
-                let worst = running.on_cpu(method, partitioning, effort);
-                rows.extend(running.rows(method, partitioning, "cpu", &worst));
-            }
-            if let Some((engine, ..)) = running.device {
-                let worst = running.on_device(method, partitioning, effort)?;
-                rows.extend(running.rows(method, partitioning, &engine.gpu.info.name, &worst));
-            }
-        }
-    }
+    let cores = thread::available_parallelism().map_or(1, NonZero::get);
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..cores.min(MOST_AT_A_TIME)).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().try_for_each(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic)))
+    })?;
+    let mut rows = topology_rows(case, &mesh, &topology);
+    rows.extend(done.into_inner().unwrap_or_else(PoisonError::into_inner).into_values().flatten());
     Ok(rows)
 }
 
-impl Running<'_> {
+impl<'a> Running<'a> {
+    fn new(
+        case: &'a Subject,
+        mesh: Arc<Mesh>,
+        topology: Arc<Topology>,
+        engine: Option<&'a Engine>,
+    ) -> Result<Self, GpuError> {
+        let device = match engine {
+            Some(engine) => {
+                let scene = engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES)?;
+                Some((engine, scene, Target::new(&engine.gpu, views::SIZE)?))
+            }
+            None => None,
+        };
+        let bounds = mesh.bounds();
+        Ok(Self { case, mesh, topology, bounds, device })
+    }
+
+    /// One method in one partitioning, on every device.
+    fn job(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Vec<Row>, GpuError> {
+        let mut rows = Vec::new();
+        if effort.cpu {
+            let worst = self.on_cpu(method, partitioning, effort);
+            rows.extend(self.rows(method, partitioning, "cpu", &worst));
+        }
+        if let Some((engine, ..)) = self.device {
+            let worst = self.on_device(method, partitioning, effort)?;
+            rows.extend(self.rows(method, partitioning, &engine.gpu.info.name, &worst));
+        }
+        Ok(rows)
+    }
+
     /// What a method is tried with: uniform factors, and then adaptive LOD.
     fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<Trial> {
         let look = views::look(&self.bounds, &self.case.look, views::viewport());
@@ -200,25 +235,24 @@ impl Running<'_> {
         };
         worst.0.iter().map(row).collect()
     }
+}
 
-    /// What belongs to the mesh, whatever it becomes.
-    fn topology_rows(&self) -> Vec<Row> {
-        let name = &self.case.name;
-        let edges = |topology: &Topology| f64::from(topology.edge_counts().boundary);
-        match self.case.probe {
-            Probe::TJunctions(made) => {
-                let found = t_junctions(&self.topology, &Progress::new()).map_or(0, |found| found.len());
-                let missed = f64::from(made.abs_diff(found as u32));
-                vec![row(name, "search", "cpu", "any", Quantity::TJunctions, missed)]
-            }
-            Probe::Weld => {
-                let exact = Topology::build(&self.mesh, &Progress::new()).unwrap_or_default();
-                let open = row(name, "exact weld", "cpu", "any", Quantity::OpenEdges, edges(&exact));
-                let closed = row(name, "weld 1e-5", "cpu", "any", Quantity::OpenEdges, edges(&self.topology));
-                vec![Row { promised: false, ..open }, closed]
-            }
-            _ => Vec::new(),
+/// What belongs to the mesh, whatever it becomes.
+fn topology_rows(case: &Subject, mesh: &Mesh, topology: &Topology) -> Vec<Row> {
+    let edges = |topology: &Topology| f64::from(topology.edge_counts().boundary);
+    match case.probe {
+        Probe::TJunctions(made) => {
+            let found = t_junctions(topology, &Progress::new()).map_or(0, |found| found.len());
+            let missed = f64::from(made.abs_diff(found as u32));
+            vec![row(&case.name, "search", "cpu", "any", Quantity::TJunctions, missed)]
         }
+        Probe::Weld => {
+            let exact = Topology::build(mesh, &Progress::new()).unwrap_or_default();
+            let open = row(&case.name, "exact weld", "cpu", "any", Quantity::OpenEdges, edges(&exact));
+            let closed = row(&case.name, "weld 1e-5", "cpu", "any", Quantity::OpenEdges, edges(topology));
+            vec![Row { promised: false, ..open }, closed]
+        }
+        _ => Vec::new(),
     }
 }
 
