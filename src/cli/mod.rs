@@ -13,6 +13,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
 pub use options::{SurfaceOptions, WeldOption};
@@ -115,10 +116,10 @@ fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
 
 /// Writes a PNG file, whatever its name ends in.
 fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
-    let mut png = std::io::Cursor::new(Vec::new());
-    let encoded = picture.write_to(&mut png, image::ImageFormat::Png);
-    encoded.map_err(|error| file_error(path, "encoded", &error))?;
-    crate::export::write_whole(path, png.get_ref()).map_err(|error| file_error(path, "written", &error))
+    let mut bytes = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
+    picture.write_with_encoder(encoder).map_err(|error| file_error(path, "encoded", &error))?;
+    crate::export::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &error))
 }
 
 /// Serialised on several lines, with a line end.

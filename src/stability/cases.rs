@@ -226,7 +226,7 @@ pub const CASES: [Case; 29] = [
                 normals help.",
         mesh: meshes::star,
         probe: Probe::Folds,
-        look: Look { azimuth: -66.0, elevation: 15.0, distance: 0.7, target: [-0.45, 0.0, 0.25], factor: 14.0 },
+        look: Look { azimuth: -90.0, elevation: 20.0, distance: 0.3, target: [-0.3, 0.0, 0.3], factor: 14.0 },
         ..CASE
     },
     Case {
@@ -280,3 +280,33 @@ pub const CASES: [Case; 29] = [
         ..CASE
     },
 ];
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use super::*;
+
+    fn text(path: &str) -> String {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    #[test]
+    fn the_documentation_has_every_case_and_no_other() {
+        let page = text("docs/stability/README.md");
+        let headings: Vec<_> = page.lines().filter_map(|line| line.strip_prefix("## ")).collect();
+        assert_eq!(headings, CASES.map(|case| case.name));
+        for case in CASES {
+            assert!(page.contains(case.about), "`pnaen stability -o docs/stability` after a change of {}", case.name);
+        }
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/stability");
+        let files = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        let pictures: BTreeSet<_> = CASES.iter().map(|case| format!("{}.png", case.name).into()).collect();
+        assert_eq!(files.filter(|name| name != "README.md").collect::<BTreeSet<_>>(), pictures);
+        let readme = text("README.md");
+        let linked = |case: &Case| readme.contains(&format!("| [{0}](docs/stability/README.md#{0}) |", case.name));
+        assert_eq!(CASES.iter().find(|case| !linked(case)).map(|case| case.name), None, "not in README's table");
+    }
+}
