@@ -76,11 +76,15 @@ fn stats(arguments: &[&str]) -> Value {
     serde_json::from_str(&output(&all)).expect("JSON")
 }
 
+/// A number in an object.
+fn number(object: &Value, path: &str) -> f64 {
+    object.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {path}: {object}"))
+}
+
 #[test]
 fn stats_say_what_was_done() {
     let stats = stats(&["shape:torus", "--factor", "4", "--partitioning", "integer"]);
-    let number =
-        |path: &str| stats.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {path}: {stats}"));
+    let number = |path: &str| number(&stats, path);
     assert!(stats["adapter"].as_str().is_some_and(|name| !name.is_empty()));
     let counts = ["/triangles_in", "/points", "/corners", "/degenerate", "/patches", "/patches_culled"].map(number);
     assert_eq!(counts, [256.0, 128.0, 153.0, 0.0, 256.0, 0.0]);
@@ -89,9 +93,12 @@ fn stats_say_what_was_done() {
     let edges = ["smooth", "split", "seam", "boundary", "non_manifold"].map(|kind| number(&format!("/edges/{kind}")));
     assert_eq!(edges, [360.0, 0.0, 24.0, 0.0, 0.0]);
     assert_eq!(number("/cracks/edge_points"), 384.0 * 5.0);
-    for zero in ["different_bits", "max_gap", "max_gap_ulp", "max_gap_px", "edges"] {
+    assert_eq!(number("/cracks/edges_compared"), 384.0);
+    let kinds = ["different_bits", "different_factors", "different_normals"];
+    for zero in kinds.into_iter().chain(["max_gap", "max_gap_ulp", "max_gap_px", "edges"]) {
         assert_eq!(number(&format!("/cracks/{zero}")), 0.0, "{zero}");
     }
+    assert_eq!(["/leaks", "/folds", "/not_finite"].map(number), [0.0; 3]);
     for bytes in ["input", "topology", "arena"] {
         assert!(number(&format!("/bytes/{bytes}")) > 0.0);
     }
@@ -102,13 +109,67 @@ fn stats_say_what_was_done() {
 
 #[test]
 fn pn_cracks_on_split_normals_and_pn_aen_does_not() {
-    let cracks = |surface| stats(&["shape:cube-split", "--surface", surface])["cracks"].clone();
-    let torn = cracks("pn");
-    assert_eq!(torn["edges"], 12);
+    let drawn = |surface| stats(&["shape:cube-split", "--surface", surface]);
+    let (pn, pn_aen, flat) = (drawn("pn"), drawn("pn-aen"), drawn("flat"));
+    let torn = &pn["cracks"];
+    assert_eq!((&torn["edges"], &torn["edges_compared"]), (&12.into(), &18.into()));
     assert!(torn["max_gap"].as_f64() > Some(0.01) && torn["max_gap_px"].as_f64() > Some(0.5), "{torn}");
     assert!(torn["max_gap_ulp"].as_f64() > Some(1e4), "{torn}");
-    assert_eq!(cracks("pn-aen")["different_bits"], 0);
-    assert_eq!(cracks("flat")["different_bits"], 0);
+    assert!(pn["leaks"].as_u64() > Some(100), "one looks through the cracks: {pn}");
+    for whole in [pn_aen, flat] {
+        assert_eq!((&whole["cracks"]["different_bits"], &whole["leaks"]), (&0.into(), &0.into()));
+    }
+}
+
+#[test]
+fn an_open_mesh_has_no_leaks_to_count() {
+    let open = stats(&["shape:saddle"]);
+    assert_eq!(open.get("leaks"), Some(&Value::Null), "{open}");
+    assert_eq!(number(&open, "/cracks/edges_compared"), 96.0, "all but the borders");
+}
+
+#[test]
+fn stats_count_folds_where_normals_lie_nearly_in_the_plane() {
+    let folder = Folder::new("folds");
+    // The last two as at a notch and a point of a star.
+    let positions = [[0.0, 0.0, 0.0], [0.28, 0.0, 0.2], [1.0, 0.0, 0.0]];
+    let upright = [[0.0, 1.0, 0.0]; 3];
+    let leaning = [[0.0, 1.0, 0.0], [-0.77, 0.32, -0.56], [0.84, 0.28, 0.45]];
+    let folds = |normals: [[f32; 3]; 3]| {
+        let path = write_corners(&folder, &[0, 1, 2].map(|k| (positions[k], normals[k])));
+        number(&stats(&[&path]), "/folds")
+    };
+    assert_eq!(folds(upright), 0.0);
+    assert!(folds(leaning) > 0.0);
+}
+
+#[test]
+fn edges_differ_as_published_and_not_by_edge() {
+    let cracks =
+        |options: &[&str]| stats(&[&["shape:torus", "--surface", "pn-aen"], options].concat())["cracks"].clone();
+    let published = ["--edges", "as-published"];
+    let adaptive = ["--lod", "paper", "--pixels", "4"];
+    let uniform = cracks(&published);
+    assert!(number(&uniform, "/different_bits") > 0.0 && number(&uniform, "/max_gap") > 0.0, "{uniform}");
+    assert_eq!(uniform["different_factors"], 0, "a uniform factor is the same from every side: {uniform}");
+    let paper = cracks(&[&published[..], &adaptive].concat());
+    assert!(number(&paper, "/different_factors") > 0.0, "{paper}");
+    let by_edge = cracks(&[&["--edges", "per-edge"][..], &adaptive].concat());
+    assert_eq!((&by_edge["different_bits"], &by_edge["different_factors"]), (&0.into(), &0.into()), "{by_edge}");
+}
+
+#[test]
+fn adaptive_lod_by_edge_length_and_clipping_by_the_frustum_hold_close_to_the_eye() {
+    let close = ["shape:torus", "--camera", "30,20,0.6", "--pixels", "48"];
+    let [clipped, whole, paper] = [["edge-length", "frustum"], ["edge-length", "off"], ["paper", "off"]]
+        .map(|[lod, clip]| stats(&[&close[..], &["--lod", lod, "--clip", clip]].concat()));
+    assert!(number(&clipped, "/patches_culled") > 50.0 && number(&clipped, "/patches_culled") < 256.0, "{clipped}");
+    assert_eq!((&whole["patches_culled"], &paper["patches_culled"]), (&0.into(), &0.into()));
+    assert!(number(&clipped, "/triangles_out") < number(&whole, "/triangles_out"), "{clipped}");
+    assert_ne!(whole["triangles_out"], paper["triangles_out"], "edges reach behind the eye");
+    for stats in [clipped, whole] {
+        assert_eq!((&stats["cracks"]["edges"], &stats["not_finite"]), (&0.into(), &0.into()), "{stats}");
+    }
 }
 
 #[test]
@@ -302,9 +363,15 @@ fn info_is_for_people_and_for_programs() {
 
 /// Writes triangles as a glTF document with a buffer next to it.
 fn write_triangles(folder: &Folder, triangles: &[[[f32; 3]; 3]], normal: [f32; 3]) -> String {
-    let positions = triangles.as_flattened().as_flattened();
-    let count = positions.len() / 3;
-    let floats = positions.iter().copied().chain(normal.into_iter().cycle().take(positions.len()));
+    let corners: Vec<_> = triangles.as_flattened().iter().map(|&position| (position, normal)).collect();
+    write_corners(folder, &corners)
+}
+
+/// The same from corners, three a triangle, with their positions and normals.
+fn write_corners(folder: &Folder, corners: &[([f32; 3], [f32; 3])]) -> String {
+    let count = corners.len();
+    let positions = corners.iter().flat_map(|&(position, _)| position);
+    let floats = positions.chain(corners.iter().flat_map(|&(_, normal)| normal));
     let bytes: Vec<u8> = floats.flat_map(f32::to_le_bytes).collect();
     let view = |i: usize| serde_json::json!({ "buffer": 0, "byteOffset": i * 12 * count, "byteLength": 12 * count });
     let accessor =
@@ -349,6 +416,222 @@ fn info_tells_what_is_odd_and_what_a_weld_tolerance_changes() {
         (&9.into(), &9.into())
     );
     assert!(exact["warnings"][0].as_str().is_some_and(|warning| warning.contains("length isn't 1")), "{exact}");
+}
+
+/// A tetrahedron of which one face was moved by a ten-thousandth of the diagonal.
+fn write_seam(folder: &Folder) -> String {
+    let [o, x, y, z] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let moved = [o, z, y].map(|point| point.map(|coordinate: f32| coordinate + 1e-4));
+    write_triangles(folder, &[[o, y, x], [o, x, z], [x, y, z], moved], [0.0, 0.0, 1.0])
+}
+
+#[test]
+fn a_seam_that_almost_meets_is_closed_within_a_tolerance() {
+    let folder = Folder::new("seam");
+    let (path, out) = (write_seam(&folder), folder.path("out.glb"));
+    let json = |arguments: &[&str]| -> Value { serde_json::from_str(&output(arguments)).expect("JSON") };
+    let info = |options: &[&str]| json(&[&["info", &path, "--json"], options].concat());
+    for (options, open) in [(&[][..], true), (&["--weld", "1e-3"], false)] {
+        let (info, drawn) = (info(options), stats(&[&[path.as_str()], options].concat()));
+        let boundary: Value = if open { 6 } else { 0 }.into();
+        assert_eq!((&info["edges"]["boundary"], &info["closed"]), (&boundary, &(!open).into()), "{options:?}");
+        assert_eq!(drawn["edges"]["boundary"], boundary, "{options:?}");
+        assert_eq!(drawn["leaks"], if open { Value::Null } else { 0.into() }, "{options:?}");
+        assert_eq!((&drawn["cracks"]["edges"], &drawn["patches"]), (&0.into(), &4.into()), "{options:?}");
+        // Closed to the bit: what is written is opened without a tolerance.
+        output(&[&["tessellate", &path, "-o", &out, "--factor", "3", "--device", "cpu"], options].concat());
+        assert_eq!(json(&["info", &out, "--json"])["closed"], !open, "{options:?}");
+    }
+    assert_eq!(info(&["--weld", "1e-5"])["edges"]["boundary"], 6, "less than the gap");
+}
+
+/// The rows of `pnaen stability --json` on the CPU.
+fn stability(arguments: &[&str]) -> Vec<Value> {
+    let text = output(&[&["stability", "--device", "cpu", "--json"], arguments].concat());
+    serde_json::from_str(&text).expect("a JSON array")
+}
+
+/// Text in a row of `pnaen stability --json`.
+fn word<'a>(row: &'a Value, key: &str) -> &'a str {
+    row[key].as_str().unwrap_or_else(|| panic!("no {key}: {row}"))
+}
+
+/// The cases that rows belong to, in their order.
+fn cases(rows: &[Value]) -> Vec<&str> {
+    let mut cases: Vec<_> = rows.iter().map(|row| word(row, "case")).collect();
+    cases.dedup();
+    cases
+}
+
+const METHODS: [&str; 4] = ["flat", "PN", "PN-AEN as published", "PN-AEN"];
+
+#[test]
+fn stability_measures_every_method_in_every_partitioning() {
+    let rows = stability(&["--case", "split-normals", "--cameras", "1"]);
+    let keys = ["case", "method", "device", "partitioning", "measured", "unit", "promised", "holds"];
+    let units =
+        ["edge points that differ", "edges whose factors differ", "edge normals that differ", "vertices not finite"];
+    let mut expected = HashSet::new();
+    for method in METHODS {
+        for partitioning in ["integer", "pow2", "fractional-odd", "fractional-even"] {
+            expected.extend(units.map(|unit| (method, partitioning, unit)));
+        }
+    }
+    let found: HashSet<_> =
+        rows.iter().map(|row| ["method", "partitioning", "unit"].map(|key| word(row, key))).collect();
+    assert_eq!(found, expected.iter().map(|&(method, partitioning, unit)| [method, partitioning, unit]).collect());
+    assert_eq!(rows.len(), expected.len(), "each once");
+    for row in &rows {
+        let own: HashSet<_> = row.as_object().expect("an object").keys().map(String::as_str).collect();
+        assert_eq!(own, HashSet::from(keys));
+        assert_eq!((word(row, "case"), word(row, "device")), ("split-normals", "cpu"));
+        let (measured, holds) = (number(row, "/measured"), row["holds"].as_bool().expect("a truth value"));
+        assert_eq!(holds, measured == 0.0, "{row}");
+        let promised = row["promised"].as_bool().expect("a truth value");
+        assert!(holds || !promised, "{row}");
+        match (word(row, "method"), word(row, "unit")) {
+            ("flat" | "PN-AEN", _) => assert!(promised, "{row}"),
+            ("PN" | "PN-AEN as published", "edge points that differ") => assert!(!holds, "{row}"),
+            _ => {}
+        }
+    }
+    // A uniform factor is the same from every side: only views can tell.
+    let factors = |rows: &[Value]| rows.iter().any(|row| word(row, "unit") == units[1] && row["holds"] == false);
+    assert!(factors(&rows) && !factors(&stability(&["--case", "split-normals", "--cameras", "0"])));
+}
+
+#[test]
+fn stability_runs_cases_in_one_order_however_they_are_asked_for() {
+    let run = |names: &[&str]| {
+        let options = names.iter().flat_map(|name| ["--case", name]);
+        stability(&["--cameras", "0"].into_iter().chain(options).collect::<Vec<_>>())
+    };
+    let rows = run(&["split-normals", "t-junction"]);
+    assert_eq!(cases(&rows), ["split-normals", "t-junction"]);
+    assert!(rows == run(&["t-junction", "split-normals", "t-junction"]), "the same rows in the same order");
+}
+
+#[test]
+fn a_case_that_is_not_there_is_answered_with_those_that_are() {
+    let said = failure(&["stability", "--case", "teapot", "--device", "cpu", "--json"], 2);
+    for name in ["teapot", "split-normals", "smooth-torus", "near-seam", "shared-apex"] {
+        assert!(said.contains(name), "{name:?} is not in {said}");
+    }
+}
+
+#[test]
+fn stability_prints_a_table_with_verdicts() {
+    let text =
+        output(&["stability", "--case", "smooth-torus", "--case", "t-junction", "--device", "cpu", "--cameras", "0"]);
+    let table: Vec<Vec<&str>> =
+        text.lines().map(|line| line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect()).collect();
+    assert_eq!(table[0][..3], ["case", "method", "points"], "{text}");
+    assert_eq!(text.matches("verdict").count(), 1, "{text}");
+    assert_eq!((table[1][0], table[5][..2].to_vec()), ("smooth-torus", vec!["t-junction", "search"]), "{text}");
+    for (method, line) in METHODS.iter().zip(&table[1..5]) {
+        let cells = &line[line.len() - 7..];
+        assert_eq!(cells[0], *method, "{text}");
+        if *method == "PN-AEN as published" {
+            assert!(cells[1].parse::<u32>().is_ok_and(|points| points > 0), "{text}");
+            assert_eq!(cells[6], "fails", "{text}");
+        } else {
+            assert_eq!(cells[1..], ["0", "0", "0", "0", "-", "holds"], "{text}");
+        }
+    }
+    assert_eq!(table[5].last(), Some(&"holds: 0 T-junctions missed"), "{text}");
+    let legend = text.lines().last().expect("lines");
+    assert!(legend.starts_with("points: ") && legend.contains("factors: "), "{text}");
+}
+
+#[test]
+fn stability_draws_its_cases_and_writes_a_page() {
+    let folder = Folder::new("stability");
+    let pages = folder.path("made/on/the/way");
+    output(&["stability", "--case", "split-normals", "--cameras", "0", "-o", &pages]);
+    let mut files: Vec<_> =
+        std::fs::read_dir(&pages).expect("a folder").map(|file| file.expect("a file").file_name()).collect();
+    files.sort();
+    assert_eq!(files, ["split-normals.png", "stability.md"]);
+
+    let picture = image::open(Path::new(&pages).join("split-normals.png")).expect("a PNG file").to_rgb8();
+    // Four methods side by side, each with cracks in red where there are any.
+    let width = picture.width() / 4;
+    let parts =
+        [0, 1, 2, 3].map(|k| image::imageops::crop_imm(&picture, k * width, 0, width, picture.height()).to_image());
+    let colors = parts.each_ref().map(|part| part.pixels().collect::<HashSet<_>>().len());
+    assert!(colors.iter().all(|&count| count > 20), "{colors:?} colours");
+    let red = parts.map(|part| part.pixels().filter(|p| p.0[0] > 200 && p.0[1] < 100 && p.0[2] < 80).count());
+    assert!(red[0] == 0 && red[1] > 100 && red[3] == 0, "{red:?} red px");
+
+    let page = std::fs::read_to_string(Path::new(&pages).join("stability.md")).expect("a page");
+    assert!(page.contains("\n## split-normals\n") && page.contains("](split-normals.png)"), "{page}");
+    // After the headings and the rule below them.
+    let lines = page.lines().filter(|line| line.starts_with("| ")).skip(2);
+    let lines: Vec<_> = lines.map(|line| line.trim_matches(['|', ' ']).split(" | ").collect::<Vec<_>>()).collect();
+    let verdicts: Vec<_> = lines.iter().map(|cells| (cells[0], cells[cells.len() - 1])).collect();
+    assert_eq!(verdicts, METHODS.into_iter().zip(["holds", "fails", "fails", "holds"]).collect::<Vec<_>>(), "{page}");
+
+    let file = Path::new(&pages).join("stability.md/below");
+    let below = file.to_str().expect("a path in UTF-8");
+    let arguments = ["stability", "--case", "split-normals", "--device", "cpu", "-o", below];
+    sentence(&arguments, &[below, "could not be made"]);
+}
+
+#[test]
+fn stability_takes_files_too() {
+    let folder = Folder::new("tent");
+    // Two sides of a roof, each with its own normal.
+    let [left, right] = [[-0.48, 0.6, 0.64], [0.48, 0.6, 0.64]];
+    let [front, back] = [[0.0, -1.0, 1.0], [0.0, 1.0, 1.0]];
+    let roof = [
+        ([-1.0, 0.0, 0.0], left),
+        (front, left),
+        (back, left),
+        ([1.0, 0.0, 0.0], right),
+        (back, right),
+        (front, right),
+    ];
+    let path = write_corners(&folder, &roof);
+    let rows = stability(&[&path, "--cameras", "0"]);
+    assert_eq!(cases(&rows), ["triangles.gltf"]);
+    for method in METHODS {
+        let torn = rows.iter().filter(|row| word(row, "method") == method && row["holds"] == false).count();
+        assert_eq!(torn > 0, method.starts_with("PN") && method != "PN-AEN", "{method}");
+    }
+    assert_eq!(cases(&stability(&[&path, "--case", "t-junction", "--cameras", "0"])), ["t-junction", "triangles.gltf"]);
+    sentence(&["stability", "nowhere.glb", "--device", "cpu"], &["nowhere.glb", "can't be read"]);
+
+    // Drawn and written down like a case; one more of that name has a picture of its own.
+    let pages = folder.path("pages");
+    output(&["stability", &path, &path, "--cameras", "0", "--device", "gpu", "-o", &pages]);
+    let page = std::fs::read_to_string(Path::new(&pages).join("stability.md")).expect("a page");
+    for (name, picture) in [("triangles.gltf", "triangles.png"), ("triangles (2).gltf", "triangles--2-.png")] {
+        let section = format!("\n## {name}\n\n![{name}]({picture})\n\n| method |");
+        assert!(page.contains(&section) && Path::new(&pages).join(picture).exists(), "{page}");
+    }
+    assert!(!page.contains("cpu"), "{page}");
+
+    // What can't be loaded is said before anything runs.
+    let unmade = folder.path("unmade");
+    sentence(&["stability", "--case", "soup", "nowhere.glb", "-o", &unmade], &["nowhere.glb"]);
+    assert!(!Path::new(&unmade).exists());
+}
+
+#[test]
+fn stability_looks_into_a_file_that_a_tolerance_closes() {
+    let folder = Folder::new("looks");
+    let path = write_seam(&folder);
+    let leaks = |options: &[&str]| {
+        let text = output(&[&["stability", &path, "--json", "--cameras", "0", "--device", "gpu"], options].concat());
+        let rows: Vec<Value> = serde_json::from_str(&text).expect("a JSON array");
+        assert!(rows.iter().all(|row| word(row, "device") != "cpu"), "{text}");
+        rows.iter()
+            .filter(|row| word(row, "unit") == "px leaking")
+            .map(|row| number(row, "/measured"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(leaks(&[]), [0.0; 0], "open");
+    assert_eq!(leaks(&["--weld", "1e-3"]), [0.0; 16], "four methods in four partitionings");
 }
 
 #[test]
@@ -400,6 +683,17 @@ fn wrong_usage_exits_with_2() {
         &["adjacency", "shape:torus", "--indices", "10", "-o", "-"],
         &["info", "shape:torus", "--weld", "0.2"],
         &["info", "shape:torus", "--weld", "-1"],
+        &["info", "shape:torus", "--weld=-0.001"],
+        &["info", "shape:torus", "--weld", "nan"],
+        &["render", "shape:torus", "-o", "x.png", "--weld=-0.001"],
+        &["tessellate", "shape:torus", "-o", "x.glb", "--weld", "nan"],
+        &["stability", "shape:torus", "--device", "cpu", "--weld=-0.001"],
+        &["stability", "shape:torus", "--device", "cpu", "--weld", "nan"],
+        &["render", "shape:torus", "-o", "x.png", "--edges", "published"],
+        &["render", "shape:torus", "-o", "x.png", "--lod", "edgelength"],
+        &["tessellate", "shape:torus", "-o", "x.glb", "--lod", "edge_length"],
+        &["render", "shape:torus", "-o", "x.png", "--clip", "frustrum"],
+        &["tessellate", "shape:torus", "-o", "x.glb", "--clip", "frusta"],
         &["frobnicate", "--hard"],
     ] {
         failure(arguments, 2);

@@ -21,7 +21,7 @@ pub use options::{SurfaceOptions, WeldOption};
 use crate::export::ExportError;
 use crate::gpu::GpuError;
 use crate::measure::CompareError;
-use crate::mesh::{LoadError, Source};
+use crate::mesh::{LoadError, Mesh, Progress, Source};
 
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
@@ -134,9 +134,20 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
 fn load(source: &Source, weld: WeldOption) -> Result<crate::engine::Loaded, CliError> {
-    let loaded = crate::engine::load(source, weld.weld, &crate::mesh::Progress::default())?;
-    for warning in &loaded.mesh.warnings {
+    let loaded = crate::engine::load(source, weld.weld, &Progress::default())?;
+    warn(&loaded.mesh);
+    Ok(loaded)
+}
+
+/// The same, without edges.
+fn load_mesh(source: &Source) -> Result<Mesh, CliError> {
+    let mesh = source.load(&Progress::default())?;
+    warn(&mesh);
+    Ok(mesh)
+}
+
+fn warn(mesh: &Mesh) {
+    for warning in &mesh.warnings {
         let _ = writeln!(std::io::stderr(), "pnaen: warning: {warning}");
     }
-    Ok(loaded)
 }

@@ -7,9 +7,9 @@ use clap::builder::PossibleValuesParser;
 use super::tessellate::Device;
 use super::{CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
-use crate::mesh::{Progress, Source};
+use crate::mesh::Source;
 use crate::stability::{
-    CASES, Case, Effort, LEGEND, Row, Subject, Verdict, lines, page, picture, run as run_case, table,
+    CASES, Case, Effort, LEGEND, PAGE, Row, Section, Subject, Verdict, lines, page, picture, run as run_case, table,
 };
 
 #[derive(Debug, clap::Args)]
@@ -17,6 +17,7 @@ pub struct Args {
     /// Meshes to run as well, after the cases chosen with --case; without --case, only these
     #[arg(value_parser = super::options::source())]
     pub files: Vec<Source>,
+    /// Of the files: cases have tolerances of their own
     #[command(flatten)]
     pub weld: WeldOption,
     /// Run only this case; may be given several times
@@ -31,37 +32,39 @@ pub struct Args {
     /// Print every measurement as JSON in place of the table
     #[arg(long)]
     pub json: bool,
-    /// Folder for a picture of each case, and a page that explains them; made if it isn't there
+    /// Folder for a picture of each case (if the GPU runs), and a page that explains them, stability.md; made if it isn't there
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }
 
 impl Args {
-    fn cases(&self) -> Vec<&'static Case> {
+    fn cases(&self) -> impl Iterator<Item = Subject> {
         let all = self.cases.is_empty() && self.files.is_empty();
-        CASES.iter().filter(|case| all || self.cases.iter().any(|name| name == case.name)).collect()
+        let chosen = CASES.iter().filter(move |case| all || self.cases.iter().any(|name| name == case.name));
+        chosen.map(Case::subject)
     }
 
-    /// Files as cases of their own.
-    fn subjects(&self) -> impl Iterator<Item = Result<Subject, CliError>> {
-        let cases = self.cases().into_iter().map(|case| Ok(case.subject()));
-        let files = self.files.iter().map(|source| {
-            let mesh = source.load(&Progress::default())?;
-            Ok(Subject::new(source.title(), mesh, self.weld.weld))
-        });
-        cases.chain(files)
+    /// Cases, and files as cases of their own: all loaded before the first runs.
+    fn subjects(&self) -> Result<Vec<Subject>, CliError> {
+        let mut subjects: Vec<_> = self.cases().collect();
+        for source in &self.files {
+            let mesh = super::load_mesh(source)?;
+            let name = free_name(&source.title(), &subjects);
+            subjects.push(Subject::new(name, mesh, self.weld.weld));
+        }
+        Ok(subjects)
     }
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    let subjects = args.subjects()?;
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::headless()?) };
     let effort = Effort { cameras: args.cameras, cpu: args.device != Some(Device::Gpu), ..Effort::default() };
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &error))?;
     }
-    let mut rows = Vec::new();
-    for subject in args.subjects() {
-        let subject = subject?;
+    let (mut rows, mut sections) = (Vec::new(), Vec::new());
+    for subject in subjects {
         let own = run_case(&subject, engine.as_ref(), &effort)?;
         if !args.json {
             let text = table(&lines(&own));
@@ -69,15 +72,18 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             let rest = text.split_once('\n').map_or("", |(_, rest)| rest);
             write_text("-".as_ref(), if rows.is_empty() { &text } else { rest })?;
         }
+        let mut file = None;
         if let (Some(folder), Some(engine)) = (&args.output, &engine) {
             let drawn = picture(&subject, engine, effort.sweep_to)?;
-            super::write_picture(&folder.join(file_name(&subject.name)), &drawn.into())?;
+            let name = file_name(&subject.name);
+            super::write_picture(&folder.join(&name), &drawn.into())?;
+            file = Some(name);
         }
+        sections.push(Section { name: subject.name, about: subject.about, picture: file });
         rows.extend(own);
     }
     if let Some(folder) = &args.output {
-        let adapter = engine.as_ref().map_or("no other device", |engine| engine.gpu.info.name.as_str());
-        write_text(&folder.join("README.md"), &page(&args.cases(), &lines(&rows), adapter))?;
+        write_text(&folder.join(PAGE), &page(&sections, &rows))?;
     }
     if args.json {
         write_text("-".as_ref(), &to_json(&rows)?)?;
@@ -85,6 +91,16 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         write_text("-".as_ref(), &format!("\n{LEGEND}\n"))?;
     }
     judge(&rows)
+}
+
+/// A title, with a number behind it if something goes by that name (or has a picture of that name) already.
+fn free_name(title: &str, taken: &[Subject]) -> String {
+    let is_free = |name: &String| taken.iter().all(|subject| file_name(&subject.name) != file_name(name));
+    let numbered = (2..).map(|number| {
+        let (stem, extension) = title.rsplit_once('.').map_or((title, None), |(stem, rest)| (stem, Some(rest)));
+        extension.map_or(format!("{stem} ({number})"), |extension| format!("{stem} ({number}).{extension}"))
+    });
+    std::iter::once(title.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
 }
 
 /// A case's name as a picture's, whatever the mesh is called.
@@ -106,6 +122,19 @@ fn judge(rows: &[Row]) -> Result<(), CliError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Mesh;
+
+    #[test]
+    fn every_name_and_picture_is_one_of_a_kind() {
+        let mut taken = vec![CASES[0].subject()];
+        for name in ["split-normals.glb", "a.glb", "a.glb", "a.gltf", "a", "a"] {
+            let name = free_name(name, &taken);
+            taken.push(Subject::new(name, Mesh::default(), 0.0));
+        }
+        let names: Vec<_> = taken.iter().map(|subject| subject.name.as_str()).collect();
+        let expected = ["split-normals (2).glb", "a.glb", "a (2).glb", "a (3).gltf", "a (4)", "a (5)"];
+        assert_eq!(names[1..], expected);
+    }
 
     #[test]
     fn pictures_have_plain_names() {

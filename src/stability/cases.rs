@@ -20,8 +20,8 @@ pub struct Case {
 impl Case {
     /// The case, ready to run.
     pub fn subject(&self) -> Subject {
-        let Self { name, mesh, weld, probe, look, .. } = *self;
-        Subject { name: name.to_owned(), mesh: mesh(), weld, probe, look }
+        let Self { name, about, mesh, weld, probe, look } = *self;
+        Subject { name: name.to_owned(), about: about.to_owned(), mesh: mesh(), weld, probe, look }
     }
 }
 
@@ -286,6 +286,7 @@ mod tests {
     use std::collections::BTreeSet;
     use std::path::Path;
 
+    use super::super::PAGE;
     use super::*;
 
     fn text(path: &str) -> String {
@@ -295,7 +296,7 @@ mod tests {
 
     #[test]
     fn the_documentation_has_every_case_and_no_other() {
-        let page = text("docs/stability/README.md");
+        let page = text("docs/stability/stability.md");
         let headings: Vec<_> = page.lines().filter_map(|line| line.strip_prefix("## ")).collect();
         assert_eq!(headings, CASES.map(|case| case.name));
         for case in CASES {
@@ -304,9 +305,9 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/stability");
         let files = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
         let pictures: BTreeSet<_> = CASES.iter().map(|case| format!("{}.png", case.name).into()).collect();
-        assert_eq!(files.filter(|name| name != "README.md").collect::<BTreeSet<_>>(), pictures);
+        assert_eq!(files.filter(|name| *name != PAGE).collect::<BTreeSet<_>>(), pictures);
         let readme = text("README.md");
-        let linked = |case: &Case| readme.contains(&format!("| [{0}](docs/stability/README.md#{0}) |", case.name));
+        let linked = |case: &Case| readme.contains(&format!("| [{0}](docs/stability/stability.md#{0}) |", case.name));
         assert_eq!(CASES.iter().find(|case| !linked(case)).map(|case| case.name), None, "not in README's table");
     }
 }

@@ -11,7 +11,7 @@ mod views;
 pub use cases::{CASES, Case, LOOK, Look, Probe};
 pub use meshes::soup;
 pub use picture::{PictureError, picture};
-pub use report::{LEGEND, Line, Verdict, lines, page, table};
+pub use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
 pub use run::{Effort, run};
 
 use serde::Serialize;
@@ -24,6 +24,8 @@ use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 #[derive(Clone, Debug)]
 pub struct Subject {
     pub name: String,
+    /// What it is, and what becomes of it; empty where nobody knows.
+    pub about: String,
     pub mesh: Mesh,
     /// Within which part of the bounding diagonal points are welded.
     pub weld: f32,
@@ -34,7 +36,7 @@ pub struct Subject {
 impl Subject {
     /// A mesh of which no more is known.
     pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
-        Self { name, mesh, weld, probe: Probe::Edges, look: LOOK }
+        Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, look: LOOK }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Case, Quantity, Row};
+use super::{Quantity, Row};
 
 /// What one method made of one case: the worst over devices and partitionings of each quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -131,19 +131,42 @@ pub fn table(lines: &[Line]) -> String {
     text
 }
 
-/// A page in Markdown: each case with what it is about, its picture `NAME.png`, and its lines.
-pub fn page(cases: &[&Case], lines: &[Line], adapter: &str) -> String {
+/// The page's name in its folder.
+pub const PAGE: &str = "stability.md";
+
+/// What a page says of one subject, besides its numbers.
+#[derive(Clone, Debug)]
+pub struct Section {
+    pub name: String,
+    /// A paragraph, or nothing.
+    pub about: String,
+    /// A file in the page's folder.
+    pub picture: Option<String>,
+}
+
+/// A page in Markdown: each subject with what it is about, its picture, and what the rows say of it.
+pub fn page(sections: &[Section], rows: &[Row]) -> String {
     let mut text = String::from("# Where tessellation breaks\n\n");
+    let mut devices: Vec<_> = rows.iter().map(|row| row.device.as_str()).collect();
+    devices.sort_unstable();
+    devices.dedup();
     let _ = writeln!(
         text,
-        "Every case that `pnaen stability` runs, as it wrote them down with `pnaen stability -o DIR`, on the CPU and on \
-         {adapter}. In each picture, from left to right: {}. Cracks are red, folded triangles violet, T-junctions \
-         yellow.\n\n{}\n",
+        "Written by `pnaen stability -o DIR`, run on: {}. In each picture, from left to right: {}. Cracks are red, \
+         folded triangles violet, T-junctions yellow.\n\n{}\n",
+        devices.join(", "),
         super::Method::ALL.map(super::Method::name).join(", "),
         capitalised(LEGEND)
     );
-    for case in cases {
-        let _ = writeln!(text, "## {}\n\n{}\n\n![{}]({}.png)\n", case.name, case.about, case.name, case.name);
+    let lines = lines(rows);
+    for Section { name, about, picture } in sections {
+        let _ = writeln!(text, "## {name}\n");
+        if !about.is_empty() {
+            let _ = writeln!(text, "{about}\n");
+        }
+        if let Some(picture) = picture {
+            let _ = writeln!(text, "![{name}]({picture})\n");
+        }
         let header: Vec<_> = COLUMNS.iter().map(|(_, column)| *column).collect();
         let _ = writeln!(
             text,
@@ -151,7 +174,7 @@ pub fn page(cases: &[&Case], lines: &[Line], adapter: &str) -> String {
             header.join(" | "),
             " ---: |".repeat(header.len())
         );
-        for line in lines.iter().filter(|line| line.case == case.name) {
+        for line in lines.iter().filter(|line| line.case == *name) {
             let cells: Vec<_> = COLUMNS.iter().map(|(quantity, _)| line.cell(*quantity)).collect();
             let _ = writeln!(
                 text,
@@ -198,6 +221,18 @@ mod tests {
         assert!(text.contains("fails: 2.50 times the segment asked for"), "{text}");
         let broken = row("PN-AEN", Quantity::Points, 1.0, true);
         assert_eq!(super::lines(&[broken])[0].verdict, Verdict::BreaksPromise);
+    }
+
+    #[test]
+    fn a_page_shows_only_what_there_is() {
+        let section = |picture: Option<&str>| {
+            [Section { name: "split".to_owned(), about: String::new(), picture: picture.map(str::to_owned) }]
+        };
+        let rows = [row("PN", Quantity::Points, 7.0, false)];
+        let text = page(&section(None), &rows);
+        assert!(text.contains("run on: cpu.") && !text.contains("!["), "{text}");
+        assert!(text.contains("\n## split\n\n| method |") && text.contains("\n| PN | 7 |"), "{text}");
+        assert!(page(&section(Some("a.png")), &rows).contains("\n![split](a.png)\n"));
     }
 
     #[test]

@@ -72,11 +72,18 @@ pub fn read(
     Ok(vertices)
 }
 
+/// In object units. Control points, which are sums of several positions, stay within f32.
+const LARGEST_COORDINATE: f32 = 1e37;
+
 impl Vertices {
     fn push(&mut self, values: &Attributes, i: usize, matrix: &DMat4, name: &str) -> Result<(), Problem> {
         let position = matrix.transform_point3(values.positions[i].as_dvec3()).as_vec3();
         if !position.is_finite() {
             let reason = format!("has a position that isn't finite, at vertex {i}");
+            return Err(Problem::Primitive { primitive: name.to_owned(), reason });
+        }
+        if position.abs().max_element() > LARGEST_COORDINATE {
+            let reason = format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {i}");
             return Err(Problem::Primitive { primitive: name.to_owned(), reason });
         }
         let linear = DMat3::from_mat4(*matrix);

@@ -66,11 +66,17 @@ fn indices_must_name_vertices() {
 }
 
 #[test]
-fn positions_must_be_finite() {
-    let mut draft = Draft::new();
-    let at = draft.vectors(&[[0.0; 3], [1.0, f32::INFINITY, 0.0], [0.0; 3]]);
-    draft.primitive(json!({ "attributes": { "POSITION": at } }));
-    assert!(message(&draft).contains("primitive 0 has a position that isn't finite, at vertex 1"));
+fn positions_must_be_finite_and_leave_room_for_sums() {
+    for (y, fault) in [
+        (f32::INFINITY, "a position that isn't finite"),
+        (f32::NAN, "a position that isn't finite"),
+        (-1.1e37, "a coordinate beyond 1e37"),
+    ] {
+        let mut draft = Draft::new();
+        let at = draft.vectors(&[[0.0; 3], [1.0, y, 0.0], [0.0; 3]]);
+        draft.primitive(json!({ "attributes": { "POSITION": at } }));
+        assert!(message(&draft).contains(&format!("primitive 0 has {fault}, at vertex 1")));
+    }
 }
 
 #[test]
