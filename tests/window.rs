@@ -77,7 +77,7 @@ fn choosing_pn_lights_up_the_cracks() {
     assert_eq!(app.settings().surface, Surface::Pn);
     assert!(app.settings().overlays.cracks);
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(12));
-    harness.get_by_label("cracks 12");
+    harness.get_by_label_contains("cracks 12, ");
 }
 
 #[test]
@@ -151,9 +151,45 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
         let triangle = topology.patches[side.patch as usize].triangle;
         harness.get_by_label(&format!("Triangle {triangle}"));
     }
-    assert_eq!(harness.get_all_by_label("8.00000 / 9").count(), 2, "factor and segments of both sides");
+    assert_eq!(harness.get_all_by_label("8.00000").count(), 2, "both sides' factors");
+    assert_eq!(harness.get_all_by_label("9").count(), 2, "both sides' segments");
+    assert_eq!(harness.get_all_by_label_contains("apart, units").count(), 1, "their points");
     harness.get_by_label("Deselect").click();
     settle(&mut harness);
+    assert_eq!(harness.state().selected_edge(), None);
+}
+
+#[test]
+fn keys_go_through_a_list_beyond_the_rows_in_sight() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
+    harness.get_by_label_contains(&format!("{:<6}split normal", edges[0])).focus();
+    settle(&mut harness);
+    let steps = [egui::Key::ArrowDown; 9].into_iter().chain([egui::Key::ArrowUp, egui::Key::Enter]);
+    for key in steps {
+        press(&mut harness, key);
+    }
+    assert_eq!(harness.state().selected_edge(), Some(edges[8]));
+    for key in [egui::Key::End, egui::Key::Enter] {
+        press(&mut harness, key);
+    }
+    assert_eq!(harness.state().selected_edge(), Some(edges[11]));
+    press(&mut harness, egui::Key::Home);
+    press(&mut harness, egui::Key::Enter);
+    assert_eq!(harness.state().selected_edge(), Some(edges[0]));
+}
+
+#[test]
+fn escape_closes_a_list_before_it_deselects() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    harness.state_mut().select_edge(3);
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
+    settle(&mut harness);
+    press(&mut harness, egui::Key::Escape);
+    assert_eq!(harness.state().selected_edge(), Some(3));
+    press(&mut harness, egui::Key::Escape);
     assert_eq!(harness.state().selected_edge(), None);
 }
 

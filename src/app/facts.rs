@@ -24,8 +24,8 @@ impl App {
             heading(ui, "Cracks");
             self.crack_facts(ui);
             self.worst_edges(ui);
-            self.edge_details(ui);
             self.t_junction_list(ui);
+            self.edge_details(ui);
             heading(ui, "Edges");
             self.edge_legend(ui);
             heading(ui, "Mesh");
@@ -121,8 +121,7 @@ impl App {
             );
         });
         for warning in &mesh.warnings {
-            let text = RichText::new(warning).color(ui.visuals().warn_fg_color);
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(warning);
+            ui.add(egui::Label::new(RichText::new(warning).color(ui.visuals().warn_fg_color)).wrap());
         }
     }
 

@@ -43,9 +43,16 @@ pub const KEYS: [(&str, &str); 23] = [
 pub fn style(context: &egui::Context) {
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
-        style.spacing.slider_width = 96.0;
+        style.spacing.slider_width = 86.0;
+        // Beside what scrolls, not over it.
+        style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style.spacing.combo_width = 148.0;
         style.interaction.tooltip_delay = 0.4;
+    });
+    // Pale on white as it comes: boxes and tracks get an outline.
+    context.style_mut_of(egui::Theme::Light, |style| {
+        style.visuals.widgets.inactive.bg_stroke = egui::Stroke::new(1.0, egui::Color32::from_gray(165));
+        style.visuals.weak_text_color = Some(egui::Color32::from_gray(95));
     });
 }
 
@@ -61,11 +68,12 @@ impl App {
                 }
                 ui.hyperlink_to("The PN-AEN white paper", WHITE_PAPER);
             });
-            let title = self.document.as_ref().map_or_else(String::new, |document| document.loaded.source.title());
+            let source = self.document.as_ref().map(|document| &document.loaded.source);
+            let (title, whole) = source.map_or_else(Default::default, |source| (source.title(), source.to_string()));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.weak(concat!("pnaen ", env!("CARGO_PKG_VERSION")));
                 ui.separator();
-                ui.strong(title);
+                ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
             });
         });
     }
@@ -168,7 +176,8 @@ impl App {
         if taken(&QUIT) {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        if context.input(|input| input.key_pressed(Key::Escape)) {
+        // A list that is open takes the key for itself.
+        if context.input(|input| input.key_pressed(Key::Escape)) && !egui::Popup::is_any_open(context) {
             self.load = None;
             self.error = None;
             self.typed_path = None;

@@ -269,8 +269,8 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         egui::Panel::top("menu").show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
-        egui::Panel::left("settings").resizable(false).exact_size(272.0).show(ui, |ui| self.settings_panel(ui));
-        egui::Panel::right("facts").resizable(false).exact_size(252.0).show(ui, |ui| self.facts_panel(ui));
+        egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
+        egui::Panel::right("facts").resizable(false).exact_size(284.0).show(ui, |ui| self.facts_panel(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
     }

@@ -1,7 +1,7 @@
 //! On the left: what one sets.
 
 use super::App;
-use super::text::grouped;
+use super::text::{grouped, short};
 use super::widgets::{chooser, heading};
 use crate::mesh::Joins;
 use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE};
@@ -169,8 +169,10 @@ impl App {
                 Some(all) => {
                     for joins in all {
                         let text = format!("{}: {}", tolerance(joins.tolerance), what(joins));
-                        ui.selectable_value(&mut chosen, joins.tolerance, text)
-                            .on_hover_text("As a part of the bounding diagonal; compared with the exact weld.");
+                        ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
+                            "As a part of the bounding diagonal: {} units here. Compared with the exact weld.",
+                            short(f64::from(joins.tolerance * document.scene.bounds.diagonal()))
+                        ));
                     }
                 }
                 None => drop(ui.weak("trying tolerances…")),
@@ -203,9 +205,12 @@ impl App {
             }
             ui.end_row();
             let label = ui.label("Background");
-            ui.color_edit_button_srgb(&mut self.settings.background)
-                .labelled_by(label.id)
-                .on_hover_text("sRGB colour behind the mesh.");
+            let response = ui.color_edit_button_srgb(&mut self.settings.background).labelled_by(label.id);
+            if response.has_focus() {
+                let stroke = ui.visuals().selection.stroke;
+                ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
+            }
+            response.on_hover_text("sRGB colour behind the mesh.");
             ui.end_row();
         });
     }

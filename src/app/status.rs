@@ -3,7 +3,7 @@
 use egui::RichText;
 
 use super::App;
-use super::text::{grouped, mebibytes};
+use super::text::{grouped, mebibytes, short};
 use super::widgets::status;
 use crate::render::layout::CRACK_COLOR;
 
@@ -50,7 +50,13 @@ impl App {
             status(ui, 76.0, mebibytes(bytes), "Memory on the device: topology, output and picture.");
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
-            ui.weak(&self.engine.gpu.info.name).on_hover_text("Graphics adapter.");
+            let warnings = &document.loaded.mesh.warnings;
+            if !warnings.is_empty() {
+                let text = RichText::new(format!("{} warnings", warnings.len())).color(ui.visuals().warn_fg_color);
+                status(ui, 82.0, text, &warnings.join("\n"));
+            }
+            ui.add(egui::Label::new(RichText::new(&self.engine.gpu.info.name).weak()).truncate())
+                .on_hover_text(format!("Graphics adapter: {}.", self.engine.gpu.info.name));
         });
     }
 
@@ -70,14 +76,16 @@ impl App {
     }
 
     fn status_of_cracks(&self, ui: &mut egui::Ui) {
-        let hover = "Edges whose sides put a point at different positions.";
+        const WIDTH: f32 = 150.0;
+        let hover = "Edges whose sides differ, and the largest gap on screen.";
         match self.measuring.cracks() {
-            None => status(ui, 86.0, "cracks …", hover),
-            Some(cracks) if cracks.edges.is_empty() => status(ui, 86.0, "cracks 0", hover),
+            None => status(ui, WIDTH, "cracks …", hover),
+            Some(cracks) if cracks.edges.is_empty() => status(ui, WIDTH, "cracks 0", hover),
             Some(cracks) => {
-                let text = RichText::new(format!("cracks {}", grouped(cracks.edges.len() as u64)));
+                let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.gap_px(cracks)));
                 let [r, g, b] = CRACK_COLOR;
-                status(ui, 86.0, text.color(egui::Color32::from_rgb(r, g, b)).strong(), hover);
+                let text = RichText::new(format!("cracks {count}, {px} px"));
+                status(ui, WIDTH, text.color(egui::Color32::from_rgb(r, g, b)).strong(), hover);
             }
         }
     }

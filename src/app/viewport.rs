@@ -263,11 +263,12 @@ impl App {
             return;
         }
         let topology = document.loaded.topology.clone();
-        let mut lines = self.selection_lines(&topology);
+        let mut lines = t_junction_lines(&topology, junctions.unwrap_or_default());
         if let Some(found) = self.measuring.found().filter(|_| overlays.cracks) {
             lines.extend(found.crack_lines(&topology));
         }
-        lines.extend(t_junction_lines(&topology, junctions.unwrap_or_default()));
+        // Over all else.
+        lines.extend(self.selection_lines(&topology));
         self.marked = Some(Marked { generation: wanted.generation + 1, ..wanted });
         if let Some(document) = &mut self.document {
             document.scene.set_lines(&self.engine.gpu, &lines);

@@ -17,7 +17,7 @@ pub fn chooser<T: Copy + PartialEq>(
     value: &mut T,
     choices: &[(T, &str, &str)],
 ) {
-    let label = ui.label(name);
+    let label = ui.label(name).on_hover_text(hover);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
         for (choice, text, hover) in choices {
@@ -38,6 +38,70 @@ pub fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
 /// Right-aligned, all digits as wide.
 pub fn number(ui: &mut egui::Ui, text: &str) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(RichText::new(text).monospace()));
+}
+
+/// A row of text in columns that can't be clicked, in line with those that can; the columns' names are weak.
+pub fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
+    let text = RichText::new(text).monospace();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.add_space(ui.spacing().button_padding.x);
+        ui.label(if is_weak { text.weak() } else { text })
+    })
+    .inner
+}
+
+/// Rows that a list shows at once.
+const LIST_ROWS: f32 = 6.0;
+
+/// A list of many rows, of which only those in sight are made. Up, Down, Home and End go from row to row.
+pub fn list(ui: &mut egui::Ui, name: &str, count: usize, mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response) {
+    let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
+    let pitch = height + ui.spacing().item_spacing.y;
+    let shown = LIST_ROWS.min(count as f32) * pitch;
+    let area = egui::ScrollArea::vertical().id_salt(name).max_height(shown).auto_shrink([false, true]);
+    // What the last frame's key asked for, and how far the list was scrolled then.
+    let id = ui.scope_id().with(name);
+    let asked: Option<(usize, f32)> = ui.data_mut(|data| data.remove_temp(id));
+    let area = match asked {
+        Some((index, offset)) => {
+            let top = index as f32 * pitch;
+            area.vertical_scroll_offset(offset.clamp((top + pitch - shown).max(0.0), top))
+        }
+        None => area,
+    };
+    let mut focused = None;
+    let output = area.show_rows(ui, height, count, |ui, range| {
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
+        for index in range {
+            let response = row(ui, index);
+            if asked.is_some_and(|(asked, _)| asked == index) {
+                response.request_focus();
+            }
+            if response.has_focus() {
+                focused = Some(index);
+                let filter = egui::EventFilter { vertical_arrows: true, ..Default::default() };
+                ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+            }
+        }
+    });
+    if let Some(next) = focused.and_then(|index| next_row(ui, index, count)) {
+        ui.data_mut(|data| data.insert_temp(id, (next, output.state.clamped_offset().y)));
+        ui.ctx().request_repaint();
+    }
+}
+
+/// Where a key goes from row `index` of `count`.
+fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
+    let pressed = |key| ui.input(|input| input.key_pressed(key));
+    let last = count.checked_sub(1)?;
+    let next = [
+        (egui::Key::ArrowDown, (index + 1).min(last)),
+        (egui::Key::ArrowUp, index.saturating_sub(1)),
+        (egui::Key::Home, 0),
+        (egui::Key::End, last),
+    ];
+    next.into_iter().find(|(key, _)| pressed(*key)).map(|(_, next)| next)
 }
 
 /// A patch of colour, as in a legend.

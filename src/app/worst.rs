@@ -5,14 +5,12 @@ use egui::RichText;
 use super::App;
 use super::facts::EDGE_KINDS;
 use super::text::{grouped, short};
-use super::widgets::{fact, heading};
-use crate::measure::EdgeSide;
+use super::widgets::{columns, fact, list, number, swatch};
+use crate::measure::{CrackedEdge, EdgeSide, ulp};
 use crate::mesh::{EdgeKind, TJunction, Topology};
 use crate::render::LineSegment;
-use crate::render::layout::SELECTION_COLOR;
-
-/// Rows that a list shows at once.
-const ROWS: f32 = 6.0;
+use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
+use glam::Vec3;
 
 impl App {
     /// A list of edges; a click frames one.
@@ -22,25 +20,26 @@ impl App {
             return;
         }
         ui.add_space(4.0);
-        let header = format!("{:<6}{:<13}{:>8}", "edge", "kind", "gap");
-        ui.label(RichText::new(header).monospace().weak()).on_hover_text(
-            "Edges whose sides disagree in a position, factor or normal, the widest gap (object units) first.",
+        ui.label("Worst edges").on_hover_text(
+            "Edges whose sides disagree in a position, factor or normal, the widest gap first; a click frames one.",
         );
-        let topology = &document.loaded.topology;
+        columns(ui, &format!("{:<6}{:<13}{:>10}", "edge", "kind", "gap, units"), true);
+        let (topology, ulp) = (&document.loaded.topology, ulp(&document.loaded.topology));
         let mut clicked = None;
         let text = |row: usize| {
             let crack = &cracks.edges[row];
             let kind = kind_name(topology.edges[crack.edge as usize].kind);
-            (crack.edge, format!("{:<6}{kind:<13}{:>8}", crack.edge, short(crack.gap)))
+            (crack.edge, format!("{:<6}{kind:<13}{:>10}", crack.edge, short(crack.gap)))
         };
-        rows(ui, "worst edges", cracks.edges.len(), |ui, row| {
+        list(ui, "worst edges", cracks.edges.len(), |ui, row| {
             let (edge, text) = text(row);
             let crack = &cracks.edges[row];
             let response = ui.selectable_label(self.selected_edge == Some(edge), RichText::new(text).monospace());
             let response = response.on_hover_ui(|ui| {
                 ui.label(format!(
-                    "{} px on screen; {} points and {} normals differ; factors {}. A click frames the edge.",
+                    "{} px on screen, {} ULP; {} points and {} normals differ; factors {}. A click frames the edge.",
                     short(self.viewport.gap_of_edge_px(crack)),
+                    short(crack.gap / ulp),
                     crack.different_bits,
                     crack.different_normals,
                     if crack.different_factors { "differ" } else { "agree" },
@@ -49,6 +48,7 @@ impl App {
             if response.clicked() {
                 clicked = Some(edge);
             }
+            response
         });
         if let Some(edge) = clicked {
             self.select_edge(edge);
@@ -72,19 +72,22 @@ impl App {
         let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "What the edge's sides have in common.");
-            if let Some(crack) = self.measuring.cracks().and_then(|cracks| cracks.edges.iter().find(|c| c.edge == edge))
-            {
-                let px = self.viewport.gap_of_edge_px(crack);
+            if let Some(crack) = self.crack_of(edge) {
+                let (px, ulps) = (self.viewport.gap_of_edge_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
+                fact(
+                    ui,
+                    "",
+                    &format!("{} ULP", short(ulps)),
+                    "In units of the last place of the mesh's largest coordinate.",
+                );
                 fact(ui, "", &format!("{} px", short(px)), "On screen.");
             }
-            for side in &sides {
-                let name = format!("Triangle {}", side.triangle);
-                let value = format!("{:.5} / {}", side.factor, side.segments());
-                fact(ui, &name, &value, "The factor it was given, and the segments that makes.");
-            }
         });
-        point_rows(ui, &sides);
+        side_rows(ui, &sides);
+        if sides.len() > 1 {
+            point_rows(ui, &sides);
+        }
         if closed {
             self.selected_edge = None;
         }
@@ -96,18 +99,25 @@ impl App {
         if junctions.is_empty() {
             return;
         }
-        heading(ui, "T-junctions");
-        ui.label(format!("{} points on open edges", grouped(junctions.len() as u64)))
-            .on_hover_text("No tessellation closes these: the edge is cut without knowing of the point.");
-        ui.label(RichText::new(format!("{:<9}{:<9}{:>9}", "point", "edge", "at")).monospace().weak());
+        ui.add_space(4.0);
+        ui.horizontal(|ui| {
+            swatch(ui, T_JUNCTION_COLOR);
+            ui.label("T-junctions").on_hover_text(
+                "Points on open edges. No tessellation closes these: the edge is cut without knowing of them.",
+            );
+            number(ui, &grouped(junctions.len() as u64));
+        });
+        columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, of 1"), true);
         let mut clicked: Option<TJunction> = None;
-        rows(ui, "t-junctions", junctions.len(), |ui, row| {
+        list(ui, "t-junctions", junctions.len(), |ui, row| {
             let TJunction { edge, point, t, .. } = junctions[row];
-            let text = RichText::new(format!("{point:<9}{edge:<9}{t:>9.3}")).monospace();
+            let text = RichText::new(format!("{point:<9}{edge:<9}{t:>11.3}")).monospace();
             let response = ui.selectable_label(self.selected_edge == Some(edge), text);
-            if response.on_hover_text("Where along the edge the point lies. A click frames the edge.").clicked() {
+            let response = response.on_hover_text("Where along the edge the point lies. A click frames the edge.");
+            if response.clicked() {
                 clicked = Some(junctions[row]);
             }
+            response
         });
         if let Some(junction) = clicked {
             self.settings.overlays.t_junctions = true;
@@ -125,49 +135,78 @@ impl App {
         self.selected_edge = Some(edge);
     }
 
-    /// What marks the selected edge: all its sides, or if its patches emit nothing the straight line.
+    /// The crack along an edge, if there is one.
+    fn crack_of(&self, edge: u32) -> Option<&CrackedEdge> {
+        self.measuring.cracks()?.edges.iter().find(|crack| crack.edge == edge)
+    }
+
+    /// What marks the selected edge: each of its sides in a colour of its own, the later ones thinner, so that sides in
+    /// one place both show; and where they are farthest apart. If its patches emit nothing, the straight line.
     pub(super) fn selection_lines(&self, topology: &Topology) -> Vec<LineSegment> {
         let Some(edge) = self.selected_edge else { return Vec::new() };
-        let wide = |a, b| LineSegment { half_width: 4.0, ..LineSegment::new(a, b, SELECTION_COLOR) };
         let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
-        let lines = sides.iter().flat_map(|side| {
-            let points: Vec<_> = side.positions().collect();
-            points.windows(2).map(|ends| wide(ends[0], ends[1])).collect::<Vec<_>>()
-        });
-        let lines: Vec<_> = lines.collect();
-        if lines.is_empty() {
-            let [a, b] = topology.edges[edge as usize].points.map(|point| topology.points[point as usize]);
-            return vec![wide(a, b)];
+        let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
+        if polylines.iter().all(|points| points.len() < 2) {
+            polylines =
+                vec![topology.edges[edge as usize].points.map(|point| topology.points[point as usize]).to_vec()];
         }
-        lines
+        let strip = |points: &[Vec3], color, half_width| {
+            let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);
+            ends.map(|[a, b]| LineSegment { half_width, ..LineSegment::new(a, b, color) }).collect::<Vec<_>>()
+        };
+        let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, 4.0));
+        let colored = polylines
+            .iter()
+            .enumerate()
+            .flat_map(|(k, points)| strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { 2.5 } else { 1.25 }));
+        let gap = self.crack_of(edge).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
+        let dots = gap.into_iter().flatten();
+        let dots = dots.map(|place| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, CRACK_COLOR) });
+        outline.chain(colored).chain(dots).collect()
     }
+}
+
+/// Each side: its triangle in the colour that it has over the mesh, and its factor.
+fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
+    egui::Grid::new("sides").num_columns(3).min_col_width(60.0).show(ui, |ui| {
+        ui.weak("side");
+        for (text, hover) in [
+            ("factor", "As LOD gave it, before it was clamped and rounded."),
+            ("segments", "That the side was cut into."),
+        ] {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.weak(text).on_hover_text(hover));
+        }
+        ui.end_row();
+        for (k, side) in sides.iter().enumerate() {
+            ui.horizontal(|ui| {
+                swatch(ui, SIDE_COLORS[k % SIDE_COLORS.len()]);
+                ui.label(format!("Triangle {}", side.triangle))
+                    .on_hover_text("The triangle's number in the mesh, from 0.");
+            });
+            number(ui, &format!("{:.5}", side.factor));
+            number(ui, &side.segments().to_string());
+            ui.end_row();
+        }
+    });
 }
 
 fn kind_name(kind: EdgeKind) -> &'static str {
     EDGE_KINDS.iter().find(|(known, ..)| *known == kind).map_or("", |(_, name, _)| name)
 }
 
-/// A list of many rows, of which only those in sight are made.
-fn rows(ui: &mut egui::Ui, name: &str, count: usize, mut row: impl FnMut(&mut egui::Ui, usize)) {
-    let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
-    let shown = ROWS.min(count as f32) * (height + ui.spacing().item_spacing.y);
-    let area = egui::ScrollArea::vertical().id_salt(name).max_height(shown).auto_shrink([false, true]);
-    area.show_rows(ui, height, count, |ui, range| range.for_each(|index| row(ui, index)));
-}
-
 /// Every point of an edge, and how far its sides are apart there; the positions themselves on hover.
 fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     let Some((first, others)) = sides.split_first() else { return };
     let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);
-    ui.label(RichText::new(format!("{:<6}{:>21}", "point", "apart, units")).monospace().weak());
-    rows(ui, "points", count, |ui, index| {
+    columns(ui, &format!("{:<6}{:>23}", "point", "apart, units"), true);
+    list(ui, "points", count, |ui, index| {
         let place = |side: &EdgeSide| side.positions().nth(index);
         let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
         let gap = gaps
             .map(|gap| gap.map_or(f64::NAN, |gap| gap))
             .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
         let text = if gap.is_nan() { "not on all sides".to_owned() } else { short(gap) };
-        ui.label(RichText::new(format!("{index:<6}{text:>21}")).monospace()).on_hover_ui(|ui| {
+        columns(ui, &format!("{index:<6}{text:>23}"), false).on_hover_ui(|ui| {
             for side in sides {
                 let text = match place(side) {
                     Some(p) => format!("triangle {}: {:e} {:e} {:e}", side.triangle, p.x, p.y, p.z),
@@ -175,6 +214,6 @@ fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
                 };
                 ui.label(RichText::new(text).monospace());
             }
-        });
+        })
     });
 }

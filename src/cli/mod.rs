@@ -45,6 +45,9 @@ pub enum Command {
     /// Write the index buffer of PN-AEN patches
     Adjacency(adjacency::Args),
     /// Try what breaks tessellators, and say what holds and what fails
+    ///
+    /// What the published methods get wrong is printed as a failure, and is none of this command's: the exit code is 1 only
+    /// if something fails that this program promises.
     Stability(stability::Args),
     /// Say what a file holds, and what of it was left out
     Info(info::Args),

@@ -9,6 +9,8 @@ use crate::tessellate::LodView;
 
 /// Vertical field of view, in degrees.
 const FIELD_OF_VIEW: f32 = 40.0;
+/// How far off a framed edge is looked at, in its lengths: it is two thirds of the view's height long then.
+const FRAMED_EDGE: f32 = 2.06;
 /// Steeper than this, "up" would turn over.
 const MAX_ELEVATION: f32 = 89.9;
 
@@ -53,11 +55,11 @@ impl Camera {
         self.distance = radius / half_angle.sin();
     }
 
-    /// Puts an edge in the middle, about a third of the view long, seen from where it faces (or from where one is, if it
+    /// Puts an edge in the middle, two thirds of the view's height long, seen from where it faces (or from where one is, if it
     /// faces nowhere). `bounds` are the mesh's.
     pub fn frame_edge(&mut self, [a, b]: [Vec3; 2], facing: Vec3, bounds: &Bounds) {
         self.target = a * 0.5 + b * 0.5;
-        self.distance = (3.0 * a.distance(b)).max(1e-4 * bounds.radius());
+        self.distance = (FRAMED_EDGE * a.distance(b)).max(1e-4 * bounds.radius());
         if facing != Vec3::ZERO {
             self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
             self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
@@ -185,7 +187,7 @@ mod tests {
         let [a, b] = ends.map(|p| project(clip, viewport, p).expect("in front of the eye"));
         assert!((a + b).distance(viewport) < 2.0);
         let length = a.distance(b);
-        assert!((150.0..400.0).contains(&length), "{length} px");
+        assert!((350.0..450.0).contains(&length), "{length} px");
     }
 
     #[test]

@@ -61,8 +61,9 @@ pub const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
 /// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface.wgsl` has the same in linear light.
 pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 
-/// sRGB colour of the edge that is looked at.
-pub const SELECTION_COLOR: [u8; 3] = [255, 255, 255];
+/// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.
+pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
+pub const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
 
 /// sRGB bytes in linear light, 0 to 1.
 pub fn linear(srgb: [u8; 3]) -> [f32; 3] {

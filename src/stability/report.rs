@@ -113,7 +113,7 @@ pub const LEGEND: &str = "points: edge points whose positions differ between sid
 pub fn table(lines: &[Line]) -> String {
     let mut text = format!("{:<20} {:<20}", "case", "method");
     for (_, column) in COLUMNS {
-        let _ = write!(text, " {column:>10}");
+        let _ = write!(text, " {column:>11}");
     }
     text += "  verdict\n";
     let mut last = "";
@@ -122,7 +122,7 @@ pub fn table(lines: &[Line]) -> String {
         last = &line.case;
         let _ = write!(text, "{case:<20} {:<20}", line.method);
         for (quantity, _) in COLUMNS {
-            let _ = write!(text, " {:>10}", line.cell(quantity));
+            let _ = write!(text, " {:>11}", line.cell(quantity));
         }
         let _ = write!(text, "  {}", line.verdict.text());
         let rest = line.rest();

@@ -12,7 +12,7 @@ pub enum Lod {
     /// Projected length of the control polygon over pixels per segment, at least 1 (McDonald and Kilgard 2010). Divides
     /// by w wherever a control point lies, so edges behind the eye or across its plane get any factor.
     Paper = 1,
-    /// As `Paper` for edges beyond the near plane; others are measured at the nearest depth of a sphere around them.
+    /// As the white paper's for edges beyond the near plane; others are measured at the nearest depth of a sphere around them.
     EdgeLength = 2,
 }
 
