@@ -357,6 +357,8 @@ fn adjacency_has_nine_or_twelve_indices_a_patch() {
 fn info_is_for_people_and_for_programs() {
     let text = output(&["info", "shape:saddle"]);
     assert!(text.contains("boundary      24") && text.contains("open"), "{text}");
+    assert!(text.contains("weld  ") && text.contains("\n  1e-5          joins nothing\n"), "{text}");
+    assert!(!text.contains("near misses"), "{text}");
     let json: Value = serde_json::from_str(&output(&["info", "shape:saddle", "--json"])).expect("JSON");
     assert_eq!((&json["edges"]["boundary"], &json["closed"]), (&24.into(), &false.into()));
 }
@@ -435,6 +437,10 @@ fn a_seam_that_almost_meets_is_closed_within_a_tolerance() {
         let (info, drawn) = (info(options), stats(&[&[path.as_str()], options].concat()));
         let boundary: Value = if open { 6 } else { 0 }.into();
         assert_eq!((&info["edges"]["boundary"], &info["closed"]), (&boundary, &(!open).into()), "{options:?}");
+        let joins: Vec<_> =
+            info["joins"].as_array().expect("a list").iter().map(|join| join["edges"].clone()).collect();
+        let expected = [0, 0, 0, 6, 6, 6].map(Value::from);
+        assert_eq!(joins, expected, "against the exact weld, whatever the tolerance: {options:?}");
         assert_eq!(drawn["edges"]["boundary"], boundary, "{options:?}");
         assert_eq!(drawn["leaks"], if open { Value::Null } else { 0.into() }, "{options:?}");
         assert_eq!((&drawn["cracks"]["edges"], &drawn["patches"]), (&0.into(), &4.into()), "{options:?}");

@@ -1,9 +1,8 @@
 //! On the left: what one sets.
 
 use super::App;
-use super::text::{grouped, short};
+use super::text::short;
 use super::widgets::{chooser, heading};
-use crate::mesh::Joins;
 use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE};
 use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
@@ -168,7 +167,7 @@ impl App {
             match document.checks.joins() {
                 Some(all) => {
                     for joins in all {
-                        let text = format!("{}: {}", tolerance(joins.tolerance), what(joins));
+                        let text = format!("{}: {joins}", tolerance(joins.tolerance));
                         ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
                             "As a part of the bounding diagonal: {} units here. Compared with the exact weld.",
                             short(f64::from(joins.tolerance * document.scene.bounds.diagonal()))
@@ -234,14 +233,4 @@ impl App {
 
 fn tolerance(weld: f32) -> String {
     if weld == 0.0 { "Exact".into() } else { format!("{weld:e}") }
-}
-
-fn what(joins: &Joins) -> String {
-    match (joins.edges, joins.collapsed) {
-        (0, 0) => "joins nothing".into(),
-        (edges, 0) => format!("joins {} edges", grouped(edges.into())),
-        (edges, collapsed) => {
-            format!("joins {} edges, collapses {} triangles", grouped(edges.into()), grouped(collapsed.into()))
-        }
-    }
 }

@@ -103,7 +103,7 @@ impl App {
         ui.horizontal(|ui| {
             swatch(ui, T_JUNCTION_COLOR);
             ui.label("T-junctions").on_hover_text(
-                "Points on open edges. No tessellation closes these: the edge is cut without knowing of them.",
+                "Points between the ends of open edges, on them or close beside them. No tessellation closes these: the edge is cut without knowing of the points.",
             );
             number(ui, &grouped(junctions.len() as u64));
         });

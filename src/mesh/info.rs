@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::near_misses::near_misses;
+use super::joins::{Joins, joins};
 use super::progress::{Cancelled, Progress};
 use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
@@ -26,8 +26,8 @@ pub struct Info {
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
     pub edges: EdgeCounts,
-    /// See [`near_misses`].
-    pub near_misses: u32,
+    /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
+    pub joins: Vec<Joins>,
     /// See [`t_junctions`].
     pub t_junctions: u32,
     /// Where they are, in their order.
@@ -90,7 +90,7 @@ impl Info {
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(material).collect(),
             edges,
-            near_misses: near_misses(topology).len() as u32,
+            joins: joins(mesh, progress)?,
             t_junctions: t_junctions.len() as u32,
             t_junctions_at: t_junctions.iter().map(|junction| t_junction(topology, junction)).collect(),
             repairs: mesh.repairs,
@@ -148,8 +148,15 @@ impl Info {
     fn write_odd(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Repairs { normals_made, normals_replaced, normals_rescaled, denormals } = self.repairs;
         let NormalFaults { against_face, opposite, along_edge } = self.normal_faults;
-        writeln!(f, "near misses   {} (pairs of open edges that nearly meet)", self.near_misses)?;
-        writeln!(f, "T-junctions   {} (points inside open edges, which no tessellation closes)", self.t_junctions)?;
+        writeln!(f, "weld          (within parts of the bounding diagonal, compared with the exact weld)")?;
+        for join in &self.joins {
+            writeln!(f, "  {:<14e}{join}", join.tolerance)?;
+        }
+        writeln!(
+            f,
+            "T-junctions   {} (points between open edges' ends, which no tessellation closes)",
+            self.t_junctions
+        )?;
         for TJunctionInfo { edge: [from, to], point, .. } in self.t_junctions_at.iter().take(SHOWN) {
             let [point, from, to] = [point, from, to].map(|[x, y, z]| format!("{x} {y} {z}"));
             writeln!(f, "  at {point} between {from} and {to}")?;
@@ -248,6 +255,21 @@ mod tests {
         assert!(text.contains("T-junctions   12 "), "{text}");
         assert!(text.contains("\n  at 3 0 0 between 0 0 0 and 16 0 0\n"), "{text}");
         assert!(text.contains("at 10 0 0") && !text.contains("at 11 0 0") && text.contains("and 2 more"), "{text}");
+    }
+
+    #[test]
+    fn what_each_weld_tolerance_would_join_is_told() {
+        let mut corners = comb().corners;
+        // Twice the comb, one half a part of 1e-4 to 1e-3 of its diagonal away.
+        corners.extend(corners.clone().iter().map(|c| Corner { position: c.position + 0.01 * Vec3::Z, ..*c }));
+        let triangles = (0..26).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let info = info(&Mesh { corners, triangles, ..Mesh::default() }, 0.0);
+        assert_eq!(info.joins.iter().map(|join| join.edges).collect::<Vec<_>>(), [0, 0, 0, 0, 78, 78]);
+        let text = info.to_string();
+        assert!(text.contains("\n  1e-7          joins nothing\n"), "{text}");
+        assert!(text.contains("\n  1e-3          joins 78 edges\n"), "{text}");
+        let json = serde_json::to_value(&info).unwrap();
+        assert_eq!((&json["joins"][4]["edges"], &json["joins"][4]["collapsed"]), (&78.into(), &0.into()));
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! What a weld tolerance would do, before one chooses it.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use super::Mesh;
@@ -16,6 +18,17 @@ pub struct Joins {
     pub edges: u32,
     /// Triangles that are patches of the exact topology and degenerate within the tolerance.
     pub collapsed: u32,
+}
+
+impl fmt::Display for Joins {
+    /// In words, without the tolerance.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match (self.edges, self.collapsed) {
+            (0, 0) => write!(f, "joins nothing"),
+            (edges, 0) => write!(f, "joins {edges} edges"),
+            (edges, collapsed) => write!(f, "joins {edges} edges, collapses {collapsed} triangles"),
+        }
+    }
 }
 
 /// The tolerances that are tried, relative to the bounding diagonal: from what the last bits of f32 leave open to what
@@ -111,6 +124,14 @@ mod tests {
     fn triangles_on_one_point_were_degenerate_before() {
         let point = [[0.5, 0.5]; 3];
         assert_eq!(counts(&soup(&[point, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], point])), [[0, 0]; 6]);
+    }
+
+    #[test]
+    fn they_are_told_in_words() {
+        let words = |edges, collapsed| Joins { tolerance: 1e-5, edges, collapsed }.to_string();
+        assert_eq!(words(0, 0), "joins nothing");
+        assert_eq!(words(12, 0), "joins 12 edges");
+        assert_eq!(words(0, 3), "joins 0 edges, collapses 3 triangles");
     }
 
     #[test]

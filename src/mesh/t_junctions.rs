@@ -1,26 +1,27 @@
-//! T-junctions: points that lie inside an open edge of another triangle.
+//! T-junctions: points between the ends of another triangle's open edge, which divide the surface on its other side.
 
-use glam::DVec3;
+mod chains;
+mod line;
+mod straight;
+
 use serde::Serialize;
 
-use super::bounds::Bounds;
-use super::grid::Grid;
+use chains::Chains;
+use line::Line;
+use straight::Straight;
+
 use super::progress::{Cancelled, Progress};
 use super::topology::{Edge, EdgeKind, Topology};
-use super::tree::Tree;
 
-/// How near a point must be to an edge, as a part of the bounding diagonal.
-const NEAR: f64 = 1e-5;
-
-/// Points tried in one cell of two tolerances. More than that on one spot is noise, and trying all of them against the
-/// edges that end there would be quadratic.
+/// Boundary edges at one point, and boundary points on one spot, that are tried. More than that is noise, and trying
+/// all of them would be quadratic.
 const TRIES: usize = 32;
 
 /// T-junctions listed at most. A mesh with more is no mesh but edges on top of each other, whose number is quadratic.
 const MOST: usize = 1 << 20;
 
-/// A boundary point inside a boundary edge. No tessellation closes it: the edge curves and is divided on its own, and
-/// doesn't know of the point. Only a mesh in which the triangle is divided there does.
+/// A boundary point between the ends of a boundary edge. No tessellation closes it: the edge curves and is divided on
+/// its own, and doesn't know of the point. Only a mesh in which the triangle is divided there does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TJunction {
     /// Index into [`Topology::edges`].
@@ -29,37 +30,48 @@ pub struct TJunction {
     pub point: u32,
     /// Where along the edge, 0 to 1 in its own direction.
     pub t: f32,
-    /// Between the point and the straight edge, in object units.
+    /// Between the point and the straight edge, in object units. Up to 1/8 of the edge's length where a chain of edges
+    /// runs beside it.
     pub distance: f32,
 }
 
-/// Boundary points that lie within 1e-5 of the bounding diagonal of a boundary edge, but not within that of its ends,
-/// and aren't corners of the edge's triangle. In the order of the edges, then along each.
+/// Boundary points that are a boundary edge's T-junctions, in either of two ways. In the order of the edges, then along
+/// each; a point that is one in both ways is listed once.
+///
+/// *On the straight edge*: the point lies within 1e-5 of the bounding diagonal of it, and is no near miss of its ends.
+/// It is a near miss of an end within 1e-5 of the diagonal, or within the smallest of
+/// [`TOLERANCES`](super::joins::TOLERANCES) that reaches from one to the other, if all boundary edges at both are longer
+/// than twice that: welding within it joins the two and collapses none of those edges.
+///
+/// *Beside it*: the point is inside a chain of two or more other boundary edges from one end to the other, as where a
+/// curved surface changes its density. Along the edge the chain's points come in order, strictly between the ends;
+/// across, they lie within 1/8 of its length (an arc of 56 degrees over its chord). The chain's triangles lie on the
+/// other side of the edge than its own: from the edge to its triangle's third corner, and from each of the chain's edges
+/// to its own, directions are opposed; the chain's third corners lie beyond the edge, and are none of the chain's points.
+/// Heights below a thousandth of the edge's length are none. So neither a thin ribbon nor a leaf is taken for a seam, as
+/// its third corners lie between, and no sliver is.
+///
+/// In both, the point is no corner of the edge's own triangle.
 ///
 /// Takes about n log n steps in boundary edges: an edge looks only at the points along it. Of the points in one cell
-/// of two tolerances the first 32 are tried, and the first 2^20 T-junctions are listed.
+/// of two tolerances, and of the boundary edges at one point, the first 32 are tried, chains are sought in 64 steps for
+/// each boundary edge on average, and the first 2^20 T-junctions are listed.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
 pub fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunction>, Cancelled> {
-    let tolerance = Bounds::of(topology.points.iter().copied()).part(NEAR);
-    let tree = Tree::new(boundary_points(topology, tolerance));
+    let straight = Straight::new(topology);
     progress.check()?;
+    let mut chains = Chains::new(topology);
     let mut all = Vec::new();
-    let mut found = Vec::new();
-    let open = topology.edges.iter().enumerate().filter(|(_, edge)| edge.kind == EdgeKind::Boundary);
-    for (step, (i, edge)) in open.enumerate() {
+    let mut points = Vec::new();
+    for (step, (i, edge)) in open_edges(topology).enumerate() {
         if step % 4096 == 0 {
             progress.check()?;
         }
-        let ends = edge.points.map(|point| topology.points[point as usize].as_dvec3());
-        tree.near_segment(ends, tolerance, |place, point| {
-            if let Some((t, distance)) = inside(ends, place, tolerance).filter(|_| !uses(topology, edge, point)) {
-                found.push((t, TJunction { edge: i as u32, point, t: t as f32, distance: distance as f32 }));
-            }
-        });
-        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.point.cmp(&b.1.point)));
-        all.extend(found.drain(..).map(|(_, junction)| junction));
+        straight.find(edge, &mut points);
+        chains.find(i, edge, &mut points);
+        list(topology, i, edge, &mut points, &mut all);
         if all.len() >= MOST {
             all.truncate(MOST);
             break;
@@ -68,36 +80,31 @@ pub fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunc
     Ok(all)
 }
 
-/// The ends of all boundary edges, each once, but only so many on one spot.
-fn boundary_points(topology: &Topology, tolerance: f64) -> Vec<(DVec3, u32)> {
-    let mut open = vec![false; topology.points.len()];
-    for edge in topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary) {
-        edge.points.iter().for_each(|&point| open[point as usize] = true);
+/// Boundary edges with their numbers.
+fn open_edges(topology: &Topology) -> impl Iterator<Item = (u32, &Edge)> {
+    (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind == EdgeKind::Boundary)
+}
+
+/// Takes an edge's points, each once and in their order along it.
+fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &mut Vec<TJunction>) {
+    if points.is_empty() {
+        return;
     }
-    let mut spots: Grid<()> = Grid::new(tolerance);
-    let places = topology.points.iter().map(|point| point.as_dvec3()).zip(0..);
-    places
-        .filter(|&(place, point)| {
-            let tried = open[point as usize].then(|| spots.at(place)).filter(|spot| spot.len() < TRIES);
-            tried.map(|spot| spot.push(())).is_some()
-        })
-        .collect()
+    let line = Line::of(topology, of);
+    points.sort_unstable();
+    points.dedup();
+    let places = points.drain(..).map(|point| (line.project(topology.points[point as usize].as_dvec3()), point));
+    let mut places: Vec<_> = places.collect();
+    places.sort_by(|((a, _), _), ((b, _), _)| a.total_cmp(b));
+    let junction =
+        |((t, distance), point): ((f64, f64), u32)| TJunction { edge, point, t: t as f32, distance: distance as f32 };
+    all.extend(places.into_iter().map(junction));
 }
 
-/// Where along a segment a place lies and how far from it, if that is inside.
-fn inside([a, b]: [DVec3; 2], place: DVec3, tolerance: f64) -> Option<(f64, f64)> {
-    let way = b - a;
-    let t = (place - a).dot(way) / way.length_squared();
-    let distance = place.distance(a + t * way);
-    let apart = place.distance(a).min(place.distance(b)) > tolerance;
-    (t > 0.0 && t < 1.0 && apart && distance <= tolerance).then_some((t, distance))
-}
-
-/// Whether the point is a corner of the boundary edge's one triangle.
-fn uses(topology: &Topology, edge: &Edge, point: u32) -> bool {
+/// The points of the corners of the boundary edge's one triangle.
+fn corners(topology: &Topology, edge: &Edge) -> [u32; 3] {
     let side = topology.sides[edge.sides.start as usize];
-    let corners = topology.patches[side.patch as usize].corners;
-    corners.into_iter().any(|corner| topology.corner_points[corner as usize] == point)
+    topology.patches[side.patch as usize].corners.map(|corner| topology.corner_points[corner as usize])
 }
 
 #[cfg(test)]

@@ -211,7 +211,8 @@ pub const CASES: [Case; 29] = [
     },
     Case {
         name: "t-junction",
-        about: "A large quad beside four small ones: three points lie on its edge. No tessellation closes that, as the \
+        about: "A large quad beside four small ones, which lie beside eight smaller ones: three points lie on the first \
+                edge, and four where the surface curves away beside the next ones. No tessellation closes that, as an \
                 edge is cut without knowing of the points. They are found, listed and highlighted instead.",
         mesh: meshes::t_junction,
         probe: Probe::TJunctions(meshes::T_JUNCTIONS),

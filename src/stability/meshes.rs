@@ -190,10 +190,11 @@ pub fn roof() -> Mesh {
     mesh([side(1.0, ends), side(-1.0, [ends[1], ends[0]])])
 }
 
-/// How many points lie on open edges of [`t_junction`].
-pub const T_JUNCTIONS: u32 = 3;
+/// How many T-junctions [`t_junction`] has: 3 on a straight edge, 4 beside edges that follow the sheet's curve.
+pub const T_JUNCTIONS: u32 = 7;
 
-/// One large quad beside a column of four small ones: three points lie on its edge. The sheet is curved.
+/// One large quad beside a column of four small ones, beside a column of eight: three points lie on the large quad's
+/// edge, and one beside each of the four. The sheet is curved.
 pub fn t_junction() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.3 * (1.0 - z * z), z), vec3(0.3 * x, 1.0, 0.6 * z).normalize());
     // The small quads' points lie on the straight edge, which the surface then leaves.
@@ -203,6 +204,10 @@ pub fn t_junction() -> Mesh {
     for k in 0..4 {
         let (near, far) = (1.0 - 0.5 * k as f32, 0.5 - 0.5 * k as f32);
         all.extend(quad(on_edge(near), at(1.0, near), at(1.0, far), on_edge(far)));
+    }
+    for k in 0..8 {
+        let (near, far) = (1.0 - 0.25 * k as f32, 0.75 - 0.25 * k as f32);
+        all.extend(quad(at(1.0, near), at(1.5, near), at(1.5, far), at(1.0, far)));
     }
     mesh(all)
 }
@@ -312,6 +317,8 @@ mod tests {
     fn the_t_junctions_are_those_that_were_made() {
         let found = t_junctions(&topology(&t_junction()), &Progress::new()).expect("nobody cancels");
         assert_eq!(found.len() as u32, T_JUNCTIONS);
+        let beside = found.iter().filter(|junction| junction.distance > 0.01).count();
+        assert_eq!((beside, found.iter().filter(|junction| junction.distance == 0.0).count()), (4, 3));
     }
 
     #[test]

@@ -206,6 +206,6 @@ fn t_junctions_are_marked_where_there_are_some() {
     };
     let (mut sheet, camera) = case("t-junction");
     let (found, pixels) = marked(&mut sheet, &camera);
-    assert!(found == 3 && pixels > 200, "{pixels} px for {found} T-junctions");
+    assert!(found == 7 && pixels > 200, "{pixels} px for {found} T-junctions");
     assert_eq!(marked(&mut scene(Shape::Saddle).1, &camera), (0, 0));
 }

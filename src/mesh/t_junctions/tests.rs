@@ -1,15 +1,18 @@
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
 use crate::mesh::shapes::Shape;
-use crate::mesh::{Corner, Mesh};
+use crate::mesh::{Corner, Mesh, joins};
 
 /// Triangles over corners at these places.
-fn topology(places: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
+fn mesh(places: &[Vec3], triangles: &[[u32; 3]]) -> Mesh {
     let corner = |&position: &Vec3| Corner { position, normal: Vec3::Z, uv: Vec2::ZERO };
-    let mesh = Mesh { corners: places.iter().map(corner).collect(), triangles: triangles.to_vec(), ..Mesh::default() };
-    Topology::build(&mesh, &Progress::new()).unwrap()
+    Mesh { corners: places.iter().map(corner).collect(), triangles: triangles.to_vec(), ..Mesh::default() }
+}
+
+fn topology(places: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
+    Topology::build(&mesh(places, triangles), &Progress::new()).unwrap()
 }
 
 fn found(topology: &Topology) -> Vec<TJunction> {
@@ -80,19 +83,74 @@ fn near_misses_are_none() {
     let near = touched(Vec3::new(0.25, -2e-5, 0.0));
     assert_eq!((near.len(), near[0].t, near[0].distance), (1, 0.25, 2e-5));
     assert_eq!(touched(Vec3::new(0.25, -4e-5, 0.0)), [], "too far from the edge");
-    assert_eq!(touched(Vec3::new(2e-5, 0.0, 0.0)), [], "within the tolerance of an end");
-    assert_eq!(touched(Vec3::new(4e-5, 0.0, 0.0)).len(), 1, "past it");
+    for x in [2e-5, 4e-5, 4e-3, 0.031, 0.969, 1.0 - 4e-5] {
+        assert_eq!(touched(Vec3::X * x), [], "{x}: a weld tolerance on offer reaches from there to an end");
+    }
+    for x in [0.032, 0.968] {
+        assert_eq!(touched(Vec3::X * x).len(), 1, "{x}: none on offer does");
+    }
     assert_eq!(touched(Vec3::new(-4e-5, 0.0, 0.0)), [], "beyond the end");
     assert_eq!(touched(Vec3::X), [], "a shared point");
 }
 
+/// A patch of a cylinder of 6 by 6 quads in two halves, the second moved along the seam by a part of the diagonal.
+fn cut_cylinder(part: f32) -> Mesh {
+    let at = |i: u32, j: u32| {
+        let (sin, cos) = (i as f32 / 4.0).sin_cos();
+        Vec3::new(sin, j as f32 / 4.0, cos)
+    };
+    let quads = (0..6).flat_map(|i| (0..6).map(move |j| (i, j)));
+    let corners: Vec<_> = quads
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [a, b, c, a, c, d].map(|place| place + if i < 3 { Vec3::ZERO } else { Vec3::Y * part * 2.0 })
+        })
+        .collect();
+    let triangles: Vec<_> = (0..72).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    mesh(&corners, &triangles)
+}
+
+#[test]
+fn a_seam_that_a_weld_tolerance_closes_has_none() {
+    for part in [1e-6, 1.1e-5, 1e-4, 1e-3, 4e-3] {
+        let mesh = cut_cylinder(part);
+        let topology = Topology::build(&mesh, &Progress::new()).unwrap();
+        assert_eq!(found(&topology), [], "moved by {part}");
+        let joins = joins(&mesh, &Progress::new()).unwrap();
+        assert!(joins.iter().any(|join| (join.edges, join.collapsed) == (12, 0)), "moved by {part}: {joins:?}");
+    }
+    let halfway = cut_cylinder(0.0625);
+    assert_eq!(found(&Topology::build(&halfway, &Progress::new()).unwrap()).len(), 12, "half an edge is no near miss");
+}
+
 #[test]
 fn the_tolerance_itself_counts() {
-    let ends = [DVec3::ZERO, DVec3::X];
-    assert_eq!(inside(ends, DVec3::new(0.5, 0.25, 0.0), 0.25), Some((0.5, 0.25)));
-    assert_eq!(inside(ends, DVec3::new(0.5, 0.25_f64.next_up(), 0.0), 0.25), None);
-    assert_eq!(inside(ends, DVec3::X * 0.25, 0.25), None);
-    assert_eq!(inside(ends, DVec3::X * 0.25_f64.next_up(), 0.25), Some((0.25_f64.next_up(), 0.0)));
+    // An edge of length 1 along x, and a point that no edge uses.
+    let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.0, 1.0, 0.5), Vec3::ONE / 4.0];
+    let topology = topology(&places, &[[0, 1, 2]]);
+    let straight = Straight::new(&topology);
+    let (near, weld) = (straight.tolerance, straight.welds[5]);
+    assert!((near - 1.5e-5).abs() < 1e-9 && (weld - 1.5e-2).abs() < 1e-6);
+    let edge = &topology.edges[0];
+    let inside = |x: f64, y: f64| straight.is_inside(edge, &Line::of(&topology, edge), 3, DVec3::new(x, y, 0.0));
+    assert!(inside(0.5, near) && !inside(0.5, near.next_up()));
+    assert!(!inside(weld, 0.0) && inside(weld.next_up(), 0.0));
+}
+
+/// A triangle over an edge of length 1, and one below whose side runs along it from `x` for `length`.
+fn lapped(x: f32, length: f32) -> usize {
+    let tips = [Vec3::X * x, Vec3::X * (x + length), Vec3::new(x, -1.0, 0.0)];
+    let [a, b, c] = tips;
+    found(&topology(&[Vec3::ZERO, Vec3::X, Vec3::Y, a, b, c], &[[0, 1, 2], [3, 4, 5]])).len()
+}
+
+#[test]
+fn what_a_weld_would_collapse_is_no_near_miss() {
+    // The diagonal is about 2.2: tolerances of 2.2e-3 and 2.2e-2.
+    assert_eq!(lapped(0.001, 0.4), 1, "only the far end lies inside");
+    assert_eq!(lapped(0.001, 0.005), 1, "as a weld of 2.2e-3 moves ends by less than half the side");
+    assert_eq!(lapped(0.001, 0.004), 2, "which would collapse");
+    assert_eq!(lapped(0.004, 0.04), 2, "as a weld of 2.2e-2 would do");
 }
 
 #[test]
@@ -152,21 +210,18 @@ fn a_cancel_is_heard() {
 }
 
 /// All boundary edges against all boundary points.
-fn slow(topology: &Topology, tolerance: f64) -> Vec<(u32, u32)> {
-    let open = || (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind == EdgeKind::Boundary);
+fn slow(topology: &Topology) -> Vec<(u32, u32)> {
+    let straight = Straight::new(topology);
+    let open = || open_edges(topology);
     let at = |point: u32| topology.points[point as usize].as_dvec3();
     let mut found = Vec::new();
     for (i, edge) in open() {
         let mut points: Vec<u32> = open().flat_map(|(_, other)| other.points).collect();
         points.sort_unstable();
         points.dedup();
-        let mut on: Vec<_> = points
-            .into_iter()
-            .filter(|&point| !uses(topology, edge, point))
-            .filter_map(|point| Some((inside(edge.points.map(at), at(point), tolerance)?.0, point)))
-            .collect();
-        on.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found.extend(on.into_iter().map(|(_, point)| (i, point)));
+        let line = Line::of(topology, edge);
+        points.retain(|&point| straight.is_inside(edge, &line, point, at(point)));
+        found.extend(points.into_iter().map(|point| (i, point)));
     }
     found
 }
@@ -184,8 +239,14 @@ proptest! {
             .collect();
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(|i| (i % places.len()) as u32)).collect();
         let topology = topology(&places, &triangles);
-        let tolerance = Bounds::of(topology.points.iter().copied()).part(NEAR);
-        let found: Vec<_> = found(&topology).iter().map(|junction| (junction.edge, junction.point)).collect();
-        prop_assert_eq!(found, slow(&topology, tolerance));
+        let straight = Straight::new(&topology);
+        let mut found = Vec::new();
+        for (i, edge) in open_edges(&topology) {
+            let mut points = Vec::new();
+            straight.find(edge, &mut points);
+            points.sort_unstable();
+            found.extend(points.into_iter().map(|point| (i, point)));
+        }
+        prop_assert_eq!(found, slow(&topology));
     }
 }

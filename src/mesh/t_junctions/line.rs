@@ -1,0 +1,37 @@
+//! The straight line between an edge's ends.
+
+use glam::DVec3;
+
+use crate::mesh::{Edge, Topology};
+
+/// A line with a length, in object units. In f64: squares of very small or large lengths leave f32.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub ends: [DVec3; 2],
+}
+
+impl Line {
+    pub fn of(topology: &Topology, edge: &Edge) -> Self {
+        Self { ends: edge.points.map(|point| topology.points[point as usize].as_dvec3()) }
+    }
+
+    pub fn way(&self) -> DVec3 {
+        self.ends[1] - self.ends[0]
+    }
+
+    pub fn length(&self) -> f64 {
+        self.way().length()
+    }
+
+    /// Where along the line a place lies, 0 at its start and 1 at its end, and how far from it.
+    pub fn project(&self, place: DVec3) -> (f64, f64) {
+        let t = (place - self.ends[0]).dot(self.way()) / self.way().length_squared();
+        (t, place.distance(self.ends[0] + t * self.way()))
+    }
+
+    /// From the line to a place, at right angles to the line.
+    pub fn across(&self, place: DVec3) -> DVec3 {
+        let (t, _) = self.project(place);
+        place - (self.ends[0] + t * self.way())
+    }
+}
