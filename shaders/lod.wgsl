@@ -3,6 +3,7 @@
 const LOD_UNIFORM: u32 = 0u;
 const LOD_PAPER: u32 = 1u;
 const LOD_EDGE_LENGTH: u32 = 2u;
+const LOD_ERROR: u32 = 3u;
 
 struct LodView {
     clip_from_object: mat4x4<f32>,

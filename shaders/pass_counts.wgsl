@@ -30,7 +30,12 @@ fn counts_main(
     for (var i = 0u; i < 3u; i++) {
         edges[i] = edge_factors[patches[patch_index].factors[(i + 1u) % 3u] >> 3u];
     }
-    var factors = process(params.partitioning, edges, max(max(edges.x, edges.y), edges.z));
+    var inside = max(max(edges.x, edges.y), edges.z);
+    if params.lod == LOD_ERROR && params.surface != SURFACE_FLAT {
+        let net = load_net(patch_index);
+        inside = inside_error_factor(params.view, params.tolerance, params.partitioning, net, edges);
+    }
+    var factors = process(params.partitioning, edges, inside);
     if params.clip != CLIP_OFF && patch_is_unseen(params.clip, params.view, load_net(patch_index)) {
         factors = PatchFactors();
     }

@@ -16,6 +16,12 @@ fn curve_factor(index: u32) -> f32 {
     if params.lod == LOD_PAPER {
         return paper_edge_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
     }
+    if params.lod == LOD_ERROR {
+        if params.surface == SURFACE_FLAT {
+            return 1.0;
+        }
+        return edge_error_factor(params.view, EDGE_SHARE * params.tolerance, a, net.ab, net.ba, b);
+    }
     return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
 }
 
@@ -36,7 +42,9 @@ fn edge_factors_main(
             factor = max(factor, curve_factor(curve));
         }
     }
-    if params.partitioning == PARTITIONING_POW2 {
+    if params.lod == LOD_ERROR {
+        factor = level(params.partitioning, factor);
+    } else if params.partitioning == PARTITIONING_POW2 {
         factor = round_pow2(factor);
     }
     edge_factors[index] = factor;

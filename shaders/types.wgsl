@@ -14,6 +14,7 @@ struct Params {
     factor_count: u32,
     curve_count: u32,
     edges: u32,
+    tolerance: f32,
 }
 
 // The run of patches that one scan covers, and what the arena holds.

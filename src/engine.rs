@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
-use crate::measure::{AskedFactors, Measured, Survey};
+use crate::measure::{AskedFactors, Deviant, Deviation, Measured, Survey};
 use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
 use crate::render::{Camera, LeakCounter, Renderer, Scene, Target, is_beyond_near};
 use crate::settings::Settings;
@@ -175,6 +175,19 @@ impl Engine {
         let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.asked_factors(scene)?);
         self.read_chunks(scene, true, |first, vertices, triangles| survey.take(first, vertices, triangles))?;
         Ok(survey.finish())
+    }
+
+    /// The largest distance on screen between what is emitted and the surface that it stands for, seen from the view of
+    /// `inputs`; none if nothing is in view. The counts must be known, for the same inputs.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn deviation(&self, scene: &mut Scene, inputs: &Inputs) -> Result<Option<Deviant>, GpuError> {
+        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let (_, total) = scene.tessellator.totals();
+        let mut deviation = Deviation::new(&mesh, &topology, inputs);
+        self.read_chunks(scene, true, |_, vertices, triangles| deviation.take(vertices, triangles, total))?;
+        Ok(deviation.worst())
     }
 
     /// Pixels through which one looks into what should be closed, seen from `camera`: see [`LeakCounter`]. None

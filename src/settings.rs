@@ -6,6 +6,8 @@ use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
 /// The smallest and largest length of a segment that adaptive LOD is asked for, in px.
 pub const PIXELS_RANGE: std::ops::RangeInclusive<f32> = 1.0..=256.0;
+/// The smallest and largest tolerance of LOD by error, in px.
+pub const TOLERANCE_RANGE: std::ops::RangeInclusive<f32> = 0.01..=100.0;
 /// Memory for a tessellation's output, in bytes.
 pub const ARENA_BYTES: u64 = 256 << 20;
 
@@ -20,6 +22,8 @@ pub struct Settings {
     pub lod: Lod,
     /// Under adaptive LOD: length of a segment on screen, in px.
     pub pixels: f32,
+    /// Under LOD by error: the distance in px that what is emitted keeps to the surface.
+    pub tolerance: f32,
     pub clip: Clip,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
@@ -37,6 +41,7 @@ impl Default for Settings {
             partitioning: Partitioning::FractionalOdd,
             lod: Lod::Uniform,
             pixels: 8.0,
+            tolerance: 0.25,
             clip: Clip::Off,
             overlays: Overlays::default(),
             split: None,
@@ -130,8 +135,8 @@ impl Settings {
 
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, edges, factor, partitioning, lod, pixels, clip, .. } = *self;
-        Inputs { surface, edges, factor, partitioning, lod, pixels, clip, view }
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
+        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, view }
     }
 }
 

@@ -3,7 +3,7 @@
 use super::App;
 use super::text::short;
 use super::widgets::{chooser, heading};
-use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE};
+use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Name and explanation of each surface, partitioning and overlay.
@@ -52,8 +52,14 @@ const EDGES: [(Edges, &str, &str); 2] = [
          differ in their last bits. Adaptive LOD and clipping switch to the white paper's form too.",
     ),
 ];
-const LODS: [(Lod, &str, &str); 3] = [
+const LODS: [(Lod, &str, &str); 4] = [
     (Lod::Uniform, "Uniform", "The same factor everywhere."),
+    (
+        Lod::Error,
+        "Error",
+        "Every edge and every inside gets the fewest segments that keep it within the tolerance of its surface on screen \
+         (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 4, 8, 16, 32, 64. What is flat stays whole.",
+    ),
     (
         Lod::EdgeLength,
         "Edge length",
@@ -136,16 +142,23 @@ impl App {
         let settings = &mut self.settings;
         egui::Grid::new("lod").num_columns(2).min_col_width(84.0).show(ui, |ui| {
             chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
-            let label = ui.label("Segment");
-            let slider = egui::Slider::new(&mut settings.pixels, PIXELS_RANGE)
+            let by_error = settings.lod == Lod::Error;
+            let (name, hover, value, range, decimals) = if by_error {
+                let hover = "How far what is emitted may be from the surface on screen, in px.";
+                ("Tolerance", hover, &mut settings.tolerance, TOLERANCE_RANGE, 2)
+            } else {
+                ("Segment", "Length of a segment on screen, in px.", &mut settings.pixels, PIXELS_RANGE, 1)
+            };
+            let label = ui.label(name).on_hover_text(hover);
+            let slider = egui::Slider::new(value, range)
                 .logarithmic(true)
-                .max_decimals(1)
+                .max_decimals(decimals)
                 .suffix(" px")
                 .update_while_editing(false);
             ui.add_enabled(settings.lod != Lod::Uniform, slider)
                 .labelled_by(label.id)
-                .on_hover_text("Length of a segment on screen, in px.")
-                .on_disabled_hover_text("Only adaptive LOD measures segments on screen.");
+                .on_hover_text(hover)
+                .on_disabled_hover_text("Only adaptive LOD measures on screen.");
             ui.end_row();
             chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
         });

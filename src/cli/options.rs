@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
-use crate::settings::{FACTOR_RANGE, PIXELS_RANGE, Settings};
+use crate::settings::{FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// What is tessellated how, and seen from where.
@@ -26,13 +26,16 @@ pub struct SurfaceOptions {
     /// How factors become segments: integer, pow2, fractional-odd or fractional-even
     #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning)]
     pub partitioning: Partitioning,
-    /// Where factors come from: the same everywhere; the white paper's projected length of an edge's control polygon; or
-    /// that in a form that holds for edges near and behind the eye too
+    /// Where factors come from: the same everywhere; the white paper's projected length of an edge's control polygon;
+    /// that in a form that holds for edges near and behind the eye too; or the error on screen
     #[arg(long, value_enum, default_value_t = Settings::default().lod)]
     pub lod: Lod,
-    /// Length of a segment on screen under adaptive LOD, in px, 1 to 256
+    /// Length of a segment on screen under LOD by length (paper, edge-length), in px, 1 to 256
     #[arg(long, value_name = "P", default_value_t = Settings::default().pixels, value_parser = pixels)]
     pub pixels: f32,
+    /// How far from the surface what is emitted may be on screen under LOD by error, in px, 0.01 to 100
+    #[arg(long, value_name = "PX", default_value_t = Settings::default().tolerance, value_parser = tolerance)]
+    pub tolerance: f32,
     /// Whether patches out of view are left out: never; by the white paper's test, which can drop visible ones; or by each
     /// plane of the view on its own
     #[arg(long, value_enum, default_value_t = Settings::default().clip)]
@@ -51,8 +54,8 @@ pub struct SurfaceOptions {
 impl SurfaceOptions {
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
-        let Self { surface, edges, factor, partitioning, lod, pixels, clip, .. } = *self;
-        Settings { surface, edges, factor, partitioning, lod, pixels, clip, ..Settings::default() }
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
+        Settings { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, ..Settings::default() }
     }
 
     pub fn camera(&self, bounds: &Bounds) -> Camera {
@@ -155,6 +158,10 @@ fn factor(text: &str) -> Result<f32, String> {
 
 fn pixels(text: &str) -> Result<f32, String> {
     within(text, PIXELS_RANGE)
+}
+
+fn tolerance(text: &str) -> Result<f32, String> {
+    within(text, TOLERANCE_RANGE)
 }
 
 fn within(text: &str, range: std::ops::RangeInclusive<f32>) -> Result<f32, String> {

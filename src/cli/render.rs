@@ -35,6 +35,9 @@ pub struct Args {
     /// Write what was done, and how long it took, as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
+    /// Whether stats have the largest distance on screen between what is emitted and its surface, sampled on the CPU
+    #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
+    pub measure_error: bool,
     /// Fail if the picture differs from this one by more than the threshold, and write the difference beside it
     #[arg(long, value_name = "PNG")]
     pub reference: Option<PathBuf>,
@@ -55,6 +58,7 @@ impl Args {
             split: None,
             background,
             stats: None,
+            measure_error: true,
             reference: None,
             threshold: 0.01,
         }
@@ -71,7 +75,7 @@ impl Args {
 }
 
 fn default_surface_options() -> SurfaceOptions {
-    let Settings { surface, edges, factor, partitioning, lod, pixels, clip, .. } = Settings::default();
+    let Settings { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = Settings::default();
     let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
     SurfaceOptions {
         surface,
@@ -80,6 +84,7 @@ fn default_surface_options() -> SurfaceOptions {
         partitioning,
         lod,
         pixels,
+        tolerance,
         clip,
         weld: options::WeldOption::default(),
         size: options::Size([1280, 720]),
@@ -118,9 +123,17 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     write_picture(&args.output, &picture.clone().into())?;
 
     if let (Some(path), Some(measured)) = (&args.stats, measured) {
+        let deviation = if args.measure_error { engine.deviation(&mut scene, &inputs)? } else { None };
         let passes = engine.time(&mut scene, &target, &camera, &settings)?;
         let leaks = engine.leaks(&mut scene, &measured, target.size, &camera)?;
-        let stats = Stats { leaks, ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes) };
+        let max_error_px = deviation.map(|worst| worst.px);
+        let factors_capped = engine.asked_factors(&scene)?.beyond(settings.partitioning);
+        let stats = Stats {
+            leaks,
+            max_error_px,
+            factors_capped,
+            ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes)
+        };
         write_text(path, &to_json(&stats)?)?;
     }
     match args.reference.as_deref().zip(reference) {
@@ -190,6 +203,11 @@ struct Stats {
     folds: u64,
     /// Vertices with a position or uv that is no finite number.
     not_finite: u64,
+    /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
+    /// nothing is in view.
+    max_error_px: Option<f64>,
+    /// Edges (as published, sides) that asked for more segments than the partitioning has.
+    factors_capped: u64,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -265,6 +283,8 @@ impl Stats {
             leaks: None,
             folds: measured.folds,
             not_finite: measured.not_finite,
+            max_error_px: None,
+            factors_capped: 0,
             ms,
         }
     }

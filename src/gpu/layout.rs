@@ -30,7 +30,8 @@ pub struct Params {
     pub factor_count: u32,
     pub curve_count: u32,
     pub edges: u32,
-    pub _pad: u32,
+    /// Px.
+    pub tolerance: f32,
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

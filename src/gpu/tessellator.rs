@@ -127,7 +127,7 @@ impl Tessellator {
 
     /// Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes nothing.
     fn params_of(&self, inputs: &Inputs) -> Params {
-        let adaptive = inputs.lod != Lod::Uniform;
+        let (adaptive, by_error) = (inputs.lod != Lod::Uniform, inputs.lod == Lod::Error);
         let looks = adaptive || inputs.clip != Clip::Off;
         let view = LodView {
             clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
@@ -137,7 +137,7 @@ impl Tessellator {
         Params {
             view: if looks { view } else { bytemuck::Zeroable::zeroed() },
             factor: if adaptive { 0.0 } else { inputs.factor },
-            pixels_per_segment: if adaptive { inputs.pixels } else { 0.0 },
+            pixels_per_segment: if adaptive && !by_error { inputs.pixels } else { 0.0 },
             surface: inputs.surface as u32,
             partitioning: inputs.partitioning as u32,
             lod: inputs.lod as u32,
@@ -147,7 +147,7 @@ impl Tessellator {
             factor_count: self.buffers.factor_count,
             curve_count: self.buffers.curve_count,
             edges: inputs.edges as u32,
-            _pad: 0,
+            tolerance: if by_error { inputs.tolerance } else { 0.0 },
         }
     }
 

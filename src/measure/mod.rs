@@ -2,6 +2,7 @@
 
 mod chart;
 mod cracks;
+mod deviation;
 mod folds;
 mod picture;
 mod rims;
@@ -10,6 +11,7 @@ mod sweep;
 
 pub use chart::{CHART_RANGE, ChartError, sweep_chart, write_text};
 pub use cracks::{CrackedEdge, Cracks, ulp};
+pub use deviation::{Deviant, Deviation};
 pub use picture::{CompareError, Comparison, compare};
 pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims};
 pub use survey::{Measured, Survey};

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::mesh::{Side, Topology};
-use crate::tessellate::{Edges, PatchFactors, Vertex, outer_count, point_count, segments};
+use crate::tessellate::{Edges, Partitioning, PatchFactors, Vertex, outer_count, point_count, segments};
 
 /// A vertex on a patch's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,6 +39,12 @@ impl AskedFactors {
 
     pub fn into_factors(self) -> Vec<f32> {
         self.factors
+    }
+
+    /// How many are larger than a partitioning's largest.
+    pub fn beyond(&self, partitioning: Partitioning) -> u64 {
+        let most = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
+        self.factors.iter().filter(|&&factor| factor > most).count() as u64
     }
 
     /// The factor that a side asked for.

@@ -2,13 +2,13 @@
 
 use bytemuck::{Pod, Zeroable};
 use clap::ValueEnum;
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::{
-    Clip, ControlNet, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, Surface, center_control_point, domain_point,
-    domain_triangle, edge_control_point, edge_length_factor, edge_normal, edge_position, edge_uv, linear_normal,
-    linear_uv, pack_normal, paper_edge_factor, patch_is_unseen, patch_position, point_count, process, round_pow2,
-    straight_control_point, triangle_count,
+    Clip, ControlNet, EDGE_SHARE, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, Surface, center_control_point,
+    domain_point, domain_triangle, edge_control_point, edge_error_factor, edge_length_factor, edge_normal,
+    edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, pack_normal, paper_edge_factor,
+    patch_is_unseen, patch_position, point_count, process, round_pow2, straight_control_point, triangle_count,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -33,6 +33,8 @@ pub struct Inputs {
     pub lod: Lod,
     /// Px a segment, for adaptive LOD.
     pub pixels: f32,
+    /// Under LOD by error: the distance in px that what is emitted keeps to the surface.
+    pub tolerance: f32,
     pub clip: Clip,
     pub view: LodView,
 }
@@ -97,7 +99,7 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let mut out = Tessellated::default();
     for patch in 0..topology.patches.len() as u32 {
         let net = nets.patch(patch);
-        let mut factors = nets.patch_factors(inputs.partitioning, &edge_factors, patch);
+        let mut factors = nets.patch_factors(inputs, &edge_factors, patch);
         if patch_is_unseen(inputs.clip, &inputs.view, &net) {
             factors = PatchFactors::zeroed();
         }
@@ -115,7 +117,7 @@ pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let nets = Nets::new(mesh, topology, inputs);
     let edge_factors = nets.edge_factors(inputs);
     let counts = (0..topology.patches.len() as u32).map(|patch| {
-        let factors = nets.patch_factors(inputs.partitioning, &edge_factors, patch);
+        let factors = nets.patch_factors(inputs, &edge_factors, patch);
         (u64::from(point_count(factors)), u64::from(triangle_count(factors)))
     });
     counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1))
@@ -124,6 +126,36 @@ pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
 /// The factors that LOD gives: one for each edge, or as published one for each curve.
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     Nets::new(mesh, topology, inputs).edge_factors(inputs)
+}
+
+/// The surface that a tessellation stands for, at any place and in double precision.
+pub struct Limit<'a>(Nets<'a>);
+
+impl<'a> Limit<'a> {
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
+        Self(Nets::new(mesh, topology, inputs))
+    }
+
+    /// A patch's control net, for [`Self::position`].
+    pub fn net(&self, patch: u32) -> ControlNet {
+        self.0.patch(patch)
+    }
+
+    /// The point at weights `u` and `v` of a patch; w is the rest. Object units.
+    pub fn position(&self, net: &ControlNet, u: f64, v: f64) -> DVec3 {
+        let weights = [u, v, 1.0 - u - v];
+        let [a, b, c] = net.corners.map(Vec3::as_dvec3);
+        if self.0.surface == Surface::Flat {
+            return a * weights[0] + b * weights[1] + c * weights[2];
+        }
+        let [x, y, z] = weights;
+        let [ab, ba, bc, cb, ca, ac] = net.edges.map(Vec3::as_dvec3);
+        let edge = |a: DVec3, ab: DVec3, ba: DVec3, x: f64, y: f64| a * (x * x * x) + (ab * x + ba * y) * (3.0 * x * y);
+        edge(a, ab, ba, x, y)
+            + edge(b, bc, cb, y, z)
+            + edge(c, ca, ac, z, x)
+            + net.center.as_dvec3() * (6.0 * x * y * z)
+    }
 }
 
 /// Control nets of a mesh: two control points a curve, one a patch.
@@ -161,28 +193,45 @@ impl<'a> Nets<'a> {
 
     /// The largest factor that any of an edge's curves asks for; as published, what each curve asks for.
     fn edge_factors(&self, inputs: &Inputs) -> Vec<f32> {
-        let asked = |form: fn(&LodView, f32, [Vec3; 4]) -> f32, curve: u32| {
+        let asked = |form: fn(&Inputs, [Vec3; 4]) -> f32, curve: u32| {
             let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
             let [ab, ba] = self.curve_nets[curve as usize];
-            form(&inputs.view, inputs.pixels, [a, ab, ba, b])
+            form(inputs, [a, ab, ba, b])
         };
-        let largest = |form, curves: &[u32]| (curves[0]..curves[1]).map(|c| asked(form, c)).fold(1.0, f32::max);
+        let largest = |form: fn(&Inputs, [Vec3; 4]) -> f32, curves: &[u32]| {
+            (curves[0]..curves[1]).map(|c| asked(form, c)).fold(1.0, f32::max)
+        };
         let edge = |curves: &[u32]| {
             let factor = match inputs.lod {
                 Lod::Uniform => inputs.factor,
-                Lod::Paper => largest(paper_edge_factor, curves),
-                Lod::EdgeLength => largest(edge_length_factor, curves),
+                Lod::Paper => largest(|inputs, net| paper_edge_factor(&inputs.view, inputs.pixels, net), curves),
+                Lod::EdgeLength => largest(|inputs, net| edge_length_factor(&inputs.view, inputs.pixels, net), curves),
+                Lod::Error if inputs.surface == Surface::Flat => 1.0,
+                Lod::Error => {
+                    largest(|inputs, net| edge_error_factor(&inputs.view, EDGE_SHARE * inputs.tolerance, net), curves)
+                }
             };
-            if inputs.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
+            match (inputs.lod, inputs.partitioning) {
+                (Lod::Error, partitioning) => level(partitioning, factor),
+                (_, Partitioning::Pow2) => round_pow2(factor),
+                _ => factor,
+            }
         };
         self.curves.factor_curves.windows(2).map(edge).collect()
     }
 
-    /// Factor i belongs to the edge opposite corner i: side i + 1. Inside: the largest of the three.
-    fn patch_factors(&self, partitioning: Partitioning, edge_factors: &[f32], patch: u32) -> PatchFactors {
+    /// Factor i belongs to the edge opposite corner i: side i + 1. Inside: the largest of the three, or what the error
+    /// asks for.
+    fn patch_factors(&self, inputs: &Inputs, edge_factors: &[f32], patch: u32) -> PatchFactors {
+        let Inputs { view, tolerance, partitioning, .. } = inputs;
         let sides = self.topology.patches[patch as usize].sides;
         let edges = [1, 2, 0].map(|k: usize| edge_factors[self.curves.factor(self.topology, sides[k]) as usize]);
-        process(partitioning, edges, edges[0].max(edges[1]).max(edges[2]))
+        let inside = if inputs.lod == Lod::Error && inputs.surface != Surface::Flat {
+            inside_error_factor(view, *tolerance, *partitioning, &self.patch(patch), edges)
+        } else {
+            edges[0].max(edges[1]).max(edges[2])
+        };
+        process(*partitioning, edges, inside)
     }
 
     /// The curve of a patch's side, and whether the side runs against it.

@@ -3,6 +3,7 @@
 
 mod cull;
 pub mod domain;
+mod error;
 pub mod factors;
 mod lod;
 mod mesh;
@@ -10,6 +11,7 @@ mod surface;
 
 pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outside, patch_is_unseen, planes_outside};
 pub use domain::{domain_point, domain_triangle};
+pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
     FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count,
     process, round_pow2, segments, triangle_count,
@@ -17,7 +19,7 @@ pub use factors::{
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, edge_length_factor, near_edge_factor, paper_edge_factor, project_and_scale,
 };
-pub use mesh::{Edges, Inputs, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
+pub use mesh::{Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,
     linear_uv, pack_normal, patch_position, straight_control_point, unpack_normal,

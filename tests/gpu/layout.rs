@@ -67,6 +67,7 @@ fn shared_structs_have_one_layout() {
         factor_count,
         curve_count,
         edges,
+        tolerance,
     });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });

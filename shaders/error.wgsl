@@ -1,0 +1,209 @@
+// How many segments keep what is emitted within a distance of the surface, in px on screen. Twin:
+// src/tessellate/error.rs.
+
+struct Sight {
+    nearest: f32,
+    farthest: f32,
+    least: vec2<f32>,
+    greatest: vec2<f32>,
+}
+
+// Edges use up only a part of the tolerance: the rest is for the rows beside them, which bend in other directions too.
+const EDGE_SHARE: f32 = 0.75;
+
+fn no_sight() -> Sight {
+    return Sight(3.4e38, 0.0, vec2<f32>(3.4e38), vec2<f32>(-3.4e38));
+}
+
+fn widen(view: LodView, sight: Sight, p: vec3<f32>) -> Sight {
+    let clip = view.clip_from_object * vec4<f32>(p, 1.0);
+    let depth = max(clip.w, clip.z);
+    let beyond = beyond_near(clip);
+    let place = clip.xy / depth;
+    return Sight(
+        min(sight.nearest, depth),
+        max(sight.farthest, depth),
+        min(sight.least, select(vec2<f32>(-1.0), place, beyond)),
+        max(sight.greatest, select(vec2<f32>(1.0), place, beyond)),
+    );
+}
+
+fn edge_sight(view: LodView, a: vec3<f32>, ab: vec3<f32>, ba: vec3<f32>, b: vec3<f32>) -> Sight {
+    return widen(view, widen(view, widen(view, widen(view, no_sight(), a), ab), ba), b);
+}
+
+fn net_sight(view: LodView, net: ControlNet) -> Sight {
+    var sight = widen(view, no_sight(), net.center);
+    for (var k = 0u; k < 3u; k++) {
+        sight = widen(view, sight, net.corners[k]);
+        sight = widen(view, sight, net.edges[2u * k]);
+        sight = widen(view, sight, net.edges[2u * k + 1u]);
+    }
+    return sight;
+}
+
+fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
+    let nearest = own.nearest + share * (other.nearest - own.nearest);
+    // Places on screen are averages by depth.
+    let reach = min(share * other.farthest / nearest, 1.0);
+    return Sight(
+        nearest,
+        other.farthest,
+        own.least + (other.least - own.least) * reach,
+        own.greatest + (other.greatest - own.greatest) * reach,
+    );
+}
+
+// The most that a difference of two points can look, in px.
+fn seen_length(view: LodView, sight: Sight, difference: vec3<f32>) -> f32 {
+    let across = vec2<f32>(dot(clip_row(view, 0u), difference), dot(clip_row(view, 1u), difference));
+    let deep = dot(clip_row(view, 3u), difference);
+    let a = abs(across - sight.least * deep);
+    let b = abs(across - sight.greatest * deep);
+    // Divided first: squares of tiny lengths are none.
+    return length(max(a, b) / sight.nearest * view.half_viewport);
+}
+
+// Levels are factors whose rows of points nest, so that the triangles between two rows reach no farther along them than a
+// segment.
+fn level(partitioning: u32, least: f32) -> f32 {
+    let odd = partitioning == PARTITIONING_FRACTIONAL_ODD;
+    if least > select(64.0, 33.0, odd) {
+        return max(least, 64.5);
+    }
+    if odd {
+        if least <= 1.0 {
+            return 1.0;
+        }
+        return 1.0 + round_pow2(max(least - 1.0, 2.0));
+    }
+    if partitioning == PARTITIONING_FRACTIONAL_EVEN {
+        return round_pow2(max(least, 2.0));
+    }
+    if partitioning == PARTITIONING_INTEGER && least <= 4.0 {
+        return ceil(least);
+    }
+    return round_pow2(least);
+}
+
+// sqrt(3/4 d / tolerance), d the larger second difference (Wang 1984).
+fn edge_error_factor(
+    view: LodView,
+    tolerance: f32,
+    a: vec3<f32>,
+    ab: vec3<f32>,
+    ba: vec3<f32>,
+    b: vec3<f32>,
+) -> f32 {
+    let sight = edge_sight(view, a, ab, ba, b);
+    let near_a = seen_length(view, sight, a - ab * 2.0 + ba);
+    let near_b = seen_length(view, sight, ab - ba * 2.0 + b);
+    return at_least_one(sqrt(0.75 * max(near_a, near_b) / tolerance));
+}
+
+// The control point with these three indices, in any order: (0, 0, 1) is b210.
+fn control_point(net: ControlNet, i: u32, j: u32, l: u32) -> vec3<f32> {
+    if i == j && j == l {
+        return net.corners[i];
+    }
+    if i != j && j != l && l != i {
+        return net.center;
+    }
+    // The index that comes twice, and the other.
+    let twice = select(j, i, i == j || i == l);
+    let once = i + j + l - 2u * twice;
+    if once == (twice + 1u) % 3u {
+        return net.edges[2u * twice];
+    }
+    return net.edges[2u * once + 1u];
+}
+
+// A sixth of the second derivatives at corner i: along the edge opposite corner k twice, along and inward, inward twice.
+fn second_differences(net: ControlNet, i: u32, k: u32) -> array<vec3<f32>, 3> {
+    let p = (k + 1u) % 3u;
+    let q = (k + 2u) % 3u;
+    let pp = control_point(net, i, p, p);
+    let pq = control_point(net, i, p, q);
+    let qq = control_point(net, i, q, q);
+    let kp = control_point(net, i, k, p);
+    let kq = control_point(net, i, k, q);
+    let kk = control_point(net, i, k, k);
+    let along = pp - pq * 2.0 + qq;
+    let mixed = (kp - kq - (pp - qq) * 0.5) * (2.0 / 3.0);
+    let inward = (kk - kp - kq + (pp + pq * 2.0 + qq) * 0.25) * (4.0 / 9.0);
+    return array<vec3<f32>, 3>(along, mixed, inward);
+}
+
+fn seen_differences(view: LodView, sight: Sight, net: ControlNet, k: u32) -> vec3<f32> {
+    var largest = vec3<f32>(0.0);
+    for (var i = 0u; i < 3u; i++) {
+        let own = second_differences(net, i, k);
+        let seen = vec3<f32>(
+            seen_length(view, sight, own[0]),
+            seen_length(view, sight, own[1]),
+            seen_length(view, sight, own[2]),
+        );
+        largest = max(largest, seen);
+    }
+    return largest;
+}
+
+// Filip et al. 1986.
+fn row_error(seen: vec3<f32>, reach: f32, height: f32) -> f32 {
+    return 0.751 * (seen.x * reach * reach + 2.0 * seen.y * reach * height + seen.z * height * height);
+}
+
+fn inner_error(view: LodView, net: ControlNet, segments: f32) -> f32 {
+    let sight = net_sight(view, net);
+    let size = 1.0 / segments;
+    var worst = 0.0;
+    for (var k = 0u; k < 3u; k++) {
+        let seen = seen_differences(view, sight, net, k);
+        worst = max(worst, max(row_error(seen, size, size), 1.001 * seen.x * size * size));
+    }
+    return worst;
+}
+
+fn rim_error(view: LodView, net: ControlNet, k: u32, factor: f32, segments: f32) -> f32 {
+    let share = (2.0 / 3.0) / segments;
+    let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
+    let p = (k + 1u) % 3u;
+    let q = (k + 2u) % 3u;
+    let edge = edge_sight(view, net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]);
+    let sight = mixed_sight(edge, net_sight(view, net), outside);
+    var seen = seen_differences(view, sight, net, k);
+    let at_p = seen_length(view, sight, second_differences(net, p, k)[0]);
+    let at_q = seen_length(view, sight, second_differences(net, q, k)[0]);
+    let at_k = seen_length(view, sight, second_differences(net, k, k)[0]);
+    let own = max(at_p, at_q);
+    seen.x = own + share * max(at_k - own, 0.0);
+    let size = 1.0 / segments;
+    return row_error(seen, max(size, 1.0 / factor), size);
+}
+
+fn inside_error_factor(
+    view: LodView,
+    tolerance: f32,
+    partitioning: u32,
+    net: ControlNet,
+    edges: vec3<f32>,
+) -> f32 {
+    let minimal = max(max(edges.x, edges.y), edges.z) <= 1.0;
+    let single = inner_error(view, net, 1.0);
+    if minimal && single <= tolerance {
+        return 1.0;
+    }
+    // Errors fall with the square of the number of segments. One alone would act as two.
+    var inside = level(partitioning, max(sqrt(single / tolerance), 2.0));
+    for (var step = 0u; step < 6u; step++) {
+        var rims = 0.0;
+        for (var k = 0u; k < 3u; k++) {
+            rims = max(rims, rim_error(view, net, k, edges[k], inside));
+        }
+        if rims <= tolerance || inside > 64.0 {
+            break;
+        }
+        inside = level(partitioning, inside + 1.0);
+    }
+    return inside;
+}

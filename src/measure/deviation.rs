@@ -1,0 +1,125 @@
+//! How far what was emitted is from the surface that it stands for, seen from a view.
+
+use std::thread;
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+
+use crate::mesh::{Mesh, Topology};
+use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, Limit, Vertex};
+
+/// The largest distance on screen between a point of what was emitted and the surface's at the same place of its domain.
+/// That is no less than the distance to the nearest point of the surface, and is what bounds on the error speak of.
+pub struct Deviation<'a> {
+    limit: Limit<'a>,
+    clip_from_object: DMat4,
+    half_viewport: DVec2,
+    worst: Option<Deviant>,
+}
+
+/// Where a distance on screen is largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviant {
+    pub px: f64,
+    pub patch: u32,
+    /// What was emitted and what it stands for, in object units.
+    pub emitted: DVec3,
+    pub limit: DVec3,
+}
+
+/// Triangles up to which each is sampled at all points that divide its edges in 8; four times as many in 4; else 2.
+const FINE: usize = 100_000;
+
+impl<'a> Deviation<'a> {
+    /// Nothing seen yet of a tessellation with these inputs, whose view is the one measured in.
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
+        Self {
+            limit: Limit::new(mesh, topology, inputs),
+            clip_from_object: inputs.view.clip_from_object.as_dmat4(),
+            half_viewport: inputs.view.half_viewport.as_dvec2(),
+            worst: None,
+        }
+    }
+
+    /// Samples triangles (indices into `vertices`) with a grid that divides their edges; `total` is how many there are
+    /// in all. Corners of triangles lie on the surface but for rounding, and are not sampled.
+    pub fn take(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]], total: u64) {
+        let steps = match total as usize {
+            0..=FINE => 8,
+            total if total <= 10 * FINE => 4,
+            _ => 2,
+        };
+        let workers = thread::available_parallelism().map_or(1, |cores| cores.get());
+        let share = triangles.len().div_ceil(workers).max(1);
+        let this = &*self;
+        let worst = thread::scope(|scope| {
+            let run = |part| scope.spawn(move || this.worst_of(vertices, part, steps));
+            let threads: Vec<_> = triangles.chunks(share).map(run).collect();
+            let found = threads
+                .into_iter()
+                .filter_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            found.reduce(worse)
+        });
+        self.worst = self.worst.into_iter().chain(worst).reduce(worse);
+    }
+
+    /// The worst so far; none if nothing was in view.
+    pub fn worst(&self) -> Option<Deviant> {
+        self.worst
+    }
+
+    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]], steps: u32) -> Option<Deviant> {
+        let mut known = None;
+        let worst = triangles.iter().filter_map(|triangle| {
+            let corners = triangle.map(|i| &vertices[i as usize]);
+            // Triangles come patch after patch.
+            let patch = corners[0].patch();
+            let (_, net) =
+                known.take().filter(|(of, _)| *of == patch).unwrap_or_else(|| (patch, self.limit.net(patch)));
+            let worst = self.worst_on(corners, &net, steps);
+            known = Some((patch, net));
+            worst
+        });
+        worst.reduce(worse)
+    }
+
+    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, steps: u32) -> Option<Deviant> {
+        let patch = corners[0].patch();
+        let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
+        let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
+        let mut worst: Option<Deviant> = None;
+        for i in 0..=steps {
+            for j in 0..=steps - i {
+                if [i, j, steps - i - j].contains(&steps) {
+                    continue;
+                }
+                let weights = [i, j, steps - i - j].map(|x| f64::from(x) / f64::from(steps));
+                let [u, v] = [0, 1].map(|k| (0..3).map(|c| weights[c] * domains[c][k]).sum());
+                let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
+                let limit = self.limit.position(net, u, v);
+                let px = self.distance_px(emitted, limit);
+                worst = worst.into_iter().chain(px.map(|px| Deviant { px, patch, emitted, limit })).reduce(worse);
+            }
+        }
+        worst
+    }
+
+    /// None where neither is in view, or one is cut off by the near plane.
+    fn distance_px(&self, a: DVec3, b: DVec3) -> Option<f64> {
+        let [a, b] = [a, b].map(|p| self.clip_from_object * p.extend(1.0));
+        // Depth is reversed.
+        let beyond_near = |clip: DVec4| clip.w > 0.0 && clip.z <= clip.w;
+        if !(in_view(a) || in_view(b)) || !beyond_near(a) || !beyond_near(b) {
+            return None;
+        }
+        let place = |clip: DVec4| clip.truncate().truncate() / clip.w * self.half_viewport;
+        Some(place(a).distance(place(b)))
+    }
+}
+
+fn in_view(clip: DVec4) -> bool {
+    clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w
+}
+
+fn worse(a: Deviant, b: Deviant) -> Deviant {
+    if b.px > a.px { b } else { a }
+}

@@ -1,0 +1,340 @@
+//! How many segments keep what is emitted within a distance of the surface, in px on screen. Twin: `shaders/error.wgsl`.
+//!
+//! The distance between a polynomial and its linear interpolation is bounded by second derivatives, and those of a
+//! Bézier curve or triangle by second differences of its control points (G. Wang: *The subdivision method for finding
+//! the intersection between two Bézier curves or surfaces*, 1984; D. Filip, R. Magedson, R. Markot: *Surface algorithms
+//! using bounds on derivatives*, 1986). Differences are taken in object units and then seen on screen: that of two
+//! points a and b is (a.xy - b.xy / b.w * a.w) / a.w in clip space, so no more than the largest |d.xy - s d.w| / w, where
+//! d is the difference, w the least depth of the control points, and s anywhere between their least and greatest x / w
+//! and y / w.
+
+use glam::{Vec2, Vec3};
+
+use super::factors::{Partitioning, round_pow2};
+use super::lod::{LodView, at_least_one, beyond_near, clip_row};
+use super::surface::ControlNet;
+
+/// How large differences between control points can look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// The least and the greatest depth (w); not nearer than the near plane, in front of which nothing is seen.
+    pub nearest: f32,
+    pub farthest: f32,
+    /// Least and greatest x / w and y / w: of control points beyond the near plane, or of all that is in view where one
+    /// isn't.
+    pub least: Vec2,
+    pub greatest: Vec2,
+}
+
+/// The part of the tolerance that edges use up: the rest is for the rows beside them, which bend in other directions too.
+pub const EDGE_SHARE: f32 = 0.75;
+
+/// Of nothing: to be widened.
+fn no_sight() -> Sight {
+    Sight { nearest: 3.4e38, farthest: 0.0, least: Vec2::splat(3.4e38), greatest: Vec2::splat(-3.4e38) }
+}
+
+/// The same with one more control point.
+pub fn widen(view: &LodView, sight: Sight, p: Vec3) -> Sight {
+    let clip = view.clip_from_object * p.extend(1.0);
+    let depth = clip.w.max(clip.z);
+    let beyond = beyond_near(clip);
+    let place = Vec2::new(clip.x, clip.y) / depth;
+    Sight {
+        nearest: sight.nearest.min(depth),
+        farthest: sight.farthest.max(depth),
+        least: sight.least.min(if beyond { place } else { Vec2::NEG_ONE }),
+        greatest: sight.greatest.max(if beyond { place } else { Vec2::ONE }),
+    }
+}
+
+/// Of an edge's four control points.
+pub fn edge_sight(view: &LodView, [a, ab, ba, b]: [Vec3; 4]) -> Sight {
+    widen(view, widen(view, widen(view, widen(view, no_sight(), a), ab), ba), b)
+}
+
+/// Of a patch's ten.
+pub fn net_sight(view: &LodView, net: &ControlNet) -> Sight {
+    let mut sight = widen(view, no_sight(), net.center);
+    for k in 0..3 {
+        sight = widen(view, sight, net.corners[k]);
+        sight = widen(view, sight, net.edges[2 * k]);
+        sight = widen(view, sight, net.edges[2 * k + 1]);
+    }
+    sight
+}
+
+/// Of points that are `share` of something seen so, and otherwise of `own`, whose sight is a part of that.
+pub fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
+    let nearest = own.nearest + share * (other.nearest - own.nearest);
+    // Places on screen are averages by depth.
+    let reach = (share * other.farthest / nearest).min(1.0);
+    Sight {
+        nearest,
+        farthest: other.farthest,
+        least: own.least + (other.least - own.least) * reach,
+        greatest: own.greatest + (other.greatest - own.greatest) * reach,
+    }
+}
+
+/// The most that a difference of two points can look, in px.
+pub fn seen_length(view: &LodView, sight: Sight, difference: Vec3) -> f32 {
+    let across = Vec2::new(clip_row(view, 0).dot(difference), clip_row(view, 1).dot(difference));
+    let deep = clip_row(view, 3).dot(difference);
+    let a = (across - sight.least * deep).abs();
+    let b = (across - sight.greatest * deep).abs();
+    // Divided first: squares of tiny lengths are none.
+    (a.max(b) / sight.nearest * view.half_viewport).length()
+}
+
+/// The least factor, `least` or more, whose rows of points nest with those of all other levels: 1 to 4, 8, 16, 32, 64
+/// where any number of segments can be, and the like for even and odd numbers.
+///
+/// The tessellator joins rows of different numbers of segments as their points come up in one fixed order, in which each
+/// new point halves the widest gap. Rows of numbers that are no powers of two (or one more) are uneven in that order, and
+/// triangles between them reach along the rows by up to five segments, which costs up to 25 times the error of one. For
+/// levels it is one segment. What is beyond the last level is asked for as it is, so that one can tell.
+pub fn level(partitioning: Partitioning, least: f32) -> f32 {
+    let odd = partitioning == Partitioning::FractionalOdd;
+    if least > if odd { 33.0 } else { 64.0 } {
+        return least.max(64.5);
+    }
+    if odd {
+        return if least <= 1.0 { 1.0 } else { 1.0 + round_pow2((least - 1.0).max(2.0)) };
+    }
+    if partitioning == Partitioning::FractionalEven {
+        return round_pow2(least.max(2.0));
+    }
+    if partitioning == Partitioning::Integer && least <= 4.0 {
+        return least.ceil();
+    }
+    round_pow2(least)
+}
+
+/// The fewest segments that keep an edge within `tolerance` px of its cubic: sqrt(3/4 d / tolerance), d the larger second
+/// difference (Wang 1984).
+pub fn edge_error_factor(view: &LodView, tolerance: f32, control_points: [Vec3; 4]) -> f32 {
+    let sight = edge_sight(view, control_points);
+    let [a, ab, ba, b] = control_points;
+    let near_a = seen_length(view, sight, a - ab * 2.0 + ba);
+    let near_b = seen_length(view, sight, ab - ba * 2.0 + b);
+    at_least_one((0.75 * near_a.max(near_b) / tolerance).sqrt())
+}
+
+/// The control point with these three indices, in any order: (0, 0, 1) is b210.
+pub fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
+    if i == j && j == l {
+        return net.corners[i];
+    }
+    if i != j && j != l && l != i {
+        return net.center;
+    }
+    // The index that comes twice, and the other.
+    let twice = if i == j || i == l { i } else { j };
+    let once = i + j + l - 2 * twice;
+    if once == (twice + 1) % 3 { net.edges[2 * twice] } else { net.edges[2 * once + 1] }
+}
+
+/// A sixth of a patch's second derivatives at corner `i`: twice along the edge opposite corner `k`; along it and inward,
+/// which is 2/3 of the median towards `k`, as far in as the tessellator puts a ring for each segment; and twice inward.
+pub fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
+    let p = (k + 1) % 3;
+    let q = (k + 2) % 3;
+    let pp = control_point(net, i, p, p);
+    let pq = control_point(net, i, p, q);
+    let qq = control_point(net, i, q, q);
+    let kp = control_point(net, i, k, p);
+    let kq = control_point(net, i, k, q);
+    let kk = control_point(net, i, k, k);
+    let along = pp - pq * 2.0 + qq;
+    let mixed = (kp - kq - (pp - qq) * 0.5) * (2.0 / 3.0);
+    let inward = (kk - kp - kq + (pp + pq * 2.0 + qq) * 0.25) * (4.0 / 9.0);
+    [along, mixed, inward]
+}
+
+/// The largest of them at any corner as they are seen, in px.
+pub fn seen_differences(view: &LodView, sight: Sight, net: &ControlNet, k: usize) -> [f32; 3] {
+    let mut largest = [0.0; 3];
+    for i in 0..3 {
+        let own = second_differences(net, i, k);
+        for n in 0..3 {
+            largest[n] = seen_length(view, sight, own[n]).max(largest[n]);
+        }
+    }
+    largest
+}
+
+/// The bound on the error of triangles that reach so far along an edge and inward, in px (Filip et al. 1986): 6/8 of
+/// second differences. A thousandth more, as points of the domain are rounded to 16.16.
+pub fn row_error(seen: [f32; 3], reach: f32, height: f32) -> f32 {
+    0.751 * (seen[0] * reach * reach + 2.0 * seen[1] * reach * height + seen[2] * height * height)
+}
+
+/// The bound for all rows between rings if there are `segments` inside, and for the triangle in the middle, which has
+/// three edges of one segment: 6/6 of the largest second difference along one.
+pub fn inner_error(view: &LodView, net: &ControlNet, segments: f32) -> f32 {
+    let sight = net_sight(view, net);
+    let size = 1.0 / segments;
+    let mut worst = 0.0f32;
+    for k in 0..3 {
+        let seen = seen_differences(view, sight, net, k);
+        worst = worst.max(row_error(seen, size, size)).max(1.001 * seen[0] * size * size);
+    }
+    worst
+}
+
+/// The bound for the row along the edge opposite corner `k`, which has `factor` segments, while there are `segments`
+/// inside. The row is 2/3 of a segment high; of its points' control points the third corner's share is small.
+pub fn rim_error(view: &LodView, net: &ControlNet, k: usize, factor: f32, segments: f32) -> f32 {
+    let share = (2.0 / 3.0) / segments;
+    let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
+    let p = (k + 1) % 3;
+    let q = (k + 2) % 3;
+    let edge = [net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]];
+    let sight = mixed_sight(edge_sight(view, edge), net_sight(view, net), outside);
+    let mut seen = seen_differences(view, sight, net, k);
+    let at_p = seen_length(view, sight, second_differences(net, p, k)[0]);
+    let at_q = seen_length(view, sight, second_differences(net, q, k)[0]);
+    let at_k = seen_length(view, sight, second_differences(net, k, k)[0]);
+    seen[0] = at_p.max(at_q) + share * (at_k - at_p.max(at_q)).max(0.0);
+    let size = 1.0 / segments;
+    row_error(seen, size.max(1.0 / factor), size)
+}
+
+/// The level that keeps a patch within `tolerance` px of its surface, given the levels of the edges U == 0, V == 0 and
+/// W == 0.
+pub fn inside_error_factor(
+    view: &LodView,
+    tolerance: f32,
+    partitioning: Partitioning,
+    net: &ControlNet,
+    edges: [f32; 3],
+) -> f32 {
+    let minimal = edges[0].max(edges[1]).max(edges[2]) <= 1.0;
+    let single = inner_error(view, net, 1.0);
+    if minimal && single <= tolerance {
+        return 1.0;
+    }
+    // Errors fall with the square of the number of segments. One alone would act as two.
+    let mut inside = level(partitioning, (single / tolerance).sqrt().max(2.0));
+    for _ in 0..6 {
+        let mut rims = 0.0f32;
+        for (k, factor) in edges.into_iter().enumerate() {
+            rims = rims.max(rim_error(view, net, k, factor, inside));
+        }
+        if rims <= tolerance || inside > 64.0 {
+            break;
+        }
+        inside = level(partitioning, inside + 1.0);
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tessellate::{domain_point, domain_triangle, process, triangle_count};
+    use glam::{Mat4, Vec4, vec3};
+
+    const VIEW: LodView = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::splat(100.0) };
+
+    /// A patch between these corners whose centre is lifted by `z`.
+    fn raised(corners: [Vec3; 3], z: f32) -> ControlNet {
+        let third = |a: Vec3, b: Vec3| a.lerp(b, 1.0 / 3.0);
+        let [a, b, c] = corners;
+        let edges = [third(a, b), third(b, a), third(b, c), third(c, b), third(c, a), third(a, c)];
+        ControlNet { corners, edges, center: (a + b + c) / 3.0 + Vec3::Z * z }
+    }
+
+    const CORNERS: [Vec3; 3] = [vec3(0.0, 0.0, 0.5), vec3(0.6, 0.0, 0.5), vec3(0.0, 0.6, 0.5)];
+
+    #[test]
+    fn control_points_are_found_by_their_indices() {
+        let at = |x: f32| Vec3::splat(x);
+        let corners = [at(300.0), at(30.0), at(3.0)];
+        let edges = [at(210.0), at(120.0), at(21.0), at(12.0), at(102.0), at(201.0)];
+        let net = ControlNet { corners, edges, center: at(111.0) };
+        for [i, j, l] in (0..27).map(|n| [n / 9, n / 3 % 3, n % 3]) {
+            let name = [i, j, l].map(|index: usize| [100.0, 10.0, 1.0][index]).iter().sum();
+            assert_eq!(control_point(&net, i, j, l), at(name), "{i} {j} {l}");
+        }
+    }
+
+    #[test]
+    fn a_parabola_takes_the_segments_of_the_closed_form() {
+        // Both second differences are d: n segments are off by 3/4 d / n^2 in the middle of each.
+        let d = 0.2;
+        let net = [vec3(-0.9, 0.0, 0.5), vec3(-0.3, d, 0.5), vec3(0.3, d, 0.5), vec3(0.9, 0.0, 0.5)];
+        let height = 0.75 * d * 100.0;
+        for n in 1..20u8 {
+            let factor = edge_error_factor(&VIEW, height / f32::from(n).powi(2), net);
+            assert!((factor - f32::from(n)).abs() < 1e-3, "{n}: {factor}");
+        }
+    }
+
+    #[test]
+    fn what_is_flat_stays_whole() {
+        let net = raised(CORNERS, 0.0);
+        for partitioning in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
+            assert_eq!(inside_error_factor(&VIEW, 0.25, partitioning, &net, [1.0; 3]), 1.0);
+        }
+        assert_eq!(edge_error_factor(&VIEW, 0.25, [Vec3::X, Vec3::X * 2.0, Vec3::X * 3.0, Vec3::X * 4.0]), 1.0);
+    }
+
+    #[test]
+    fn depth_alone_is_not_seen_without_perspective_and_is_with() {
+        let net = raised(CORNERS, 0.3);
+        assert_eq!(inside_error_factor(&VIEW, 0.25, Partitioning::Integer, &net, [1.0; 3]), 1.0);
+        let mut clip_from_object = Mat4::IDENTITY;
+        clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
+        clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
+        let perspective = LodView { clip_from_object, ..VIEW };
+        assert!(inside_error_factor(&perspective, 0.25, Partitioning::Integer, &net, [1.0; 3]) > 4.0);
+    }
+
+    #[test]
+    fn levels_are_the_least_that_nest() {
+        let of = |partitioning, least: &[f32]| least.iter().map(|&x| level(partitioning, x)).collect::<Vec<_>>();
+        let asked = [1.0, 1.1, 2.5, 3.0, 3.1, 4.5, 8.0, 9.5, 33.0];
+        assert_eq!(of(Partitioning::Integer, &asked), [1.0, 2.0, 3.0, 3.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+        assert_eq!(of(Partitioning::Pow2, &asked), [1.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+        assert_eq!(of(Partitioning::FractionalEven, &asked), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+        assert_eq!(of(Partitioning::FractionalOdd, &asked), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
+        for partitioning in Partitioning::ALL {
+            assert!(
+                level(partitioning, 64.1) > 64.0 && level(partitioning, 1e9) > 64.0,
+                "{partitioning}: one can tell"
+            );
+        }
+    }
+
+    /// How far the triangles of the row along U == 0 reach along it, in the longer of both rows' segments.
+    fn reach(partitioning: Partitioning, factor: f32, inside: f32) -> f64 {
+        let factors = process(partitioning, [factor, inside, inside], inside);
+        let mut longest = 0.0f64;
+        for triangle in 0..triangle_count(factors) {
+            let corners =
+                domain_triangle(factors, triangle).map(|i| domain_point(factors, i).map(|x| f64::from(x) / 65536.0));
+            let beside = |[u, v]: [f64; 2]| u <= v + 1e-4 && u <= 1.0 - u - v + 1e-4;
+            if corners.into_iter().all(beside) && corners.iter().any(|[u, _]| *u == 0.0) {
+                let along = corners.map(|[u, v]| v + u / 2.0);
+                let ends = along.into_iter().fold((1.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+                longest = longest.max(ends.1 - ends.0);
+            }
+        }
+        longest * f64::from(factor.min(inside))
+    }
+
+    #[test]
+    fn rows_of_levels_nest_and_others_reach_far() {
+        for partitioning in Partitioning::ALL {
+            let mut levels: Vec<f32> = (1..=33).map(|least| level(partitioning, least as f32)).collect();
+            levels.dedup();
+            for (&factor, &inside) in levels.iter().flat_map(|a| levels.iter().map(move |b| (a, b))) {
+                let reach = reach(partitioning, factor, inside);
+                assert!(reach < 1.0006, "{partitioning}: {factor} beside {inside} reaches {reach}");
+            }
+        }
+        assert!(reach(Partitioning::Integer, 64.0, 48.0) > 4.9, "the pattern is as it was when levels were made");
+    }
+}

@@ -1,0 +1,132 @@
+//! LOD by error: what is emitted is within the tolerance of the surface, and not much finer.
+
+use glam::Vec2;
+use pnaen::gpu::Timing;
+use pnaen::measure::Deviation;
+use pnaen::mesh::{Mesh, Progress, Shape, Topology};
+use pnaen::render::{Camera, Scene};
+use pnaen::settings::Settings;
+use pnaen::tessellate::{Inputs, Lod, Partitioning, PatchFactors, Surface, Tessellated, segments, tessellate};
+use proptest::prelude::*;
+
+use crate::stability::{Trial, any_trial};
+use crate::{engine, scene};
+
+const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
+
+/// Whether anything asks for more segments than there are, so that no promise is made.
+fn is_capped(partitioning: Partitioning, asked: &[f32], patches: &[PatchFactors]) -> bool {
+    let most = if partitioning == Partitioning::FractionalOdd { 63 } else { 64 };
+    asked.iter().any(|&factor| factor > 64.0) || patches.iter().any(|factors| segments(factors.inside) >= most)
+}
+
+fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
+    let mut deviation = Deviation::new(mesh, topology, inputs);
+    deviation.take(&out.vertices, &out.triangles, out.triangles.len() as u64);
+    deviation.worst().map_or(0.0, |worst| worst.px)
+}
+
+/// What rounding adds to a distance in px: emitted positions are off by a few units in the last place of coordinates
+/// about as large as the distance to the eye.
+fn rounding_px(mesh: &Mesh, inputs: &Inputs) -> f64 {
+    let bounds = mesh.bounds();
+    let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let clip = inputs.view.clip_from_object;
+    let a_unit = clip.row(0).truncate().as_dvec3().length() * f64::from(inputs.view.half_viewport.x);
+    // Nothing is nearer than the near plane; orthographic views have w = 1.
+    let perspective = clip.row(3).truncate() != glam::Vec3::ZERO;
+    let depth = if perspective { f64::from(clip.w_axis.z.abs().max(f32::MIN_POSITIVE)) } else { 1.0 };
+    16.0 * f64::from(largest) * f64::from(f32::EPSILON) * a_unit / depth
+}
+
+fn by_error(settings: Settings, tolerance: f32) -> Settings {
+    Settings { lod: Lod::Error, tolerance, ..settings }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+    #[test]
+    fn any_soup_is_within_the_tolerance(trial in any_trial(), magnitude in -1.0f32..1.5) {
+        let Trial { mesh, settings, camera } = trial;
+        let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+        let settings = by_error(settings, 10f32.powf(magnitude));
+        let inputs = settings.inputs(camera.lod_view(VIEWPORT, &mesh.bounds()));
+        // An eye nearer than f32 can tell has no view.
+        prop_assume!(inputs.view.clip_from_object.is_finite());
+        let out = tessellate(&mesh, &topology, &inputs, None);
+        if !is_capped(settings.partitioning, &out.edge_factors, &out.patch_factors) {
+            let px = deviation_px(&mesh, &topology, &inputs, &out);
+            let most = f64::from(settings.tolerance) + rounding_px(&mesh, &inputs);
+            prop_assert!(px <= most, "{px} px of {} under {:?}", settings.tolerance, settings);
+        }
+    }
+}
+
+/// Tessellates on the device; counts, then what was asked for.
+fn on_device(scene: &mut Scene, settings: &Settings, camera: &Camera) -> (Inputs, Tessellated) {
+    let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
+    engine().count(scene, &inputs, &mut Timing::Off).expect("counts");
+    let out = engine().read_tessellated(scene).expect("a readback");
+    (inputs, out)
+}
+
+/// Around a shape: all of it, close to it, without perspective.
+fn cameras(scene: &Scene) -> [Camera; 4] {
+    let far = Camera::framing(&scene.bounds, VIEWPORT);
+    let close = Camera { distance: 1.4 * scene.bounds.radius(), azimuth: 75.0, ..far };
+    [far, close, Camera { orthographic: true, ..far }, Camera { elevation: -60.0, azimuth: 200.0, ..close }]
+}
+
+#[test]
+fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
+    let (mut closest, mut tried) = (0.0f64, 0);
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = scene(shape);
+        for (index, camera) in cameras(&scene).into_iter().enumerate() {
+            let (surface, tolerance) = if index % 2 == 0 { (Surface::PnAen, 0.5) } else { (Surface::Pn, 2.0) };
+            let partitioning = Partitioning::ALL[(index + shape as usize) % 4];
+            let settings = by_error(Settings { surface, partitioning, ..Settings::default() }, tolerance);
+            let (inputs, out) = on_device(&mut scene, &settings, &camera);
+            if is_capped(partitioning, &out.edge_factors, &out.patch_factors) {
+                continue;
+            }
+            let px = deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out);
+            let share = px / (f64::from(tolerance) + rounding_px(&loaded.mesh, &inputs));
+            assert!(share <= 1.0, "{shape:?} {surface:?} {partitioning}, camera {index}: {px} px of {tolerance}");
+            closest = closest.max(share);
+            tried += 1;
+        }
+    }
+    assert!(tried > 25 && closest > 0.6, "{tried} tried, {closest} of the tolerance used at best");
+}
+
+#[test]
+fn the_device_takes_the_factors_that_the_cpu_does() {
+    let (mut same, mut all) = (0, 0);
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = scene(shape);
+        for (camera, partitioning) in cameras(&scene).into_iter().zip(Partitioning::ALL) {
+            let settings = by_error(Settings { partitioning, ..Settings::default() }, 0.5);
+            let (inputs, out) = on_device(&mut scene, &settings, &camera);
+            let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+            let pairs = out.patch_factors.iter().zip(&here.patch_factors);
+            same += pairs.filter(|(a, b)| a == b).count();
+            all += here.patch_factors.len();
+        }
+    }
+    // Where a bound falls on a level to the last bits, either may be taken.
+    assert!(all > 1000 && same * 1000 >= all * 995, "{same} of {all} patches");
+}
+
+#[test]
+fn what_is_flat_costs_one_triangle_a_patch() {
+    for (shape, surface) in [(Shape::Torus, Surface::Flat), (Shape::Icosahedron, Surface::Flat)] {
+        let (loaded, mut scene) = scene(shape);
+        for partitioning in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
+            let settings = by_error(Settings { surface, partitioning, ..Settings::default() }, 0.01);
+            let [camera, ..] = cameras(&scene);
+            let (_, out) = on_device(&mut scene, &settings, &camera);
+            assert_eq!(out.triangles.len(), loaded.mesh.triangles.len(), "{shape:?} {partitioning}");
+        }
+    }
+}
