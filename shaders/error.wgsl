@@ -80,10 +80,36 @@ fn level(partitioning: u32, least: f32) -> f32 {
     if partitioning == PARTITIONING_FRACTIONAL_EVEN {
         return round_pow2(max(least, 2.0));
     }
-    if partitioning == PARTITIONING_INTEGER && least <= 4.0 {
+    if partitioning == PARTITIONING_INTEGER && least <= 5.0 {
         return ceil(least);
     }
     return round_pow2(least);
+}
+
+// Bit n - 1: whether n segments inside nest with an edge of 5, 8, 9, 16, 17, 32, 33 or 64.
+const NESTING: array<vec2<u32>, 8> = array<vec2<u32>, 8>(
+    vec2<u32>(0xfffff797u, 0xffffffffu),
+    vec2<u32>(0xffffe19fu, 0xffffffffu),
+    vec2<u32>(0xe4078117u, 0xff5c177fu),
+    vec2<u32>(0xe001819fu, 0xfe000007u),
+    vec2<u32>(0x80010117u, 0xe0000005u),
+    vec2<u32>(0x8001819fu, 0xe0000001u),
+    vec2<u32>(0x00010117u, 0x80000001u),
+    vec2<u32>(0x8001819fu, 0x80000001u),
+);
+
+fn nests(factor: f32, segments: u32) -> bool {
+    if factor <= 4.0 || factor > 64.0 {
+        return true;
+    }
+    let power = round_pow2(factor);
+    let above = select(1u, 0u, factor == power);
+    // Of the power of two below or at it: 4, 8, 16, 32, 64.
+    let exponent = ((bitcast<u32>(power) >> 23u) - 127u) - above;
+    var nesting = NESTING;
+    let words = nesting[2u * exponent + above - 5u];
+    let bit = segments - 1u;
+    return ((words[bit >> 5u] >> (bit & 31u)) & 1u) == 1u;
 }
 
 // sqrt(3/4 d / tolerance), d the larger second difference (Wang 1984).
@@ -181,6 +207,19 @@ fn rim_error(view: LodView, net: ControlNet, k: u32, factor: f32, segments: f32)
     return row_error(seen, max(size, 1.0 / factor), size);
 }
 
+fn whole(partitioning: u32, least: f32) -> f32 {
+    if partitioning == PARTITIONING_INTEGER {
+        return ceil(least);
+    }
+    if partitioning == PARTITIONING_POW2 {
+        return round_pow2(least);
+    }
+    if partitioning == PARTITIONING_FRACTIONAL_ODD {
+        return 2.0 * ceil(0.5 * (least - 1.0)) + 1.0;
+    }
+    return 2.0 * ceil(0.5 * least);
+}
+
 fn inside_error_factor(
     view: LodView,
     tolerance: f32,
@@ -194,16 +233,21 @@ fn inside_error_factor(
         return 1.0;
     }
     // Errors fall with the square of the number of segments. One alone would act as two.
-    var inside = level(partitioning, max(sqrt(single / tolerance), 2.0));
-    for (var step = 0u; step < 6u; step++) {
-        var rims = 0.0;
-        for (var k = 0u; k < 3u; k++) {
-            rims = max(rims, rim_error(view, net, k, edges[k], inside));
+    let least = max(sqrt(single / tolerance), 2.0);
+    let last = select(64.0, 63.0, partitioning == PARTITIONING_FRACTIONAL_ODD);
+    var inside = whole(partitioning, least);
+    while inside < last {
+        let segments = u32(inside);
+        if nests(edges.x, segments) && nests(edges.y, segments) && nests(edges.z, segments) {
+            var rims = 0.0;
+            for (var k = 0u; k < 3u; k++) {
+                rims = max(rims, rim_error(view, net, k, edges[k], inside));
+            }
+            if rims <= tolerance {
+                return inside;
+            }
         }
-        if rims <= tolerance || inside > 64.0 {
-            break;
-        }
-        inside = level(partitioning, inside + 1.0);
+        inside = whole(partitioning, inside + 1.0);
     }
     return inside;
 }

@@ -58,7 +58,7 @@ const LODS: [(Lod, &str, &str); 4] = [
         Lod::Error,
         "Error",
         "Every edge and every inside gets the fewest segments that keep it within the tolerance of its surface on screen \
-         (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 4, 8, 16, 32, 64. What is flat stays whole.",
+         (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64. What is flat stays whole.",
     ),
     (
         Lod::EdgeLength,

@@ -87,13 +87,13 @@ pub fn seen_length(view: &LodView, sight: Sight, difference: Vec3) -> f32 {
     (a.max(b) / sight.nearest * view.half_viewport).length()
 }
 
-/// The least factor, `least` or more, whose rows of points nest with those of all other levels: 1 to 4, 8, 16, 32, 64
-/// where any number of segments can be, and the like for even and odd numbers.
+/// The least level, `least` or more: a factor whose rows of points nest with those of all other levels. Levels are 1 to 5,
+/// 8, 16, 32 and 64, of these the powers of two or the even ones, or the odd 1, 3, 5, 9, 17 and 33.
 ///
 /// The tessellator joins rows of different numbers of segments as their points come up in one fixed order, in which each
-/// new point halves the widest gap. Rows of numbers that are no powers of two (or one more) are uneven in that order, and
-/// triangles between them reach along the rows by up to five segments, which costs up to 25 times the error of one. For
-/// levels it is one segment. What is beyond the last level is asked for as it is, so that one can tell.
+/// new point halves the widest gap. Rows of other numbers are uneven in that order, and triangles between them reach along
+/// the rows by up to five segments, which costs up to 25 times the error of one. Between levels it is one segment. What is
+/// beyond the last level is asked for as it is, so that one can tell.
 pub fn level(partitioning: Partitioning, least: f32) -> f32 {
     let odd = partitioning == Partitioning::FractionalOdd;
     if least > if odd { 33.0 } else { 64.0 } {
@@ -105,10 +105,39 @@ pub fn level(partitioning: Partitioning, least: f32) -> f32 {
     if partitioning == Partitioning::FractionalEven {
         return round_pow2(least.max(2.0));
     }
-    if partitioning == Partitioning::Integer && least <= 4.0 {
+    if partitioning == Partitioning::Integer && least <= 5.0 {
         return least.ceil();
     }
     round_pow2(least)
+}
+
+/// Numbers of segments inside whose first ring nests with an edge of 5, 8, 9, 16, 17, 32, 33 or 64 segments: bit n - 1 for
+/// n, 1 to 32 in the first word. A test derives them from the tessellator.
+pub const NESTING: [[u32; 2]; 8] = [
+    [0xfffff797, 0xffffffff],
+    [0xffffe19f, 0xffffffff],
+    [0xe4078117, 0xff5c177f],
+    [0xe001819f, 0xfe000007],
+    [0x80010117, 0xe0000005],
+    [0x8001819f, 0xe0000001],
+    [0x00010117, 0x80000001],
+    [0x8001819f, 0x80000001],
+];
+
+/// Whether the first ring of a patch with `segments` inside nests with an edge of this level. With up to four segments
+/// every ring does; what is beyond the last level is no promise anyway.
+pub fn nests(factor: f32, segments: u32) -> bool {
+    if factor <= 4.0 || factor > 64.0 {
+        return true;
+    }
+    // 5, 8, 9, 16, 17, 32, 33, 64.
+    let power = round_pow2(factor);
+    let above = if factor == power { 0 } else { 1 };
+    // Of the power of two below or at it: 4, 8, 16, 32, 64.
+    let exponent = ((power.to_bits() >> 23) - 127) - above;
+    let words = NESTING[(2 * exponent + above - 5) as usize];
+    let bit = segments - 1;
+    (words[(bit >> 5) as usize] >> (bit & 31)) & 1 == 1
 }
 
 /// The fewest segments that keep an edge within `tolerance` px of its cubic: sqrt(3/4 d / tolerance), d the larger second
@@ -201,8 +230,19 @@ pub fn rim_error(view: &LodView, net: &ControlNet, k: usize, factor: f32, segmen
     row_error(seen, size.max(1.0 / factor), size)
 }
 
-/// The level that keeps a patch within `tolerance` px of its surface, given the levels of the edges U == 0, V == 0 and
-/// W == 0.
+/// The least number of segments, `least` or more, that a partitioning has without fractions: 1, 2, 4 and so on, or even,
+/// or odd ones.
+pub fn whole(partitioning: Partitioning, least: f32) -> f32 {
+    match partitioning {
+        Partitioning::Integer => least.ceil(),
+        Partitioning::Pow2 => round_pow2(least),
+        Partitioning::FractionalOdd => 2.0 * (0.5 * (least - 1.0)).ceil() + 1.0,
+        Partitioning::FractionalEven => 2.0 * (0.5 * least).ceil(),
+    }
+}
+
+/// The fewest segments inside that keep a patch within `tolerance` px of its surface, given the levels of the edges
+/// U == 0, V == 0 and W == 0; of numbers that the partitioning has, and that nest with the edges.
 pub fn inside_error_factor(
     view: &LodView,
     tolerance: f32,
@@ -216,20 +256,24 @@ pub fn inside_error_factor(
         return 1.0;
     }
     // Errors fall with the square of the number of segments. One alone would act as two.
-    let mut inside = level(partitioning, (single / tolerance).sqrt().max(2.0));
-    for _ in 0..6 {
-        let mut rims = 0.0f32;
-        for (k, factor) in edges.into_iter().enumerate() {
-            rims = rims.max(rim_error(view, net, k, factor, inside));
+    let least = (single / tolerance).sqrt().max(2.0);
+    let last = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
+    let mut inside = whole(partitioning, least);
+    while inside < last {
+        let segments = inside as u32;
+        if nests(edges[0], segments) && nests(edges[1], segments) && nests(edges[2], segments) {
+            let mut rims = 0.0f32;
+            for (k, factor) in edges.into_iter().enumerate() {
+                rims = rims.max(rim_error(view, net, k, factor, inside));
+            }
+            if rims <= tolerance {
+                return inside;
+            }
         }
-        if rims <= tolerance || inside > 64.0 {
-            break;
-        }
-        inside = level(partitioning, inside + 1.0);
+        inside = whole(partitioning, inside + 1.0);
     }
     inside
 }
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -296,7 +340,7 @@ mod tests {
     fn levels_are_the_least_that_nest() {
         let of = |partitioning, least: &[f32]| least.iter().map(|&x| level(partitioning, x)).collect::<Vec<_>>();
         let asked = [1.0, 1.1, 2.5, 3.0, 3.1, 4.5, 8.0, 9.5, 33.0];
-        assert_eq!(of(Partitioning::Integer, &asked), [1.0, 2.0, 3.0, 3.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+        assert_eq!(of(Partitioning::Integer, &asked), [1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 8.0, 16.0, 64.0]);
         assert_eq!(of(Partitioning::Pow2, &asked), [1.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
         assert_eq!(of(Partitioning::FractionalEven, &asked), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
         assert_eq!(of(Partitioning::FractionalOdd, &asked), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
@@ -327,12 +371,23 @@ mod tests {
 
     #[test]
     fn rows_of_levels_nest_and_others_reach_far() {
+        // Whatever the levels of its edges, a patch finds numbers that nest with all of them.
         for partitioning in Partitioning::ALL {
             let mut levels: Vec<f32> = (1..=33).map(|least| level(partitioning, least as f32)).collect();
             levels.dedup();
             for (&factor, &inside) in levels.iter().flat_map(|a| levels.iter().map(move |b| (a, b))) {
                 let reach = reach(partitioning, factor, inside);
-                assert!(reach < 1.0006, "{partitioning}: {factor} beside {inside} reaches {reach}");
+                assert!(reach < 1.0011 || inside < 5.0, "{partitioning}: {factor} beside {inside} reaches {reach}");
+            }
+        }
+        let masks = [5, 8, 9, 16, 17, 32, 33, 64].map(|factor| {
+            let bit = |n: u32| u64::from(reach(Partitioning::Integer, factor as f32, n as f32) < 1.0011) << (n - 1);
+            (1..=64).map(bit).sum::<u64>()
+        });
+        assert_eq!(NESTING.map(|[low, high]| u64::from(low) | u64::from(high) << 32), masks, "{masks:#x?}");
+        for (k, factor) in [5.0, 8.0, 9.0, 16.0, 17.0, 32.0, 33.0, 64.0].into_iter().enumerate() {
+            for n in 1..=64 {
+                assert_eq!(nests(factor, n), masks[k] >> (n - 1) & 1 == 1, "{factor} beside {n}");
             }
         }
         assert!(reach(Partitioning::Integer, 64.0, 48.0) > 4.9, "the pattern is as it was when levels were made");

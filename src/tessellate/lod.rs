@@ -15,7 +15,7 @@ pub enum Lod {
     /// As the white paper's for edges beyond the near plane; others are measured at the nearest depth of a sphere around them.
     EdgeLength = 2,
     /// The fewest segments that keep what is emitted within a tolerance in px of the surface, on edges and inside
-    /// (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 4, 8, 16, 32, 64.
+    /// (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64.
     Error = 3,
 }
 
