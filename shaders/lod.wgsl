@@ -4,10 +4,13 @@ const LOD_UNIFORM: u32 = 0u;
 const LOD_PAPER: u32 = 1u;
 const LOD_EDGE_LENGTH: u32 = 2u;
 const LOD_ERROR: u32 = 3u;
+const LOD_DISTANCE: u32 = 4u;
 
 struct LodView {
     clip_from_object: mat4x4<f32>,
     half_viewport: vec2<f32>,
+    eye: vec3<f32>,
+    radius: f32,
 }
 
 // Divides by w as the paper does, so points behind the eye land on the wrong side.
@@ -88,4 +91,13 @@ fn edge_length_factor(
         return paper_edge_factor(view, pixels_per_segment, a, ab, ba, b);
     }
     return near_edge_factor(view, pixels_per_segment, a, ab, ba, b);
+}
+
+fn distance_at(view: LodView, factor: f32, near: f32, far: f32, p: vec3<f32>) -> f32 {
+    let part = (far - distance(p, view.eye) / view.radius) / (far - near);
+    return 1.0 + (factor - 1.0) * clamp(part, 0.0, 1.0);
+}
+
+fn distance_factor(view: LodView, factor: f32, near: f32, far: f32, a: vec3<f32>, b: vec3<f32>) -> f32 {
+    return at_least_one(0.5 * (distance_at(view, factor, near, far, a) + distance_at(view, factor, near, far, b)));
 }

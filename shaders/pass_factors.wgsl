@@ -16,6 +16,9 @@ fn curve_factor(index: u32) -> f32 {
     if params.lod == LOD_PAPER {
         return paper_edge_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
     }
+    if params.lod == LOD_DISTANCE {
+        return distance_factor(params.view, params.factor, params.near, params.far, a, b);
+    }
     if params.lod == LOD_ERROR {
         if params.surface == SURFACE_FLAT {
             return 1.0;

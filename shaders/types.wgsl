@@ -15,6 +15,8 @@ struct Params {
     curve_count: u32,
     edges: u32,
     tolerance: f32,
+    near: f32,
+    far: f32,
 }
 
 // The run of patches that one scan covers, and what the arena holds.

@@ -8,6 +8,8 @@ pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
 pub const PIXELS_RANGE: std::ops::RangeInclusive<f32> = 1.0..=256.0;
 /// The smallest and largest tolerance of LOD by error, in px.
 pub const TOLERANCE_RANGE: std::ops::RangeInclusive<f32> = 0.01..=100.0;
+/// The smallest and largest distance of LOD by distance, in bounding radii.
+pub const DISTANCE_RANGE: std::ops::RangeInclusive<f32> = 0.1..=1000.0;
 /// Memory for a tessellation's output, in bytes.
 pub const ARENA_BYTES: u64 = 256 << 20;
 
@@ -24,6 +26,10 @@ pub struct Settings {
     pub pixels: f32,
     /// Under LOD by error: the distance in px that what is emitted keeps to the surface.
     pub tolerance: f32,
+    /// Under LOD by distance: up to which the factor is `factor`, and from which on it is 1, in bounding radii; the latter
+    /// is larger.
+    pub near: f32,
+    pub far: f32,
     pub clip: Clip,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
@@ -42,6 +48,8 @@ impl Default for Settings {
             lod: Lod::Uniform,
             pixels: 8.0,
             tolerance: 0.25,
+            near: 2.0,
+            far: 10.0,
             clip: Clip::Off,
             overlays: Overlays::default(),
             split: None,
@@ -135,8 +143,8 @@ impl Settings {
 
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
-        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, view }
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } = *self;
+        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, view }
     }
 }
 

@@ -641,6 +641,21 @@ fn stability_looks_into_a_file_that_a_tolerance_closes() {
 }
 
 #[test]
+fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
+    let of = |options: &[&str]| stats(&[&["shape:torus", "--partitioning", "integer"], options].concat());
+    let paper = of(&["--lod", "paper", "--pixels", "4"]);
+    let reached = number(&paper, "/max_error_px");
+    assert!(reached > 0.01, "{paper}");
+    let tolerance = reached.to_string();
+    let by_error = of(&["--lod", "error", "--tolerance", &tolerance]);
+    assert!(number(&by_error, "/max_error_px") <= reached, "{by_error}");
+    assert!(2.0 * number(&by_error, "/triangles_out") < number(&paper, "/triangles_out"), "{by_error}");
+    assert_eq!((number(&by_error, "/factors_capped"), number(&by_error, "/cracks/different_bits")), (0.0, 0.0));
+    let distance = of(&["--lod", "distance", "--factor", "9", "--distances", "2,5", "--measure-error", "false"]);
+    assert!(distance["max_error_px"].is_null() && number(&distance, "/triangles_out") > 256.0, "{distance}");
+}
+
+#[test]
 fn failures_are_one_sentence_and_exit_code_1() {
     let folder = Folder::new("failures");
     let [out, text, broken] = ["out.png", "notes.txt", "broken.gltf"].map(|name| folder.path(name));

@@ -3,7 +3,7 @@
 use super::App;
 use super::text::short;
 use super::widgets::{chooser, heading};
-use crate::settings::{FACTOR_RANGE, Overlay, PIXELS_RANGE, TOLERANCE_RANGE};
+use crate::settings::{DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Name and explanation of each surface, partitioning and overlay.
@@ -52,7 +52,7 @@ const EDGES: [(Edges, &str, &str); 2] = [
          differ in their last bits. Adaptive LOD and clipping switch to the white paper's form too.",
     ),
 ];
-const LODS: [(Lod, &str, &str); 4] = [
+const LODS: [(Lod, &str, &str); 5] = [
     (Lod::Uniform, "Uniform", "The same factor everywhere."),
     (
         Lod::Error,
@@ -66,6 +66,12 @@ const LODS: [(Lod, &str, &str); 4] = [
         "Every edge gets as many segments as its control polygon is long on screen, divided by the px per segment, at \
          least 1; inside, the largest of the three. Edges that are not all in front of the eye are measured where they \
          come nearest.",
+    ),
+    (
+        Lod::Distance,
+        "Distance",
+        "The factor up to a near distance from the eye, 1 from a far one on, and linear between; an edge takes the mean of \
+         its ends. What engines commonly do.",
     ),
     (
         Lod::Paper,
@@ -122,14 +128,16 @@ impl App {
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
         chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
-        let label = ui.label("Factor");
+        let hover = "Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -). Under LOD by distance, the \
+                     largest.";
+        let label = ui.label("Factor").on_hover_text(hover);
         let slider = egui::Slider::new(&mut settings.factor, FACTOR_RANGE)
             .max_decimals(3)
             .logarithmic(true)
             .update_while_editing(false);
-        ui.add_enabled(settings.lod == Lod::Uniform, slider)
+        ui.add_enabled(matches!(settings.lod, Lod::Uniform | Lod::Distance), slider)
             .labelled_by(label.id)
-            .on_hover_text("Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -).")
+            .on_hover_text(hover)
             .on_disabled_hover_text("Adaptive LOD computes a factor for every edge.");
         ui.end_row();
         chooser(ui, "Partitioning", "How factors become segments.", &mut settings.partitioning, &PARTITIONINGS);
@@ -142,23 +150,7 @@ impl App {
         let settings = &mut self.settings;
         egui::Grid::new("lod").num_columns(2).min_col_width(84.0).show(ui, |ui| {
             chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
-            let by_error = settings.lod == Lod::Error;
-            let (name, hover, value, range, decimals) = if by_error {
-                let hover = "How far what is emitted may be from the surface on screen, in px.";
-                ("Tolerance", hover, &mut settings.tolerance, TOLERANCE_RANGE, 2)
-            } else {
-                ("Segment", "Length of a segment on screen, in px.", &mut settings.pixels, PIXELS_RANGE, 1)
-            };
-            let label = ui.label(name).on_hover_text(hover);
-            let slider = egui::Slider::new(value, range)
-                .logarithmic(true)
-                .max_decimals(decimals)
-                .suffix(" px")
-                .update_while_editing(false);
-            ui.add_enabled(settings.lod != Lod::Uniform, slider)
-                .labelled_by(label.id)
-                .on_hover_text(hover)
-                .on_disabled_hover_text("Only adaptive LOD measures on screen.");
+            lod_row(ui, settings);
             ui.end_row();
             chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
         });
@@ -242,6 +234,46 @@ impl App {
             None => self.viewport.shown_view(),
         };
     }
+}
+
+/// What the chosen LOD takes.
+fn lod_row(ui: &mut egui::Ui, settings: &mut Settings) {
+    if settings.lod == Lod::Distance {
+        distances_row(ui, settings);
+        return;
+    }
+    let (name, hover, value, range, decimals) = if settings.lod == Lod::Error {
+        let hover = "How far what is emitted may be from the surface on screen, in px.";
+        ("Tolerance", hover, &mut settings.tolerance, TOLERANCE_RANGE, 2)
+    } else {
+        ("Segment", "Length of a segment on screen, in px.", &mut settings.pixels, PIXELS_RANGE, 1)
+    };
+    let label = ui.label(name).on_hover_text(hover);
+    let slider = egui::Slider::new(value, range)
+        .logarithmic(true)
+        .max_decimals(decimals)
+        .suffix(" px")
+        .update_while_editing(false);
+    ui.add_enabled(settings.lod != Lod::Uniform, slider)
+        .labelled_by(label.id)
+        .on_hover_text(hover)
+        .on_disabled_hover_text("Only adaptive LOD measures on screen.");
+}
+
+/// Near and far, which stay apart.
+fn distances_row(ui: &mut egui::Ui, settings: &mut Settings) {
+    let label = ui.label("Near, far").on_hover_text("Distances to the eye, in bounding radii of the mesh.");
+    ui.horizontal(|ui| {
+        let (least, most) = (*DISTANCE_RANGE.start(), *DISTANCE_RANGE.end());
+        let (near, far) = (settings.near, settings.far);
+        for (value, range, hover) in [
+            (&mut settings.near, least..=far * 0.99, "Up to here every edge gets the factor, in bounding radii."),
+            (&mut settings.far, near * 1.01..=most, "From here on every edge gets 1, in bounding radii."),
+        ] {
+            let drag = egui::DragValue::new(value).range(range).speed(0.05).max_decimals(2).suffix(" r");
+            ui.add(drag.update_while_editing(false)).labelled_by(label.id).on_hover_text(hover);
+        }
+    });
 }
 
 fn tolerance(weld: f32) -> String {

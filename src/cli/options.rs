@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
-use crate::settings::{FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
+use crate::settings::{DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// What is tessellated how, and seen from where.
@@ -20,14 +20,14 @@ pub struct SurfaceOptions {
     /// Who computes what an edge's sides must agree on: the edge once, or every patch for itself as the white paper does
     #[arg(long, value_enum, default_value_t = Settings::default().edges)]
     pub edges: Edges,
-    /// Tessellation factor under uniform LOD, 1 to 64
+    /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64
     #[arg(long, value_name = "F", default_value_t = Settings::default().factor, value_parser = factor)]
     pub factor: f32,
     /// How factors become segments: integer, pow2, fractional-odd or fractional-even
     #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning)]
     pub partitioning: Partitioning,
     /// Where factors come from: the same everywhere; the white paper's projected length of an edge's control polygon;
-    /// that in a form that holds for edges near and behind the eye too; or the error on screen
+    /// that in a form that holds for edges near and behind the eye too; the error on screen; or the distance to the eye
     #[arg(long, value_enum, default_value_t = Settings::default().lod)]
     pub lod: Lod,
     /// Length of a segment on screen under LOD by length (paper, edge-length), in px, 1 to 256
@@ -36,6 +36,10 @@ pub struct SurfaceOptions {
     /// How far from the surface what is emitted may be on screen under LOD by error, in px, 0.01 to 100
     #[arg(long, value_name = "PX", default_value_t = Settings::default().tolerance, value_parser = tolerance)]
     pub tolerance: f32,
+    /// Under LOD by distance, up to which distance from the eye the factor is --factor, and from which on it is 1, in
+    /// bounding radii; linear between
+    #[arg(long, value_name = "NEAR,FAR", default_value = "2,10")]
+    pub distances: Distances,
     /// Whether patches out of view are left out: never; by the white paper's test, which can drop visible ones; or by each
     /// plane of the view on its own
     #[arg(long, value_enum, default_value_t = Settings::default().clip)]
@@ -55,7 +59,20 @@ impl SurfaceOptions {
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
         let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
-        Settings { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, ..Settings::default() }
+        let Distances { near, far } = self.distances;
+        Settings {
+            surface,
+            edges,
+            factor,
+            partitioning,
+            lod,
+            pixels,
+            tolerance,
+            near,
+            far,
+            clip,
+            ..Settings::default()
+        }
     }
 
     pub fn camera(&self, bounds: &Bounds) -> Camera {
@@ -92,6 +109,25 @@ impl FromStr for Size {
         let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
         let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
         sides.map(Self).ok_or_else(|| "expected WIDTHxHEIGHT in px, each from 1 to 16384, such as 1280x720".into())
+    }
+}
+
+/// Near and far, in bounding radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distances {
+    pub near: f32,
+    pub far: f32,
+}
+
+impl FromStr for Distances {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse().ok().filter(|number| DISTANCE_RANGE.contains(number));
+        let both = text.split_once(',').and_then(|(near, far)| Some(Self { near: number(near)?, far: number(far)? }));
+        both.filter(|both| both.near < both.far).ok_or_else(|| {
+            "expected NEAR,FAR in bounding radii, from 0.1 to 1000 and far the larger, such as 2,10".into()
+        })
     }
 }
 
@@ -187,6 +223,10 @@ mod tests {
         assert_eq!("-10, 5.5,2".parse(), Ok(camera));
         for bad in ["1", "1,2,0", "1,2,3,4", "nan,0", "a,b"] {
             assert!(bad.parse::<CameraOption>().is_err(), "{bad}");
+        }
+        assert_eq!("1.5, 8".parse(), Ok(Distances { near: 1.5, far: 8.0 }));
+        for bad in ["2", "8,2", "2,2", "0,5", "2,1001", "nan,3", "2,3,4"] {
+            assert!(bad.parse::<Distances>().is_err(), "{bad}");
         }
         assert!(weld("0").is_ok() && weld("1e-7") == Ok(1e-7) && weld("0.1").is_ok());
         assert!(weld("0.11").is_err() && weld("-1e-7").is_err() && weld("nan").is_err() && weld("").is_err());

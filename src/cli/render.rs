@@ -75,7 +75,8 @@ impl Args {
 }
 
 fn default_surface_options() -> SurfaceOptions {
-    let Settings { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = Settings::default();
+    let Settings { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } =
+        Settings::default();
     let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
     SurfaceOptions {
         surface,
@@ -85,6 +86,7 @@ fn default_surface_options() -> SurfaceOptions {
         lod,
         pixels,
         tolerance,
+        distances: options::Distances { near, far },
         clip,
         weld: options::WeldOption::default(),
         size: options::Size([1280, 720]),

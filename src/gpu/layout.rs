@@ -12,6 +12,8 @@ pub struct LodView {
     pub clip_from_object: [[f32; 4]; 4],
     pub half_viewport: [f32; 2],
     pub _pad: [f32; 2],
+    pub eye: [f32; 3],
+    pub radius: f32,
 }
 
 /// Settings and view of one tessellation.
@@ -32,6 +34,10 @@ pub struct Params {
     pub edges: u32,
     /// Px.
     pub tolerance: f32,
+    /// Bounding radii.
+    pub near: f32,
+    pub far: f32,
+    pub _pad: [f32; 2],
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

@@ -128,16 +128,20 @@ impl Tessellator {
     /// Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes nothing.
     fn params_of(&self, inputs: &Inputs) -> Params {
         let (adaptive, by_error) = (inputs.lod != Lod::Uniform, inputs.lod == Lod::Error);
+        let by_distance = inputs.lod == Lod::Distance;
+        let by_length = matches!(inputs.lod, Lod::Paper | Lod::EdgeLength);
         let looks = adaptive || inputs.clip != Clip::Off;
         let view = LodView {
             clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
             half_viewport: inputs.view.half_viewport.to_array(),
             _pad: [0.0; 2],
+            eye: inputs.view.eye.to_array(),
+            radius: inputs.view.radius,
         };
         Params {
             view: if looks { view } else { bytemuck::Zeroable::zeroed() },
-            factor: if adaptive { 0.0 } else { inputs.factor },
-            pixels_per_segment: if adaptive && !by_error { inputs.pixels } else { 0.0 },
+            factor: if adaptive && !by_distance { 0.0 } else { inputs.factor },
+            pixels_per_segment: if by_length { inputs.pixels } else { 0.0 },
             surface: inputs.surface as u32,
             partitioning: inputs.partitioning as u32,
             lod: inputs.lod as u32,
@@ -148,6 +152,9 @@ impl Tessellator {
             curve_count: self.buffers.curve_count,
             edges: inputs.edges as u32,
             tolerance: if by_error { inputs.tolerance } else { 0.0 },
+            near: if by_distance { inputs.near } else { 0.0 },
+            far: if by_distance { inputs.far } else { 0.0 },
+            _pad: [0.0; 2],
         }
     }
 

@@ -208,7 +208,7 @@ mod tests {
     fn view() -> LodView {
         let turned = Mat4::from_rotation_y(0.4) * Mat4::from_rotation_x(0.3) * 0.3;
         let clip_from_object = Mat4 { w_axis: glam::vec4(0.1, 0.0, 0.5, 1.0), ..turned };
-        LodView { clip_from_object, half_viewport: Vec2::splat(300.0) }
+        LodView::new(clip_from_object, Vec2::splat(300.0))
     }
 
     fn rims(shape: Shape, settings: Settings) -> (Mesh, Topology, Rims) {

@@ -82,7 +82,7 @@ mod tests {
             factor,
             ..Settings::default()
         };
-        let view = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::ONE };
+        let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
         let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
         let domains = out.triangles.iter().map(|triangle| triangle.map(|index| out.vertices[index as usize].domain()));
         assert!(domains.map(domain_area).any(|area| area < 0), "the pattern turns nothing over at {factor}");

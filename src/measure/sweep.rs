@@ -250,7 +250,7 @@ mod tests {
         mesh.triangles.truncate(2);
         mesh.materials[0].triangles = 0..2;
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
-        let view = LodView { clip_from_object: glam::Mat4::IDENTITY, half_viewport: glam::Vec2::ONE };
+        let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
         let settings = Settings { surface, partitioning, ..Settings::default() };
         sweep(&mesh, &topology, &settings.inputs(view), factors, step)
     }

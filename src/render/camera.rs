@@ -135,7 +135,8 @@ impl Camera {
 
     /// The view that LOD and clipping are computed for.
     pub fn lod_view(&self, viewport: Vec2, bounds: &Bounds) -> LodView {
-        LodView { clip_from_object: self.clip_from_object(viewport, bounds), half_viewport: viewport * 0.5 }
+        let radius = bounds.radius().max(f32::MIN_POSITIVE);
+        LodView { eye: self.eye(), radius, ..LodView::new(self.clip_from_object(viewport, bounds), viewport * 0.5) }
     }
 }
 

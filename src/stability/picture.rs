@@ -80,7 +80,7 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
 
 fn chart(case: &Subject, sweep_to: f32) -> Result<RgbImage, PictureError> {
     let topology = Topology::build_within(&case.mesh, case.weld, &Progress::new()).unwrap_or_default();
-    let view = LodView { clip_from_object: glam::Mat4::IDENTITY, half_viewport: Vec2::ONE };
+    let view = LodView::new(glam::Mat4::IDENTITY, Vec2::ONE);
     let swept = Partitioning::ALL.map(|partitioning| {
         let inputs = Method::PnAen.settings(partitioning, 1.0).inputs(view);
         sweep(&case.mesh, &topology, &inputs, 1.0..=sweep_to, SWEEP_STEP)

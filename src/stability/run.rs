@@ -171,7 +171,7 @@ impl<'a> Running<'a> {
             self.take(&mut worst, &Measured::of(&self.mesh, &self.topology, asked, &out), &settings, &view);
         }
         if self.case.probe == Probe::Sweep {
-            let view = LodView { clip_from_object: glam::Mat4::IDENTITY, half_viewport: views::viewport() };
+            let view = LodView::new(glam::Mat4::IDENTITY, views::viewport());
             let inputs = method.settings(partitioning, 1.0).inputs(view);
             let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=effort.sweep_to, SWEEP_STEP);
             let largest = swept.largest().map_or(0.0, |step| step.jump);

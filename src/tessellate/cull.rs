@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_patch_around_the_view_is_dropped_by_the_paper_only() {
-        let view = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::ONE };
+        let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
         // Every control point lies outside, but on different sides: the middle of the view is covered.
         let around = flat([vec3(-9.0, -6.0, 0.5), vec3(9.0, -6.0, 0.5), vec3(0.0, 12.0, 0.5)]);
         let around = ControlNet { center: vec3(0.0, 2.0, 0.5), ..around };

@@ -280,7 +280,7 @@ mod tests {
     use crate::tessellate::{domain_point, domain_triangle, process, triangle_count};
     use glam::{Mat4, Vec4, vec3};
 
-    const VIEW: LodView = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::splat(100.0) };
+    const VIEW: LodView = LodView::new(Mat4::IDENTITY, Vec2::splat(100.0));
 
     /// A patch between these corners whose centre is lifted by `z`.
     fn raised(corners: [Vec3; 3], z: f32) -> ControlNet {

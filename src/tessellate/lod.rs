@@ -17,6 +17,9 @@ pub enum Lod {
     /// The fewest segments that keep what is emitted within a tolerance in px of the surface, on edges and inside
     /// (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64.
     Error = 3,
+    /// From the factor asked for at a near distance down to 1 at a far one, linearly at every point; an edge takes the mean
+    /// of its ends. What engines commonly do (Unity's `UnityDistanceBasedTess`, say).
+    Distance = 4,
 }
 
 /// The view that adaptive factors and clipping are computed for.
@@ -26,6 +29,17 @@ pub struct LodView {
     pub clip_from_object: Mat4,
     /// Half the viewport's width and height, in px.
     pub half_viewport: Vec2,
+    /// Object units.
+    pub eye: Vec3,
+    /// The mesh's bounding radius in object units: distances to the eye are measured in it.
+    pub radius: f32,
+}
+
+impl LodView {
+    /// Of a mesh of radius 1 around an eye at the origin.
+    pub const fn new(clip_from_object: Mat4, half_viewport: Vec2) -> Self {
+        Self { clip_from_object, half_viewport, eye: Vec3::ZERO, radius: 1.0 }
+    }
 }
 
 /// The position on screen in segments: px from the centre over px per segment. Divides by w as the paper does, so
@@ -88,14 +102,35 @@ pub fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_point
     near_edge_factor(view, pixels_per_segment, control_points)
 }
 
+/// The factor of a point: `factor` up to a distance of `near` bounding radii from the eye, 1 from `far` on, and linear
+/// between.
+pub fn distance_at(view: &LodView, factor: f32, near: f32, far: f32, p: Vec3) -> f32 {
+    let part = (far - p.distance(view.eye) / view.radius) / (far - near);
+    1.0 + (factor - 1.0) * part.clamp(0.0, 1.0)
+}
+
+/// The factor of an edge: the mean of its ends'.
+pub fn distance_factor(view: &LodView, factor: f32, near: f32, far: f32, [a, _, _, b]: [Vec3; 4]) -> f32 {
+    at_least_one(0.5 * (distance_at(view, factor, near, far, a) + distance_at(view, factor, near, far, b)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn factors_fall_linearly_with_distance_and_are_the_mean_of_the_ends() {
+        let view = LodView { radius: 2.0, ..LodView::new(Mat4::IDENTITY, Vec2::ONE) };
+        let at = |distance: f32| distance_at(&view, 9.0, 1.0, 5.0, Vec3::X * distance);
+        assert_eq!([0.0, 2.0, 4.0, 6.0, 10.0, 1e6].map(at), [9.0, 9.0, 7.0, 5.0, 1.0, 1.0]);
+        let edge = [Vec3::X * 4.0, Vec3::ONE, Vec3::ONE, Vec3::X * 6.0];
+        assert_eq!(distance_factor(&view, 9.0, 1.0, 5.0, edge), 6.0);
+    }
     use glam::vec3;
 
     #[test]
     fn a_straight_edge_gets_its_length_on_screen_over_the_length_of_a_segment() {
-        let view = LodView { clip_from_object: Mat4::IDENTITY, half_viewport: Vec2::new(400.0, 300.0) };
+        let view = LodView::new(Mat4::IDENTITY, Vec2::new(400.0, 300.0));
         let points = [0.0, 0.1, 0.2, 0.3].map(|x| vec3(x, 0.0, 0.0));
         assert!((paper_edge_factor(&view, 8.0, points) - 15.0).abs() < 1e-4, "0.3 of 400 px, in segments of 8");
         assert_eq!(paper_edge_factor(&view, 500.0, points), 1.0, "never less than 1");
@@ -105,7 +140,7 @@ mod tests {
     fn what_is_no_number_counts_as_one() {
         assert_eq!([f32::NAN, -f32::NAN, 0.3, -2.0].map(at_least_one), [1.0; 4]);
         assert_eq!([1.5, f32::INFINITY].map(at_least_one), [1.5, f32::INFINITY]);
-        let view = LodView { clip_from_object: Mat4::ZERO, half_viewport: Vec2::ONE };
+        let view = LodView::new(Mat4::ZERO, Vec2::ONE);
         assert_eq!(paper_edge_factor(&view, 1.0, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]), 1.0);
     }
 
@@ -117,7 +152,7 @@ mod tests {
             [0.0, 0.0, 0.0, -1.0],
             [0.0, 0.0, 0.1, 0.0],
         ]);
-        LodView { clip_from_object, half_viewport: Vec2::splat(100.0) }
+        LodView::new(clip_from_object, Vec2::splat(100.0))
     }
 
     fn straight(a: Vec3, b: Vec3) -> [Vec3; 4] {

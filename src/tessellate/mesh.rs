@@ -6,9 +6,10 @@ use glam::{DVec3, Vec2, Vec3};
 
 use super::{
     Clip, ControlNet, EDGE_SHARE, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, Surface, center_control_point,
-    domain_point, domain_triangle, edge_control_point, edge_error_factor, edge_length_factor, edge_normal,
-    edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, pack_normal, paper_edge_factor,
-    patch_is_unseen, patch_position, point_count, process, round_pow2, straight_control_point, triangle_count,
+    distance_factor, domain_point, domain_triangle, edge_control_point, edge_error_factor, edge_length_factor,
+    edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, pack_normal,
+    paper_edge_factor, patch_is_unseen, patch_position, point_count, process, round_pow2, straight_control_point,
+    triangle_count,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -35,6 +36,9 @@ pub struct Inputs {
     pub pixels: f32,
     /// Under LOD by error: the distance in px that what is emitted keeps to the surface.
     pub tolerance: f32,
+    /// Under LOD by distance: up to which the factor is `factor`, and from which on it is 1, in bounding radii.
+    pub near: f32,
+    pub far: f32,
     pub clip: Clip,
     pub view: LodView,
 }
@@ -206,6 +210,10 @@ impl<'a> Nets<'a> {
                 Lod::Uniform => inputs.factor,
                 Lod::Paper => largest(|inputs, net| paper_edge_factor(&inputs.view, inputs.pixels, net), curves),
                 Lod::EdgeLength => largest(|inputs, net| edge_length_factor(&inputs.view, inputs.pixels, net), curves),
+                Lod::Distance => largest(
+                    |Inputs { view, factor, near, far, .. }, net| distance_factor(view, *factor, *near, *far, net),
+                    curves,
+                ),
                 Lod::Error if inputs.surface == Surface::Flat => 1.0,
                 Lod::Error => {
                     largest(|inputs, net| edge_error_factor(&inputs.view, EDGE_SHARE * inputs.tolerance, net), curves)

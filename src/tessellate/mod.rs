@@ -17,7 +17,8 @@ pub use factors::{
     process, round_pow2, segments, triangle_count,
 };
 pub use lod::{
-    Lod, LodView, at_least_one, beyond_near, edge_length_factor, near_edge_factor, paper_edge_factor, project_and_scale,
+    Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
+    project_and_scale,
 };
 pub use mesh::{Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
 pub use surface::{

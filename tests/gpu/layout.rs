@@ -53,7 +53,7 @@ macro_rules! same {
 
 #[test]
 fn shared_structs_have_one_layout() {
-    same!(LodView { clip_from_object, half_viewport });
+    same!(LodView { clip_from_object, half_viewport, eye, radius });
     same!(Params {
         view,
         factor,
@@ -68,6 +68,8 @@ fn shared_structs_have_one_layout() {
         curve_count,
         edges,
         tolerance,
+        near,
+        far,
     });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });

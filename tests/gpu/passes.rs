@@ -111,13 +111,16 @@ fn adaptive_factors_agree_with_the_cpu() {
 #[test]
 fn adaptive_factors_are_those_of_the_formula() {
     let (loaded, mut scene) = scene(Shape::Torus);
-    let settings = Settings { lod: Lod::Paper, pixels: 6.0, ..Settings::default() };
-    let inputs = inputs(&loaded, &settings);
-    on_gpu(&mut scene, &inputs);
-    let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
-    for (gpu, cpu) in edge_factors(&scene).into_iter().zip(own) {
-        // Two divisions, a matrix and a square root, each to within a few ULP.
-        assert!((gpu - cpu).abs() <= 1e-5 * cpu, "{gpu} {cpu}");
+    let distance = Settings { lod: Lod::Distance, near: 3.0, far: 4.5, factor: 20.0, ..Settings::default() };
+    for settings in [Settings { lod: Lod::Paper, pixels: 6.0, ..Settings::default() }, distance] {
+        let inputs = inputs(&loaded, &settings);
+        on_gpu(&mut scene, &inputs);
+        let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
+        assert!(own.iter().any(|&factor| factor > own[0] + 1.0 || factor < own[0] - 1.0), "{:?}", settings.lod);
+        for (gpu, cpu) in edge_factors(&scene).into_iter().zip(own) {
+            // A few divisions, a matrix and a square root, each to within a few ULP.
+            assert!((gpu - cpu).abs() <= 1e-5 * cpu, "{:?}: {gpu} {cpu}", settings.lod);
+        }
     }
 }
 

@@ -207,7 +207,7 @@ pub struct Trial {
 
 pub fn any_trial() -> impl Strategy<Value = Trial> {
     let scale = prop::sample::select(vec![1e-36, 1e-6, 1.0, 1.0, 1e6, 9e36]);
-    let lod = prop::sample::select(vec![Lod::Uniform, Lod::Paper, Lod::EdgeLength, Lod::Error]);
+    let lod = prop::sample::select(vec![Lod::Uniform, Lod::Paper, Lod::EdgeLength, Lod::Error, Lod::Distance]);
     let clip = prop::sample::select(vec![Clip::Off, Clip::Paper, Clip::Frustum]);
     // Segments of 2 px take hundreds to an edge, more than there are.
     let settings = (any_factor(), lod, 2f32..64.0, clip).prop_flat_map(|(factor, lod, pixels, clip)| {
