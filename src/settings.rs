@@ -125,20 +125,24 @@ impl FromIterator<Overlay> for Overlays {
 }
 
 impl Settings {
-    /// Changes who computes what an edge's sides agree on. As published, LOD and clipping are the white paper's too, and
-    /// otherwise the forms that hold near the eye.
+    /// Changes who computes what an edge's sides agree on. As published, LOD by length and clipping are the white paper's
+    /// too, and otherwise their forms that hold near the eye.
     pub fn set_edges(&mut self, edges: Edges) {
         if edges == self.edges {
             return;
         }
         self.edges = edges;
         let published = edges == Edges::AsPublished;
-        if self.lod != Lod::Uniform {
-            self.lod = if published { Lod::Paper } else { Lod::EdgeLength };
-        }
-        if self.clip != Clip::Off {
-            self.clip = if published { Clip::Paper } else { Clip::Frustum };
-        }
+        self.lod = match self.lod {
+            Lod::EdgeLength if published => Lod::Paper,
+            Lod::Paper if !published => Lod::EdgeLength,
+            other => other,
+        };
+        self.clip = match self.clip {
+            Clip::Frustum if published => Clip::Paper,
+            Clip::Paper if !published => Clip::Frustum,
+            other => other,
+        };
     }
 
     /// What the tessellation depends on, seen from `view`.
@@ -160,8 +164,10 @@ mod tests {
         assert_eq!((settings.lod, settings.clip), (Lod::Paper, Clip::Paper));
         settings.set_edges(Edges::PerEdge);
         assert_eq!(settings, adaptive);
-        let mut uniform = Settings::default();
-        uniform.set_edges(Edges::AsPublished);
-        assert_eq!((uniform.lod, uniform.clip), (Lod::Uniform, Clip::Off));
+        for lod in [Lod::Uniform, Lod::Error, Lod::Distance] {
+            let mut other = Settings { lod, ..Settings::default() };
+            other.set_edges(Edges::AsPublished);
+            assert_eq!((other.lod, other.clip), (lod, Clip::Off));
+        }
     }
 }

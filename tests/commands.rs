@@ -656,6 +656,44 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 }
 
 #[test]
+fn a_budget_of_triangles_raises_the_tolerance_and_says_so() {
+    let folder = Folder::new("budget");
+    let [picture, mesh] = ["out.png", "out.obj"].map(|name| folder.path(name));
+    let by_error = ["shape:torus", "--lod", "error", "--tolerance", "0.1"];
+    let all = number(&stats(&by_error), "/triangles_out");
+    let by_error = [&by_error[..], &["--size", "160x120"]].concat();
+    let most = (0.5 * all).to_string();
+    let result = run(&[&["render", "-o", &picture, "--stats", "-", "--max-triangles", &most], &by_error[..]].concat());
+    let said = String::from_utf8(result.stderr).expect("text");
+    assert!(said.contains("tolerance raised from 0.1 to") && said.contains(&most), "{said}");
+    let stats: Value = serde_json::from_slice(&result.stdout).expect("JSON");
+    let count = number(&stats, "/triangles_out");
+    assert!(count <= 0.5 * all && count > 0.2 * all, "{count} of {all}");
+    // A tolerance that fits already stays, and says nothing.
+    let result = run(&[&["render", "-o", &picture, "--max-triangles", "9999999"], &by_error[..]].concat());
+    assert!(result.status.success() && result.stderr.is_empty());
+    // Both devices have the option; a budget below the mesh itself is a sentence.
+    output(&[&["tessellate", "-o", &mesh, "--device", "cpu", "--max-triangles", "300"], &by_error[..]].concat());
+    assert!(read_obj(&mesh).1.len() <= 300);
+    sentence(
+        &[&["render", "-o", &picture, "--max-triangles", "200"], &by_error[..]].concat(),
+        &["256 triangles", "200"],
+    );
+    let said = failure(&["render", "shape:torus", "-o", &picture, "--max-triangles", "200"], 2);
+    assert!(said.contains("--lod error"), "{said}");
+}
+
+#[test]
+fn a_small_arena_gives_the_same_mesh() {
+    let options = ["shape:torus", "--factor", "24"];
+    let [large, small] = ["256", "1"].map(|arena| stats(&[&options[..], &["--arena", arena]].concat()));
+    assert_eq!(large["cracks"], small["cracks"]);
+    assert_eq!(large["triangles_out"], small["triangles_out"]);
+    assert!(number(&small, "/bytes/arena") <= f64::from(1 << 20), "{small}");
+    assert!(number(&large, "/bytes/arena") > f64::from(1 << 20), "{large}");
+}
+
+#[test]
 fn failures_are_one_sentence_and_exit_code_1() {
     let folder = Folder::new("failures");
     let [out, text, broken] = ["out.png", "notes.txt", "broken.gltf"].map(|name| folder.path(name));

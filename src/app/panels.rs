@@ -49,7 +49,7 @@ const EDGES: [(Edges, &str, &str); 2] = [
         Edges::AsPublished,
         "As published",
         "Every patch computes control points, factors and points for itself, as the white paper's shaders do: edges \
-         differ in their last bits. Adaptive LOD and clipping switch to the white paper's form too.",
+         differ in their last bits. LOD by length and clipping switch to the white paper's form too.",
     ),
 ];
 const LODS: [(Lod, &str, &str); 5] = [
@@ -220,7 +220,7 @@ impl App {
     }
 
     pub(super) fn toggle_lod(&mut self) {
-        let adaptive = if self.settings.edges == Edges::AsPublished { Lod::Paper } else { Lod::EdgeLength };
+        let adaptive = if self.settings.edges == Edges::AsPublished { Lod::Paper } else { Lod::Error };
         self.settings.lod = if self.settings.lod == Lod::Uniform { adaptive } else { Lod::Uniform };
     }
 

@@ -74,6 +74,13 @@ pub enum CliError {
     Picture(#[from] crate::stability::PictureError),
     #[error("{count} of the table's lines break a promise, the first: {method} on {case}")]
     Promise { count: usize, case: String, method: &'static str },
+    #[error("{0}")]
+    Usage(&'static str),
+    #[error(
+        "there are {least} triangles even at a tolerance of {largest} px, more than {most}: allow more, or use a mesh of \
+         fewer"
+    )]
+    Budget { most: u64, least: u64, largest: f32 },
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }
@@ -91,6 +98,10 @@ pub fn run(command: Command) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error @ CliError::Usage(_)) => {
+            fail(&error);
+            ExitCode::from(2)
+        }
         Err(error) => fail(&error),
     }
 }

@@ -1,15 +1,17 @@
 //! Options that several commands share, and how their values are read.
 
+use std::io::Write;
 use std::str::FromStr;
 
 use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
+use super::CliError;
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
-use crate::settings::{DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
-use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use crate::settings::{ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
+use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface, fit_budget};
 
 /// What is tessellated how, and seen from where.
 #[derive(Clone, Debug, Args)]
@@ -44,6 +46,12 @@ pub struct SurfaceOptions {
     /// plane of the view on its own
     #[arg(long, value_enum, default_value_t = Settings::default().clip)]
     pub clip: Clip,
+    /// Under LOD by error, raise the tolerance until there are no more triangles than this
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_triangles: Option<u64>,
+    /// Memory for output on the device, in MiB, 1 to 65536; what doesn't fit goes through it in chunks
+    #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = clap::value_parser!(u64).range(1..=65536))]
+    pub arena: u64,
     #[command(flatten)]
     pub weld: WeldOption,
     /// Width and height of the view, in px
@@ -73,6 +81,42 @@ impl SurfaceOptions {
             clip,
             ..Settings::default()
         }
+    }
+
+    /// The same with a tolerance at which there are no more triangles than asked for, which it says on standard error;
+    /// `count` gives the number for settings.
+    ///
+    /// # Errors
+    /// LOD isn't by error, there are more triangles at any tolerance, or `count` fails.
+    pub fn within_budget(
+        &self,
+        mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
+    ) -> Result<Settings, CliError> {
+        let settings = self.settings();
+        let Some(most) = self.max_triangles else { return Ok(settings) };
+        if settings.lod != Lod::Error {
+            return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
+        }
+        let largest = *TOLERANCE_RANGE.end();
+        let tried = settings.tolerance..=largest;
+        let fits = fit_budget(tried, most, |tolerance| count(&Settings { tolerance, ..settings }))?;
+        let Some(tolerance) = fits else {
+            let least = count(&Settings { tolerance: largest, ..settings })?;
+            return Err(CliError::Budget { most, least, largest });
+        };
+        if tolerance > settings.tolerance {
+            let _ = writeln!(
+                std::io::stderr(),
+                "pnaen: tolerance raised from {} to {tolerance} px, for no more than {most} triangles",
+                settings.tolerance
+            );
+        }
+        Ok(Settings { tolerance, ..settings })
+    }
+
+    /// Memory for output on the device.
+    pub fn arena_bytes(&self) -> u64 {
+        self.arena << 20
     }
 
     pub fn camera(&self, bounds: &Bounds) -> Camera {

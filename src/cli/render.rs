@@ -64,12 +64,13 @@ impl Args {
         }
     }
 
-    fn settings(&self) -> Settings {
+    /// The settings of a surface, with what is drawn over it.
+    fn settings(&self, surface: Settings) -> Settings {
         Settings {
             overlays: self.overlay.iter().copied().collect(),
             split: self.split,
             background: self.background,
-            ..self.surface.settings()
+            ..surface
         }
     }
 }
@@ -87,6 +88,8 @@ fn default_surface_options() -> SurfaceOptions {
         pixels,
         tolerance,
         distances: options::Distances { near, far },
+        max_triangles: None,
+        arena: ARENA_BYTES >> 20,
         clip,
         weld: options::WeldOption::default(),
         size: options::Size([1280, 720]),
@@ -98,12 +101,17 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file, args.surface.weld)?;
     let engine = Engine::headless()?;
-    let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
+    let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
     let target = Target::new(&engine.gpu, args.surface.size.0)?;
     let camera = args.surface.camera(&scene.bounds);
-    let settings = args.settings();
+    let view = camera.lod_view(target.viewport(), &scene.bounds);
+    let surface = args.surface.within_budget(|settings| {
+        engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
+        Ok(scene.tessellator.totals().1)
+    })?;
+    let settings = args.settings(surface);
 
-    let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+    let inputs = settings.inputs(view);
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
     let measured = if settings.overlays.cracks || args.stats.is_some() {
         let measured = engine.measure(&mut scene)?;

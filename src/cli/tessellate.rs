@@ -9,7 +9,7 @@ use crate::engine::Engine;
 use crate::export::Exported;
 use crate::gpu::Timing;
 use crate::mesh::Source;
-use crate::settings::ARENA_BYTES;
+use crate::settings::Settings;
 use crate::tessellate;
 
 #[derive(Debug, clap::Args)]
@@ -40,16 +40,22 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let bounds = mesh.bounds();
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
-    let inputs = args.surface.settings().inputs(view);
     let tessellated = match args.device {
         Device::Cpu => {
+            let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);
+            let inputs = args.surface.within_budget(count)?.inputs(view);
             let (vertices, triangles) = tessellate::totals(mesh, topology, &inputs);
             Exported::check(&args.output, vertices, triangles)?;
             tessellate::tessellate(mesh, topology, &inputs, None)
         }
         Device::Gpu => {
             let engine = Engine::headless()?;
-            let mut scene = engine.scene(&loaded, ARENA_BYTES)?;
+            let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
+            let settings = args.surface.within_budget(|settings| {
+                engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
+                Ok(scene.tessellator.totals().1)
+            })?;
+            let inputs = settings.inputs(view);
             engine.count(&mut scene, &inputs, &mut Timing::Off)?;
             let (vertices, triangles) = scene.tessellator.totals();
             Exported::check(&args.output, vertices, triangles)?;

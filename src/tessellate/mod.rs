@@ -1,6 +1,7 @@
 //! The mathematics on the CPU: the reference that the shaders are held against. `shaders/X.wgsl` is the twin of `X.rs`;
 //! `mesh.rs` does for a whole mesh what `shaders/pass_*.wgsl` do, and is their twin.
 
+mod budget;
 mod cull;
 pub mod domain;
 mod error;
@@ -9,6 +10,7 @@ mod lod;
 mod mesh;
 mod surface;
 
+pub use budget::fit_budget;
 pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outside, patch_is_unseen, planes_outside};
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
