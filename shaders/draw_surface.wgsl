@@ -121,6 +121,9 @@ fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
 // As the window's legend has it: src/render/layout.rs.
 const FOLD_COLOR: vec3<f32> = vec3<f32>(0.515, 0.061, 1.0);
 
+// The same.
+const BACK_FACE_COLOR: vec3<f32> = vec3<f32>(0.753, 0.013, 0.156);
+
 // Colours of edge kinds, as the window's legend has them: src/render/layout.rs.
 fn edge_color(kind: u32) -> vec3<f32> {
     var color = vec3<f32>(0.40, 0.43, 0.47);
@@ -167,6 +170,9 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     var base = material.base_color.rgb * texel.rgb;
     if (frame.overlays & OVERLAY_BARYCENTRIC) != 0u {
         base = clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0));
+    }
+    if (frame.overlays & OVERLAY_BACK_FACES) != 0u && !front {
+        base = BACK_FACE_COLOR;
     }
     let normal = normalize(select(-in.normal, in.normal, front));
     var color = shade(base, normal, in.position);

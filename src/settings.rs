@@ -73,6 +73,8 @@ pub struct Overlays {
     pub cracks: bool,
     /// Triangles that face away from the side that their patch faces.
     pub folds: bool,
+    /// Faces seen from behind.
+    pub back_faces: bool,
     /// Open edges that another triangle's point lies on, and those points.
     pub t_junctions: bool,
 }
@@ -87,10 +89,11 @@ pub enum Overlay {
     Cracks,
     Folds,
     TJunctions,
+    BackFaces,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Wireframe,
         Self::Patches,
         Self::Barycentric,
@@ -98,6 +101,7 @@ impl Overlay {
         Self::Cracks,
         Self::Folds,
         Self::TJunctions,
+        Self::BackFaces,
     ];
 }
 
@@ -112,6 +116,7 @@ impl Overlays {
             Overlay::Cracks => &mut self.cracks,
             Overlay::Folds => &mut self.folds,
             Overlay::TJunctions => &mut self.t_junctions,
+            Overlay::BackFaces => &mut self.back_faces,
         }
     }
 }

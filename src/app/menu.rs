@@ -13,7 +13,7 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 23] = [
+pub const KEYS: [(&str, &str); 24] = [
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
     ("Wheel, Page Up, Page Down", "zoom (the wheel: to the pointer)"),
@@ -28,6 +28,7 @@ pub const KEYS: [(&str, &str); 23] = [
     ("C", "cracks"),
     ("O", "folds"),
     ("T", "T-junctions"),
+    ("K", "back faces"),
     ("S", "split view"),
     ("E", "edges as published, or computed once"),
     ("L", "adaptive LOD"),
@@ -210,7 +211,9 @@ impl App {
     }
 
     fn overlay_keys(&mut self, context: &egui::Context) {
-        for (key, overlay) in [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T].into_iter().zip(Overlay::ALL) {
+        for (key, overlay) in
+            [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T, Key::K].into_iter().zip(Overlay::ALL)
+        {
             if pressed(context, key) {
                 let switch = self.settings.overlays.get_mut(overlay);
                 *switch = !*switch;

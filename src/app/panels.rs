@@ -94,7 +94,7 @@ const CLIPS: [(Clip, &str, &str); 3] = [
          patches that cross the view (McDonald and Kilgard 2010).",
     ),
 ];
-const OVERLAYS: [(Overlay, &str, &str); 7] = [
+const OVERLAYS: [(Overlay, &str, &str); 8] = [
     (Overlay::Wireframe, "Wireframe", "Edges of the tessellated triangles (W)."),
     (Overlay::Patches, "Patch borders", "Borders of the input triangles (P)."),
     (
@@ -106,6 +106,7 @@ const OVERLAYS: [(Overlay, &str, &str); 7] = [
     (Overlay::Cracks, "Cracks", "Edges whose sides put a point at different positions, through the surface (C)."),
     (Overlay::Folds, "Folds", "Triangles that face away from the side that their patch faces (O)."),
     (Overlay::TJunctions, "T-junctions", "Open edges that another triangle's point lies on, through the surface (T)."),
+    (Overlay::BackFaces, "Back faces", "Faces seen from behind: open meshes, and triangles wound the other way (K)."),
 ];
 impl App {
     pub(super) fn settings_panel(&mut self, ui: &mut egui::Ui) {

@@ -38,6 +38,7 @@ pub fn overlay_bits(overlays: &Overlays) -> u32 {
         | u32::from(overlays.barycentric) << 2
         | u32::from(overlays.adjacency) << 3
         | u32::from(overlays.folds) << 4
+        | u32::from(overlays.back_faces) << 5
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
@@ -60,6 +61,10 @@ pub const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
 
 /// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface.wgsl` has the same in linear light.
 pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
+
+/// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface.wgsl` has the same
+/// in linear light.
+pub const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
 /// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.
 pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];

@@ -195,6 +195,26 @@ fn folds_are_marked_and_nothing_else_is() {
 }
 
 #[test]
+fn faces_seen_from_behind_are_marked_and_others_are_not() {
+    let target = Target::new(&engine().gpu, [320, 240]).expect("a small picture");
+    // How many px are three times as red as green: the mesh is grey, the background bluish.
+    let red = |scene: &mut Scene, camera: &Camera, back_faces| {
+        let overlays = Overlays { back_faces, ..Overlays::default() };
+        let picture = seen(scene, &target, &Settings { overlays, ..Settings::default() }, camera);
+        picture.pixels().filter(|pixel| pixel.0[0] > 40 && pixel.0[0] / 3 > pixel.0[1]).count()
+    };
+    let (_, mut saddle) = scene(Shape::Saddle);
+    let above = Camera::framing(&saddle.bounds, target.viewport());
+    let below = Camera { elevation: -40.0, ..above };
+    assert!(red(&mut saddle, &below, true) > 2000, "an open sheet from below");
+    assert_eq!(red(&mut saddle, &below, false), 0, "not asked for");
+    assert_eq!(red(&mut saddle, &Camera { elevation: 60.0, ..above }, true), 0, "from above");
+    let (_, mut torus) = scene(Shape::Torus);
+    let around = Camera::framing(&torus.bounds, target.viewport());
+    assert_eq!(red(&mut torus, &around, true), 0, "nobody sees a closed mesh from behind");
+}
+
+#[test]
 fn t_junctions_are_marked_where_there_are_some() {
     let target = Target::new(&engine().gpu, [640, 480]).expect("a small picture");
     let marked = |scene: &mut Scene, camera: &Camera| {
