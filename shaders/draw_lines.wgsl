@@ -1,6 +1,11 @@
-// Thick lines through everything: one instance a segment, a quad facing the screen.
+// Thick lines, faint where something is in front of them: one instance a segment, a quad facing the screen.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+
+const NEARER: f32 = 1.003;
+
+// What is left of a line behind something.
+const HIDDEN: f32 = 0.3;
 
 struct LineVaryings {
     @builtin(position) clip: vec4<f32>,
@@ -44,11 +49,21 @@ fn line_vertex(
     let cap = along * select(-half_width, half_width, at_end);
     let clip = select(from_clip, to_clip, at_end);
     let offset = (across * side * reach + cap) / half_viewport;
-    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, clip.zw), side * reach, color, half_width);
+    // A little nearer than the surface that the line lies on; depth is reversed.
+    let z = min(clip.z * NEARER, clip.w);
+    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, color, half_width);
+}
+
+fn line_coverage(in: LineVaryings) -> f32 {
+    return 1.0 - smoothstep(in.half_width - 0.5, in.half_width + 0.5, abs(in.across));
 }
 
 @fragment
 fn line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    let coverage = 1.0 - smoothstep(in.half_width - 0.5, in.half_width + 0.5, abs(in.across));
-    return vec4<f32>(in.color, coverage);
+    return vec4<f32>(in.color, line_coverage(in));
+}
+
+@fragment
+fn hidden_line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
+    return vec4<f32>(in.color, HIDDEN * line_coverage(in));
 }

@@ -103,9 +103,13 @@ const OVERLAYS: [(Overlay, &str, &str); 8] = [
         "Domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2 (B).",
     ),
     (Overlay::Adjacency, "Adjacency edges", "Borders of the input triangles, coloured by the kind of edge (A)."),
-    (Overlay::Cracks, "Cracks", "Edges whose sides put a point at different positions, through the surface (C)."),
+    (Overlay::Cracks, "Cracks", "Edges whose sides put a point at different positions, faint behind the surface (C)."),
     (Overlay::Folds, "Folds", "Triangles that face away from the side that their patch faces (O)."),
-    (Overlay::TJunctions, "T-junctions", "Open edges that another triangle's point lies on, through the surface (T)."),
+    (
+        Overlay::TJunctions,
+        "T-junctions",
+        "Open edges that another triangle's point lies on, faint behind the surface (T).",
+    ),
     (Overlay::BackFaces, "Back faces", "Faces seen from behind: open meshes, and triangles wound the other way (K)."),
 ];
 impl App {

@@ -20,7 +20,8 @@ pub struct Renderer {
     indexed: wgpu::RenderPipeline,
     pulled: wgpu::RenderPipeline,
     source: wgpu::RenderPipeline,
-    lines: wgpu::RenderPipeline,
+    /// Through everything and faint, then what is in sight.
+    lines: [wgpu::RenderPipeline; 2],
 }
 
 /// Bytes from a [`crate::gpu::layout::DrawArgs`]'s start to its arguments for pulled drawing.
@@ -37,21 +38,24 @@ impl Renderer {
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2],
         }];
         let layouts = [Some(&scene_layout), Some(&material_layout)];
-        let surface = |entry, buffers| pipeline(gpu, &layouts, &surface, (entry, "surface_fragment"), buffers, true);
+        let surface =
+            |entry, buffers| pipeline(gpu, &layouts, &surface, (entry, "surface_fragment"), buffers, Layer::Surface);
         let segment = wgpu::VertexBufferLayout {
             array_stride: size_of::<LineSegment>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32],
         };
         let lines = crate::gpu::shader_module(gpu, "lines");
-        let lines = pipeline(gpu, &layouts[..1], &lines, ("line_vertex", "line_fragment"), &[Some(segment)], false);
+        let lines = |entry, layer| {
+            pipeline(gpu, &layouts[..1], &lines, ("line_vertex", entry), &[Some(segment.clone())], layer)
+        };
         let [vertex] = vertex;
         Self {
             gpu: gpu.clone(),
             indexed: surface("indexed_vertex", &[Some(vertex)]),
             pulled: surface("pulled_vertex", &[]),
             source: surface("source_vertex", &[]),
-            lines,
+            lines: [lines("hidden_line_fragment", Layer::Everywhere), lines("line_fragment", Layer::InSight)],
             white: upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] }),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("base color"),
@@ -174,9 +178,11 @@ impl Renderer {
             && height > 0
         {
             pass.set_scissor_rect(x, y, width, height);
-            pass.set_pipeline(&self.lines);
             pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..6, 0..*count);
+            for pipeline in &self.lines {
+                pass.set_pipeline(pipeline);
+                pass.draw(0..6, 0..*count);
+            }
         }
     }
 
@@ -234,20 +240,35 @@ fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     })
 }
 
+/// What a pipeline draws, and what hides it.
+#[derive(Clone, Copy, PartialEq)]
+enum Layer {
+    /// Opaque, in depth.
+    Surface,
+    /// Blended, whatever is in front.
+    Everywhere,
+    /// Blended, where nothing is in front.
+    InSight,
+}
+
 fn pipeline(
     gpu: &Gpu,
     layouts: &[Option<&wgpu::BindGroupLayout>],
     module: &wgpu::ShaderModule,
     (vertex, fragment): (&str, &str),
     buffers: &[Option<wgpu::VertexBufferLayout>],
-    opaque: bool,
+    layer: Layer,
 ) -> wgpu::RenderPipeline {
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
         bind_group_layouts: layouts,
         ..Default::default()
     });
-    let compare = if opaque { wgpu::CompareFunction::Greater } else { wgpu::CompareFunction::Always };
+    let compare = match layer {
+        Layer::Surface | Layer::InSight => wgpu::CompareFunction::Greater,
+        Layer::Everywhere => wgpu::CompareFunction::Always,
+    };
+    let opaque = layer == Layer::Surface;
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
