@@ -179,32 +179,37 @@ fn row_error(seen: vec3<f32>, reach: f32, height: f32) -> f32 {
     return 0.751 * (seen.x * reach * reach + 2.0 * seen.y * reach * height + seen.z * height * height);
 }
 
-fn inner_error(view: LodView, net: ControlNet, segments: f32) -> f32 {
-    let sight = net_sight(view, net);
+fn inner_error(seen: array<vec3<f32>, 3>, segments: f32) -> f32 {
     let size = 1.0 / segments;
     var worst = 0.0;
     for (var k = 0u; k < 3u; k++) {
-        let seen = seen_differences(view, sight, net, k);
-        worst = max(worst, max(row_error(seen, size, size), 1.001 * seen.x * size * size));
+        worst = max(worst, max(row_error(seen[k], size, size), 1.001 * seen[k].x * size * size));
     }
     return worst;
 }
 
-fn rim_error(view: LodView, net: ControlNet, k: u32, factor: f32, segments: f32) -> f32 {
+fn rim_error(
+    view: LodView,
+    net: ControlNet,
+    sight: Sight,
+    seen: vec3<f32>,
+    k: u32,
+    factor: f32,
+    segments: f32,
+) -> f32 {
     let share = (2.0 / 3.0) / segments;
     let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
     let p = (k + 1u) % 3u;
     let q = (k + 2u) % 3u;
     let edge = edge_sight(view, net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]);
-    let sight = mixed_sight(edge, net_sight(view, net), outside);
-    var seen = seen_differences(view, sight, net, k);
-    let at_p = seen_length(view, sight, second_differences(net, p, k)[0]);
-    let at_q = seen_length(view, sight, second_differences(net, q, k)[0]);
-    let at_k = seen_length(view, sight, second_differences(net, k, k)[0]);
+    let beside = mixed_sight(edge, sight, outside);
+    let at_p = seen_length(view, beside, second_differences(net, p, k)[0]);
+    let at_q = seen_length(view, beside, second_differences(net, q, k)[0]);
+    let at_k = seen_length(view, beside, second_differences(net, k, k)[0]);
     let own = max(at_p, at_q);
-    seen.x = own + share * max(at_k - own, 0.0);
+    let along = own + share * max(at_k - own, 0.0);
     let size = 1.0 / segments;
-    return row_error(seen, max(size, 1.0 / factor), size);
+    return row_error(vec3<f32>(along, seen.y, seen.z), max(size, 1.0 / factor), size);
 }
 
 fn whole(partitioning: u32, least: f32) -> f32 {
@@ -227,8 +232,13 @@ fn inside_error_factor(
     net: ControlNet,
     edges: vec3<f32>,
 ) -> f32 {
+    let sight = net_sight(view, net);
+    var seen: array<vec3<f32>, 3>;
+    for (var k = 0u; k < 3u; k++) {
+        seen[k] = seen_differences(view, sight, net, k);
+    }
     let minimal = max(max(edges.x, edges.y), edges.z) <= 1.0;
-    let single = inner_error(view, net, 1.0);
+    let single = inner_error(seen, 1.0);
     if minimal && single <= tolerance {
         return 1.0;
     }
@@ -241,7 +251,7 @@ fn inside_error_factor(
         if nests(edges.x, segments) && nests(edges.y, segments) && nests(edges.z, segments) {
             var rims = 0.0;
             for (var k = 0u; k < 3u; k++) {
-                rims = max(rims, rim_error(view, net, k, edges[k], inside));
+                rims = max(rims, rim_error(view, net, sight, seen[k], k, edges[k], inside));
             }
             if rims <= tolerance {
                 return inside;

@@ -200,34 +200,41 @@ pub fn row_error(seen: [f32; 3], reach: f32, height: f32) -> f32 {
 }
 
 /// The bound for all rows between rings if there are `segments` inside, and for the triangle in the middle, which has
-/// three edges of one segment: 6/6 of the largest second difference along one.
-pub fn inner_error(view: &LodView, net: &ControlNet, segments: f32) -> f32 {
-    let sight = net_sight(view, net);
+/// three edges of one segment: 6/6 of the largest second difference along one. Second differences as seen, for each edge.
+pub fn inner_error(seen: [[f32; 3]; 3], segments: f32) -> f32 {
     let size = 1.0 / segments;
     let mut worst = 0.0f32;
-    for k in 0..3 {
-        let seen = seen_differences(view, sight, net, k);
-        worst = worst.max(row_error(seen, size, size)).max(1.001 * seen[0] * size * size);
+    for own in seen {
+        worst = worst.max(row_error(own, size, size)).max(1.001 * own[0] * size * size);
     }
     worst
 }
 
 /// The bound for the row along the edge opposite corner `k`, which has `factor` segments, while there are `segments`
-/// inside. The row is 2/3 of a segment high; of its points' control points the third corner's share is small.
-pub fn rim_error(view: &LodView, net: &ControlNet, k: usize, factor: f32, segments: f32) -> f32 {
+/// inside. The row is 2/3 of a segment high; of its points' control points the third corner's share is small, so that what
+/// goes along the row is seen about as the edge is. `sight` and `seen` are the whole patch's, the latter for this edge.
+pub fn rim_error(
+    view: &LodView,
+    net: &ControlNet,
+    sight: Sight,
+    seen: [f32; 3],
+    k: usize,
+    factor: f32,
+    segments: f32,
+) -> f32 {
     let share = (2.0 / 3.0) / segments;
     let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
     let edge = [net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]];
-    let sight = mixed_sight(edge_sight(view, edge), net_sight(view, net), outside);
-    let mut seen = seen_differences(view, sight, net, k);
-    let at_p = seen_length(view, sight, second_differences(net, p, k)[0]);
-    let at_q = seen_length(view, sight, second_differences(net, q, k)[0]);
-    let at_k = seen_length(view, sight, second_differences(net, k, k)[0]);
-    seen[0] = at_p.max(at_q) + share * (at_k - at_p.max(at_q)).max(0.0);
+    let beside = mixed_sight(edge_sight(view, edge), sight, outside);
+    let at_p = seen_length(view, beside, second_differences(net, p, k)[0]);
+    let at_q = seen_length(view, beside, second_differences(net, q, k)[0]);
+    let at_k = seen_length(view, beside, second_differences(net, k, k)[0]);
+    let own = at_p.max(at_q);
+    let along = own + share * (at_k - own).max(0.0);
     let size = 1.0 / segments;
-    row_error(seen, size.max(1.0 / factor), size)
+    row_error([along, seen[1], seen[2]], size.max(1.0 / factor), size)
 }
 
 /// The least number of segments, `least` or more, that a partitioning has without fractions: 1, 2, 4 and so on, or even,
@@ -250,8 +257,13 @@ pub fn inside_error_factor(
     net: &ControlNet,
     edges: [f32; 3],
 ) -> f32 {
+    let sight = net_sight(view, net);
+    let mut seen = [[0.0f32; 3]; 3];
+    for (k, own) in seen.iter_mut().enumerate() {
+        *own = seen_differences(view, sight, net, k);
+    }
     let minimal = edges[0].max(edges[1]).max(edges[2]) <= 1.0;
-    let single = inner_error(view, net, 1.0);
+    let single = inner_error(seen, 1.0);
     if minimal && single <= tolerance {
         return 1.0;
     }
@@ -264,7 +276,7 @@ pub fn inside_error_factor(
         if nests(edges[0], segments) && nests(edges[1], segments) && nests(edges[2], segments) {
             let mut rims = 0.0f32;
             for (k, factor) in edges.into_iter().enumerate() {
-                rims = rims.max(rim_error(view, net, k, factor, inside));
+                rims = rims.max(rim_error(view, net, sight, seen[k], k, factor, inside));
             }
             if rims <= tolerance {
                 return inside;
