@@ -6,13 +6,14 @@ struct Sight {
     farthest: f32,
     least: vec2<f32>,
     greatest: vec2<f32>,
+    is_cut: bool,
 }
 
 // Edges use up only a part of the tolerance: the rest is for the rows beside them, which bend in other directions too.
 const EDGE_SHARE: f32 = 0.75;
 
 fn no_sight() -> Sight {
-    return Sight(3.4e38, 0.0, vec2<f32>(3.4e38), vec2<f32>(-3.4e38));
+    return Sight(3.4e38, 0.0, vec2<f32>(3.4e38), vec2<f32>(-3.4e38), false);
 }
 
 fn widen(view: LodView, sight: Sight, p: vec3<f32>) -> Sight {
@@ -25,6 +26,7 @@ fn widen(view: LodView, sight: Sight, p: vec3<f32>) -> Sight {
         max(sight.farthest, depth),
         min(sight.least, select(vec2<f32>(-1.0), place, beyond)),
         max(sight.greatest, select(vec2<f32>(1.0), place, beyond)),
+        sight.is_cut || !beyond,
     );
 }
 
@@ -43,6 +45,10 @@ fn net_sight(view: LodView, net: ControlNet) -> Sight {
 }
 
 fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
+    if other.is_cut {
+        // Its least depth is the near plane's, and points between may be nearer than that would make them.
+        return other;
+    }
     let nearest = own.nearest + share * (other.nearest - own.nearest);
     // Places on screen are averages by depth.
     let reach = min(share * other.farthest / nearest, 1.0);
@@ -51,6 +57,7 @@ fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
         other.farthest,
         own.least + (other.least - own.least) * reach,
         own.greatest + (other.greatest - own.greatest) * reach,
+        false,
     );
 }
 

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::str::FromStr;
 
-use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::{Args, Parser};
 use glam::Vec2;
 
 use super::CliError;
@@ -63,7 +63,30 @@ pub struct SurfaceOptions {
     pub camera: CameraOption,
 }
 
+impl Default for SurfaceOptions {
+    /// What they are when none is given.
+    fn default() -> Self {
+        #[derive(Parser)]
+        struct Defaults {
+            #[command(flatten)]
+            options: SurfaceOptions,
+        }
+        Defaults::parse_from(["pnaen"]).options
+    }
+}
+
 impl SurfaceOptions {
+    /// What parsing can't see: options that need one another.
+    ///
+    /// # Errors
+    /// A budget without a tolerance to raise.
+    pub fn check(&self) -> Result<(), CliError> {
+        if self.max_triangles.is_some() && self.lod != Lod::Error {
+            return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
+        }
+        Ok(())
+    }
+
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
         let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
@@ -84,19 +107,16 @@ impl SurfaceOptions {
     }
 
     /// The same with a tolerance at which there are no more triangles than asked for, which it says on standard error;
-    /// `count` gives the number for settings.
+    /// `count` gives the number for settings. LOD is by error if there is a budget.
     ///
     /// # Errors
-    /// LOD isn't by error, there are more triangles at any tolerance, or `count` fails.
+    /// There are more triangles at any tolerance, or `count` fails.
     pub fn within_budget(
         &self,
         mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
     ) -> Result<Settings, CliError> {
         let settings = self.settings();
         let Some(most) = self.max_triangles else { return Ok(settings) };
-        if settings.lod != Lod::Error {
-            return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
-        }
         let largest = *TOLERANCE_RANGE.end();
         let tried = settings.tolerance..=largest;
         let fits = fit_budget(tried, most, |tolerance| count(&Settings { tolerance, ..settings }))?;

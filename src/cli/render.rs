@@ -11,7 +11,7 @@ use crate::gpu::{PassTime, Timing};
 use crate::measure::{Measured, compare, ulp};
 use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
 use crate::render::{Camera, Scene, Target, t_junction_lines};
-use crate::settings::{ARENA_BYTES, Overlay, Settings};
+use crate::settings::{Overlay, Settings};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -53,7 +53,7 @@ impl Args {
         Self {
             file,
             output: output.to_owned(),
-            surface: default_surface_options(),
+            surface: SurfaceOptions::default(),
             overlay: vec![Overlay::Wireframe],
             split: None,
             background,
@@ -75,29 +75,8 @@ impl Args {
     }
 }
 
-fn default_surface_options() -> SurfaceOptions {
-    let Settings { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } =
-        Settings::default();
-    let camera = options::CameraOption { azimuth: 30.0, elevation: 20.0, distance: None };
-    SurfaceOptions {
-        surface,
-        edges,
-        factor,
-        partitioning,
-        lod,
-        pixels,
-        tolerance,
-        distances: options::Distances { near, far },
-        max_triangles: None,
-        arena: ARENA_BYTES >> 20,
-        clip,
-        weld: options::WeldOption::default(),
-        size: options::Size([1280, 720]),
-        camera,
-    }
-}
-
 pub fn run(args: &Args) -> Result<(), CliError> {
+    args.surface.check()?;
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file, args.surface.weld)?;
     let engine = Engine::headless()?;

@@ -35,6 +35,7 @@ pub enum Device {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    args.surface.check()?;
     Exported::check(&args.output, 0, 0)?;
     let loaded = load(&args.file, args.surface.weld)?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);

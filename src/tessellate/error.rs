@@ -24,6 +24,8 @@ pub struct Sight {
     /// isn't.
     pub least: Vec2,
     pub greatest: Vec2,
+    /// Whether a control point is nearer than the near plane.
+    pub is_cut: bool,
 }
 
 /// The part of the tolerance that edges use up: the rest is for the rows beside them, which bend in other directions too.
@@ -31,7 +33,7 @@ pub const EDGE_SHARE: f32 = 0.75;
 
 /// Of nothing: to be widened.
 fn no_sight() -> Sight {
-    Sight { nearest: 3.4e38, farthest: 0.0, least: Vec2::splat(3.4e38), greatest: Vec2::splat(-3.4e38) }
+    Sight { nearest: 3.4e38, farthest: 0.0, least: Vec2::splat(3.4e38), greatest: Vec2::splat(-3.4e38), is_cut: false }
 }
 
 /// The same with one more control point.
@@ -45,6 +47,7 @@ pub fn widen(view: &LodView, sight: Sight, p: Vec3) -> Sight {
         farthest: sight.farthest.max(depth),
         least: sight.least.min(if beyond { place } else { Vec2::NEG_ONE }),
         greatest: sight.greatest.max(if beyond { place } else { Vec2::ONE }),
+        is_cut: sight.is_cut || !beyond,
     }
 }
 
@@ -66,6 +69,10 @@ pub fn net_sight(view: &LodView, net: &ControlNet) -> Sight {
 
 /// Of points that are `share` of something seen so, and otherwise of `own`, whose sight is a part of that.
 pub fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
+    if other.is_cut {
+        // Its least depth is the near plane's, and points between may be nearer than that would make them.
+        return other;
+    }
     let nearest = own.nearest + share * (other.nearest - own.nearest);
     // Places on screen are averages by depth.
     let reach = (share * other.farthest / nearest).min(1.0);
@@ -74,6 +81,7 @@ pub fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
         farthest: other.farthest,
         least: own.least + (other.least - own.least) * reach,
         greatest: own.greatest + (other.greatest - own.greatest) * reach,
+        is_cut: false,
     }
 }
 
@@ -346,6 +354,19 @@ mod tests {
         clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
         let perspective = LodView { clip_from_object, ..VIEW };
         assert!(inside_error_factor(&perspective, 0.25, Partitioning::Integer, &net, [1.0; 3]) > 4.0);
+    }
+
+    #[test]
+    fn what_lies_between_an_edge_and_a_point_behind_the_eye_is_as_near_as_that() {
+        let mut clip_from_object = Mat4::IDENTITY;
+        clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
+        clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
+        let view = LodView { clip_from_object, ..VIEW };
+        let (beside, behind) = (vec3(0.5, 0.0, 10.0), vec3(0.5, 0.0, -50.0));
+        let own = edge_sight(&view, [beside; 4]);
+        let other = widen(&view, own, behind);
+        let between = beside.lerp(behind, 0.1);
+        assert!(mixed_sight(own, other, 0.1).nearest <= between.z, "{between}");
     }
 
     #[test]
