@@ -119,6 +119,14 @@ fn every_switch_does_what_it_says() {
     assert_eq!(harness.state().settings().partitioning, Partitioning::Pow2);
     choose(&mut harness, "LOD", "Edge length");
     assert_eq!(harness.state().settings().lod, Lod::EdgeLength);
+    choose(&mut harness, "LOD", "Distance");
+    assert_eq!(harness.state().settings().lod, Lod::Distance);
+    harness.get_by_role_and_label(Role::SpinButton, "Near");
+    harness.get_by_role_and_label(Role::SpinButton, "far");
+    choose(&mut harness, "LOD", "Error");
+    assert_eq!(harness.state().settings().lod, Lod::Error);
+    harness.get_by_role_and_label(Role::Slider, "Tolerance");
+    choose(&mut harness, "LOD", "Edge length");
     choose(&mut harness, "Clipping", "Frustum");
     assert_eq!(harness.state().settings().clip, Clip::Frustum);
     choose(&mut harness, "Edges", "As published");

@@ -267,17 +267,19 @@ fn lod_row(ui: &mut egui::Ui, settings: &mut Settings) {
 
 /// Near and far, which stay apart.
 fn distances_row(ui: &mut egui::Ui, settings: &mut Settings) {
-    let label = ui.label("Near, far").on_hover_text("Distances to the eye, in bounding radii of the mesh.");
+    let (least, most) = (*DISTANCE_RANGE.start(), *DISTANCE_RANGE.end());
+    let (near, far) = (settings.near, settings.far);
+    let drag = |ui: &mut egui::Ui, label: egui::Response, value: &mut f32, range, hover: &str| {
+        let drag = egui::DragValue::new(value).range(range).speed(0.05).max_decimals(2).suffix(" r");
+        ui.add(drag.update_while_editing(false)).labelled_by(label.on_hover_text(hover).id).on_hover_text(hover);
+    };
+    let label = ui.label("Near");
     ui.horizontal(|ui| {
-        let (least, most) = (*DISTANCE_RANGE.start(), *DISTANCE_RANGE.end());
-        let (near, far) = (settings.near, settings.far);
-        for (value, range, hover) in [
-            (&mut settings.near, least..=far * 0.99, "Up to here every edge gets the factor, in bounding radii."),
-            (&mut settings.far, near * 1.01..=most, "From here on every edge gets 1, in bounding radii."),
-        ] {
-            let drag = egui::DragValue::new(value).range(range).speed(0.05).max_decimals(2).suffix(" r");
-            ui.add(drag.update_while_editing(false)).labelled_by(label.id).on_hover_text(hover);
-        }
+        let hover = "Up to this distance to the eye every edge gets the factor, in bounding radii of the mesh.";
+        drag(ui, label, &mut settings.near, least..=far * 0.99, hover);
+        let label = ui.label("far");
+        let hover = "From this distance to the eye on every edge gets 1, in bounding radii of the mesh.";
+        drag(ui, label, &mut settings.far, near * 1.01..=most, hover);
     });
 }
 

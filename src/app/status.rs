@@ -52,7 +52,9 @@ impl App {
             status(ui, 112.0, ms, &hover);
             let warnings = &document.loaded.mesh.warnings;
             if !warnings.is_empty() {
-                let text = RichText::new(format!("{} warnings", warnings.len())).color(ui.visuals().warn_fg_color);
+                let text =
+                    RichText::new(format!("{} warning{}", warnings.len(), if warnings.len() == 1 { "" } else { "s" }))
+                        .color(ui.visuals().warn_fg_color);
                 status(ui, 82.0, text, &warnings.join("\n"));
             }
             ui.add(egui::Label::new(RichText::new(&self.engine.gpu.info.name).weak()).truncate())
