@@ -8,12 +8,13 @@ const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
 const LOD: &str = include_str!("../../shaders/lod.wgsl");
 const ERROR: &str = include_str!("../../shaders/error.wgsl");
 const CULL: &str = include_str!("../../shaders/cull.wgsl");
+const CONVENTION: &str = include_str!("../../shaders/convention.wgsl");
 const TYPES: &str = include_str!("../../shaders/types.wgsl");
 const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
-const ROOMS: [&str; 7] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, ERROR, CULL, TYPES];
+const ROOMS: [&str; 8] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 10] = [

@@ -2,6 +2,7 @@
 //! `mesh.rs` does for a whole mesh what `shaders/pass_*.wgsl` do, and is their twin.
 
 mod budget;
+mod convention;
 mod cull;
 pub mod domain;
 mod error;
@@ -11,6 +12,7 @@ mod mesh;
 mod surface;
 
 pub use budget::fit_budget;
+pub use convention::{Convention, corner_weights, domain_side, factor_side, weight_corner};
 pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outside, patch_is_unseen, planes_outside};
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};

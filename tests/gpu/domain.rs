@@ -264,6 +264,7 @@ fn twins_have_the_same_functions_in_the_same_order() {
         (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),
         (include_str!("../../src/tessellate/lod.rs"), include_str!("../../shaders/lod.wgsl")),
         (include_str!("../../src/tessellate/error.rs"), include_str!("../../shaders/error.wgsl")),
+        (include_str!("../../src/tessellate/convention.rs"), include_str!("../../shaders/convention.wgsl")),
         (include_str!("../../src/tessellate/cull.rs"), include_str!("../../shaders/cull.wgsl")),
     ];
     for (rust, wgsl) in twins {

@@ -1,0 +1,98 @@
+//! Which edge each factor belongs to, and which corner each weight. Twin: `shaders/convention.wgsl`.
+//!
+//! The tessellator knows neither edges nor corners: its factor i is that of the edge on which weight i is 0. A hull
+//! shader decides which side's factor it writes as factor i, and a domain shader which corner it weighs with weight i. Any
+//! order will do if both mean the same; if they don't, edges get the factors of other edges, and crack.
+
+use clap::ValueEnum;
+
+/// What a hull shader and a domain shader take factors and weights for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum)]
+#[repr(u32)]
+pub enum Convention {
+    /// Direct3D 11's, Vulkan's and the white paper's: u on corner 0, v on 1, w on 2; factors of the edges opposite.
+    #[default]
+    #[value(name = "d3d11")]
+    D3d11 = 0,
+    /// AMD's PN triangles sample for Direct3D 11: w on corner 0, u on 1, v on 2; factors of the edges opposite.
+    #[value(name = "amd-pn")]
+    AmdPn = 1,
+    /// Factor e is that of the edge from corner e to corner e + 1; w on corner 1, u on 2, v on 0.
+    #[value(name = "edge-order")]
+    EdgeOrder = 2,
+    /// A mistake: factor e is that of the edge from corner e to corner e + 1, but weights are Direct3D 11's.
+    #[value(name = "rotated")]
+    Rotated = 3,
+    /// A mistake: weights are Direct3D 11's, but factors 0 and 1 are exchanged, as if patches were wound the other way.
+    #[value(name = "mirrored")]
+    Mirrored = 4,
+}
+
+/// The side (k runs from corner k to corner k + 1) whose factor the hull shader writes as factor `i`.
+pub fn factor_side(convention: Convention, i: u32) -> u32 {
+    match convention {
+        Convention::D3d11 => (i + 1) % 3,
+        Convention::AmdPn => (i + 2) % 3,
+        Convention::EdgeOrder | Convention::Rotated => i,
+        Convention::Mirrored => (5 - i) % 3,
+    }
+}
+
+/// The corner that the domain shader weighs with weight `i`: u, v, w.
+pub fn weight_corner(convention: Convention, i: u32) -> u32 {
+    match convention {
+        Convention::AmdPn => (i + 1) % 3,
+        Convention::EdgeOrder => (i + 2) % 3,
+        Convention::D3d11 | Convention::Rotated | Convention::Mirrored => i,
+    }
+}
+
+/// The side on which the domain shader puts the edge that the tessellator cuts by factor `i`: opposite the corner that
+/// weight `i` is on.
+pub fn domain_side(convention: Convention, i: u32) -> u32 {
+    (weight_corner(convention, i) + 1) % 3
+}
+
+/// U and V on corners 0 and 1 of what the tessellator gives as U and V, in 16.16 fixed point; W is the rest.
+pub fn corner_weights(convention: Convention, [u, v]: [u32; 2]) -> [u32; 2] {
+    let weights = [u, v, super::FIXED_ONE - u - v];
+    let mut on_corners = [0; 3];
+    for (i, weight) in weights.into_iter().enumerate() {
+        on_corners[weight_corner(convention, i as u32) as usize] = weight;
+    }
+    [on_corners[0], on_corners[1]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Convention; 5] =
+        [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder, Convention::Rotated, Convention::Mirrored];
+
+    #[test]
+    fn conventions_give_every_edge_its_own_factor_and_mistakes_do_not() {
+        let agrees = |convention| (0..3).all(|i| factor_side(convention, i) == domain_side(convention, i));
+        assert_eq!(ALL.map(agrees), [true, true, true, false, false]);
+    }
+
+    #[test]
+    fn every_side_and_every_corner_is_named_once() {
+        for convention in ALL {
+            let mut sides = [0, 1, 2].map(|i| factor_side(convention, i));
+            let mut corners = [0, 1, 2].map(|i| weight_corner(convention, i));
+            sides.sort_unstable();
+            corners.sort_unstable();
+            assert_eq!((sides, corners), ([0, 1, 2], [0, 1, 2]), "{convention:?}");
+        }
+    }
+
+    #[test]
+    fn samples_of_the_field_are_as_they_state() {
+        // Sides 0, 1, 2 are the edges (0, 1), (1, 2), (2, 0).
+        assert_eq!([0, 1, 2].map(|i| factor_side(Convention::D3d11, i)), [1, 2, 0]);
+        assert_eq!([0, 1, 2].map(|i| factor_side(Convention::AmdPn, i)), [2, 0, 1]);
+        assert_eq!(corner_weights(Convention::AmdPn, [1, 2]), [65533, 1], "w on corner 0, u on 1, v on 2");
+        assert_eq!(corner_weights(Convention::D3d11, [1, 2]), [1, 2]);
+    }
+}
