@@ -31,6 +31,8 @@ pub struct Settings {
     pub near: f32,
     pub far: f32,
     pub clip: Clip,
+    /// Whether patches that show their backs only are left out, of meshes that are closed and single-sided.
+    pub cull_back_faces: bool,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
     pub split: Option<f32>,
@@ -51,6 +53,7 @@ impl Default for Settings {
             near: 2.0,
             far: 10.0,
             clip: Clip::Off,
+            cull_back_faces: false,
             overlays: Overlays::default(),
             split: None,
             background: [0x2b, 0x2e, 0x33],
@@ -153,7 +156,8 @@ impl Settings {
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
         let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } = *self;
-        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, view }
+        let cull_back_faces = self.cull_back_faces;
+        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, cull_back_faces, view }
     }
 }
 

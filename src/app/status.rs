@@ -22,7 +22,7 @@ impl App {
                 |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
             );
             let patches = document.loaded.topology.patches.len() as u64;
-            let drawn = patches - u64::from(self.measuring.found().map_or(0, |found| found.patches_culled));
+            let drawn = patches - u64::from(self.measuring.found().map_or(0, |found| found.culled.total()));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             status(
                 ui,

@@ -181,12 +181,16 @@ struct Stats {
     edges: EdgeCounts,
     degenerate: u32,
     patches: u64,
+    /// For whatever reason.
     patches_culled: u32,
+    patches_out_of_view: u32,
+    patches_facing_away: u32,
     triangles_out: u64,
     vertices_out: u64,
     bytes: Bytes,
     cracks: CrackStats,
-    /// Px through which one looks into the mesh; none if it is open, or reaches the near plane.
+    /// Px through which one looks into the mesh; none if it is open, reaches the near plane, or patches that face away were
+    /// left out.
     leaks: Option<u64>,
     /// Triangles that face away from the side that their patch faces.
     folds: u64,
@@ -250,7 +254,9 @@ impl Stats {
             edges: topology.edge_counts(),
             degenerate: topology.degenerate,
             patches: topology.patches.len() as u64,
-            patches_culled: measured.patches_culled,
+            patches_culled: measured.culled.total(),
+            patches_out_of_view: measured.culled.out_of_view,
+            patches_facing_away: measured.culled.facing_away,
             triangles_out,
             vertices_out,
             bytes: Bytes {

@@ -14,5 +14,5 @@ pub use cracks::{CrackedEdge, Cracks, ulp};
 pub use deviation::{Deviant, Deviation};
 pub use picture::{CompareError, Comparison, compare};
 pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims};
-pub use survey::{Measured, Survey};
+pub use survey::{Culled, Measured, Survey};
 pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};

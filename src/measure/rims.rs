@@ -108,11 +108,6 @@ impl Rims {
         }
     }
 
-    /// How many patches emit nothing.
-    pub fn culled(&self) -> u32 {
-        self.starts.windows(2).filter(|ring| ring[0] == ring[1]).count() as u32
-    }
-
     /// What the sides of an edge (an index into [`Topology::edges`]) have made of it. Patches that emit nothing are left
     /// out.
     pub fn edge(&self, topology: &Topology, edge: u32) -> Vec<EdgeSide> {

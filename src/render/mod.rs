@@ -9,7 +9,7 @@ mod scene;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
-pub use leaks::{LeakCounter, is_beyond_near};
+pub use leaks::LeakCounter;
 pub use marks::t_junction_lines;
 pub use renderer::Renderer;
 pub use scene::{LineSegment, Scene};

@@ -8,7 +8,7 @@ use super::{Camera, Scene, Target};
 use crate::gpu::layout::Vertex;
 use crate::gpu::{COLOR_FORMAT, ChunkBuffers, DEPTH_FORMAT, Gpu, Recorder};
 use crate::mesh::Texture;
-use crate::settings::Settings;
+use crate::settings::{Overlays, Settings};
 
 /// Long-lived: one for a device, whatever is loaded.
 pub struct Renderer {
@@ -17,8 +17,9 @@ pub struct Renderer {
     pub(super) material_layout: wgpu::BindGroupLayout,
     pub(super) white: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
-    indexed: wgpu::RenderPipeline,
-    pulled: wgpu::RenderPipeline,
+    /// Both sides, then fronts only.
+    indexed: [wgpu::RenderPipeline; 2],
+    pulled: [wgpu::RenderPipeline; 2],
     source: wgpu::RenderPipeline,
     /// Through everything and faint, then what is in sight.
     lines: [wgpu::RenderPipeline; 2],
@@ -26,6 +27,9 @@ pub struct Renderer {
 
 /// Bytes from a [`crate::gpu::layout::DrawArgs`]'s start to its arguments for pulled drawing.
 const PULL_ARGS: u64 = std::mem::offset_of!(crate::gpu::layout::DrawArgs, pull_vertex_count) as u64;
+
+/// Both sides, then fronts only.
+const SIDES: [Layer; 2] = [Layer::Surface, Layer::Fronts];
 
 impl Renderer {
     pub fn new(gpu: &Gpu) -> Self {
@@ -38,8 +42,9 @@ impl Renderer {
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2],
         }];
         let layouts = [Some(&scene_layout), Some(&material_layout)];
-        let surface =
-            |entry, buffers| pipeline(gpu, &layouts, &surface, (entry, "surface_fragment"), buffers, Layer::Surface);
+        let surface = |entry, buffers: &[_], layer| {
+            pipeline(gpu, &layouts, &surface, (entry, "surface_fragment"), buffers, layer)
+        };
         let segment = wgpu::VertexBufferLayout {
             array_stride: size_of::<LineSegment>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
@@ -49,12 +54,12 @@ impl Renderer {
         let lines = |entry, layer| {
             pipeline(gpu, &layouts[..1], &lines, ("line_vertex", entry), &[Some(segment.clone())], layer)
         };
-        let [vertex] = vertex;
+        let vertex = vertex.map(Some);
         Self {
             gpu: gpu.clone(),
-            indexed: surface("indexed_vertex", &[Some(vertex)]),
-            pulled: surface("pulled_vertex", &[]),
-            source: surface("source_vertex", &[]),
+            indexed: SIDES.map(|layer| surface("indexed_vertex", &vertex, layer)),
+            pulled: SIDES.map(|layer| surface("pulled_vertex", &[], layer)),
+            source: surface("source_vertex", &[], Layer::Surface),
             lines: [lines("hidden_line_fragment", Layer::Everywhere), lines("line_fragment", Layer::InSight)],
             white: upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] }),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -87,6 +92,12 @@ impl Renderer {
             contents: bytemuck::bytes_of(&frame),
             usage: wgpu::BufferUsages::UNIFORM,
         });
+        // These look at whole triangles, and at backs.
+        let Overlays { wireframe, folds, back_faces, .. } = settings.overlays;
+        let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
+        let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
+        let pipeline = if wireframe || folds { &self.pulled } else { &self.indexed };
+        let pipeline = (&pipeline[usize::from(fronts)], wireframe || folds);
         let passes = scene.tessellator.chunk_count().max(1);
         for index in 0..passes {
             let emitted = index < scene.tessellator.chunk_count();
@@ -103,9 +114,7 @@ impl Renderer {
                     self.draw_source(pass, scene, left);
                 }
                 if emitted {
-                    // These look at whole triangles.
-                    let pulled = settings.overlays.wireframe || settings.overlays.folds;
-                    self.draw_chunk(pass, scene, right, pulled, &scene.tessellator.chunk(index));
+                    self.draw_chunk(pass, scene, right, pipeline, &scene.tessellator.chunk(index));
                 }
                 if last {
                     self.draw_lines(pass, scene, right);
@@ -146,17 +155,15 @@ impl Renderer {
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
         [x, y, width, height]: [u32; 4],
-        pulled: bool,
+        (pipeline, pulled): (&wgpu::RenderPipeline, bool),
         chunk: &ChunkBuffers,
     ) {
         if width == 0 || height == 0 {
             return;
         }
         pass.set_scissor_rect(x, y, width, height);
-        if pulled {
-            pass.set_pipeline(&self.pulled);
-        } else {
-            pass.set_pipeline(&self.indexed);
+        pass.set_pipeline(pipeline);
+        if !pulled {
             pass.set_vertex_buffer(0, chunk.vertices.slice(..));
             pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
         }
@@ -245,6 +252,8 @@ fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 enum Layer {
     /// Opaque, in depth.
     Surface,
+    /// The same without what faces away.
+    Fronts,
     /// Blended, whatever is in front.
     Everywhere,
     /// Blended, where nothing is in front.
@@ -265,10 +274,11 @@ fn pipeline(
         ..Default::default()
     });
     let compare = match layer {
-        Layer::Surface | Layer::InSight => wgpu::CompareFunction::Greater,
+        Layer::Surface | Layer::Fronts | Layer::InSight => wgpu::CompareFunction::Greater,
         Layer::Everywhere => wgpu::CompareFunction::Always,
     };
-    let opaque = layer == Layer::Surface;
+    let opaque = matches!(layer, Layer::Surface | Layer::Fronts);
+    let cull_mode = (layer == Layer::Fronts).then_some(wgpu::Face::Back);
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
@@ -278,7 +288,7 @@ fn pipeline(
             compilation_options: Default::default(),
             buffers,
         },
-        primitive: wgpu::PrimitiveState::default(),
+        primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(opaque),

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use glam::{Vec3, Vec4};
 
-use super::lod::LodView;
+use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
 
 /// Whether patches that cannot be seen are left out.
@@ -61,12 +61,83 @@ pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
     shared != 0
 }
 
-/// Whether a patch is left out.
-pub fn patch_is_unseen(clip: Clip, view: &LodView, net: &ControlNet) -> bool {
-    match clip {
+/// The six control points that weigh in where corner `i`'s weight is taken out of a patch once: of a quadratic triangle,
+/// in the order 200, 110, 020, 011, 002, 101. Its points and those of the other two corners differ by the patch's
+/// tangents.
+pub fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
+    let [b300, b030, b003] = net.corners;
+    let [b210, b120, b021, b012, b102, b201] = net.edges;
+    let b111 = net.center;
+    match i {
+        0 => [b300, b210, b120, b111, b102, b201],
+        1 => [b210, b120, b030, b021, b012, b111],
+        _ => [b201, b111, b021, b012, b003, b102],
+    }
+}
+
+/// How far a surface must be from being seen edge-on, about as a sine: more than rounding, and enough that also a
+/// rasteriser that snaps vertices to 1/256 px finds its back.
+pub const FACING_MARGIN: f32 = 1e-3;
+
+/// Whether a patch's surface shows its back everywhere: no point and no two tangents of it, each anywhere within what
+/// its control net spans, face the eye. The patch must lie beyond the near plane.
+///
+/// In homogeneous coordinates of the screen (x, y, w), a point p and the tangents s and t there show their front where
+/// p . (s x t) > 0, also without perspective. All three are weighted means of control points and of their differences,
+/// with weights that are not negative, so it is less than 0 everywhere if it is for every combination of those.
+pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
+    let rows = [clip_row(view, 0), clip_row(view, 1), clip_row(view, 3)];
+    let turned = |d: Vec3| Vec3::new(rows[0].dot(d), rows[1].dot(d), rows[2].dot(d));
+    let [at_u, at_v, at_w] = [polar_points(net, 0), polar_points(net, 1), polar_points(net, 2)];
+    let mut least = Vec3::splat(3.4e38);
+    let mut greatest = Vec3::splat(-3.4e38);
+    let mut toward_u = [Vec3::ZERO; 6];
+    let mut toward_v = [Vec3::ZERO; 6];
+    for k in 0..6 {
+        for p in [at_u[k], at_v[k], at_w[k]] {
+            let clip = view.clip_from_object * p.extend(1.0);
+            let seen = Vec3::new(clip.x, clip.y, clip.w);
+            least = least.min(seen);
+            greatest = greatest.max(seen);
+        }
+        toward_u[k] = turned(at_u[k] - at_w[k]);
+        toward_v[k] = turned(at_v[k] - at_w[k]);
+    }
+    let middle = (least + greatest) * 0.5;
+    let reach = (greatest - least) * 0.5 + (middle.abs() + greatest - least) * FACING_MARGIN;
+    for u in toward_u {
+        for v in toward_v {
+            let facing = u.cross(v);
+            // No less than 0 also where it is no number.
+            let away = facing.dot(middle) + facing.abs().dot(reach) < 0.0;
+            if !away {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// Why a patch emits nothing: it doesn't, its own factors cull it being no matter of this.
+pub const SEEN: u32 = 0;
+/// It is out of view.
+pub const OUT_OF_VIEW: u32 = 1;
+/// It shows its back only.
+pub const FACING_AWAY: u32 = 2;
+
+/// Whether a patch is left out, and why; those that face away if `culls_back` is set.
+pub fn unseen(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
+    let outside = match clip {
         Clip::Off => false,
         Clip::Paper => patch_is_clipped(view, net),
         Clip::Frustum => patch_is_outside(view, net),
+    };
+    if outside {
+        OUT_OF_VIEW
+    } else if culls_back && faces_away(view, net) {
+        FACING_AWAY
+    } else {
+        SEEN
     }
 }
 
@@ -88,11 +159,11 @@ mod tests {
         // Every control point lies outside, but on different sides: the middle of the view is covered.
         let around = flat([vec3(-9.0, -6.0, 0.5), vec3(9.0, -6.0, 0.5), vec3(0.0, 12.0, 0.5)]);
         let around = ControlNet { center: vec3(0.0, 2.0, 0.5), ..around };
-        assert!(patch_is_unseen(Clip::Paper, &view, &around));
-        assert!(!patch_is_unseen(Clip::Frustum, &view, &around));
+        assert_eq!(unseen(Clip::Paper, false, &view, &around), OUT_OF_VIEW);
+        assert_eq!(unseen(Clip::Frustum, false, &view, &around), SEEN);
         let left = flat([vec3(-9.0, 0.0, 0.5), vec3(-2.0, -5.0, 0.5), vec3(-1.5, 5.0, 0.5)]);
-        assert!(patch_is_unseen(Clip::Frustum, &view, &left));
-        assert!(!patch_is_unseen(Clip::Off, &view, &left));
+        assert_eq!(unseen(Clip::Frustum, false, &view, &left), OUT_OF_VIEW);
+        assert_eq!(unseen(Clip::Off, false, &view, &left), SEEN);
     }
 
     #[test]
