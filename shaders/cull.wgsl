@@ -61,7 +61,13 @@ fn polar_points(net: ControlNet, i: u32) -> array<vec3<f32>, 6> {
 
 const FACING_MARGIN: f32 = 1e-3;
 
-// Whether no point with any two tangents, each anywhere within what the control net spans, faces the eye.
+const FACING_ROUNDING: f32 = 1e-6;
+
+// Digits to base 5 of second and third index, and how often each counts.
+const POLAR_INDICES: array<u32, 6> = array<u32, 6>(0u, 5u, 10u, 6u, 2u, 1u);
+const POLAR_WEIGHTS: array<f32, 6> = array<f32, 6>(1.0, 2.0, 1.0, 2.0, 1.0, 2.0);
+
+// Whether each control vector of the tangents' cross product shows its back to all of the net's box.
 fn faces_away(view: LodView, net: ControlNet) -> bool {
     // Its columns are the rows of the matrix: x, y and w.
     let rows = mat3x3<f32>(clip_row(view, 0u), clip_row(view, 1u), clip_row(view, 3u));
@@ -83,10 +89,22 @@ fn faces_away(view: LodView, net: ControlNet) -> bool {
     }
     let middle = (least + greatest) * 0.5;
     let reach = (greatest - least) * 0.5 + (abs(middle) + greatest - least) * FACING_MARGIN;
+    var indices = POLAR_INDICES;
+    var weights = POLAR_WEIGHTS;
+    var facing: array<vec3<f32>, 25>;
+    var terms: array<vec3<f32>, 25>;
     for (var i = 0u; i < 6u; i++) {
         for (var j = 0u; j < 6u; j++) {
-            let facing = cross(toward_u[i], toward_v[j]);
-            let away = dot(facing, middle) + dot(abs(facing), reach) < 0.0;
+            let product = cross(toward_u[i], toward_v[j]) * (weights[i] * weights[j]);
+            facing[indices[i] + indices[j]] += product;
+            terms[indices[i] + indices[j]] += abs(product);
+        }
+    }
+    for (var i = 0u; i < 5u; i++) {
+        for (var j = 0u; j < 5u - i; j++) {
+            let own = facing[5u * i + j];
+            let rounding = dot(terms[5u * i + j], abs(middle)) * FACING_ROUNDING;
+            let away = dot(own, middle) + dot(abs(own), reach) + rounding < 0.0;
             if !away {
                 return false;
             }

@@ -55,3 +55,64 @@ pub fn is_beyond_near(clip_from_object: Mat4, [min, max]: [Vec3; 2]) -> bool {
         beyond_near(clip_from_object * Vec3::new(pick(0), pick(1), pick(2)).extend(1.0))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Progress, Shape};
+    use crate::settings::Settings;
+    use crate::tessellate::{Limit, LodView};
+
+    fn solid(mesh: &Mesh) -> Option<Solid> {
+        Solid::find(mesh, &Topology::build(mesh, &Progress::default()).expect("nobody cancels"))
+    }
+
+    #[test]
+    fn closed_single_sided_shapes_wound_outward_are_solids() {
+        for shape in Shape::ALL {
+            let mesh = shape.build();
+            let closed = !matches!(shape, Shape::Saddle | Shape::Moebius);
+            assert_eq!(solid(&mesh).is_some(), closed, "{shape:?}");
+            let mut inward = mesh.clone();
+            inward.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+            assert_eq!(solid(&inward), None, "{shape:?} wound inward");
+            let mut double = mesh.clone();
+            double.materials[0].double_sided = true;
+            assert_eq!(solid(&double), None, "{shape:?} seen from both sides");
+        }
+    }
+
+    #[test]
+    fn a_part_wound_inward_is_enough() {
+        let mut mesh = Shape::Icosahedron.build();
+        let count = mesh.corners.len() as u32;
+        let smaller = mesh.corners.clone().into_iter().map(|c| crate::mesh::Corner { position: c.position * 0.5, ..c });
+        mesh.corners.extend(smaller);
+        let inner: Vec<_> = mesh.triangles.iter().map(|&[a, b, c]| [a + count, c + count, b + count]).collect();
+        assert!(solid(&mesh).is_some());
+        mesh.triangles.extend(inner);
+        mesh.materials[0].triangles.end = mesh.triangles.len() as u32;
+        assert_eq!(solid(&mesh), None, "a hollow ball's inside could be seen through nothing, but that isn't proved");
+    }
+
+    #[test]
+    fn control_points_stay_within_the_extent() {
+        for shape in Shape::ALL {
+            let mesh = shape.build();
+            let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+            let reach = Vec3::splat(control_point_reach(&mesh, &topology));
+            let [min, max] = [mesh.bounds().min - reach, mesh.bounds().max + reach];
+            for surface in [Surface::Flat, Surface::Pn, Surface::PnAen] {
+                let settings = Settings { surface, ..Settings::default() };
+                let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
+                let limit = Limit::new(&mesh, &topology, &inputs);
+                for patch in 0..topology.patches.len() as u32 {
+                    let net = limit.net(patch);
+                    for p in net.corners.iter().chain(&net.edges).chain([&net.center]) {
+                        assert!(p.cmpge(min - 1e-6).all() && p.cmple(max + 1e-6).all(), "{shape:?} {surface:?}: {p}");
+                    }
+                }
+            }
+        }
+    }
+}

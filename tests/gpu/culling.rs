@@ -7,7 +7,7 @@ use pnaen::mesh::Shape;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{Overlays, Settings};
 use pnaen::stability::random_camera;
-use pnaen::tessellate::{Clip, Edges, Lod, Surface};
+use pnaen::tessellate::{Clip, Edges, Lod, Surface, tessellate};
 
 use crate::{engine, scene};
 
@@ -61,7 +61,7 @@ fn no_pixel_differs_whatever_is_left_out() {
         }
     }
     println!("{CAMERAS} cameras: {removed:?}");
-    assert!(removed.out_of_view > 10_000 && removed.facing_away > 10_000, "{removed:?}");
+    assert!(removed.out_of_view > 9_000 && removed.facing_away > 9_000, "{removed:?}");
 }
 
 /// Patches that face away, from a camera that sees all of the mesh.
@@ -79,11 +79,32 @@ fn backs_are_kept_where_they_could_be_seen() {
     let culling = Settings { cull_back_faces: true, ..Settings::default() };
     let flat = Settings { surface: Surface::Flat, ..culling };
     assert_eq!(facing_away(Shape::CubeSplit, &flat), 6, "three of a cube's faces, two triangles each");
-    assert!(facing_away(Shape::Torus, &culling) > 100, "most of what faces away");
+    assert!(facing_away(Shape::Torus, &culling) > 90, "of 256, about half of which face away");
     let torn = Settings { surface: Surface::Pn, ..culling };
     assert_eq!(facing_away(Shape::CubeSplit, &torn), 0, "one looks in through the cracks");
     let published = Settings { edges: Edges::AsPublished, ..culling };
     assert_eq!(facing_away(Shape::CubeSplit, &published), 0, "the same");
     assert_eq!(facing_away(Shape::Saddle, &culling), 0, "open");
     assert_eq!(facing_away(Shape::Moebius, &culling), 0, "without an outside");
+}
+
+#[test]
+fn the_device_leaves_out_what_the_cpu_does() {
+    let viewport = Vec2::new(320.0, 240.0);
+    let (mut same, mut all) = (0, 0);
+    for shape in SOLIDS {
+        let (loaded, mut scene) = scene(shape);
+        for index in 0..12 {
+            let camera = random_camera(&scene.bounds, index);
+            let settings = Settings { factor: 1.0, clip: Clip::Frustum, cull_back_faces: true, ..Settings::default() };
+            let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
+            engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+            let device = engine().patch_factors(&scene).expect("a readback");
+            let host = tessellate(&loaded.mesh, &loaded.topology, &inputs, None).patch_factors;
+            same += device.iter().zip(&host).filter(|(a, b)| a == b).count();
+            all += host.len();
+        }
+    }
+    // What lies on a plane of the view, or is seen edge-on, rounding may put on either side.
+    assert!(same * 1000 >= all * 999, "{same} of {all} patches");
 }
