@@ -22,6 +22,19 @@ fn window(source: Option<Source>) -> Harness<'static, App> {
     harness
 }
 
+/// A window that draws every patch, in fractional segments by one factor: pictures and counts of these tests are of such.
+fn uniform(source: Option<Source>) -> Harness<'static, App> {
+    let mut harness = window(source);
+    choose(&mut harness, "Partitioning", "Fractional odd");
+    choose(&mut harness, "LOD", "Uniform");
+    choose(&mut harness, "Clipping", "Off");
+    if harness.state().settings().cull_back_faces {
+        harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
+    }
+    settle(&mut harness);
+    harness
+}
+
 /// Steps until everything is loaded, drawn and measured.
 fn settle(harness: &mut Harness<App>) {
     let start = Instant::now();
@@ -58,18 +71,21 @@ fn vase() -> Source {
 
 #[test]
 fn it_opens_on_a_cube_without_cracks() {
-    let harness = window(None);
+    let mut harness = window(None);
     let app = harness.state();
     assert_eq!(app.source(), Some(&Source::Shape(Shape::CubeSplit)));
-    assert_eq!((app.settings().surface, app.settings().factor), (Surface::PnAen, 8.0));
+    assert_eq!((app.settings().surface, app.settings().lod), (Surface::PnAen, Lod::Error));
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(0));
     harness.get_by_label("cracks 0");
+    harness.get_by_label("6 of 12 patches");
+    harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
+    settle(&mut harness);
     harness.get_by_label("12 of 12 patches");
 }
 
 #[test]
 fn choosing_pn_lights_up_the_cracks() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     choose(&mut harness, "Surface", "PN");
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
     settle(&mut harness);
@@ -82,7 +98,7 @@ fn choosing_pn_lights_up_the_cracks() {
 
 #[test]
 fn the_factor_can_be_slid_typed_and_stepped() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     let before = harness.state().totals();
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(12.0);
     settle(&mut harness);
@@ -96,7 +112,7 @@ fn the_factor_can_be_slid_typed_and_stepped() {
 
 #[test]
 fn every_switch_does_what_it_says() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     for (label, is_on) in [
         ("Patch borders", (|app: &App| app.settings().overlays.patches) as fn(&App) -> bool),
         ("Barycentric colours", |app| app.settings().overlays.barycentric),
@@ -136,7 +152,7 @@ fn every_switch_does_what_it_says() {
 
 #[test]
 fn the_worst_edges_are_listed_and_one_click_frames_one() {
-    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let app = harness.state();
     let cracks = app.cracks().expect("measured").clone();
@@ -169,7 +185,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
 
 #[test]
 fn keys_go_through_a_list_beyond_the_rows_in_sight() {
-    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
     harness.get_by_label_contains(&format!("{:<6}split normal", edges[0])).focus();
@@ -190,7 +206,7 @@ fn keys_go_through_a_list_beyond_the_rows_in_sight() {
 
 #[test]
 fn escape_closes_a_list_before_it_deselects() {
-    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     harness.state_mut().select_edge(3);
     settle(&mut harness);
     harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
@@ -203,7 +219,7 @@ fn escape_closes_a_list_before_it_deselects() {
 
 #[test]
 fn as_published_edges_crack_and_once_an_edge_they_close() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     press(&mut harness, egui::Key::E);
     let cracked = harness.state().cracks().expect("measured").different_bits;
     assert!(cracked > 1000, "{cracked}");
@@ -213,7 +229,7 @@ fn as_published_edges_crack_and_once_an_edge_they_close() {
 
 #[test]
 fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
-    let mut harness = window(Some(Source::Shape(Shape::Saddle)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Saddle)));
     let start = Instant::now();
     while harness.state().is_checking() {
         assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
@@ -229,7 +245,7 @@ fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
 
 #[test]
 fn nothing_is_drawn_when_nothing_changed() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
     harness.hover_at(egui::pos2(600.0, 400.0));
     harness.run_steps(20);
@@ -240,7 +256,7 @@ fn nothing_is_drawn_when_nothing_changed() {
 
 #[test]
 fn frozen_lod_stays_while_the_camera_moves() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     press(&mut harness, egui::Key::L);
     let before = harness.state().totals();
     press(&mut harness, egui::Key::Z);
@@ -253,7 +269,7 @@ fn frozen_lod_stays_while_the_camera_moves() {
 
 #[test]
 fn the_pointer_orbits_and_zooms() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
     let before = *harness.state().camera();
     harness.drag_at(egui::pos2(600.0, 400.0));
@@ -282,7 +298,7 @@ fn the_pointer_orbits_and_zooms() {
 
 #[test]
 fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     press(&mut harness, egui::Key::B);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::L);
     settle(&mut harness);
@@ -302,7 +318,7 @@ fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
 
 #[test]
 fn a_file_that_cannot_be_loaded_changes_nothing() {
-    let mut harness = window(Some(vase()));
+    let mut harness = uniform(Some(vase()));
     press(&mut harness, egui::Key::A);
     let (settings, camera) = (*harness.state().settings(), *harness.state().camera());
     let context = harness.ctx.clone();
@@ -327,7 +343,7 @@ fn a_dropped_file_is_opened() {
             std::fs::read(&self.0).map_err(|error| error.to_string())
         }
     }
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
     harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
     settle(&mut harness);
@@ -336,7 +352,7 @@ fn a_dropped_file_is_opened() {
 
 #[test]
 fn every_shape_is_in_the_menu() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     for shape in Shape::ALL {
         click(&mut harness, "File");
         harness.get_by_label_contains("Shapes").click();

@@ -5,7 +5,7 @@ use egui::RichText;
 use super::App;
 use super::text::{grouped, short};
 use super::widgets::{fact, heading, number, swatch};
-use crate::measure::{Cracks, ulp};
+use crate::measure::{Cracks, Culled, ulp};
 use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, edge_color};
 
@@ -26,6 +26,8 @@ impl App {
             self.worst_edges(ui);
             self.t_junction_list(ui);
             self.edge_details(ui);
+            heading(ui, "Patches");
+            self.patch_facts(ui);
             heading(ui, "Edges");
             self.edge_legend(ui);
             heading(ui, "Mesh");
@@ -84,6 +86,22 @@ impl App {
             });
             number(ui, &self.measuring.found().map_or_else(|| "…".into(), |found| grouped(found.folds)));
             ui.end_row();
+        });
+    }
+
+    fn patch_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let all = document.loaded.topology.patches.len() as u64;
+        let culled = self.measuring.found().map(|found| found.culled);
+        let count =
+            |number: &dyn Fn(Culled) -> u64| culled.map_or_else(|| "…".into(), |culled| grouped(number(culled)));
+        egui::Grid::new("patches").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let drawn = count(&|culled| all - u64::from(culled.total()));
+            fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
+            let hover = "Patches left out by clipping, for the LOD camera.";
+            fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
+            let hover = "Patches left out because their surface shows its back everywhere, to the LOD camera.";
+            fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
         });
     }
 

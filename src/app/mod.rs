@@ -21,8 +21,8 @@ use crate::gpu::{Gpu, GpuError, device_descriptor};
 use crate::measure::Cracks;
 use crate::mesh::Source;
 use crate::render::Camera;
-use crate::settings::Settings;
-use crate::tessellate::LodView;
+use crate::settings::{Overlays, Settings};
+use crate::tessellate::{Clip, Lod, LodView, Partitioning};
 
 use document::{Document, Load};
 use measuring::Measuring;
@@ -102,6 +102,18 @@ pub struct App {
     error: Option<String>,
 }
 
+/// What the window opens with: no more than the picture needs, and its triangles.
+fn first_settings() -> Settings {
+    Settings {
+        lod: Lod::Error,
+        partitioning: Partitioning::Integer,
+        clip: Clip::Frustum,
+        cull_back_faces: true,
+        overlays: Overlays { wireframe: true, ..Overlays::default() },
+        ..Settings::default()
+    }
+}
+
 impl App {
     /// # Errors
     /// The window isn't drawn through wgpu.
@@ -114,7 +126,7 @@ impl App {
             viewport: Viewport::new(&engine),
             engine,
             render_state,
-            settings: Settings::default(),
+            settings: first_settings(),
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             last_split: 0.5,
             frozen: None,
@@ -128,7 +140,6 @@ impl App {
             shows_keys: false,
             error: None,
         };
-        app.settings.overlays.wireframe = true;
         app.open(&context.egui_ctx, source.unwrap_or_default());
         Ok(app)
     }

@@ -159,11 +159,26 @@ impl App {
             ui.end_row();
             chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
         });
+        self.back_face_row(ui);
         let mut frozen = self.frozen.is_some();
         let hover = "LOD and clipping stay as they are for the camera of now, while you look from elsewhere (Z).";
         if ui.checkbox(&mut frozen, "Freeze LOD camera").on_hover_text(hover).changed() {
             self.toggle_frozen();
         }
+    }
+
+    fn back_face_row(&mut self, ui: &mut egui::Ui) {
+        let scene = self.document.as_ref().map(|document| &document.scene);
+        let is_solid = scene.is_some_and(|scene| scene.tessellator.is_solid());
+        let check = egui::Checkbox::new(&mut self.settings.cull_back_faces, "Cull back faces");
+        ui.add_enabled(is_solid, check)
+            .on_hover_text(
+                "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not while \
+                 the near plane cuts the mesh, nor where PN or edges as published tear it.",
+            )
+            .on_disabled_hover_text(
+                "Backs of this mesh can be seen: it is open, a part of it is wound inward, or a material is double-sided.",
+            );
     }
 
     /// The tolerances, each with what it would join; another one loads the mesh again.

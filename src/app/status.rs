@@ -28,7 +28,7 @@ impl App {
                 ui,
                 120.0,
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
-                "Patches drawn, of all; the rest is clipped.",
+                "Patches drawn, of all; the rest is out of view or faces away.",
             );
             status(
                 ui,
