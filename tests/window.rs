@@ -381,3 +381,34 @@ fn both_themes_show_the_picture_and_legible_controls() {
         assert!(middle[2] > middle[0], "{theme:?}: {middle:?}");
     }
 }
+
+#[test]
+fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
+    let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
+    let made = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
+        .args(["tessellate", "shape:torus", "--factor", "3", "-o"])
+        .arg(&path)
+        .status();
+    assert!(made.is_ok_and(|status| status.success()));
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let (pictures, before) = (harness.state().pictures(), harness.state().totals());
+    // Some 20 million triangles: more than anyone would wait for here.
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
+    let start = Instant::now();
+    while harness.query_by_label_contains("Drawing ").is_none() {
+        assert!(start.elapsed() < PATIENCE, "nothing is being drawn");
+        harness.step();
+    }
+    click(&mut harness, "Cancel");
+    assert_eq!((harness.state().pictures(), harness.state().settings().factor), (pictures, 64.0));
+    assert!(!harness.state().is_busy());
+    harness.get_by_label_contains("Not drawn: ");
+    harness.get_by_label("Draw").click();
+    harness.run_steps(3);
+    harness.get_by_label_contains("Drawing ");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(8.0);
+    settle(&mut harness);
+    // The last picture is of that: it only has to be counted again.
+    assert_eq!((harness.state().pictures(), harness.state().totals()), (pictures, before));
+    let _ = std::fs::remove_file(path);
+}

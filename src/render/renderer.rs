@@ -1,5 +1,7 @@
 //! Pipelines that draw a scene, and the one way a picture is drawn.
 
+use std::ops::Range;
+
 use wgpu::util::DeviceExt;
 
 use super::layout::{Frame, linear, overlay_bits};
@@ -86,6 +88,25 @@ impl Renderer {
         camera: &Camera,
         settings: &Settings,
     ) {
+        let all = 0..Self::steps(scene);
+        self.draw_steps(recorder, scene, target, camera, settings, all);
+    }
+
+    /// In how many steps [`Self::draw_steps`] draws the scene: one a chunk, and one if there is none.
+    pub fn steps(scene: &Scene) -> usize {
+        scene.tessellator.chunk_count().max(1)
+    }
+
+    /// Draws some of the steps of a picture; all of them, in order, make it. It is seen once the last is done.
+    pub fn draw_steps(
+        &self,
+        recorder: &mut Recorder,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+        steps: Range<usize>,
+    ) {
         let frame = self.frame(scene, target, camera, settings);
         let frame = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("frame"),
@@ -98,8 +119,8 @@ impl Renderer {
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let pipeline = if wireframe || folds { &self.pulled } else { &self.indexed };
         let pipeline = (&pipeline[usize::from(fronts)], wireframe || folds);
-        let passes = scene.tessellator.chunk_count().max(1);
-        for index in 0..passes {
+        let passes = Self::steps(scene);
+        for index in steps {
             let emitted = index < scene.tessellator.chunk_count();
             if emitted {
                 scene.tessellator.emit(recorder, index);
