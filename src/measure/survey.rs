@@ -25,6 +25,8 @@ pub struct Survey<'a> {
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub patches_culled: u32,
+    /// Patches drawn with factors that are all below 2.
+    pub patches_low: u32,
     pub cracks: Cracks,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
@@ -61,6 +63,7 @@ impl<'a> Survey<'a> {
     pub fn finish(self) -> Measured {
         Measured {
             patches_culled: self.rims.culled(),
+            patches_low: self.rims.low(),
             cracks: Cracks::find(self.mesh, self.topology, &self.rims),
             folds: self.folds,
             not_finite: self.not_finite,

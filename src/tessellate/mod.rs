@@ -17,8 +17,8 @@ pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outsid
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
-    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count,
-    process, round_pow2, segments, triangle_count,
+    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
+    point_count, process, round_pow2, segments, triangle_count,
 };
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
