@@ -4,7 +4,7 @@
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
-use crate::measure::{AskedFactors, Cracks, Measured, Survey};
+use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
 use crate::tessellate::{Edges, PatchFactors, Vertex};
@@ -14,16 +14,19 @@ use crate::tessellate::{Edges, PatchFactors, Vertex};
 pub struct Measuring {
     /// Document and tessellation that were last asked for.
     of: Option<(u64, u64)>,
+    /// Where sizes on screen were last asked for.
+    seen_from: Option<ScreenView>,
     copying: Option<Copying>,
     comparing: Option<Comparing>,
     found: Option<Measured>,
+    sizes: Option<Sizes>,
     /// Counts results, and their absence.
     pub generation: u64,
 }
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<Measured>,
+    found: Receiver<(Measured, Sizes)>,
     wanted: Progress,
 }
 
@@ -69,27 +72,46 @@ impl Measuring {
         self.found.as_ref().map(|found| &found.cracks)
     }
 
+    /// Sizes of the triangles shown, once measured; they say where they were seen from.
+    pub fn sizes(&self) -> Option<&Sizes> {
+        self.sizes.as_ref()
+    }
+
     pub fn is_busy(&self) -> bool {
         self.copying.is_some() || self.comparing.is_some()
     }
 
-    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now. True
-    /// when what is known has changed.
+    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now, and if
+    /// `follows` is set also if it is seen from elsewhere. True when what is known has changed.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, document: u64) -> Result<bool, GpuError> {
+    pub fn go_on(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut Scene,
+        document: u64,
+        view: ScreenView,
+        follows: bool,
+    ) -> Result<bool, GpuError> {
         let of = Some((document, scene.tessellator.generation()));
         if self.of != of {
-            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene) };
+            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene, view) };
+            return Ok(true);
+        }
+        if follows && self.seen_from != Some(view) {
+            // What doesn't depend on the view stays known.
+            let (found, generation) = (self.found.take(), self.generation);
+            *self = Self { of, found, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
         self.copy_on(gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok(found)) => {
+            Some(Ok((found, sizes))) => {
                 self.comparing = None;
+                self.generation += u64::from(self.found.is_none());
                 self.found = Some(found);
-                self.generation += 1;
+                self.sizes = Some(sizes);
                 Ok(true)
             }
             Some(Err(TryRecvError::Disconnected)) => {
@@ -100,19 +122,20 @@ impl Measuring {
         }
     }
 
-    fn start(gpu: &Gpu, scene: &Scene) -> Self {
+    fn start(gpu: &Gpu, scene: &Scene, view: ScreenView) -> Self {
         let (parts, received) = channel();
         let (sender, found) = channel();
         let wanted = Progress::default();
         let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
         let still_wanted = wanted.clone();
         std::thread::spawn(move || {
-            if let Some(result) = survey(&received, &mesh, &topology, &still_wanted) {
+            if let Some(result) = survey(&received, &mesh, &topology, view, &still_wanted) {
                 let _ = sender.send(result);
             }
         });
         let copying = Some(copy_factors(gpu, scene, parts));
-        Self { copying, comparing: Some(Comparing { found, wanted }), ..Self::default() }
+        let comparing = Some(Comparing { found, wanted });
+        Self { copying, comparing, seen_from: Some(view), ..Self::default() }
     }
 
     /// Sends on what has been copied, and copies the next chunk.
@@ -185,10 +208,17 @@ fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
 }
 
 /// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted.
-fn survey(parts: &Receiver<Part>, mesh: &Mesh, topology: &Topology, wanted: &Progress) -> Option<Measured> {
+fn survey(
+    parts: &Receiver<Part>,
+    mesh: &Mesh,
+    topology: &Topology,
+    view: ScreenView,
+    wanted: &Progress,
+) -> Option<(Measured, Sizes)> {
     let Ok(Part::Copied(PartKind::Factors { patch_bytes, edges }, bytes)) = parts.recv() else { return None };
     let (factors, asked) = bytes.split_at(patch_bytes);
     let asked = AskedFactors::new(edges, bytemuck::pod_collect_to_vec(asked));
+    let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
     loop {
         wanted.check().ok()?;
@@ -196,10 +226,12 @@ fn survey(parts: &Receiver<Part>, mesh: &Mesh, topology: &Topology, wanted: &Pro
             Part::Copied(PartKind::Chunk { first_patch, vertex_bytes }, bytes) => {
                 let (vertices, indices) = bytes.split_at(vertex_bytes);
                 let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
-                survey.take(first_patch, &vertices, &bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
+                let triangles = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
+                survey.take(first_patch, &vertices, &triangles);
+                sizes.take(&vertices, &triangles);
             }
             Part::Copied(PartKind::Factors { .. }, _) | Part::End => break,
         }
     }
-    Some(survey.finish())
+    Some((survey.finish(), sizes))
 }
