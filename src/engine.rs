@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
-use crate::measure::{AskedFactors, Deviant, Deviation, Measured, Survey};
+use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
 use crate::render::{Camera, LeakCounter, Renderer, Scene, Target};
 use crate::settings::Settings;
@@ -188,6 +188,16 @@ impl Engine {
         let mut deviation = Deviation::new(&mesh, &topology, inputs);
         self.read_chunks(scene, true, |_, vertices, triangles| deviation.take(vertices, triangles, total))?;
         Ok(deviation.worst())
+    }
+
+    /// How large what is emitted is on screen. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn sizes(&self, scene: &mut Scene, view: ScreenView) -> Result<Sizes, GpuError> {
+        let mut sizes = Sizes::new(view);
+        self.read_chunks(scene, true, |_, vertices, triangles| sizes.take(vertices, triangles))?;
+        Ok(sizes)
     }
 
     /// Pixels through which one looks into what should be closed, seen from `camera`: see [`LeakCounter`]. None

@@ -8,6 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
+use pnaen::settings::Colors;
 use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Longer than anything here takes on two slow cores.
@@ -115,7 +116,6 @@ fn every_switch_does_what_it_says() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     for (label, is_on) in [
         ("Patch borders", (|app: &App| app.settings().overlays.patches) as fn(&App) -> bool),
-        ("Barycentric colours", |app| app.settings().overlays.barycentric),
         ("Adjacency edges", |app| app.settings().overlays.adjacency),
         ("Cracks", |app| app.settings().overlays.cracks),
         ("Folds", |app| app.settings().overlays.folds),
@@ -148,6 +148,60 @@ fn every_switch_does_what_it_says() {
     choose(&mut harness, "Edges", "As published");
     let settings = *harness.state().settings();
     assert_eq!((settings.edges, settings.lod, settings.clip), (Edges::AsPublished, Lod::Paper, Clip::Paper));
+}
+
+#[test]
+fn colours_exclude_each_other_and_numbers_have_a_legend() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
+    let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
+    assert_eq!(shown(&harness), [false; 3]);
+    for (entry, colors, expected) in [
+        ("Factors", Colors::Factors, [true, false, false]),
+        ("Triangle size", Colors::TriangleSize, [false, true, false]),
+        ("Factors below 2", Colors::LowFactors, [false, false, true]),
+        ("Barycentric", Colors::Barycentric, [false; 3]),
+        ("Material", Colors::Material, [false; 3]),
+    ] {
+        let pictures = harness.state().pictures();
+        choose(&mut harness, "Colours", entry);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+        assert_eq!(shown(&harness), expected, "{entry}");
+        assert!(harness.state().pictures() > pictures, "{entry}: a new picture");
+    }
+    for (key, colors) in [
+        (egui::Key::H, Colors::Factors),
+        (egui::Key::X, Colors::TriangleSize),
+        (egui::Key::U, Colors::LowFactors),
+        (egui::Key::B, Colors::Barycentric),
+        (egui::Key::B, Colors::Material),
+    ] {
+        press(&mut harness, key);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+    }
+    press(&mut harness, egui::Key::N);
+    assert!(harness.state().settings().overlays.normals);
+}
+
+#[test]
+fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let count = |harness: &Harness<App>| harness.state().sizes_shown().map(|sizes| (sizes.in_view, sizes.small));
+    let (_, triangles) = harness.state().totals().expect("counted");
+    let (in_view, small) = count(&harness).expect("measured");
+    assert_eq!(in_view, triangles, "all of it is framed");
+    assert!(small > 0);
+    // From farther away nothing is tessellated anew, so nothing is measured.
+    press(&mut harness, egui::Key::PageDown);
+    assert_eq!(count(&harness), None);
+    // Unless one looks at the sizes.
+    press(&mut harness, egui::Key::X);
+    let (_, smaller) = count(&harness).expect("measured");
+    assert!(smaller > small, "{smaller}, and {small} from nearer");
+    press(&mut harness, egui::Key::PageDown);
+    let (_, smallest) = count(&harness).expect("measured");
+    assert!(smallest > smaller, "{smallest}, and {smaller} from nearer");
+    assert!(harness.state().cracks().is_some(), "which the view doesn't change");
 }
 
 #[test]
@@ -313,7 +367,7 @@ fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
     let camera = *harness.state().camera();
     press(&mut harness, egui::Key::R);
     assert_eq!(*harness.state().camera(), camera);
-    assert!(harness.state().settings().overlays.barycentric);
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Barycentric);
 }
 
 #[test]

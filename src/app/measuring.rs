@@ -4,7 +4,7 @@
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
-use crate::measure::{AskedFactors, Cracks, Measured, Survey};
+use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
 use crate::tessellate::{Edges, PatchFactors, Vertex};
@@ -14,17 +14,20 @@ use crate::tessellate::{Edges, PatchFactors, Vertex};
 pub struct Measuring {
     /// Document and tessellation that were last asked for.
     of: Option<(u64, u64)>,
+    /// Where sizes on screen were last asked for.
+    seen_from: Option<ScreenView>,
     /// Before the copying: dropped first, so that its thread doesn't take an end of parts for all of them.
     comparing: Option<Comparing>,
     copying: Option<Copying>,
     found: Option<Measured>,
+    sizes: Option<Sizes>,
     /// Counts results, and their absence.
     pub generation: u64,
 }
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<Measured>,
+    found: Receiver<(Measured, Sizes)>,
     wanted: Progress,
 }
 
@@ -70,6 +73,11 @@ impl Measuring {
         self.found.as_ref().map(|found| &found.cracks)
     }
 
+    /// Sizes of the triangles shown, once measured; they say where they were seen from.
+    pub fn sizes(&self) -> Option<&Sizes> {
+        self.sizes.as_ref()
+    }
+
     pub fn is_busy(&self) -> bool {
         self.copying.is_some() || self.comparing.is_some()
     }
@@ -81,23 +89,37 @@ impl Measuring {
         }
     }
 
-    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now. True
-    /// when what is known has changed.
+    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now, and if
+    /// `follows` is set also if it is seen from elsewhere. True when what is known has changed.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, document: u64) -> Result<bool, GpuError> {
+    pub fn go_on(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut Scene,
+        document: u64,
+        view: ScreenView,
+        follows: bool,
+    ) -> Result<bool, GpuError> {
         let of = Some((document, scene.tessellator.generation()));
         if self.of != of {
-            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene) };
+            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene, view) };
+            return Ok(true);
+        }
+        if follows && self.seen_from != Some(view) {
+            // What doesn't depend on the view stays known.
+            let (found, generation) = (self.found.take(), self.generation);
+            *self = Self { of, found, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
         self.copy_on(gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok(found)) => {
+            Some(Ok((found, sizes))) => {
                 self.comparing = None;
+                self.generation += u64::from(self.found.is_none());
                 self.found = Some(found);
-                self.generation += 1;
+                self.sizes = Some(sizes);
                 Ok(true)
             }
             Some(Err(TryRecvError::Disconnected)) => {
@@ -114,19 +136,20 @@ impl Measuring {
         copied as f32 / chunks.max(1) as f32
     }
 
-    fn start(gpu: &Gpu, scene: &Scene) -> Self {
+    fn start(gpu: &Gpu, scene: &Scene, view: ScreenView) -> Self {
         let (parts, received) = sync_channel(WAITING);
         let (sender, found) = channel();
         let wanted = Progress::default();
         let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
         let still_wanted = wanted.clone();
         std::thread::spawn(move || {
-            if let Some(result) = survey(&received, &mesh, &topology, &still_wanted) {
+            if let Some(result) = survey(&received, &mesh, &topology, view, &still_wanted) {
                 let _ = sender.send(result);
             }
         });
         let copying = Some(copy_factors(gpu, scene, parts));
-        Self { copying, comparing: Some(Comparing { found, wanted }), ..Self::default() }
+        let comparing = Some(Comparing { found, wanted });
+        Self { copying, comparing, seen_from: Some(view), ..Self::default() }
     }
 
     /// Sends on what has been copied, and copies the next chunk.
@@ -200,11 +223,18 @@ fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
 }
 
 /// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted, or the device was lost.
-fn survey(parts: &Receiver<Part>, mesh: &Mesh, topology: &Topology, wanted: &Progress) -> Option<Measured> {
+fn survey(
+    parts: &Receiver<Part>,
+    mesh: &Mesh,
+    topology: &Topology,
+    view: ScreenView,
+    wanted: &Progress,
+) -> Option<(Measured, Sizes)> {
     let Ok(Part(PartKind::Factors { patch_bytes, edges }, staging)) = parts.recv() else { return None };
     let bytes = mapped_bytes(&staging).ok()?;
     let (factors, asked) = bytes.split_at(patch_bytes);
     let asked = AskedFactors::new(edges, bytemuck::pod_collect_to_vec(asked));
+    let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
     for Part(part, staging) in parts {
         wanted.check().ok()?;
@@ -212,8 +242,10 @@ fn survey(parts: &Receiver<Part>, mesh: &Mesh, topology: &Topology, wanted: &Pro
         let bytes = mapped_bytes(&staging).ok()?;
         let (vertices, indices) = bytes.split_at(vertex_bytes);
         let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
-        survey.take(first_patch, &vertices, &bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
+        let triangles = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
+        survey.take(first_patch, &vertices, &triangles);
+        sizes.take(&vertices, &triangles);
     }
     wanted.check().ok()?;
-    Some(survey.finish())
+    Some((survey.finish(), sizes))
 }

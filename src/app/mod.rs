@@ -3,6 +3,7 @@
 mod checks;
 mod document;
 mod facts;
+mod legend;
 mod measuring;
 mod menu;
 mod panels;
@@ -18,7 +19,7 @@ use thiserror::Error;
 
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError, device_descriptor};
-use crate::measure::Cracks;
+use crate::measure::{Cracks, Sizes};
 use crate::mesh::Source;
 use crate::render::Camera;
 use crate::settings::{Overlays, Settings};
@@ -177,6 +178,12 @@ impl App {
     /// Cracks of what is shown, once they are measured.
     pub fn cracks(&self) -> Option<&Cracks> {
         self.measuring.cracks()
+    }
+
+    /// Sizes of the triangles shown, if they were measured from where one looks.
+    pub fn sizes_shown(&self) -> Option<&Sizes> {
+        let seen_from = self.viewport.seen_from()?;
+        self.measuring.sizes().filter(|sizes| sizes.view == seen_from)
     }
 
     /// The edge that is looked at.

@@ -7,13 +7,14 @@ use std::time::Instant;
 use egui::{Key, PointerButton, Sense};
 use glam::{Mat4, Vec2, vec2};
 
+use super::legend::legend;
 use super::text::grouped;
 use super::{App, Document};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
-use crate::measure::{CrackedEdge, Cracks};
+use crate::measure::{CrackedEdge, Cracks, ScreenView};
 use crate::render::{Camera, Renderer, Target, t_junction_lines};
-use crate::settings::Settings;
+use crate::settings::{Colors, Settings};
 use crate::tessellate::{Inputs, LodView};
 
 /// Degrees that the camera turns for a point of dragging, and for a press of an arrow key.
@@ -137,6 +138,12 @@ impl Viewport {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
+    /// Where the picture that is shown was seen from.
+    pub fn seen_from(&self) -> Option<ScreenView> {
+        let Wanted { clip_from_object, viewport, .. } = self.drawn?;
+        Some(ScreenView { clip_from_object, viewport })
+    }
+
     /// Bytes of the textures drawn into.
     pub fn bytes(&self) -> u64 {
         self.target.as_ref().map_or(0, |(target, _)| target.bytes())
@@ -216,7 +223,7 @@ impl Viewport {
             return Ok(());
         }
         let scene = &mut document.scene;
-        let steps = Renderer::steps(scene);
+        let steps = Renderer::step_count(scene, &wanted.settings);
         let start = || Drawing { wanted, start: Instant::now(), given: 0, steps };
         let drawing = self.drawing.get_or_insert_with(start);
         let next = drawing.given..drawing.given + 1;
@@ -254,6 +261,7 @@ impl App {
         }
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
+        legend(ui, rect, self.settings.overlays.colors);
     }
 
     /// Lets everything beside the window go on, and draws what is wanted.
@@ -281,7 +289,9 @@ impl App {
         let shown = self.viewport.drawn.as_ref() == Some(&wanted);
         self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
         if shown && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
-            self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?;
+            let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
+            let follows = self.settings.overlays.colors == Colors::TriangleSize;
+            self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
         }
         if self.is_busy() {
             context.request_repaint();

@@ -57,6 +57,8 @@ pub struct ChunkBuffers<'a> {
     /// The factors of the slab's patches, the first of which is `first_patch`.
     pub patch_factors: &'a wgpu::Buffer,
     pub first_patch: u32,
+    /// The slab itself: a [`super::layout::Slab`].
+    pub slab: &'a wgpu::Buffer,
 }
 
 impl Tessellator {
@@ -367,6 +369,7 @@ impl Tessellator {
             draw_args_offset: u64::from(chunk_index) * row,
             patch_factors: &slab.patch_factors,
             first_patch: slab.slab.first_patch,
+            slab: &slab.slab_buffer,
         }
     }
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::mesh::{Side, Topology};
-use crate::tessellate::{Edges, Partitioning, PatchFactors, Vertex, outer_count, point_count, segments};
+use crate::tessellate::{Edges, Partitioning, PatchFactors, Vertex, outer_count, patch_is_low, point_count, segments};
 
 /// A vertex on a patch's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -106,6 +106,11 @@ impl Rims {
             ring.iter_mut().zip(own).for_each(|(to, v)| *to = RimPoint { position: v.position, normal: v.normal });
             rest = later;
         }
+    }
+
+    /// How many patches are drawn with factors that are all below 2.
+    pub fn low(&self) -> u32 {
+        self.factors.iter().filter(|&&factors| patch_is_low(factors)).count() as u32
     }
 
     /// What the sides of an edge (an index into [`Topology::edges`]) have made of it. Patches that emit nothing are left

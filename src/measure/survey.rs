@@ -53,6 +53,8 @@ impl Culled {
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub culled: Culled,
+    /// Patches drawn with factors that are all below 2.
+    pub patches_low: u32,
     pub cracks: Cracks,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
@@ -90,6 +92,7 @@ impl<'a> Survey<'a> {
     pub fn finish(self) -> Measured {
         Measured {
             culled: self.culled,
+            patches_low: self.rims.low(),
             cracks: Cracks::find(self.mesh, self.topology, &self.rims),
             folds: self.folds,
             not_finite: self.not_finite,

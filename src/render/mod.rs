@@ -5,6 +5,7 @@ pub mod layout;
 mod leaks;
 mod marks;
 mod renderer;
+mod scale;
 mod scene;
 mod target;
 
@@ -12,5 +13,6 @@ pub use camera::{Camera, Standpoint, project};
 pub use leaks::LeakCounter;
 pub use marks::t_junction_lines;
 pub use renderer::Renderer;
+pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
 pub use scene::{LineSegment, Scene};
 pub use target::Target;

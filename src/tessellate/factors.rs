@@ -173,6 +173,12 @@ pub fn patch_is_minimal(factors: PatchFactors) -> bool {
     edges_are_one && (factors.inside & !FACTOR_ODD) == FIXED_ONE
 }
 
+/// Whether the patch is drawn with factors that are all below 2, so that drawing it untessellated would hardly show.
+pub fn patch_is_low(factors: PatchFactors) -> bool {
+    let low = |word: u32| word & !FACTOR_ODD < 2 * FIXED_ONE;
+    !patch_is_culled(factors) && factors.outside.into_iter().all(low) && low(factors.inside)
+}
+
 /// 1 where the word's parity is odd, else 0.
 pub fn odd_parity(word: u32) -> u32 {
     word >> 31

@@ -14,12 +14,14 @@ mod surface;
 
 pub use budget::fit_budget;
 pub use convention::{Convention, corner_weights, domain_side, factor_side, weight_corner};
-pub use cull::{Clip, FACING_AWAY, OUT_OF_VIEW, SEEN, faces_away, is_clipped, patch_is_outside, unseen};
+pub use cull::{
+    Clip, FACING_AWAY, OUT_OF_VIEW, SEEN, faces_away, is_clipped, patch_is_outside, planes_outside, unseen,
+};
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
-    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count,
-    process, round_pow2, segments, triangle_count,
+    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
+    point_count, process, round_pow2, segments, triangle_count,
 };
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,

@@ -91,7 +91,19 @@ fn shared_structs_have_one_layout() {
         pull_first_instance,
     });
     same!(DomainParams { partitioning, set_count });
-    same!(Frame { clip_from_object, key_light, fill_light, eye, viewport, overlays, ulp });
+    same!(Frame {
+        clip_from_object,
+        key_light,
+        fill_light,
+        eye,
+        viewport,
+        overlays,
+        ulp,
+        convention,
+        scale_least,
+        scale_most,
+        scale,
+    });
     same!(Material { base_color });
 }
 
