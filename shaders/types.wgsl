@@ -17,7 +17,11 @@ struct Params {
     tolerance: f32,
     near: f32,
     far: f32,
+    convention: u32,
 }
+
+// In place of a LOD: factors are given patch by patch.
+const LOD_GIVEN: u32 = 5u;
 
 // The run of patches that one scan covers, and what the arena holds.
 struct Slab {

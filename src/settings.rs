@@ -1,6 +1,6 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Edges, Inputs, Lod, LodView, Partitioning, Surface};
 
 /// The smallest and largest tessellation factor.
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
@@ -31,6 +31,7 @@ pub struct Settings {
     pub near: f32,
     pub far: f32,
     pub clip: Clip,
+    pub convention: Convention,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
     pub split: Option<f32>,
@@ -51,6 +52,7 @@ impl Default for Settings {
             near: 2.0,
             far: 10.0,
             clip: Clip::Off,
+            convention: Convention::D3d11,
             overlays: Overlays::default(),
             split: None,
             background: [0x2b, 0x2e, 0x33],
@@ -152,8 +154,9 @@ impl Settings {
 
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } = *self;
-        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, view }
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, convention, .. } =
+            *self;
+        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, convention, view }
     }
 }
 

@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
-use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use pnaen::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface};
 
 /// Longer than anything here takes on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -132,6 +132,25 @@ fn every_switch_does_what_it_says() {
     choose(&mut harness, "Edges", "As published");
     let settings = *harness.state().settings();
     assert_eq!((settings.edges, settings.lod, settings.clip), (Edges::AsPublished, Lod::Paper, Clip::Paper));
+}
+
+#[test]
+fn a_mistaken_convention_cracks_and_shows_both_factors() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "LOD", "Edge length");
+    let cracked = |harness: &Harness<App>| harness.state().cracks().map(|cracks| cracks.different_factors);
+    for (entry, convention) in [("AMD PN sample", Convention::AmdPn), ("Edge order", Convention::EdgeOrder)] {
+        choose(&mut harness, "Convention", entry);
+        assert_eq!((harness.state().settings().convention, cracked(&harness)), (convention, Some(0)));
+    }
+    choose(&mut harness, "Convention", "Mirrored, a mistake");
+    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
+    choose(&mut harness, "Convention", "Rotated, a mistake");
+    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
+    choose(&mut harness, "LOD", "Uniform");
+    assert_eq!(cracked(&harness), Some(0));
+    choose(&mut harness, "Convention", "Direct3D 11");
+    assert_eq!(harness.state().settings().convention, Convention::D3d11);
 }
 
 #[test]

@@ -16,6 +16,9 @@ pub struct LodView {
     pub radius: f32,
 }
 
+/// In place of [`crate::tessellate::Lod`] in [`Params::lod`]: factors are given patch by patch, and LOD has no say.
+pub const LOD_GIVEN: u32 = 5;
+
 /// Settings and view of one tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -37,7 +40,8 @@ pub struct Params {
     /// Bounding radii.
     pub near: f32,
     pub far: f32,
-    pub _pad: [f32; 2],
+    pub convention: u32,
+    pub _pad: f32,
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

@@ -70,6 +70,7 @@ fn shared_structs_have_one_layout() {
         tolerance,
         near,
         far,
+        convention,
     });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
