@@ -1,6 +1,7 @@
 //! The commands as a person or a pipeline meets them: the program itself, its output, its pictures, its exit codes.
 
 mod domain;
+mod factors;
 mod info;
 mod lod;
 mod render;
