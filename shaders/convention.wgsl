@@ -38,10 +38,12 @@ fn domain_side(convention: u32, i: u32) -> u32 {
 
 // U and V on corners 0 and 1 of what the tessellator gives as U and V.
 fn corner_weights(convention: u32, domain: vec2<u32>) -> vec2<u32> {
-    let weights = array<u32, 3>(domain.x, domain.y, FIXED_ONE - domain.x - domain.y);
-    var on_corners: array<u32, 3>;
-    for (var i = 0u; i < 3u; i++) {
-        on_corners[weight_corner(convention, i)] = weights[i];
+    let w = FIXED_ONE - domain.x - domain.y;
+    if convention == CONVENTION_AMD_PN {
+        return vec2<u32>(w, domain.x);
     }
-    return vec2<u32>(on_corners[0], on_corners[1]);
+    if convention == CONVENTION_EDGE_ORDER {
+        return vec2<u32>(domain.y, w);
+    }
+    return domain;
 }

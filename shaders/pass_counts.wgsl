@@ -8,6 +8,47 @@
 @group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
 @group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;
+// Bits of what was given in place of LOD's factors, for every patch: three factors of edges and the one inside.
+@group(0) @binding(8) var<storage, read> given_factors: array<vec4<u32>>;
+// What hull_factors_main writes, patch by patch.
+@group(0) @binding(9) var<storage, read_write> written_factors: array<vec4<f32>>;
+
+// A patch's net, where anything looks at it.
+fn needed_net(patch_index: u32) -> ControlNet {
+    var net: ControlNet;
+    let by_error = params.lod == LOD_ERROR && params.surface != SURFACE_FLAT;
+    if by_error || params.clip != CLIP_OFF || params.culls_back == 1u {
+        net = load_net(patch_index);
+    }
+    return net;
+}
+
+// What the hull shader writes for a patch: three factors of edges in the order of the convention, and the one inside.
+fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
+    if params.lod == LOD_GIVEN {
+        var given = bitcast<vec4<f32>>(given_factors[patch_index]);
+        if params.partitioning == PARTITIONING_POW2 {
+            for (var i = 0u; i < 4u; i++) {
+                given[i] = round_pow2(given[i]);
+            }
+        }
+        return given;
+    }
+    var sides: vec3<f32>;
+    for (var k = 0u; k < 3u; k++) {
+        sides[k] = edge_factors[patches[patch_index].factors[k] >> 3u];
+    }
+    var inside = max(max(sides.x, sides.y), sides.z);
+    if params.lod == LOD_ERROR && params.surface != SURFACE_FLAT {
+        inside = inside_error_factor(params.view, params.tolerance, params.partitioning, net, sides.yzx);
+    }
+    return vec4<f32>(
+        sides[factor_side(params.convention, 0u)],
+        sides[factor_side(params.convention, 1u)],
+        sides[factor_side(params.convention, 2u)],
+        inside,
+    );
+}
 
 @compute @workgroup_size(256)
 fn counts_main(
@@ -25,27 +66,30 @@ fn counts_main(
         return;
     }
     let patch_index = slab.first_patch + index;
-    // Factor i belongs to the edge opposite corner i: side i + 1.
-    var edges: vec3<f32>;
-    for (var i = 0u; i < 3u; i++) {
-        edges[i] = edge_factors[patches[patch_index].factors[(i + 1u) % 3u] >> 3u];
-    }
-    let culls_back = params.culls_back == 1u;
-    let by_error = params.lod == LOD_ERROR && params.surface != SURFACE_FLAT;
-    var net: ControlNet;
-    if by_error || culls_back || params.clip != CLIP_OFF {
-        net = load_net(patch_index);
-    }
-    let why = unseen(params.clip, culls_back, params.view, net);
+    let net = needed_net(patch_index);
+    let why = unseen(params.clip, params.culls_back == 1u, params.view, net);
     var factors: PatchFactors;
     factors.inside = why;
     if why == SEEN {
-        var inside = max(max(edges.x, edges.y), edges.z);
-        if by_error {
-            inside = inside_error_factor(params.view, params.tolerance, params.partitioning, net, edges);
-        }
-        factors = process(params.partitioning, edges, inside);
+        let written = hull_factors(patch_index, net);
+        factors = process(params.partitioning, written.xyz, written.w);
     }
     patch_factors[index] = factors;
     offsets[index] = vec2<u32>(point_count(factors), triangle_count(factors));
+}
+
+// Every patch of the mesh, for those who want to see them.
+@compute @workgroup_size(256)
+fn hull_factors_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index < params.patch_count {
+        let net = needed_net(index);
+        if unseen(params.clip, params.culls_back == 1u, params.view, net) == SEEN {
+            written_factors[index] = hull_factors(index, net);
+        }
+    }
 }

@@ -120,7 +120,7 @@ fn emit_vertices_main(
         return;
     }
     let patch_index = slab.first_patch + entry;
-    let uv = domain_point(patch_factors[entry], item - offsets[entry].x);
+    let uv = corner_weights(params.convention, domain_point(patch_factors[entry], item - offsets[entry].x));
     let at = place(uv.x, uv.y);
     var made: DomainVertex;
     if at.side == 3u || params.edges == EDGES_AS_PUBLISHED {

@@ -19,7 +19,11 @@ struct Params {
     far: f32,
     // 1 where patches that face away are left out.
     culls_back: u32,
+    convention: u32,
 }
+
+// In place of a LOD: factors are given patch by patch.
+const LOD_GIVEN: u32 = 5u;
 
 // The run of patches that one scan covers, and what the arena holds.
 struct Slab {

@@ -155,15 +155,19 @@ impl Engine {
         Ok(factors)
     }
 
-    /// The factors that LOD gave, before the tessellator clamped and rounded them.
+    /// The factors that LOD gave, or a file, before the tessellator clamped and rounded them.
     ///
     /// # Errors
     /// The device was lost.
     pub fn asked_factors(&self, scene: &Scene) -> Result<AskedFactors, GpuError> {
+        let convention = scene.tessellator.convention();
+        if let Some(given) = scene.tessellator.given() {
+            return Ok(AskedFactors::given(convention, given));
+        }
         let (buffer, edges) = scene.tessellator.edge_factors();
         let mut factors = cast::<f32>(&read_buffer(&self.gpu, buffer, 0, buffer.size())?);
         factors.truncate(scene.tessellator.buffers().factor_count as usize);
-        Ok(AskedFactors::new(edges, factors))
+        Ok(AskedFactors::new(edges, convention, factors))
     }
 
     /// Reads back all that is emitted and measures it. The counts must be known.

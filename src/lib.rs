@@ -9,6 +9,7 @@ pub mod app;
 pub mod cli;
 pub mod engine;
 pub mod export;
+pub mod factors_file;
 pub mod gpu;
 pub mod measure;
 pub mod mesh;

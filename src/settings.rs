@@ -1,6 +1,6 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Edges, Inputs, Lod, LodView, Partitioning, Surface};
 
 /// The smallest and largest tessellation factor.
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
@@ -33,6 +33,7 @@ pub struct Settings {
     pub clip: Clip,
     /// Whether patches that show their backs only are left out, of meshes that are closed and single-sided.
     pub cull_back_faces: bool,
+    pub convention: Convention,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
     pub split: Option<f32>,
@@ -54,6 +55,7 @@ impl Default for Settings {
             far: 10.0,
             clip: Clip::Off,
             cull_back_faces: false,
+            convention: Convention::D3d11,
             overlays: Overlays::default(),
             split: None,
             background: [0x2b, 0x2e, 0x33],
@@ -203,9 +205,23 @@ impl Settings {
 
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } = *self;
-        let cull_back_faces = self.cull_back_faces;
-        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, cull_back_faces, view }
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, .. } = *self;
+        let Self { clip, cull_back_faces, convention, .. } = *self;
+        Inputs {
+            surface,
+            edges,
+            factor,
+            partitioning,
+            lod,
+            pixels,
+            tolerance,
+            near,
+            far,
+            clip,
+            cull_back_faces,
+            convention,
+            view,
+        }
     }
 }
 

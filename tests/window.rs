@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
 use pnaen::settings::Colors;
-use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use pnaen::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface};
 
 /// Longer than anything here takes on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -152,7 +152,7 @@ fn every_switch_does_what_it_says() {
 
 #[test]
 fn colours_exclude_each_other_and_numbers_have_a_legend() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
     let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
     assert_eq!(shown(&harness), [false; 3]);
@@ -185,7 +185,7 @@ fn colours_exclude_each_other_and_numbers_have_a_legend() {
 
 #[test]
 fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let count = |harness: &Harness<App>| harness.state().sizes_shown().map(|sizes| (sizes.in_view, sizes.small));
     let (_, triangles) = harness.state().totals().expect("counted");
     let (in_view, small) = count(&harness).expect("measured");
@@ -202,6 +202,25 @@ fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
     let (_, smallest) = count(&harness).expect("measured");
     assert!(smallest > smaller, "{smallest}, and {smaller} from nearer");
     assert!(harness.state().cracks().is_some(), "which the view doesn't change");
+}
+
+#[test]
+fn a_mistaken_convention_cracks_and_shows_both_factors() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "LOD", "Edge length");
+    let cracked = |harness: &Harness<App>| harness.state().cracks().map(|cracks| cracks.different_factors);
+    for (entry, convention) in [("AMD PN sample", Convention::AmdPn), ("Edge order", Convention::EdgeOrder)] {
+        choose(&mut harness, "Convention", entry);
+        assert_eq!((harness.state().settings().convention, cracked(&harness)), (convention, Some(0)));
+    }
+    choose(&mut harness, "Convention", "Mirrored, a mistake");
+    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
+    choose(&mut harness, "Convention", "Rotated, a mistake");
+    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
+    choose(&mut harness, "LOD", "Uniform");
+    assert_eq!(cracked(&harness), Some(0));
+    choose(&mut harness, "Convention", "Direct3D 11");
+    assert_eq!(harness.state().settings().convention, Convention::D3d11);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
 use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
-use crate::tessellate::{Edges, PatchFactors, Vertex};
+use crate::tessellate::{Convention, Edges, PatchFactors, Vertex};
 
 /// What is known about the shown tessellation.
 #[derive(Default)]
@@ -54,7 +54,7 @@ const WAITING: usize = 1;
 #[derive(Clone, Copy)]
 enum PartKind {
     /// As many bytes of patches' factors, then of those that LOD gave.
-    Factors { patch_bytes: usize, edges: Edges },
+    Factors { patch_bytes: usize, edges: Edges, convention: Convention },
     /// The output of patches from `first_patch` on: as many bytes of vertices, then indices.
     Chunk { first_patch: u32, vertex_bytes: usize },
 }
@@ -182,7 +182,8 @@ fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
     let (asked, edges) = scene.tessellator.edge_factors();
     let asked_bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
     let staging = copy(gpu, buffers.chain([(asked, asked_bytes)]));
-    let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges };
+    let convention = scene.tessellator.convention();
+    let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges, convention };
     Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: 0, parts }
 }
 
@@ -230,10 +231,10 @@ fn survey(
     view: ScreenView,
     wanted: &Progress,
 ) -> Option<(Measured, Sizes)> {
-    let Ok(Part(PartKind::Factors { patch_bytes, edges }, staging)) = parts.recv() else { return None };
+    let Ok(Part(PartKind::Factors { patch_bytes, edges, convention }, staging)) = parts.recv() else { return None };
     let bytes = mapped_bytes(&staging).ok()?;
     let (factors, asked) = bytes.split_at(patch_bytes);
-    let asked = AskedFactors::new(edges, bytemuck::pod_collect_to_vec(asked));
+    let asked = AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(asked));
     let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
     for Part(part, staging) in parts {

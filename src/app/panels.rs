@@ -6,7 +6,7 @@ use super::widgets::{chooser, heading};
 use crate::settings::{
     Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
 };
-use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface};
 
 /// Name and explanation of each surface, partitioning and overlay.
 const SURFACES: [(Surface, &str, &str); 3] = [
@@ -94,6 +94,36 @@ const CLIPS: [(Clip, &str, &str); 3] = [
         "White paper",
         "Leaves out patches whose ten control points all lie outside the view, whichever side each is on: it can drop \
          patches that cross the view (McDonald and Kilgard 2010).",
+    ),
+];
+const CONVENTIONS: [(Convention, &str, &str); 5] = [
+    (
+        Convention::D3d11,
+        "Direct3D 11",
+        "Weights u, v, w are on corners 0, 1, 2, and TessFactor[0..2] are those of the edges opposite them. So has Vulkan, \
+         and the white paper.",
+    ),
+    (
+        Convention::AmdPn,
+        "AMD PN sample",
+        "Weights w, u, v are on corners 0, 1, 2, and TessFactor[0..2] are those of the edges opposite u, v and w.",
+    ),
+    (
+        Convention::EdgeOrder,
+        "Edge order",
+        "TessFactor[0..2] are those of the edges (0, 1), (1, 2), (2, 0), and weights v, w, u are on corners 0, 1, 2.",
+    ),
+    (
+        Convention::Rotated,
+        "Rotated, a mistake",
+        "Factors in edge order, but weights as in Direct3D 11: every edge gets the factor of another, and adaptive LOD \
+         cracks.",
+    ),
+    (
+        Convention::Mirrored,
+        "Mirrored, a mistake",
+        "As Direct3D 11, but TessFactor[0] and [1] are exchanged, as if patches were wound the other way: adaptive LOD \
+         cracks.",
     ),
 ];
 const COLORS: [(Colors, &str, &str); 5] = [
@@ -194,6 +224,9 @@ impl App {
             lod_row(ui, settings);
             ui.end_row();
             chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
+            let hover =
+                "Which edge each factor is for, and which corner each weight: what hull and domain shader agree on.";
+            chooser(ui, "Convention", hover, &mut settings.convention, &CONVENTIONS);
         });
         self.back_face_row(ui);
         let mut frozen = self.frozen.is_some();

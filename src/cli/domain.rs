@@ -1,10 +1,10 @@
 //! `pnaen domain`: the bare tessellator.
 
-use std::io::{BufWriter, Read, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::tessellate::Device;
-use super::{CliError, file_error};
+use super::{CliError, read_text};
 use crate::gpu::{DomainPass, DomainPattern, Gpu};
 use crate::tessellate::{Partitioning, domain_point, domain_triangle, point_count, process, triangle_count};
 
@@ -91,13 +91,7 @@ fn factor_set<'a>(numbers: impl Iterator<Item = &'a str>) -> Option<FactorSet> {
 
 /// The sets of a file, one a line; empty lines are passed over.
 fn read_sets(path: &Path) -> Result<Vec<FactorSet>, CliError> {
-    let mut text = String::new();
-    let read = if path.as_os_str() == "-" {
-        std::io::stdin().read_to_string(&mut text)
-    } else {
-        std::fs::File::open(path).and_then(|mut file| file.read_to_string(&mut text))
-    };
-    read.map_err(|error| file_error(path, "read", &error))?;
+    let text = read_text(path)?;
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let set = |(index, line): (usize, &str)| {
         factor_set(line.split_whitespace()).ok_or_else(|| CliError::Line {

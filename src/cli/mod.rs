@@ -2,13 +2,15 @@
 
 mod adjacency;
 mod domain;
+mod factors;
+mod given;
 mod info;
 mod options;
 mod render;
 mod stability;
 mod tessellate;
 
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -16,6 +18,7 @@ use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
+pub use given::GivenOption;
 pub use options::{SurfaceOptions, WeldOption};
 
 use crate::export::ExportError;
@@ -42,6 +45,8 @@ pub enum Command {
     Tessellate(tessellate::Args),
     /// Print the tessellator's domain points and triangles for given factors
     Domain(domain::Args),
+    /// Write the factors that the hull shader gives every patch, before the tessellator clamps and rounds them
+    Factors(factors::Args),
     /// Write the index buffer of PN-AEN patches
     Adjacency(adjacency::Args),
     /// Try what breaks tessellators, and say what holds and what fails
@@ -91,6 +96,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Tessellate(args) => tessellate::run(&args),
         Command::Domain(args) => domain::run(&args),
+        Command::Factors(args) => factors::run(&args),
         Command::Adjacency(args) => adjacency::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Info(args) => info::run(&args),
@@ -117,6 +123,18 @@ pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
 pub fn preview(source: Option<Source>, path: &Path) -> Result<(), CliError> {
     let source = source.unwrap_or_default();
     render::run(&render::Args::preview(source, path))
+}
+
+/// The whole of a file, or of standard input if the path is `-`.
+fn read_text(path: &Path) -> Result<String, CliError> {
+    let mut text = String::new();
+    let read = if path.as_os_str() == "-" {
+        std::io::stdin().read_to_string(&mut text)
+    } else {
+        std::fs::File::open(path).and_then(|mut file| file.read_to_string(&mut text))
+    };
+    read.map_err(|error| file_error(path, "read", &error))?;
+    Ok(text)
 }
 
 /// Writes a whole text, to standard output if the path is `-`.

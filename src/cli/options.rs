@@ -11,7 +11,7 @@ use super::CliError;
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
 use crate::settings::{ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
-use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface, fit_budget};
+use crate::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface, fit_budget};
 
 /// What is tessellated how, and seen from where.
 #[derive(Clone, Debug, Args)]
@@ -49,6 +49,10 @@ pub struct SurfaceOptions {
     /// Leave out patches that show their backs only, if the mesh is closed, wound outward and single-sided
     #[arg(long)]
     pub cull_back_faces: bool,
+    /// Which edges factors 0, 1 and 2 are for, and which corners the weights u, v and w: as in Direct3D 11, as in AMD's PN
+    /// triangles sample, or by edge; or, with hull and domain shader at odds, rotated or mirrored
+    #[arg(long, value_name = "NAME", value_enum, default_value_t = Settings::default().convention)]
+    pub convention: Convention,
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: Option<u64>,
@@ -92,7 +96,8 @@ impl SurfaceOptions {
 
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, cull_back_faces, .. } = *self;
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
+        let Self { cull_back_faces, convention, .. } = *self;
         let Distances { near, far } = self.distances;
         Settings {
             surface,
@@ -106,6 +111,7 @@ impl SurfaceOptions {
             far,
             clip,
             cull_back_faces,
+            convention,
             ..Settings::default()
         }
     }

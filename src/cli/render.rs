@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::{CliError, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
+use super::given::FactorsFile;
+use super::{CliError, GivenOption, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
 use crate::measure::{Measured, ScreenView, compare, ulp};
@@ -23,6 +24,8 @@ pub struct Args {
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
+    #[command(flatten)]
+    pub given: GivenOption,
     /// What is drawn over the surface
     #[arg(long, value_enum, value_delimiter = ',', value_name = "OVERLAY,..")]
     pub overlay: Vec<Overlay>,
@@ -54,6 +57,7 @@ impl Args {
             file,
             output: output.to_owned(),
             surface: SurfaceOptions::default(),
+            given: GivenOption::default(),
             overlay: vec![Overlay::Wireframe],
             split: None,
             background,
@@ -78,8 +82,11 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let overlays = args.overlays()?;
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file, args.surface.weld)?;
+    let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention)?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
+    let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
+    scene.tessellator.give(given)?;
     let target = Target::new(&engine.gpu, args.surface.size.0)?;
     let camera = args.surface.camera(&scene.bounds);
     let view = camera.lod_view(target.viewport(), &scene.bounds);
@@ -125,6 +132,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             leaks,
             max_error_px,
             factors_capped,
+            factors_file,
             ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes)
         };
         write_text(path, &to_json(&stats)?)?;
@@ -209,8 +217,10 @@ struct Stats {
     /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
     /// nothing is in view.
     max_error_px: Option<f64>,
-    /// Edges (as published, sides) that asked for more segments than the partitioning has.
+    /// Edges (as published or from a file, sides) that asked for more segments than the partitioning has.
     factors_capped: u64,
+    /// What was found about the factors of a file, if they came from one.
+    factors_file: Option<FactorsFile>,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -293,6 +303,7 @@ impl Stats {
             not_finite: measured.not_finite,
             max_error_px: None,
             factors_capped: 0,
+            factors_file: None,
             ms,
         }
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::{CliError, SurfaceOptions, load};
+use super::{CliError, GivenOption, SurfaceOptions, load};
 use crate::engine::Engine;
 use crate::export::Exported;
 use crate::gpu::Timing;
@@ -22,6 +22,8 @@ pub struct Args {
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
+    #[command(flatten)]
+    pub given: GivenOption,
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -39,19 +41,27 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     Exported::check(&args.output, 0, 0)?;
     let loaded = load(&args.file, args.surface.weld)?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+    let given = args.given.read(mesh, topology, args.surface.convention)?.map(|given| given.factors);
     let bounds = mesh.bounds();
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {
         Device::Cpu => {
             let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);
             let inputs = args.surface.within_budget(count)?.inputs(view);
-            let (vertices, triangles) = tessellate::totals(mesh, topology, &inputs);
+            let (vertices, triangles) = match &given {
+                Some(given) => tessellate::given_totals(given, &inputs),
+                None => tessellate::totals(mesh, topology, &inputs),
+            };
             Exported::check(&args.output, vertices, triangles)?;
-            tessellate::tessellate(mesh, topology, &inputs, None)
+            match &given {
+                Some(given) => tessellate::tessellate_given(mesh, topology, &inputs, given),
+                None => tessellate::tessellate(mesh, topology, &inputs, None),
+            }
         }
         Device::Gpu => {
             let engine = Engine::headless()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
+            scene.tessellator.give(given)?;
             let settings = args.surface.within_budget(|settings| {
                 engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
                 Ok(scene.tessellator.totals().1)

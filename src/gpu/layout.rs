@@ -16,6 +16,9 @@ pub struct LodView {
     pub radius: f32,
 }
 
+/// In place of [`crate::tessellate::Lod`] in [`Params::lod`]: factors are given patch by patch, and LOD has no say.
+pub const LOD_GIVEN: u32 = 5;
+
 /// Settings and view of one tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -39,7 +42,7 @@ pub struct Params {
     pub far: f32,
     /// 1 where patches that face away are left out.
     pub culls_back: u32,
-    pub _pad: f32,
+    pub convention: u32,
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

@@ -8,6 +8,7 @@ mod buffers;
 mod device;
 mod domain;
 mod error;
+mod hull;
 pub mod layout;
 mod pipelines;
 mod recorder;

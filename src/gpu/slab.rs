@@ -90,6 +90,7 @@ impl SlabPasses {
         pipelines: &ComputePipelines,
         b: &MeshBuffers,
         params: &wgpu::Buffer,
+        given: &wgpu::Buffer,
         arena: &Arena,
     ) -> SlabGroups {
         let group = |label: &str, pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
@@ -124,6 +125,7 @@ impl SlabPasses {
                     (5, &b.edge_factors),
                     (6, &self.patch_factors),
                     (7, &self.offsets),
+                    (8, given),
                 ],
             ),
             scan: [

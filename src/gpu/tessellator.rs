@@ -6,13 +6,14 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use glam::Mat4;
 
 use super::arena::Arena;
-use super::layout::{Chunk, DrawArgs, EmitArgs, LodView, Params};
+use super::buffers::filled;
+use super::layout::{Chunk, DrawArgs, EmitArgs, LOD_GIVEN, LodView, Params};
 use super::pipelines::bind_group;
 use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
-use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
+use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Sharing, Topology};
-use crate::tessellate::{self, Clip, Edges, Inputs, Lod, Solid, sharing};
+use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Lod, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -28,6 +29,9 @@ pub struct Tessellator {
     inputs: Option<Inputs>,
     params: Params,
     params_buffer: wgpu::Buffer,
+    convention: Convention,
+    given: Option<Vec<HullFactors>>,
+    given_buffer: wgpu::Buffer,
     arena: Arena,
     slabs: Vec<SlabPasses>,
     nets: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
@@ -92,6 +96,9 @@ impl Tessellator {
             inputs: None,
             params,
             params_buffer,
+            convention: Convention::default(),
+            given: None,
+            given_buffer: filled::<HullFactors>(gpu, "given factors", &[])?,
             arena,
             slabs,
             nets: None,
@@ -117,6 +124,7 @@ impl Tessellator {
             self.slabs.iter_mut().for_each(|slab| slab.groups = None);
         }
         self.inputs = Some(*inputs);
+        self.convention = inputs.convention;
         let params = self.params_of(inputs);
         if params != self.params || self.nets_done.is_none() {
             self.params = params;
@@ -129,6 +137,19 @@ impl Tessellator {
         Ok(())
     }
 
+    /// Takes what a hull shader wrote, one for each patch, in place of what LOD gives; none for LOD's. Takes effect with the
+    /// next [`Self::set`].
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for.
+    pub fn give(&mut self, given: Option<Vec<HullFactors>>) -> Result<(), GpuError> {
+        self.given_buffer = filled(&self.gpu, "given factors", given.as_deref().unwrap_or_default())?;
+        self.given = given;
+        self.slabs.iter_mut().for_each(|slab| slab.groups = None);
+        self.forget();
+        Ok(())
+    }
+
     /// Forgets all that was computed, so that every pass runs again: for timing.
     pub fn forget(&mut self) {
         self.nets_done = None;
@@ -136,10 +157,11 @@ impl Tessellator {
 
     /// Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes nothing.
     fn params_of(&self, inputs: &Inputs) -> Params {
-        let (adaptive, by_error) = (inputs.lod != Lod::Uniform, inputs.lod == Lod::Error);
-        let by_distance = inputs.lod == Lod::Distance;
-        let by_length = matches!(inputs.lod, Lod::Paper | Lod::EdgeLength);
-        let culls_back = inputs.cull_back_faces && self.solid.is_some_and(|solid| solid.hides_backs(inputs));
+        let lod = if self.given.is_some() { None } else { Some(inputs.lod) };
+        let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
+        let by_distance = lod == Some(Lod::Distance);
+        let by_length = matches!(lod, Some(Lod::Paper | Lod::EdgeLength));
+        let culls_back = inputs.cull_back_faces && self.hides_backs(inputs);
         let looks = adaptive || inputs.clip != Clip::Off || culls_back;
         let view = LodView {
             clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
@@ -150,11 +172,11 @@ impl Tessellator {
         };
         Params {
             view: if looks { view } else { bytemuck::Zeroable::zeroed() },
-            factor: if adaptive && !by_distance { 0.0 } else { inputs.factor },
+            factor: if by_distance || lod == Some(Lod::Uniform) { inputs.factor } else { 0.0 },
             pixels_per_segment: if by_length { inputs.pixels } else { 0.0 },
             surface: inputs.surface as u32,
             partitioning: inputs.partitioning as u32,
-            lod: inputs.lod as u32,
+            lod: lod.map_or(LOD_GIVEN, |lod| lod as u32),
             clip: inputs.clip as u32,
             point_count: self.buffers.point_count,
             patch_count: self.buffers.patch_count,
@@ -165,7 +187,7 @@ impl Tessellator {
             near: if by_distance { inputs.near } else { 0.0 },
             far: if by_distance { inputs.far } else { 0.0 },
             culls_back: u32::from(culls_back),
-            _pad: 0.0,
+            convention: inputs.convention as u32,
         }
     }
 
@@ -177,10 +199,15 @@ impl Tessellator {
     /// Whether all that is seen in this view is the front of something: so of a solid whose surface nothing tears, as long
     /// as nothing was left out for another view.
     pub fn shows_fronts_only(&self, clip_from_object: Mat4) -> bool {
-        let (Some(solid), Some(inputs)) = (self.solid, self.inputs) else { return false };
+        let Some(inputs) = self.inputs else { return false };
         let leaves_out = inputs.cull_back_faces || inputs.clip != Clip::Off;
         let seen = Inputs { view: tessellate::LodView { clip_from_object, ..inputs.view }, ..inputs };
-        (!leaves_out || inputs.view.clip_from_object == clip_from_object) && solid.hides_backs(&seen)
+        (!leaves_out || inputs.view.clip_from_object == clip_from_object) && self.hides_backs(&seen)
+    }
+
+    /// Given factors may tear any edge.
+    fn hides_backs(&self, inputs: &Inputs) -> bool {
+        self.given.is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -228,7 +255,7 @@ impl Tessellator {
         let Some(groups) = &slab.groups else { return };
         let pipelines = &self.pipelines;
         let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
-        if slab.slab.first_patch == 0 {
+        if slab.slab.first_patch == 0 && self.given.is_none() {
             recorder.compute("factors", |pass| {
                 dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.factor_count));
             });
@@ -389,6 +416,24 @@ impl Tessellator {
         (&self.buffers.edge_factors, if published { Edges::AsPublished } else { Edges::PerEdge })
     }
 
+    /// What a hull shader wrote in place of LOD's factors, if that was given.
+    pub fn given(&self) -> Option<&[HullFactors]> {
+        self.given.as_deref()
+    }
+
+    /// Under which convention factors were written and weights are read.
+    pub fn convention(&self) -> Convention {
+        self.convention
+    }
+
+    /// What the hull shader writes, one for each patch. The counts must be known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    pub fn hull_factors(&self) -> Result<Vec<HullFactors>, GpuError> {
+        hull::read(&self.gpu, &self.buffers, &self.params_buffer, &self.given_buffer)
+    }
+
     pub fn buffers(&self) -> &MeshBuffers {
         &self.buffers
     }
@@ -416,7 +461,7 @@ impl Tessellator {
     }
 
     fn bind(&mut self) {
-        let (b, params) = (&self.buffers, &self.params_buffer);
+        let (b, params, given) = (&self.buffers, &self.params_buffer, &self.given_buffer);
         let nets = &self.pipelines;
         self.nets.get_or_insert_with(|| {
             let inputs = [(0, params), (1, &b.points), (6, &b.curve_nets)];
@@ -429,19 +474,20 @@ impl Tessellator {
         });
         for slab in &mut self.slabs {
             if slab.groups.is_none() {
-                slab.groups = Some(slab.bind(&self.gpu, &self.pipelines, &self.buffers, params, &self.arena));
+                slab.groups = Some(slab.bind(&self.gpu, &self.pipelines, &self.buffers, params, given, &self.arena));
             }
         }
     }
 }
 
 /// Twin of `grid` in `shaders/types.wgsl`.
-fn grid(items: u32) -> [u32; 3] {
+pub fn grid(items: u32) -> [u32; 3] {
     let workgroups = items.div_ceil(256);
     [workgroups.min(32768), workgroups.div_ceil(32768), 1]
 }
 
-fn dispatch(
+/// Runs one entry point over a grid.
+pub fn dispatch(
     pass: &mut wgpu::ComputePass,
     pipeline: &wgpu::ComputePipeline,
     group: &wgpu::BindGroup,

@@ -216,7 +216,8 @@ mod tests {
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
         let inputs = Settings { lod: Lod::Paper, ..settings }.inputs(view());
         let out = tessellate(&mesh, &topology, &inputs, None);
-        let mut rims = Rims::new(out.patch_factors, AskedFactors::new(settings.edges, out.edge_factors));
+        let mut rims =
+            Rims::new(out.patch_factors, AskedFactors::new(settings.edges, settings.convention, out.edge_factors));
         rims.take(0, &out.vertices);
         (mesh, topology, rims)
     }

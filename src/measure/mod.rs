@@ -1,5 +1,6 @@
 //! What a tessellation did, measured on what was really emitted.
 
+mod agreement;
 mod chart;
 mod cracks;
 mod deviation;
@@ -10,6 +11,7 @@ mod sizes;
 mod survey;
 mod sweep;
 
+pub use agreement::{Agreement, Disagreement, Order};
 pub use chart::{CHART_RANGE, ChartError, sweep_chart, write_text};
 pub use cracks::{CrackedEdge, Cracks, ulp};
 pub use deviation::{Deviant, Deviation};

@@ -3,7 +3,10 @@
 use glam::Vec3;
 
 use crate::mesh::{Side, Topology};
-use crate::tessellate::{Edges, Partitioning, PatchFactors, Vertex, outer_count, patch_is_low, point_count, segments};
+use crate::tessellate::{
+    Convention, Edges, HullFactors, Partitioning, PatchFactors, Vertex, domain_side, factor_side, outer_count,
+    patch_is_low, point_count, segments,
+};
 
 /// A vertex on a patch's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -24,21 +27,42 @@ pub struct Rims {
     asked: AskedFactors,
 }
 
-/// The factors that LOD gave, before the tessellator clamped and rounded them: one an edge, or as published one a side
-/// (an index into [`Topology::sides`]).
+/// The factors that were asked for, before the tessellator clamped and rounded them, and the convention under which.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AskedFactors {
     factors: Vec<f32>,
-    per_side: bool,
+    belong: Belong,
+    convention: Convention,
+}
+
+/// What each of them belongs to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Belong {
+    /// An edge.
+    #[default]
+    Edges,
+    /// As published, a side (an index into [`Topology::sides`]).
+    Sides,
+    /// Three a patch: TessFactor[0..2], as they were given.
+    Patches,
 }
 
 impl AskedFactors {
-    pub fn new(edges: Edges, factors: Vec<f32>) -> Self {
-        Self { factors, per_side: edges == Edges::AsPublished }
+    /// What LOD gave.
+    pub fn new(edges: Edges, convention: Convention, factors: Vec<f32>) -> Self {
+        let belong = if edges == Edges::AsPublished { Belong::Sides } else { Belong::Edges };
+        Self { factors, belong, convention }
     }
 
+    /// What was given in place of LOD's.
+    pub fn given(convention: Convention, given: &[HullFactors]) -> Self {
+        let factors = given.iter().flat_map(|patch| patch.edges).collect();
+        Self { factors, belong: Belong::Patches, convention }
+    }
+
+    /// What LOD gave; nothing where factors were given.
     pub fn into_factors(self) -> Vec<f32> {
-        self.factors
+        if self.belong == Belong::Patches { Vec::new() } else { self.factors }
     }
 
     /// How many are larger than a partitioning's largest.
@@ -47,10 +71,20 @@ impl AskedFactors {
         self.factors.iter().filter(|&&factor| factor > most).count() as u64
     }
 
-    /// The factor that a side asked for.
-    fn of(&self, topology: &Topology, side: u32) -> f32 {
-        let index = if self.per_side { side } else { topology.sides[side as usize].edge };
-        self.factors.get(index as usize).copied().unwrap_or(f32::NAN)
+    /// Which of a patch's factors its side `k` is cut by.
+    fn index(&self, k: u8) -> usize {
+        (0..3).position(|i| domain_side(self.convention, i) == u32::from(k)).unwrap_or_default()
+    }
+
+    /// What a patch's factor `i` was asked to be.
+    fn of(&self, topology: &Topology, patch: u32, i: usize) -> f32 {
+        let side = topology.patches[patch as usize].sides[factor_side(self.convention, i as u32) as usize];
+        let index = match self.belong {
+            Belong::Edges => topology.sides[side as usize].edge as usize,
+            Belong::Sides => side as usize,
+            Belong::Patches => 3 * patch as usize + i,
+        };
+        self.factors.get(index).copied().unwrap_or(f32::NAN)
     }
 }
 
@@ -61,7 +95,7 @@ pub struct EdgeSide {
     pub patch: u32,
     /// Index into the mesh's triangles.
     pub triangle: u32,
-    /// As LOD gave it, before the tessellator clamped and rounded it.
+    /// As LOD or a file gave it, before the tessellator clamped and rounded it; under a mistaken convention another edge's.
     pub factor: f32,
     /// What the tessellator made of it: its word in [`PatchFactors`].
     pub word: u32,
@@ -125,9 +159,9 @@ impl Rims {
         if ring.is_empty() {
             return None;
         }
-        // The ring starts with factor 0's edge, which is side 1.
+        // The ring has the edges of factors 0, 1 and 2 one after another.
         let words = self.factors[patch as usize].outside;
-        let factor = (usize::from(k) + 2) % 3;
+        let factor = self.asked.index(k);
         let first: u32 = words[..factor].iter().map(|&word| segments(word)).sum();
         let last = first + segments(words[factor]);
         let mut points: Vec<_> = (first..=last).map(|p| ring[p as usize % ring.len()]).collect();
@@ -135,7 +169,8 @@ impl Rims {
             points.reverse();
         }
         let triangle = topology.patches[patch as usize].triangle;
-        Some(EdgeSide { patch, triangle, factor: self.asked.of(topology, index), word: words[factor], points })
+        let asked = self.asked.of(topology, patch, factor);
+        Some(EdgeSide { patch, triangle, factor: asked, word: words[factor], points })
     }
 
     /// A patch's ring, in the tessellator's order.

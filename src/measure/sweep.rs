@@ -13,7 +13,8 @@ use glam::{DVec3, Vec3};
 
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
-    Clip, FIXED_ONE, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Vertex, process, round_pow2, tessellate,
+    Clip, Convention, FIXED_ONE, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Vertex, process, round_pow2,
+    tessellate,
 };
 
 /// The step that charts show.
@@ -49,8 +50,8 @@ impl Sweep {
     }
 }
 
-/// Sweeps the factor over a range, with the surface and partitioning of `inputs`; their factor, LOD and clipping count
-/// for nothing. `step` is a positive power of two, so that every factor is exact.
+/// Sweeps the factor over a range, with the surface and partitioning of `inputs`; their factor, LOD, clipping and
+/// convention count for nothing. `step` is a positive power of two, so that every factor is exact.
 ///
 /// Every patch is looked at in 7,225 places: corners, rim, centre and the rest of a grid of 48, and 6,000 more in
 /// between; at factor 64 it has 6,144 triangles. From 1 to 64 by [`SWEEP_STEP`], a dozen patches take seconds for each
@@ -62,7 +63,7 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
     let still = |k: u32| SweepStep { factor: first + k as f32 * step, jump: 0.0, patch: 0, place: [0, 0] };
     let mut steps: Vec<_> = (1..=count).map(still).collect();
 
-    let inputs = Inputs { lod: Lod::Uniform, clip: Clip::Off, ..*inputs };
+    let inputs = Inputs { lod: Lod::Uniform, clip: Clip::Off, convention: Convention::D3d11, ..*inputs };
     let places = Places::new(places());
     let states = States { mesh, topology, inputs, places: &places };
     // Small pieces, as high factors take far longer than low ones.

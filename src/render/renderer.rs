@@ -12,7 +12,6 @@ use crate::gpu::layout::Vertex;
 use crate::gpu::{COLOR_FORMAT, ChunkBuffers, DEPTH_FORMAT, Gpu, Recorder};
 use crate::mesh::Texture;
 use crate::settings::{Colors, Overlays, Settings};
-use crate::tessellate::Convention;
 
 /// Long-lived: one for a device, whatever is loaded.
 pub struct Renderer {
@@ -185,7 +184,7 @@ impl Renderer {
             viewport: viewport.to_array(),
             overlays: overlay_bits(&settings.overlays),
             ulp: scene.ulp,
-            convention: Convention::D3d11 as u32,
+            convention: settings.convention as u32,
             scale_least: scale.least,
             scale_most: scale.most,
             _pad: 0.0,

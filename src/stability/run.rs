@@ -167,7 +167,7 @@ impl<'a> Running<'a> {
         for Trial { settings, camera, .. } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let out = tessellate(&self.mesh, &self.topology, &settings.inputs(view), None);
-            let asked = AskedFactors::new(settings.edges, out.edge_factors.clone());
+            let asked = AskedFactors::new(settings.edges, settings.convention, out.edge_factors.clone());
             self.take(&mut worst, &Measured::of(&self.mesh, &self.topology, asked, &out), &settings, &view);
         }
         if self.case.probe == Probe::Sweep {

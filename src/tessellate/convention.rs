@@ -28,6 +28,15 @@ pub enum Convention {
     Mirrored = 4,
 }
 
+impl Convention {
+    pub const ALL: [Self; 5] = [Self::D3d11, Self::AmdPn, Self::EdgeOrder, Self::Rotated, Self::Mirrored];
+
+    /// Whether factors and weights mean the same edges: every edge gets its own factor.
+    pub fn is_consistent(self) -> bool {
+        (0..3).all(|i| factor_side(self, i) == domain_side(self, i))
+    }
+}
+
 /// The side (k runs from corner k to corner k + 1) whose factor the hull shader writes as factor `i`.
 pub fn factor_side(convention: Convention, i: u32) -> u32 {
     match convention {
@@ -55,35 +64,43 @@ pub fn domain_side(convention: Convention, i: u32) -> u32 {
 
 /// U and V on corners 0 and 1 of what the tessellator gives as U and V, in 16.16 fixed point; W is the rest.
 pub fn corner_weights(convention: Convention, [u, v]: [u32; 2]) -> [u32; 2] {
-    let weights = [u, v, super::FIXED_ONE - u - v];
-    let mut on_corners = [0; 3];
-    for (i, weight) in weights.into_iter().enumerate() {
-        on_corners[weight_corner(convention, i as u32) as usize] = weight;
+    let w = super::FIXED_ONE - u - v;
+    match convention {
+        Convention::AmdPn => [w, u],
+        Convention::EdgeOrder => [v, w],
+        Convention::D3d11 | Convention::Rotated | Convention::Mirrored => [u, v],
     }
-    [on_corners[0], on_corners[1]]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ALL: [Convention; 5] =
-        [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder, Convention::Rotated, Convention::Mirrored];
-
     #[test]
     fn conventions_give_every_edge_its_own_factor_and_mistakes_do_not() {
-        let agrees = |convention| (0..3).all(|i| factor_side(convention, i) == domain_side(convention, i));
-        assert_eq!(ALL.map(agrees), [true, true, true, false, false]);
+        assert_eq!(Convention::ALL.map(Convention::is_consistent), [true, true, true, false, false]);
     }
 
     #[test]
     fn every_side_and_every_corner_is_named_once() {
-        for convention in ALL {
+        for convention in Convention::ALL {
             let mut sides = [0, 1, 2].map(|i| factor_side(convention, i));
             let mut corners = [0, 1, 2].map(|i| weight_corner(convention, i));
             sides.sort_unstable();
             corners.sort_unstable();
             assert_eq!((sides, corners), ([0, 1, 2], [0, 1, 2]), "{convention:?}");
+        }
+    }
+
+    #[test]
+    fn weights_by_corner_are_those_of_the_table() {
+        for convention in Convention::ALL {
+            let weights = [1, 2, crate::tessellate::FIXED_ONE - 3];
+            let mut on_corners = [0; 3];
+            for i in 0..3 {
+                on_corners[weight_corner(convention, i as u32) as usize] = weights[i];
+            }
+            assert_eq!(corner_weights(convention, [1, 2]), on_corners[..2], "{convention:?}");
         }
     }
 

@@ -5,11 +5,11 @@ use clap::ValueEnum;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{
-    Clip, ControlNet, EDGE_SHARE, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, SEEN, Solid, Surface,
-    center_control_point, distance_factor, domain_point, domain_triangle, edge_control_point, edge_error_factor,
-    edge_length_factor, edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv,
-    pack_normal, paper_edge_factor, patch_position, point_count, process, round_pow2, straight_control_point,
-    triangle_count, unseen,
+    Clip, ControlNet, Convention, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Partitioning, PatchFactors, SEEN,
+    Solid, Surface, center_control_point, corner_weights, distance_factor, domain_point, domain_triangle,
+    edge_control_point, edge_error_factor, edge_length_factor, edge_normal, edge_position, edge_uv,
+    inside_error_factor, level, linear_normal, linear_uv, pack_normal, paper_edge_factor, patch_position, point_count,
+    round_pow2, straight_control_point, triangle_count, unseen,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -42,6 +42,7 @@ pub struct Inputs {
     pub clip: Clip,
     /// Whether patches that show their backs only are left out, where [`Solid`] allows it.
     pub cull_back_faces: bool,
+    pub convention: Convention,
     pub view: LodView,
 }
 
@@ -64,7 +65,7 @@ impl Vertex {
         self.key[1] >> 2
     }
 
-    /// Its domain point: U and V in 16.16 fixed point.
+    /// Its domain point: the weights of corners 0 and 1 in 16.16 fixed point, whatever the convention calls them.
     pub fn domain(&self) -> [u32; 2] {
         [self.key[0] & 0x1ffff, (self.key[0] >> 17) | ((self.key[1] & 3) << 15)]
     }
@@ -83,7 +84,7 @@ pub struct Tessellated {
     pub triangles: Vec<[u32; 3]>,
     /// One for each patch.
     pub patch_factors: Vec<PatchFactors>,
-    /// As LOD gave them: one for each edge, or as published one for each side.
+    /// As LOD gave them: one for each edge, or as published one for each side. None where patches' were given.
     pub edge_factors: Vec<f32>,
 }
 
@@ -102,33 +103,54 @@ pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let nets = Nets::new(mesh, topology, inputs);
     let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs), <[f32]>::to_vec);
-    let solid = if inputs.cull_back_faces { Solid::find(mesh, topology) } else { None };
-    let culls_back = solid.is_some_and(|solid| solid.hides_backs(inputs));
-    let mut out = Tessellated::default();
-    for patch in 0..topology.patches.len() as u32 {
+    let culls_back = culls_back(mesh, topology, inputs);
+    let out = nets.emit(inputs, culls_back, |patch, net| nets.hull_factors(inputs, &edge_factors, patch, net));
+    Tessellated { edge_factors, ..out }
+}
+
+/// Whether patches that face away are left out.
+fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
+    inputs.cull_back_faces && Solid::find(mesh, topology).is_some_and(|solid| solid.hides_backs(inputs))
+}
+
+/// Tessellates the mesh with what a hull shader wrote, one for each patch, in place of what LOD gives. Backs stay: given
+/// factors may tear any edge.
+pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given: &[HullFactors]) -> Tessellated {
+    let given = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.partitioning);
+    Nets::new(mesh, topology, inputs).emit(inputs, false, given)
+}
+
+/// What the hull shader writes under LOD, one for each patch; zeros for those that are left out.
+pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
+    let nets = Nets::new(mesh, topology, inputs);
+    let edge_factors = nets.edge_factors(inputs);
+    let culls_back = culls_back(mesh, topology, inputs);
+    let written = |patch| {
         let net = nets.patch(patch);
-        let why = unseen(inputs.clip, culls_back, &inputs.view, &net);
-        let factors = match why {
-            SEEN => nets.patch_factors(inputs, &edge_factors, patch),
-            why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
-        };
-        let base = out.vertices.len() as u32;
-        out.vertices.extend((0..point_count(factors)).map(|i| nets.vertex(patch, &net, domain_point(factors, i))));
-        out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
-        out.patch_factors.push(factors);
-    }
-    out.edge_factors = edge_factors;
-    out
+        match unseen(inputs.clip, culls_back, &inputs.view, &net) {
+            SEEN => nets.hull_factors(inputs, &edge_factors, patch, &net),
+            _ => HullFactors::default(),
+        }
+    };
+    (0..topology.patches.len() as u32).map(written).collect()
 }
 
 /// Vertices and triangles that [`tessellate`] would emit, clipping aside.
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let nets = Nets::new(mesh, topology, inputs);
     let edge_factors = nets.edge_factors(inputs);
-    let counts = (0..topology.patches.len() as u32).map(|patch| {
-        let factors = nets.patch_factors(inputs, &edge_factors, patch);
-        (u64::from(point_count(factors)), u64::from(triangle_count(factors)))
-    });
+    let patches = 0..topology.patches.len() as u32;
+    let written = patches.map(|patch| nets.hull_factors(inputs, &edge_factors, patch, &nets.patch(patch)));
+    sums(written.map(|written| written.process(inputs.partitioning)))
+}
+
+/// Vertices and triangles that [`tessellate_given`] would emit, clipping aside.
+pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
+    sums(given.iter().map(|written| written.rounded(inputs.partitioning).process(inputs.partitioning)))
+}
+
+fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
+    let counts = patches.map(|factors| (u64::from(point_count(factors)), u64::from(triangle_count(factors))));
     counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1))
 }
 
@@ -233,18 +255,41 @@ impl<'a> Nets<'a> {
         self.curves.factor_curves.windows(2).map(edge).collect()
     }
 
-    /// Factor i belongs to the edge opposite corner i: side i + 1. Inside: the largest of the three, or what the error
-    /// asks for.
-    fn patch_factors(&self, inputs: &Inputs, edge_factors: &[f32], patch: u32) -> PatchFactors {
+    /// The sides' factors in the order of the convention. Inside: the largest of the three, or what the error asks for,
+    /// which takes edges by the corners that they are opposite, whatever the convention.
+    fn hull_factors(&self, inputs: &Inputs, edge_factors: &[f32], patch: u32, net: &ControlNet) -> HullFactors {
         let Inputs { view, tolerance, partitioning, .. } = inputs;
         let sides = self.topology.patches[patch as usize].sides;
-        let edges = [1, 2, 0].map(|k: usize| edge_factors[self.curves.factor(self.topology, sides[k]) as usize]);
+        let sides = sides.map(|side| edge_factors[self.curves.factor(self.topology, side) as usize]);
         let inside = if inputs.lod == Lod::Error && inputs.surface != Surface::Flat {
-            inside_error_factor(view, *tolerance, *partitioning, &self.patch(patch), edges)
+            inside_error_factor(view, *tolerance, *partitioning, net, [sides[1], sides[2], sides[0]])
         } else {
-            edges[0].max(edges[1]).max(edges[2])
+            sides[0].max(sides[1]).max(sides[2])
         };
-        process(*partitioning, edges, inside)
+        HullFactors::of_sides(inputs.convention, sides, inside)
+    }
+
+    /// Every patch's output, given what the hull shader writes for it.
+    fn emit(
+        &self,
+        inputs: &Inputs,
+        culls_back: bool,
+        written: impl Fn(u32, &ControlNet) -> HullFactors,
+    ) -> Tessellated {
+        let mut out = Tessellated::default();
+        for patch in 0..self.topology.patches.len() as u32 {
+            let net = self.patch(patch);
+            let factors = match unseen(inputs.clip, culls_back, &inputs.view, &net) {
+                SEEN => written(patch, &net).process(inputs.partitioning),
+                why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
+            };
+            let vertex = |i| self.vertex(patch, &net, corner_weights(inputs.convention, domain_point(factors, i)));
+            let base = out.vertices.len() as u32;
+            out.vertices.extend((0..point_count(factors)).map(vertex));
+            out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
+            out.patch_factors.push(factors);
+        }
+        out
     }
 
     /// The curve of a patch's side, and whether the side runs against it.

@@ -7,6 +7,7 @@ mod cull;
 pub mod domain;
 mod error;
 pub mod factors;
+mod hull;
 mod lod;
 mod mesh;
 mod solid;
@@ -23,11 +24,15 @@ pub use factors::{
     FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
     point_count, process, round_pow2, segments, triangle_count,
 };
+pub use hull::HullFactors;
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
     project_and_scale,
 };
-pub use mesh::{Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
+pub use mesh::{
+    Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
+    tessellate_given, totals,
+};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,

@@ -32,7 +32,8 @@ impl Solid {
     /// Whether nothing that faces away can be seen under these inputs: nothing tears, and the near plane cuts nothing open.
     pub fn hides_backs(&self, inputs: &Inputs) -> bool {
         let tears = inputs.surface == Surface::Pn && self.has_split_normals;
-        inputs.edges == Edges::PerEdge && !tears && is_beyond_near(inputs.view.clip_from_object, self.extent)
+        let holds = inputs.edges == Edges::PerEdge && inputs.convention.is_consistent() && !tears;
+        holds && is_beyond_near(inputs.view.clip_from_object, self.extent)
     }
 }
 

@@ -71,6 +71,7 @@ fn shared_structs_have_one_layout() {
         near,
         far,
         culls_back,
+        convention,
     });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });

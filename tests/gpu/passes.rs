@@ -9,7 +9,8 @@ use pnaen::mesh::{Corner, Material, Mesh, Progress, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
-    Clip, Edges, Inputs, Lod, Partitioning, Surface, Tessellated, beyond_near, tessellate, totals, unpack_normal,
+    Clip, Edges, Inputs, Lod, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, tessellate, totals,
+    unpack_normal,
 };
 
 use crate::{engine, loaded, picture, scene};
@@ -19,25 +20,25 @@ const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
 
 const SURFACES: [Surface; 3] = [Surface::Flat, Surface::Pn, Surface::PnAen];
 
-fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
+pub fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
     let bounds = loaded.mesh.bounds();
     settings.inputs(Camera::framing(&bounds, VIEWPORT).lod_view(VIEWPORT, &bounds))
 }
 
-fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
+pub fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
     engine().count(scene, inputs, &mut Timing::Off).expect("counts");
     engine().read_tessellated(scene).expect("a readback")
 }
 
 /// The factors that the GPU gave the edges.
-fn edge_factors(scene: &Scene) -> Vec<f32> {
+pub fn edge_factors(scene: &Scene) -> Vec<f32> {
     let buffer = &scene.tessellator.buffers().edge_factors;
     bytemuck::pod_collect_to_vec(&read_buffer(&engine().gpu, buffer, 0, buffer.size()).expect("a readback"))
 }
 
 /// Same domain points and triangles in the same order, positions within 4 ULP of the largest coordinate: what is left
 /// after sums of up to ten products that one side may fuse and the other not.
-fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &str) {
+pub fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &str) {
     // Not assert_eq: nobody reads a hundred thousand triangles.
     assert!(gpu.patch_factors == cpu.patch_factors, "{what}: factors");
     assert!(gpu.triangles == cpu.triangles, "{what}: triangles");
@@ -341,7 +342,8 @@ fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
     let on = Settings { clip: Clip::Paper, ..off };
     let whole = on_gpu(&mut scene, &off.inputs(view));
     let clipped = on_gpu(&mut scene, &on.inputs(view));
-    let kept: Vec<_> = clipped.patch_factors.iter().zip(&whole.patch_factors).filter(|(c, _)| c.inside != 0).collect();
+    let kept: Vec<_> =
+        clipped.patch_factors.iter().zip(&whole.patch_factors).filter(|(c, _)| !patch_is_culled(**c)).collect();
     assert!(!kept.is_empty() && kept.len() < whole.patch_factors.len(), "{} patches kept", kept.len());
     assert!(kept.iter().all(|(clipped, whole)| clipped == whole), "a neighbour's factors changed");
     let cpu = tessellate(&loaded.mesh, &loaded.topology, &on.inputs(view), None);

@@ -253,7 +253,7 @@ impl Trial {
         let topology = Topology::build(&self.mesh, &Progress::default()).expect("nobody cancels");
         let inputs = settings.inputs(self.camera.lod_view(VIEWPORT, &self.mesh.bounds()));
         let out = tessellate(&self.mesh, &topology, &inputs, None);
-        let asked = AskedFactors::new(settings.edges, out.edge_factors.clone());
+        let asked = AskedFactors::new(settings.edges, settings.convention, out.edge_factors.clone());
         Measured::of(&self.mesh, &topology, asked, &out)
     }
 }

@@ -1,0 +1,52 @@
+//! `pnaen factors`: what the hull shader writes for every patch.
+
+use std::path::PathBuf;
+
+use super::tessellate::Device;
+use super::{CliError, SurfaceOptions, load, write_text};
+use crate::engine::Engine;
+use crate::factors_file::to_csv;
+use crate::gpu::Timing;
+use crate::mesh::Source;
+use crate::settings::Settings;
+use crate::tessellate;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A .gltf or .glb file, or a shape made in code such as shape:cube-split
+    #[arg(value_parser = super::options::source())]
+    pub file: Source,
+    /// File to write, CSV (- for standard output)
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub surface: SurfaceOptions,
+    /// Where to compute; the CPU needs no graphics driver
+    #[arg(long, value_enum, default_value_t = Device::Gpu)]
+    pub device: Device,
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    args.surface.check()?;
+    let loaded = load(&args.file, args.surface.weld)?;
+    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+    let bounds = mesh.bounds();
+    let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
+    let written = match args.device {
+        Device::Cpu => {
+            let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);
+            tessellate::hull_factors(mesh, topology, &args.surface.within_budget(count)?.inputs(view))
+        }
+        Device::Gpu => {
+            let engine = Engine::headless()?;
+            let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
+            let settings = args.surface.within_budget(|settings| {
+                engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
+                Ok(scene.tessellator.totals().1)
+            })?;
+            engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
+            scene.tessellator.hull_factors()?
+        }
+    };
+    write_text(&args.output, &to_csv(topology, &written))
+}

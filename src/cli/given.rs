@@ -1,0 +1,208 @@
+//! `--factors`: a file's factors in place of LOD's, and what is said of them.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use serde::Serialize;
+
+use super::{CliError, read_text};
+use crate::factors_file::from_csv;
+use crate::measure::{Agreement, Disagreement, Order};
+use crate::mesh::{Mesh, Topology};
+use crate::tessellate::{Convention, HullFactors};
+
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct GivenOption {
+    /// Tessellate with the factors of a file in place of LOD's (- for standard input): CSV with the header
+    /// patch,e0,e1,e2,inside and a line a triangle, as the factors command writes it, or from another engine. Says on standard
+    /// error on which edges the sides' factors differ, and under which convention they don't
+    #[arg(
+        long = "factors",
+        value_name = "CSV",
+        conflicts_with_all = ["lod", "factor", "pixels", "tolerance", "distances", "max_triangles"]
+    )]
+    pub given: Option<PathBuf>,
+}
+
+/// A file's factors, held against the mesh.
+pub struct Given {
+    /// One for each patch.
+    pub factors: Vec<HullFactors>,
+    pub stats: FactorsFile,
+}
+
+/// Edges that are said on standard error.
+const SAID: usize = 10;
+/// Edges that stats list.
+const LISTED: usize = 10_000;
+
+impl GivenOption {
+    /// Reads the file, if there is one, and says what it found.
+    ///
+    /// # Errors
+    /// The file can't be read, or isn't one of this mesh.
+    pub fn read(&self, mesh: &Mesh, topology: &Topology, convention: Convention) -> Result<Option<Given>, CliError> {
+        let Some(path) = &self.given else { return Ok(None) };
+        let text = read_text(path)?;
+        let factors = from_csv(&text, topology, mesh.triangles.len()).map_err(|error| CliError::Line {
+            path: path.display().to_string(),
+            line: error.line,
+            reason: error.fault.to_string(),
+        })?;
+        let agreement = Agreement::of(topology, &factors, convention);
+        for line in said(topology, &agreement, convention) {
+            let _ = writeln!(std::io::stderr(), "pnaen: {line}");
+        }
+        let stats = FactorsFile::new(path, topology, &agreement, convention);
+        Ok(Some(Given { factors, stats }))
+    }
+}
+
+/// What was found, for people.
+fn said(topology: &Topology, agreement: &Agreement, convention: Convention) -> Vec<String> {
+    let (different, compared) = (agreement.edges.len(), agreement.edges_compared);
+    let mut lines = vec![format!("{different} of {compared} edges have different factors on their sides")];
+    if agreement.patches_culled > 0 {
+        lines.push(format!(
+            "{} of {} patches are left out, as a factor of theirs is not greater than 0",
+            agreement.patches_culled,
+            topology.patches.len()
+        ));
+    }
+    if different > SAID {
+        lines.push(format!("the {SAID} edges that differ the most:"));
+    }
+    lines.extend(agreement.edges.iter().take(SAID).map(|edge| edge_said(topology, edge)));
+    lines.extend(order_said(agreement, convention));
+    lines
+}
+
+fn edge_said(topology: &Topology, edge: &Disagreement) -> String {
+    let [a, b] = end_points(topology, edge.edge);
+    let [(one, least), (other, greatest)] = edge.extremes();
+    let point = |[x, y, z]: [f32; 3]| format!("({x} {y} {z})");
+    format!("{} to {}: {least} in triangle {one}, {greatest} in triangle {other}", point(a), point(b))
+}
+
+/// The end points of an edge.
+fn end_points(topology: &Topology, edge: u32) -> [[f32; 3]; 2] {
+    topology.edges[edge as usize].points.map(|point| topology.points[point as usize].to_array())
+}
+
+/// Which convention makes the file consistent.
+fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
+    let named = |order: &Order| order.convention().filter(|found| found.is_consistent() && *found != convention);
+    let names: Vec<_> = agreement.consistent().filter_map(named).map(name).collect();
+    if agreement.edges.is_empty() {
+        let others = names.join(" and ");
+        return (!names.is_empty())
+            .then(|| format!("as {others} the file is consistent too: it doesn't tell which it is"));
+    }
+    if !names.is_empty() {
+        return Some(format!(
+            "as {} the file is consistent: pass --convention {}",
+            names.join(" and as "),
+            names.join(" or ")
+        ));
+    }
+    if let Some(order) = agreement.consistent().next() {
+        let edges = order.sides.map(|side| format!("({side}, {})", (side + 1) % 3)).join(", ");
+        let like =
+            order.convention().map_or(String::new(), |convention| format!(" as {} writes them", name(convention)));
+        return Some(format!(
+            "the file is consistent if e0, e1, e2 are for edges {edges}{like}: no order of weights fits that, so exchange \
+             two factors where they are written"
+        ));
+    }
+    let nearest = agreement.orders.iter().filter_map(|order| Some((order, named_or_own(order)?)));
+    let (order, nearest) = nearest.min_by_key(|(order, _)| order.different)?;
+    let differ = if order.different == 1 { "edge that differs" } else { "edges that differ" };
+    Some(format!(
+        "no convention makes the file consistent; {} comes nearest, with {} {differ}",
+        name(nearest),
+        order.different
+    ))
+}
+
+/// The convention that takes factors in this order, and puts them there.
+fn named_or_own(order: &Order) -> Option<Convention> {
+    order.convention().filter(|convention| convention.is_consistent())
+}
+
+/// As one writes it after `--convention`.
+fn name(convention: Convention) -> String {
+    convention.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
+}
+
+/// What was found, for programs.
+#[derive(Debug, Serialize)]
+pub struct FactorsFile {
+    path: String,
+    convention: String,
+    edges_compared: u64,
+    edges_different: u64,
+    patches_culled: u64,
+    /// Conventions under which no edge differs.
+    consistent_as: Vec<String>,
+    orders: Vec<OrderStats>,
+    /// The largest differences first, at most [`LISTED`].
+    edges: Vec<EdgeStats>,
+}
+
+/// How many edges differ if a patch's factors are in this order.
+#[derive(Debug, Serialize)]
+struct OrderStats {
+    /// Side k runs from corner k to corner k + 1.
+    sides: [u32; 3],
+    /// The first convention, or mistake, that writes factors so.
+    written_by: Option<String>,
+    edges_different: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct EdgeStats {
+    /// Object units.
+    points: [[f32; 3]; 2],
+    sides: Vec<SideStats>,
+}
+
+#[derive(Debug, Serialize)]
+struct SideStats {
+    triangle: u32,
+    factor: Number,
+}
+
+/// JSON has no infinity.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Number {
+    Finite(f32),
+    Infinite(&'static str),
+}
+
+impl FactorsFile {
+    fn new(path: &Path, topology: &Topology, agreement: &Agreement, convention: Convention) -> Self {
+        let order = |order: &Order| OrderStats {
+            sides: order.sides,
+            written_by: order.convention().map(name),
+            edges_different: order.different,
+        };
+        let number = |factor: f32| if factor.is_finite() { Number::Finite(factor) } else { Number::Infinite("inf") };
+        let side = |&(triangle, factor): &(u32, f32)| SideStats { triangle, factor: number(factor) };
+        let edge = |edge: &Disagreement| EdgeStats {
+            points: end_points(topology, edge.edge),
+            sides: edge.sides.iter().map(side).collect(),
+        };
+        Self {
+            path: path.display().to_string(),
+            convention: name(convention),
+            edges_compared: agreement.edges_compared,
+            edges_different: agreement.edges.len() as u64,
+            patches_culled: agreement.patches_culled,
+            consistent_as: agreement.consistent().filter_map(named_or_own).map(name).collect(),
+            orders: agreement.orders.iter().map(order).collect(),
+            edges: agreement.edges.iter().take(LISTED).map(edge).collect(),
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Factors as a CSV file, a line a triangle: what a hull shader of ours or of another engine wrote.
+
+use thiserror::Error;
+
+use crate::mesh::Topology;
+use crate::tessellate::HullFactors;
+
+/// The first line: the index of the triangle, TessFactor[0..2] and InsideTessFactor.
+const HEADER: [&str; 5] = ["patch", "e0", "e1", "e2", "inside"];
+
+/// What is wrong with a file, and where.
+#[derive(Debug, PartialEq, Eq, Error)]
+#[error("line {line}: {fault}")]
+pub struct FactorsError {
+    /// From 1 on.
+    pub line: usize,
+    pub fault: Fault,
+}
+
+/// What is wrong with a line.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum Fault {
+    #[error("expected the header patch,e0,e1,e2,inside")]
+    Header,
+    #[error("expected five values, patch,e0,e1,e2,inside, but the number of values is {0}")]
+    Count(usize),
+    #[error("patch is {0:?}: expected the index of a triangle, such as 0")]
+    Index(String),
+    #[error("{column} is {text:?}: expected a number, such as 2.5, inf or NaN")]
+    Number { column: &'static str, text: String },
+    #[error("there is no patch {patch}: the mesh has {count} triangles, counted from 0")]
+    Beyond { patch: u32, count: usize },
+    #[error("patch {patch} is here again, after line {first}")]
+    Again { patch: u32, first: usize },
+    #[error("the file ends without a line for patch {first}{}", and_more(*.others))]
+    Missing { first: u32, others: usize },
+    #[error("{0}")]
+    Unreadable(String),
+}
+
+fn and_more(count: usize) -> String {
+    if count == 0 { String::new() } else { format!(" and {count} more") }
+}
+
+/// Writes what was written for each patch, under the index of its triangle. Degenerate triangles have no patch and no line.
+/// Numbers read back exactly.
+pub fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
+    let mut text = HEADER.join(",") + "\n";
+    for (patch, HullFactors { edges: [e0, e1, e2], inside }) in topology.patches.iter().zip(written) {
+        text += &format!("{},{e0},{e1},{e2},{inside}\n", patch.triangle);
+    }
+    text
+}
+
+/// Reads what was written for each patch, in any order. Lines of degenerate triangles may be there; they mean nothing.
+///
+/// # Errors
+/// The text is no such file, or not one of this mesh of `triangles` triangles.
+pub fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Result<Vec<HullFactors>, FactorsError> {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let byte = |at: Option<&csv::Position>| at.map_or(0, |at| at.byte() as usize);
+    let fault = |byte: usize, fault| FactorsError { line: line_at(text, byte), fault };
+    match reader.headers() {
+        Ok(header) if header == HEADER.as_slice() => {}
+        Ok(header) => return Err(fault(byte(header.position()), Fault::Header)),
+        Err(error) => return Err(fault(byte(error.position()), Fault::Unreadable(error.to_string()))),
+    }
+    let mut lines: Vec<Option<(usize, HullFactors)>> = vec![None; triangles];
+    for record in reader.records() {
+        let record = record.map_err(|error| fault(byte(error.position()), Fault::Unreadable(error.to_string())))?;
+        let at = byte(record.position());
+        if record.len() == 1 && record[0].is_empty() {
+            continue;
+        }
+        let (patch, factors) = line(&record).map_err(|reason| fault(at, reason))?;
+        let beyond = Fault::Beyond { patch, count: triangles };
+        let place = lines.get_mut(patch as usize).ok_or_else(|| fault(at, beyond))?;
+        if let Some((first, _)) = place {
+            let first = line_at(text, *first);
+            return Err(fault(at, Fault::Again { patch, first }));
+        }
+        *place = Some((at, factors));
+    }
+    let own = |patch: &crate::mesh::Patch| lines[patch.triangle as usize].as_ref().map(|(_, factors)| *factors);
+    let missing: Vec<_> = topology.patches.iter().filter(|patch| own(patch).is_none()).collect();
+    if let Some(first) = missing.first() {
+        let fault = Fault::Missing { first: first.triangle, others: missing.len() - 1 };
+        return Err(FactorsError { line: text.lines().count(), fault });
+    }
+    Ok(topology.patches.iter().filter_map(own).collect())
+}
+
+/// One line's patch and factors.
+fn line(record: &csv::StringRecord) -> Result<(u32, HullFactors), Fault> {
+    if record.len() != HEADER.len() {
+        return Err(Fault::Count(record.len()));
+    }
+    let quoted = |text: &str| text.chars().take(40).collect::<String>();
+    let patch = record[0].parse().map_err(|_| Fault::Index(quoted(&record[0])))?;
+    let number =
+        |i: usize| record[i].parse().map_err(|_| Fault::Number { column: HEADER[i], text: quoted(&record[i]) });
+    Ok((patch, HullFactors { edges: [number(1)?, number(2)?, number(3)?], inside: number(4)? }))
+}
+
+/// The line, from 1 on, of the first text at `byte` or after. The reader's own count stands before line ends that it passes
+/// over.
+fn line_at(text: &str, byte: usize) -> usize {
+    let bytes = text.as_bytes();
+    let start = byte.min(bytes.len());
+    let passed = bytes[start..].iter().take_while(|&&byte| byte == b'\n' || byte == b'\r').count();
+    1 + bytes[..start + passed].iter().filter(|&&byte| byte == b'\n').count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Corner, Mesh, Progress};
+
+    /// Three triangles, the middle one of which is degenerate.
+    fn topology() -> Topology {
+        let at =
+            |x: f32, y: f32| Corner { position: glam::vec3(x, y, 0.0), normal: glam::Vec3::Z, uv: glam::Vec2::ZERO };
+        let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
+        let mesh = Mesh { corners, triangles: vec![[0, 1, 2], [1, 1, 2], [1, 3, 2]], ..Mesh::default() };
+        Topology::build(&mesh, &Progress::default()).expect("nobody cancels")
+    }
+
+    fn read(text: &str) -> Result<Vec<HullFactors>, FactorsError> {
+        from_csv(text, &topology(), 3)
+    }
+
+    #[test]
+    fn what_was_written_is_read_back_to_the_bit() {
+        let numbers =
+            [0.1, 64.0, f32::NAN, f32::INFINITY, -0.0, 1.0 + f32::EPSILON, f32::MIN_POSITIVE / 8.0, 16777217.0];
+        let [a, b] =
+            [0, 4].map(|i| HullFactors { edges: [numbers[i], numbers[i + 1], numbers[i + 2]], inside: numbers[i + 3] });
+        let text = to_csv(&topology(), &[a, b]);
+        assert!(text.starts_with("patch,e0,e1,e2,inside\n0,0.1,64,NaN,inf\n2,-0,1.0000001,"), "{text}");
+        let bits = |all: &[HullFactors]| bytemuck::cast_slice::<_, u32>(all).to_vec();
+        assert_eq!(read(&text).map(|all| bits(&all)), Ok(bits(&[a, b])));
+    }
+
+    #[test]
+    fn order_blanks_and_line_ends_do_not_matter() {
+        let expected = read("patch,e0,e1,e2,inside\n0,1,2,3,4\n2,5,6,7,8\n");
+        assert_eq!(expected.as_ref().map(Vec::len), Ok(2));
+        for text in [
+            "\u{feff}patch,e0,e1,e2,inside\r\n2,5,6,7,8\r\n0,1,2,3,4\r\n",
+            "\n patch , e0,e1 ,e2, inside \n\n  \n 2, 5,6.0,7e0 ,8\n1,9,9,9,9\n\t0,1,+2,3,4",
+            "\"patch\",e0,e1,e2,inside\n\"0\",1,2,3,4\n2,5,6,7,8",
+        ] {
+            assert_eq!(read(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn faults_are_named_with_their_lines() {
+        let number = |column, text: &str| Fault::Number { column, text: text.into() };
+        for (rows, line, fault) in [
+            ("0,1,2,3,4\n2,5,6,x,8\n", 3, number("e2", "x")),
+            ("0,1,2,3,\n2,5,6,7,8\n", 2, number("inside", "")),
+            ("\n\n0,1,2,3,4\n \n\n2,5,0x6,7,8\n", 7, number("e1", "0x6")),
+            ("0,1,2,3,4\n-2,5,6,7,8\n", 3, Fault::Index("-2".into())),
+            ("0,1,2,3,4\n2,5,6,7\n", 3, Fault::Count(4)),
+            ("0,1,2,3,4\n3,5,6,7,8\n", 3, Fault::Beyond { patch: 3, count: 3 }),
+            ("2,1,2,3,4\n0,1,2,3,4\n\n2,5,6,7,8\n", 5, Fault::Again { patch: 2, first: 2 }),
+            ("0,1,2,3,4\n\n1,1,1,1,1\n", 4, Fault::Missing { first: 2, others: 0 }),
+            ("", 1, Fault::Missing { first: 0, others: 1 }),
+        ] {
+            for end in ["\n", "\r\n"] {
+                let text = format!("patch,e0,e1,e2,inside\n{rows}").replace('\n', end);
+                assert_eq!(read(&text), Err(FactorsError { line, fault: fault.clone() }), "{text:?}");
+            }
+        }
+        for (text, line) in [("", 1), ("0,1,2,3,4\n", 1), ("\n\npatch;e0;e1;e2;inside\n", 3), ("patch,e0,e1,e2\n", 1)] {
+            assert_eq!(read(text), Err(FactorsError { line, fault: Fault::Header }), "{text:?}");
+        }
+        let fault = FactorsError { line: 9, fault: Fault::Missing { first: 7, others: 2 } };
+        assert_eq!(fault.to_string(), "line 9: the file ends without a line for patch 7 and 2 more");
+    }
+}

@@ -1,0 +1,70 @@
+//! What a hull shader hands to the tessellator for a patch.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::{Convention, Partitioning, PatchFactors, factor_side, patch_is_culled, process, round_pow2};
+
+/// A patch's factors before the tessellator clamps and rounds them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct HullFactors {
+    /// TessFactor[0..2]: which side each is for is a [`Convention`].
+    pub edges: [f32; 3],
+    /// InsideTessFactor.
+    pub inside: f32,
+}
+
+impl HullFactors {
+    /// As a convention writes the factors of sides 0, 1 and 2.
+    pub fn of_sides(convention: Convention, sides: [f32; 3], inside: f32) -> Self {
+        Self { edges: [0, 1, 2].map(|i| sides[factor_side(convention, i) as usize]), inside }
+    }
+
+    /// As a shader compiler hands them on: under pow2 rounded up to powers of two, otherwise as they are.
+    pub fn rounded(self, partitioning: Partitioning) -> Self {
+        if partitioning != Partitioning::Pow2 {
+            return self;
+        }
+        Self { edges: self.edges.map(round_pow2), inside: round_pow2(self.inside) }
+    }
+
+    /// What the tessellator makes of them.
+    pub fn process(self, partitioning: Partitioning) -> PatchFactors {
+        process(partitioning, self.edges, self.inside)
+    }
+
+    /// Whether the tessellator leaves the patch out: an edge's factor is not greater than zero.
+    pub fn culls(self) -> bool {
+        patch_is_culled(self.process(Partitioning::Integer))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_written_in_the_order_of_the_convention() {
+        let edges = |convention| HullFactors::of_sides(convention, [10.0, 11.0, 12.0], 0.0).edges;
+        assert_eq!(edges(Convention::D3d11), [11.0, 12.0, 10.0]);
+        assert_eq!(edges(Convention::AmdPn), [12.0, 10.0, 11.0]);
+        assert_eq!(edges(Convention::EdgeOrder), [10.0, 11.0, 12.0]);
+        assert_eq!(edges(Convention::Rotated), [10.0, 11.0, 12.0]);
+        assert_eq!(edges(Convention::Mirrored), [12.0, 11.0, 10.0]);
+    }
+
+    #[test]
+    fn what_culls_a_patch_culls_it_rounded_too() {
+        for (factor, culls) in [(0.0, true), (-1.0, true), (f32::NAN, true), (0.3, false), (f32::INFINITY, false)] {
+            for at in 0..3 {
+                let mut given = HullFactors { edges: [2.0; 3], inside: f32::NAN };
+                given.edges[at] = factor;
+                assert_eq!((given.culls(), given.rounded(Partitioning::Pow2).culls()), (culls, culls), "{factor}");
+            }
+        }
+        let given = HullFactors { edges: [3.0, 0.3, 70.0], inside: 5.0 };
+        assert_eq!(given.rounded(Partitioning::Integer), given);
+        let rounded = HullFactors { edges: [4.0, 1.0, 64.0], inside: 8.0 };
+        assert_eq!(given.rounded(Partitioning::Pow2), rounded);
+    }
+}

@@ -1,0 +1,59 @@
+//! `pnaen domain`: the bare tessellator.
+
+use std::collections::HashSet;
+use std::io::Write;
+use std::process::Stdio;
+
+use crate::{Folder, command, output};
+
+#[test]
+fn both_devices_print_the_same_domain() {
+    let folder = Folder::new("domain");
+    let sets = folder.path("sets.txt");
+    let text = "1 1 1 1\n2.5 3 7.25 4\n\nnan 1 1 1\n0 1 1 1\n-1 2 3 4\ninf 1 1 inf\n1 1 1 3\n64 64 64 64\n";
+    std::fs::write(&sets, text).expect("a writable folder");
+    for partitioning in ["integer", "pow2", "fractional-odd", "fractional-even"] {
+        let domain = |device| output(&["domain", "--partitioning", partitioning, "--input", &sets, "--device", device]);
+        let (gpu, cpu) = (domain("gpu"), domain("cpu"));
+        assert!(gpu == cpu, "{partitioning}: the devices differ");
+        let numbers: HashSet<&str> = cpu.lines().filter_map(|line| line.split(',').next()).collect();
+        assert_eq!(numbers, HashSet::from(["0", "1", "5", "6", "7"]), "culled sets print nothing, and still count");
+    }
+}
+
+#[test]
+fn a_domain_is_printed_point_by_point() {
+    let text = output(&["domain", "--partitioning", "integer", "--factors", "1,1,1,2", "--device", "cpu"]);
+    let expected = "point,0,0,65536\npoint,1,0,0\npoint,2,65536,0\npoint,3,21845,21845\n\
+                    triangle,3,0,1\ntriangle,3,1,2\ntriangle,3,2,0\n";
+    assert_eq!(text, expected);
+    assert_eq!(output(&["domain", "--partitioning", "fractional_odd", "--factors", "-3,1,nan,2"]), "");
+}
+
+#[test]
+fn a_closed_pipe_is_no_failure() {
+    let mut child = command(&["domain", "--partitioning", "integer", "--factors", "64,64,64,64", "--device", "cpu"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("the program ends");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn sets_of_factors_come_from_standard_input_too() {
+    let mut child = command(&["domain", "--partitioning", "integer", "--input", "-", "--device", "cpu"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(b"1 1 1 1\n").expect("it reads");
+    let output = child.wait_with_output().expect("the program ends");
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout),
+        "0,point,0,0,65536\n0,point,1,0,0\n0,point,2,65536,0\n0,triangle,0,1,2\n"
+    );
+}

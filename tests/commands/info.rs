@@ -1,0 +1,83 @@
+//! `pnaen info` and `pnaen adjacency`: what a mesh is, and what a weld tolerance makes of it.
+
+use serde_json::Value;
+
+use crate::{Folder, output, stats, write_seam, write_triangles};
+
+#[test]
+fn adjacency_has_nine_or_twelve_indices_a_patch() {
+    for (indices, name) in [(9, "9"), (12, "12")] {
+        let text = output(&["adjacency", "shape:cube-split", "--indices", name, "-o", "-"]);
+        let adjacency: Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(adjacency["indices_per_patch"], indices);
+        let patches = adjacency["patches"].as_array().expect("an array");
+        assert_eq!(patches.len(), 12);
+        assert!(patches.iter().all(|patch| patch.as_array().map(Vec::len) == Some(indices)));
+        let counts = ["positions", "normals"].map(|list| adjacency[list].as_array().map(Vec::len));
+        assert_eq!(counts, [Some(24), Some(24)]);
+    }
+}
+
+#[test]
+fn info_is_for_people_and_for_programs() {
+    let text = output(&["info", "shape:saddle"]);
+    assert!(text.contains("boundary      24") && text.contains("open"), "{text}");
+    assert!(text.contains("weld  ") && text.contains("\n  1e-5          joins nothing\n"), "{text}");
+    assert!(!text.contains("near misses"), "{text}");
+    let json: Value = serde_json::from_str(&output(&["info", "shape:saddle", "--json"])).expect("JSON");
+    assert_eq!((&json["edges"]["boundary"], &json["closed"]), (&24.into(), &false.into()));
+}
+
+#[test]
+fn info_tells_what_is_odd_and_what_a_weld_tolerance_changes() {
+    let folder = Folder::new("odd");
+    // One triangle above the edge from 0 to 4 along x, two below that meet at 1 on it and miss its ends by 1e-4.
+    let gap = 1e-4;
+    let triangles = [
+        [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]],
+        [[1.0, 0.0, 0.0], [0.0, -gap, 0.0], [1.0, -2.0, 0.0]],
+        [[4.0, -gap, 0.0], [1.0, 0.0, 0.0], [1.0, -2.0, 0.0]],
+    ];
+    let path = write_triangles(&folder, &triangles, [0.0, 0.0, -2.0]);
+    let text = output(&["info", &path]);
+    assert!(text.contains("T-junctions   1 ") && text.contains("  at 1 0 0 between 0 0 0 and 4 0 0\n"), "{text}");
+    let info = |options: &[&str]| -> Value {
+        serde_json::from_str(&output(&[&["info", &path, "--json"], options].concat())).expect("JSON")
+    };
+    let (exact, welded) = (info(&[]), info(&["--weld", "1e-4"]));
+    assert_eq!((&exact["weld"], &exact["points"], &exact["t_junctions"]), (&0.0.into(), &7.into(), &1.into()));
+    assert_eq!((&welded["points"], &welded["t_junctions"]), (&5.into(), &1.into()));
+    let expected = serde_json::json!([[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]], [1.0, 0.0, 0.0]]);
+    let junction = &welded["t_junctions_at"][0];
+    assert_eq!((&junction["edge"], &junction["point"]), (&expected[0], &expected[1]));
+    assert_eq!(junction["t"], 0.25);
+    assert_eq!(
+        (&exact["repairs"]["normals_rescaled"], &exact["normal_faults"]["against_face"]),
+        (&9.into(), &9.into())
+    );
+    assert!(exact["warnings"][0].as_str().is_some_and(|warning| warning.contains("length isn't 1")), "{exact}");
+}
+
+#[test]
+fn a_seam_that_almost_meets_is_closed_within_a_tolerance() {
+    let folder = Folder::new("seam");
+    let (path, out) = (write_seam(&folder), folder.path("out.glb"));
+    let json = |arguments: &[&str]| -> Value { serde_json::from_str(&output(arguments)).expect("JSON") };
+    let info = |options: &[&str]| json(&[&["info", &path, "--json"], options].concat());
+    for (options, open) in [(&[][..], true), (&["--weld", "1e-3"], false)] {
+        let (info, drawn) = (info(options), stats(&[&[path.as_str()], options].concat()));
+        let boundary: Value = if open { 6 } else { 0 }.into();
+        assert_eq!((&info["edges"]["boundary"], &info["closed"]), (&boundary, &(!open).into()), "{options:?}");
+        let joins: Vec<_> =
+            info["joins"].as_array().expect("a list").iter().map(|join| join["edges"].clone()).collect();
+        let expected = [0, 0, 0, 6, 6, 6].map(Value::from);
+        assert_eq!(joins, expected, "against the exact weld, whatever the tolerance: {options:?}");
+        assert_eq!(drawn["edges"]["boundary"], boundary, "{options:?}");
+        assert_eq!(drawn["leaks"], if open { Value::Null } else { 0.into() }, "{options:?}");
+        assert_eq!((&drawn["cracks"]["edges"], &drawn["patches"]), (&0.into(), &4.into()), "{options:?}");
+        // Closed to the bit: what is written is opened without a tolerance.
+        output(&[&["tessellate", &path, "-o", &out, "--factor", "3", "--device", "cpu"], options].concat());
+        assert_eq!(json(&["info", &out, "--json"])["closed"], !open, "{options:?}");
+    }
+    assert_eq!(info(&["--weld", "1e-5"])["edges"]["boundary"], 6, "less than the gap");
+}

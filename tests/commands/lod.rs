@@ -1,0 +1,62 @@
+//! LOD and clipping, by their options.
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, read_obj, run, sentence, stats};
+
+#[test]
+fn adaptive_lod_by_edge_length_and_clipping_by_the_frustum_hold_close_to_the_eye() {
+    let close = ["shape:torus", "--camera", "30,20,0.6", "--pixels", "48"];
+    let [clipped, whole, paper] = [["edge-length", "frustum"], ["edge-length", "off"], ["paper", "off"]]
+        .map(|[lod, clip]| stats(&[&close[..], &["--lod", lod, "--clip", clip]].concat()));
+    assert!(number(&clipped, "/patches_culled") > 50.0 && number(&clipped, "/patches_culled") < 256.0, "{clipped}");
+    assert_eq!((&whole["patches_culled"], &paper["patches_culled"]), (&0.into(), &0.into()));
+    assert!(number(&clipped, "/triangles_out") < number(&whole, "/triangles_out"), "{clipped}");
+    assert_ne!(whole["triangles_out"], paper["triangles_out"], "edges reach behind the eye");
+    for stats in [clipped, whole] {
+        assert_eq!((&stats["cracks"]["edges"], &stats["not_finite"]), (&0.into(), &0.into()), "{stats}");
+    }
+}
+
+#[test]
+fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
+    let of = |options: &[&str]| stats(&[&["shape:torus", "--partitioning", "integer"], options].concat());
+    let paper = of(&["--lod", "paper", "--pixels", "4"]);
+    let reached = number(&paper, "/max_error_px");
+    assert!(reached > 0.01, "{paper}");
+    let tolerance = reached.to_string();
+    let by_error = of(&["--lod", "error", "--tolerance", &tolerance]);
+    assert!(number(&by_error, "/max_error_px") <= reached, "{by_error}");
+    assert!(2.0 * number(&by_error, "/triangles_out") < number(&paper, "/triangles_out"), "{by_error}");
+    assert_eq!((number(&by_error, "/factors_capped"), number(&by_error, "/cracks/different_bits")), (0.0, 0.0));
+    let distance = of(&["--lod", "distance", "--factor", "9", "--distances", "2,5", "--measure-error", "false"]);
+    assert!(distance["max_error_px"].is_null() && number(&distance, "/triangles_out") > 256.0, "{distance}");
+}
+
+#[test]
+fn a_budget_of_triangles_raises_the_tolerance_and_says_so() {
+    let folder = Folder::new("budget");
+    let [picture, mesh] = ["out.png", "out.obj"].map(|name| folder.path(name));
+    let by_error = ["shape:torus", "--lod", "error", "--tolerance", "0.1"];
+    let all = number(&stats(&by_error), "/triangles_out");
+    let by_error = [&by_error[..], &["--size", "160x120"]].concat();
+    let most = (0.5 * all).to_string();
+    let result = run(&[&["render", "-o", &picture, "--stats", "-", "--max-triangles", &most], &by_error[..]].concat());
+    let said = String::from_utf8(result.stderr).expect("text");
+    assert!(said.contains("tolerance raised from 0.1 to") && said.contains(&most), "{said}");
+    let stats: Value = serde_json::from_slice(&result.stdout).expect("JSON");
+    let count = number(&stats, "/triangles_out");
+    assert!(count <= 0.5 * all && count > 0.2 * all, "{count} of {all}");
+    // A tolerance that fits already stays, and says nothing.
+    let result = run(&[&["render", "-o", &picture, "--max-triangles", "9999999"], &by_error[..]].concat());
+    assert!(result.status.success() && result.stderr.is_empty());
+    // Both devices have the option; a budget below the mesh itself is a sentence.
+    output(&[&["tessellate", "-o", &mesh, "--device", "cpu", "--max-triangles", "300"], &by_error[..]].concat());
+    assert!(read_obj(&mesh).1.len() <= 300);
+    sentence(
+        &[&["render", "-o", &picture, "--max-triangles", "200"], &by_error[..]].concat(),
+        &["256 triangles", "200"],
+    );
+    let said = failure(&["render", "shape:torus", "-o", &picture, "--max-triangles", "200"], 2);
+    assert!(said.contains("--lod error"), "{said}");
+}

@@ -1,0 +1,138 @@
+//! The commands as a person or a pipeline meets them: the program itself, its output, its pictures, its exit codes.
+
+mod domain;
+mod factors;
+mod info;
+mod lod;
+mod render;
+mod stability;
+mod tessellate;
+mod usage;
+
+use std::path::PathBuf;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// A folder of this test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a writable temporary folder");
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).to_str().expect("a path in UTF-8").to_owned()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_pnaen"));
+    command.args(arguments).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
+    command
+}
+
+fn run(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("the program starts")
+}
+
+/// Standard output of a run that must succeed.
+fn output(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {errors}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// What a run that must fail says on standard error.
+fn failure(arguments: &[&str], code: i32) -> String {
+    let output = run(arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {errors}");
+    assert!(!errors.contains("panicked"), "{errors}");
+    errors
+}
+
+/// A failure in one sentence, with these words in it.
+fn sentence(arguments: &[&str], words: &[&str]) {
+    let errors = failure(arguments, 1);
+    assert_eq!(errors.lines().count(), 1, "{errors}");
+    assert!(errors.starts_with("pnaen: "), "{errors}");
+    for word in words {
+        assert!(errors.contains(word), "{word:?} is not in {errors}");
+    }
+}
+
+fn vase() -> &'static str {
+    concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")
+}
+
+fn stats(arguments: &[&str]) -> Value {
+    let folder = Folder::new(&format!("stats-{}", arguments.join("-").replace(['/', ':', '.', ','], "_")));
+    let picture = folder.path("out.png");
+    let all = [&["render"], arguments, &["-o", &picture, "--size", "160x120", "--stats", "-"]].concat();
+    serde_json::from_str(&output(&all)).expect("JSON")
+}
+
+/// A number in an object.
+fn number(object: &Value, path: &str) -> f64 {
+    object.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {path}: {object}"))
+}
+
+/// Vertices and faces of an OBJ file.
+fn read_obj(path: &str) -> (Vec<[u32; 3]>, Vec<[usize; 3]>) {
+    let text = std::fs::read_to_string(path).expect("a file");
+    let numbers = |line: &str| {
+        line.split(' ').skip(1).map(|word| word.parse::<f32>().expect("a number").to_bits()).collect::<Vec<_>>()
+    };
+    let index =
+        |word: &str| word.split('/').next().and_then(|index| index.parse::<usize>().ok()).expect("an index") - 1;
+    let positions =
+        text.lines().filter(|line| line.starts_with("v ")).map(|line| numbers(line).try_into().expect("three"));
+    let faces = text.lines().filter(|line| line.starts_with("f "));
+    let faces = faces.map(|line| line.split(' ').skip(1).map(index).collect::<Vec<_>>().try_into().expect("three"));
+    (positions.collect(), faces.collect())
+}
+
+/// Writes triangles as a glTF document with a buffer next to it.
+fn write_triangles(folder: &Folder, triangles: &[[[f32; 3]; 3]], normal: [f32; 3]) -> String {
+    let corners: Vec<_> = triangles.as_flattened().iter().map(|&position| (position, normal)).collect();
+    write_corners(folder, &corners)
+}
+
+/// The same from corners, three a triangle, with their positions and normals.
+fn write_corners(folder: &Folder, corners: &[([f32; 3], [f32; 3])]) -> String {
+    let count = corners.len();
+    let positions = corners.iter().flat_map(|&(position, _)| position);
+    let floats = positions.chain(corners.iter().flat_map(|&(_, normal)| normal));
+    let bytes: Vec<u8> = floats.flat_map(f32::to_le_bytes).collect();
+    let view = |i: usize| serde_json::json!({ "buffer": 0, "byteOffset": i * 12 * count, "byteLength": 12 * count });
+    let accessor =
+        |i: usize| serde_json::json!({ "bufferView": i, "componentType": 5126, "count": count, "type": "VEC3" });
+    let document = serde_json::json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1 } }] }],
+        "accessors": [accessor(0), accessor(1)], "bufferViews": [view(0), view(1)],
+        "buffers": [{ "byteLength": bytes.len(), "uri": "data.bin" }],
+    });
+    std::fs::write(folder.path("data.bin"), bytes).expect("a writable folder");
+    let path = folder.path("triangles.gltf");
+    std::fs::write(&path, document.to_string()).expect("a writable folder");
+    path
+}
+
+/// A tetrahedron of which one face was moved by a ten-thousandth of the diagonal.
+fn write_seam(folder: &Folder) -> String {
+    let [o, x, y, z] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let moved = [o, z, y].map(|point| point.map(|coordinate: f32| coordinate + 1e-4));
+    write_triangles(folder, &[[o, y, x], [o, x, z], [x, y, z], moved], [0.0, 0.0, 1.0])
+}

@@ -1,0 +1,173 @@
+//! `pnaen render`: its pictures and its stats.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::{Folder, number, output, run, sentence, stats, vase, write_corners};
+
+#[test]
+fn stats_say_what_was_done() {
+    let stats = stats(&["shape:torus", "--factor", "4", "--partitioning", "integer"]);
+    let number = |path: &str| number(&stats, path);
+    assert!(stats["adapter"].as_str().is_some_and(|name| !name.is_empty()));
+    let counts = ["/triangles_in", "/points", "/corners", "/degenerate", "/patches", "/patches_culled"].map(number);
+    assert_eq!(counts, [256.0, 128.0, 153.0, 0.0, 256.0, 0.0]);
+    // 1.5 N^2 triangles and 3 N + 3 R (R + 1) + 1 vertices a patch, R = N / 2 - 1.
+    assert_eq!([number("/triangles_out"), number("/vertices_out")], [256.0 * 24.0, 256.0 * 19.0]);
+    let edges = ["smooth", "split", "seam", "boundary", "non_manifold"].map(|kind| number(&format!("/edges/{kind}")));
+    assert_eq!(edges, [360.0, 0.0, 24.0, 0.0, 0.0]);
+    assert_eq!(number("/cracks/edge_points"), 384.0 * 5.0);
+    assert_eq!(number("/cracks/edges_compared"), 384.0);
+    let kinds = ["different_bits", "different_factors", "different_normals"];
+    for zero in kinds.into_iter().chain(["max_gap", "max_gap_ulp", "max_gap_px", "edges"]) {
+        assert_eq!(number(&format!("/cracks/{zero}")), 0.0, "{zero}");
+    }
+    assert_eq!(["/leaks", "/folds", "/not_finite"].map(number), [0.0; 3]);
+    for bytes in ["input", "topology", "arena"] {
+        assert!(number(&format!("/bytes/{bytes}")) > 0.0);
+    }
+    for pass in ["load", "topology", "nets", "factors", "counts", "scan", "chunks", "emit", "draw"] {
+        assert!(number(&format!("/ms/{pass}")) >= 0.0, "{pass}");
+    }
+}
+
+#[test]
+fn pn_cracks_on_split_normals_and_pn_aen_does_not() {
+    let drawn = |surface| stats(&["shape:cube-split", "--surface", surface]);
+    let (pn, pn_aen, flat) = (drawn("pn"), drawn("pn-aen"), drawn("flat"));
+    let torn = &pn["cracks"];
+    assert_eq!((&torn["edges"], &torn["edges_compared"]), (&12.into(), &18.into()));
+    assert!(torn["max_gap"].as_f64() > Some(0.01) && torn["max_gap_px"].as_f64() > Some(0.5), "{torn}");
+    assert!(torn["max_gap_ulp"].as_f64() > Some(1e4), "{torn}");
+    assert!(pn["leaks"].as_u64() > Some(100), "one looks through the cracks: {pn}");
+    for whole in [pn_aen, flat] {
+        assert_eq!((&whole["cracks"]["different_bits"], &whole["leaks"]), (&0.into(), &0.into()));
+    }
+}
+
+#[test]
+fn an_open_mesh_has_no_leaks_to_count() {
+    let open = stats(&["shape:saddle"]);
+    assert_eq!(open.get("leaks"), Some(&Value::Null), "{open}");
+    assert_eq!(number(&open, "/cracks/edges_compared"), 96.0, "all but the borders");
+}
+
+#[test]
+fn stats_count_folds_where_normals_lie_nearly_in_the_plane() {
+    let folder = Folder::new("folds");
+    // The last two as at a notch and a point of a star.
+    let positions = [[0.0, 0.0, 0.0], [0.28, 0.0, 0.2], [1.0, 0.0, 0.0]];
+    let upright = [[0.0, 1.0, 0.0]; 3];
+    let leaning = [[0.0, 1.0, 0.0], [-0.77, 0.32, -0.56], [0.84, 0.28, 0.45]];
+    let folds = |normals: [[f32; 3]; 3]| {
+        let path = write_corners(&folder, &[0, 1, 2].map(|k| (positions[k], normals[k])));
+        number(&stats(&[&path]), "/folds")
+    };
+    assert_eq!(folds(upright), 0.0);
+    assert!(folds(leaning) > 0.0);
+}
+
+#[test]
+fn edges_differ_as_published_and_not_by_edge() {
+    let cracks =
+        |options: &[&str]| stats(&[&["shape:torus", "--surface", "pn-aen"], options].concat())["cracks"].clone();
+    let published = ["--edges", "as-published"];
+    let adaptive = ["--lod", "paper", "--pixels", "4"];
+    let uniform = cracks(&published);
+    assert!(number(&uniform, "/different_bits") > 0.0 && number(&uniform, "/max_gap") > 0.0, "{uniform}");
+    assert_eq!(uniform["different_factors"], 0, "a uniform factor is the same from every side: {uniform}");
+    let paper = cracks(&[&published[..], &adaptive].concat());
+    assert!(number(&paper, "/different_factors") > 0.0, "{paper}");
+    let by_edge = cracks(&[&["--edges", "per-edge"][..], &adaptive].concat());
+    assert_eq!((&by_edge["different_bits"], &by_edge["different_factors"]), (&0.into(), &0.into()), "{by_edge}");
+}
+
+#[test]
+fn a_file_of_ours_is_drawn_without_cracks() {
+    for lod in ["uniform", "paper"] {
+        let stats = stats(&[vase(), "--lod", lod, "--pixels", "6", "--clip", "paper"]);
+        assert_eq!((&stats["cracks"]["different_bits"], &stats["patches"]), (&0.into(), &308.into()));
+    }
+}
+
+#[test]
+fn a_picture_has_the_size_and_background_asked_for() {
+    let folder = Folder::new("picture");
+    let path = folder.path("out.png");
+    output(&[
+        "render",
+        vase(),
+        "-o",
+        &path,
+        "--size",
+        "120x90",
+        "--background",
+        "3264c8",
+        "--overlay",
+        "wireframe,patches,barycentric,adjacency,cracks",
+    ]);
+    let picture = image::open(&path).expect("a PNG file").to_rgba8();
+    assert_eq!(picture.dimensions(), (120, 90));
+    assert_eq!(picture.get_pixel(2, 2).0, [0x32, 0x64, 0xc8, 255]);
+    assert_ne!(picture.get_pixel(60, 45).0, [0x32, 0x64, 0xc8, 255]);
+}
+
+#[test]
+fn a_picture_is_held_against_its_reference() {
+    let folder = Folder::new("reference");
+    let [reference, same, other] = ["reference.png", "same.png", "other.png"].map(|name| folder.path(name));
+    let render = |out: &str, more: &[&str]| {
+        let base = ["render", "shape:torus", "--size", "160x120", "-o", out];
+        run(&[&base[..], more].concat())
+    };
+    assert!(render(&reference, &[]).status.success());
+    assert!(render(&same, &["--reference", &reference, "--threshold", "0.0001"]).status.success());
+    assert!(!Path::new(&folder.path("same-diff.png")).exists());
+    let differs = render(&other, &["--factor", "1", "--overlay", "wireframe", "--reference", &reference]);
+    assert_eq!(differs.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&differs.stderr).into_owned();
+    assert!(said.contains("other.png differs from") && said.contains("other-diff.png"), "{said}");
+    let diff = image::open(folder.path("other-diff.png")).expect("a PNG file");
+    assert_eq!((diff.width(), diff.height()), (160, 120));
+    assert!(Path::new(&other).exists(), "the picture is written whatever it is held against");
+    sentence(
+        &["render", "shape:torus", "--size", "80x60", "-o", &other, "--reference", &reference],
+        &["reference.png", "80 x 60", "160 x 120", "--size 160x120"],
+    );
+    let before = std::fs::read(&reference).expect("a file");
+    sentence(&["render", "shape:cone", "-o", &reference, "--reference", &reference], &["would replace it"]);
+    assert_eq!(std::fs::read(&reference).expect("a file"), before);
+}
+
+#[test]
+fn a_small_arena_gives_the_same_mesh() {
+    let options = ["shape:torus", "--factor", "24"];
+    let [large, small] = ["256", "1"].map(|arena| stats(&[&options[..], &["--arena", arena]].concat()));
+    assert_eq!(large["cracks"], small["cracks"]);
+    assert_eq!(large["triangles_out"], small["triangles_out"]);
+    assert!(number(&small, "/bytes/arena") <= f64::from(1 << 20), "{small}");
+    assert!(number(&large, "/bytes/arena") > f64::from(1 << 20), "{large}");
+}
+
+#[test]
+fn stats_count_small_triangles_and_patches_with_low_factors() {
+    let counts = |arguments: &[&str]| {
+        let stats = stats(arguments);
+        ["/triangles_out", "/triangles_in_view", "/triangles_below_3_px", "/patches_below_factor_2"]
+            .map(|path| number(&stats, path))
+    };
+    let coarse = ["shape:torus", "--factor", "1", "--partitioning", "integer", "--measure-error", "false"];
+    // Framed in 160 x 120 px, the torus's 256 patches are some 5 px large.
+    let [out, in_view, small, low] = counts(&coarse);
+    assert_eq!([out, in_view, low], [256.0; 3]);
+    assert!(small < 128.0, "{small} of 256 patches");
+    let fine = ["shape:torus", "--factor", "16", "--partitioning", "integer", "--measure-error", "false"];
+    let [out, in_view, small, low] = counts(&fine);
+    assert_eq!([in_view, small, low], [out, out, 0.0]);
+    let close = [&coarse[..], &["--camera", "30,20,0.5"]].concat();
+    let [out, in_view, small, _] = counts(&close);
+    assert!(in_view < out / 2.0 && small < in_view, "{small} of {in_view} of {out}");
+    let even = ["shape:torus", "--factor", "1", "--partitioning", "fractional-even", "--measure-error", "false"];
+    assert_eq!(counts(&even)[3], 0.0, "an even factor is at least 2");
+}

@@ -1,0 +1,197 @@
+//! `pnaen stability`: cases, files, the table and the page.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, sentence, write_corners, write_seam};
+
+/// The rows of `pnaen stability --json` on the CPU.
+fn stability(arguments: &[&str]) -> Vec<Value> {
+    let text = output(&[&["stability", "--device", "cpu", "--json"], arguments].concat());
+    serde_json::from_str(&text).expect("a JSON array")
+}
+
+/// Text in a row of `pnaen stability --json`.
+fn word<'a>(row: &'a Value, key: &str) -> &'a str {
+    row[key].as_str().unwrap_or_else(|| panic!("no {key}: {row}"))
+}
+
+/// The cases that rows belong to, in their order.
+fn cases(rows: &[Value]) -> Vec<&str> {
+    let mut cases: Vec<_> = rows.iter().map(|row| word(row, "case")).collect();
+    cases.dedup();
+    cases
+}
+
+const METHODS: [&str; 4] = ["flat", "PN", "PN-AEN as published", "PN-AEN"];
+
+#[test]
+fn stability_measures_every_method_in_every_partitioning() {
+    let rows = stability(&["--case", "split-normals", "--cameras", "1"]);
+    let keys = ["case", "method", "device", "partitioning", "measured", "unit", "promised", "holds"];
+    let units =
+        ["edge points that differ", "edges whose factors differ", "edge normals that differ", "vertices not finite"];
+    let mut expected = HashSet::new();
+    for method in METHODS {
+        for partitioning in ["integer", "pow2", "fractional-odd", "fractional-even"] {
+            expected.extend(units.map(|unit| (method, partitioning, unit)));
+        }
+    }
+    let found: HashSet<_> =
+        rows.iter().map(|row| ["method", "partitioning", "unit"].map(|key| word(row, key))).collect();
+    assert_eq!(found, expected.iter().map(|&(method, partitioning, unit)| [method, partitioning, unit]).collect());
+    assert_eq!(rows.len(), expected.len(), "each once");
+    for row in &rows {
+        let own: HashSet<_> = row.as_object().expect("an object").keys().map(String::as_str).collect();
+        assert_eq!(own, HashSet::from(keys));
+        assert_eq!((word(row, "case"), word(row, "device")), ("split-normals", "cpu"));
+        let (measured, holds) = (number(row, "/measured"), row["holds"].as_bool().expect("a truth value"));
+        assert_eq!(holds, measured == 0.0, "{row}");
+        let promised = row["promised"].as_bool().expect("a truth value");
+        assert!(holds || !promised, "{row}");
+        match (word(row, "method"), word(row, "unit")) {
+            ("flat" | "PN-AEN", _) => assert!(promised, "{row}"),
+            ("PN" | "PN-AEN as published", "edge points that differ") => assert!(!holds, "{row}"),
+            _ => {}
+        }
+    }
+    // A uniform factor is the same from every side: only views can tell.
+    let factors = |rows: &[Value]| rows.iter().any(|row| word(row, "unit") == units[1] && row["holds"] == false);
+    assert!(factors(&rows) && !factors(&stability(&["--case", "split-normals", "--cameras", "0"])));
+}
+
+#[test]
+fn stability_runs_cases_in_one_order_however_they_are_asked_for() {
+    let run = |names: &[&str]| {
+        let options = names.iter().flat_map(|name| ["--case", name]);
+        stability(&["--cameras", "0"].into_iter().chain(options).collect::<Vec<_>>())
+    };
+    let rows = run(&["split-normals", "t-junction"]);
+    assert_eq!(cases(&rows), ["split-normals", "t-junction"]);
+    assert!(rows == run(&["t-junction", "split-normals", "t-junction"]), "the same rows in the same order");
+}
+
+#[test]
+fn a_case_that_is_not_there_is_answered_with_those_that_are() {
+    let said = failure(&["stability", "--case", "teapot", "--device", "cpu", "--json"], 2);
+    for name in ["teapot", "split-normals", "smooth-torus", "near-seam", "shared-apex"] {
+        assert!(said.contains(name), "{name:?} is not in {said}");
+    }
+}
+
+#[test]
+fn stability_prints_a_table_with_verdicts() {
+    let text =
+        output(&["stability", "--case", "smooth-torus", "--case", "t-junction", "--device", "cpu", "--cameras", "0"]);
+    let table: Vec<Vec<&str>> =
+        text.lines().map(|line| line.split("  ").map(str::trim).filter(|cell| !cell.is_empty()).collect()).collect();
+    assert_eq!(table[0][..3], ["case", "method", "points"], "{text}");
+    assert_eq!(text.matches("verdict").count(), 1, "{text}");
+    assert_eq!((table[1][0], table[5][..2].to_vec()), ("smooth-torus", vec!["t-junction", "search"]), "{text}");
+    for (method, line) in METHODS.iter().zip(&table[1..5]) {
+        let cells = &line[line.len() - 7..];
+        assert_eq!(cells[0], *method, "{text}");
+        if *method == "PN-AEN as published" {
+            assert!(cells[1].parse::<u32>().is_ok_and(|points| points > 0), "{text}");
+            assert_eq!(cells[6], "fails", "{text}");
+        } else {
+            assert_eq!(cells[1..], ["0", "0", "0", "0", "-", "holds"], "{text}");
+        }
+    }
+    assert_eq!(table[5].last(), Some(&"holds: 0 T-junctions missed"), "{text}");
+    let legend = text.lines().last().expect("lines");
+    assert!(legend.starts_with("points: ") && legend.contains("factors: "), "{text}");
+}
+
+#[test]
+fn stability_draws_its_cases_and_writes_a_page() {
+    let folder = Folder::new("stability");
+    let pages = folder.path("made/on/the/way");
+    output(&["stability", "--case", "split-normals", "--cameras", "0", "-o", &pages]);
+    let mut files: Vec<_> =
+        std::fs::read_dir(&pages).expect("a folder").map(|file| file.expect("a file").file_name()).collect();
+    files.sort();
+    assert_eq!(files, ["split-normals.png", "stability.md"]);
+
+    let picture = image::open(Path::new(&pages).join("split-normals.png")).expect("a PNG file").to_rgb8();
+    // Four methods side by side, each with cracks in red where there are any.
+    let width = picture.width() / 4;
+    let parts =
+        [0, 1, 2, 3].map(|k| image::imageops::crop_imm(&picture, k * width, 0, width, picture.height()).to_image());
+    let colors = parts.each_ref().map(|part| part.pixels().collect::<HashSet<_>>().len());
+    assert!(colors.iter().all(|&count| count > 20), "{colors:?} colours");
+    let red = parts.map(|part| part.pixels().filter(|p| p.0[0] > 200 && p.0[1] < 100 && p.0[2] < 80).count());
+    assert!(red[0] == 0 && red[1] > 100 && red[3] == 0, "{red:?} red px");
+
+    let page = std::fs::read_to_string(Path::new(&pages).join("stability.md")).expect("a page");
+    assert!(page.contains("\n## split-normals\n") && page.contains("](split-normals.png)"), "{page}");
+    // After the headings and the rule below them.
+    let lines = page.lines().filter(|line| line.starts_with("| ")).skip(2);
+    let lines: Vec<_> = lines.map(|line| line.trim_matches(['|', ' ']).split(" | ").collect::<Vec<_>>()).collect();
+    let verdicts: Vec<_> = lines.iter().map(|cells| (cells[0], cells[cells.len() - 1])).collect();
+    assert_eq!(verdicts, METHODS.into_iter().zip(["holds", "fails", "fails", "holds"]).collect::<Vec<_>>(), "{page}");
+
+    let file = Path::new(&pages).join("stability.md/below");
+    let below = file.to_str().expect("a path in UTF-8");
+    let arguments = ["stability", "--case", "split-normals", "--device", "cpu", "-o", below];
+    sentence(&arguments, &[below, "could not be made"]);
+}
+
+#[test]
+fn stability_takes_files_too() {
+    let folder = Folder::new("tent");
+    // Two sides of a roof, each with its own normal.
+    let [left, right] = [[-0.48, 0.6, 0.64], [0.48, 0.6, 0.64]];
+    let [front, back] = [[0.0, -1.0, 1.0], [0.0, 1.0, 1.0]];
+    let roof = [
+        ([-1.0, 0.0, 0.0], left),
+        (front, left),
+        (back, left),
+        ([1.0, 0.0, 0.0], right),
+        (back, right),
+        (front, right),
+    ];
+    let path = write_corners(&folder, &roof);
+    let rows = stability(&[&path, "--cameras", "0"]);
+    assert_eq!(cases(&rows), ["triangles.gltf"]);
+    for method in METHODS {
+        let torn = rows.iter().filter(|row| word(row, "method") == method && row["holds"] == false).count();
+        assert_eq!(torn > 0, method.starts_with("PN") && method != "PN-AEN", "{method}");
+    }
+    assert_eq!(cases(&stability(&[&path, "--case", "t-junction", "--cameras", "0"])), ["t-junction", "triangles.gltf"]);
+    sentence(&["stability", "nowhere.glb", "--device", "cpu"], &["nowhere.glb", "can't be read"]);
+
+    // Drawn and written down like a case; one more of that name has a picture of its own.
+    let pages = folder.path("pages");
+    output(&["stability", &path, &path, "--cameras", "0", "--device", "gpu", "-o", &pages]);
+    let page = std::fs::read_to_string(Path::new(&pages).join("stability.md")).expect("a page");
+    for (name, picture) in [("triangles.gltf", "triangles.png"), ("triangles (2).gltf", "triangles--2-.png")] {
+        let section = format!("\n## {name}\n\n![{name}]({picture})\n\n| method |");
+        assert!(page.contains(&section) && Path::new(&pages).join(picture).exists(), "{page}");
+    }
+    assert!(!page.contains("cpu"), "{page}");
+
+    // What can't be loaded is said before anything runs.
+    let unmade = folder.path("unmade");
+    sentence(&["stability", "--case", "soup", "nowhere.glb", "-o", &unmade], &["nowhere.glb"]);
+    assert!(!Path::new(&unmade).exists());
+}
+
+#[test]
+fn stability_looks_into_a_file_that_a_tolerance_closes() {
+    let folder = Folder::new("looks");
+    let path = write_seam(&folder);
+    let leaks = |options: &[&str]| {
+        let text = output(&[&["stability", &path, "--json", "--cameras", "0", "--device", "gpu"], options].concat());
+        let rows: Vec<Value> = serde_json::from_str(&text).expect("a JSON array");
+        assert!(rows.iter().all(|row| word(row, "device") != "cpu"), "{text}");
+        rows.iter()
+            .filter(|row| word(row, "unit") == "px leaking")
+            .map(|row| number(row, "/measured"))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(leaks(&[]), [0.0; 0], "open");
+    assert_eq!(leaks(&["--weld", "1e-3"]), [0.0; 16], "four methods in four partitionings");
+}

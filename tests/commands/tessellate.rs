@@ -1,0 +1,78 @@
+//! `pnaen tessellate`: meshes written.
+
+use std::collections::HashMap;
+
+use serde_json::Value;
+
+use crate::{Folder, output, read_obj, sentence, stats, vase};
+
+#[test]
+fn a_tessellated_mesh_is_closed_to_the_last_bit() {
+    let folder = Folder::new("tessellate");
+    let path = folder.path("out.obj");
+    for device in ["gpu", "cpu"] {
+        output(&["tessellate", "shape:cylinder", "-o", &path, "--device", device, "--factor", "5.5"]);
+        let (positions, faces) = read_obj(&path);
+        let mut edges: HashMap<_, i32> = HashMap::new();
+        for face in faces {
+            for k in 0..3 {
+                let [a, b] = [face[k], face[(k + 1) % 3]].map(|i| positions[i]);
+                if a != b {
+                    *edges.entry((a, b)).or_default() += 1;
+                    *edges.entry((b, a)).or_default() -= 1;
+                }
+            }
+        }
+        let open = edges.values().filter(|&&count| count != 0).count();
+        assert_eq!(open, 0, "{device}: every edge is run once each way, by positions alone");
+    }
+}
+
+#[test]
+fn a_tessellated_mesh_can_be_opened_again() {
+    let folder = Folder::new("again");
+    let path = folder.path("out.glb");
+    output(&["tessellate", vase(), "-o", &path, "--factor", "3", "--partitioning", "integer"]);
+    let info: Value = serde_json::from_str(&output(&["info", &path, "--json"])).expect("JSON");
+    assert_eq!(
+        (&info["triangles"], &info["closed"], &info["euler_characteristic"]),
+        (&(308 * 13).into(), &true.into(), &2.into())
+    );
+    assert_eq!(info["materials"][0]["texture"], serde_json::json!([64, 64]));
+    assert_eq!(info["edges"]["non_manifold"], 0);
+}
+
+#[test]
+fn a_mesh_without_triangles_left_is_written_and_refused_for_what_it_is() {
+    let folder = Folder::new("empty");
+    let [degenerate, out] = ["degenerate.gltf", "out.glb"].map(|name| folder.path(name));
+    // Three corners on one point: a triangle that is left out. The buffer is 36 zero bytes.
+    let zeros = "A".repeat(48);
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],
+        "buffers":[{{"byteLength":36,"uri":"data:application/octet-stream;base64,{zeros}"}}]}}"#
+    );
+    std::fs::write(&degenerate, text).expect("a writable folder");
+    let stats = stats(&[&degenerate]);
+    assert_eq!((&stats["degenerate"], &stats["patches"], &stats["triangles_out"]), (&1.into(), &0.into(), &0.into()));
+    output(&["tessellate", &degenerate, "-o", &out]);
+    sentence(&["info", &out], &["no triangles"]);
+}
+
+#[test]
+fn more_than_a_file_holds_is_refused_before_it_is_made() {
+    let folder = Folder::new("huge");
+    let [torus, out] = ["torus.glb", "out.glb"].map(|name| folder.path(name));
+    output(&["tessellate", "shape:torus", "-o", &torus, "--factor", "20", "--partitioning", "integer"]);
+    for device in ["gpu", "cpu"] {
+        // 150 thousand triangles of 6144 each.
+        let arguments = ["tessellate", &torus, "-o", &out, "--factor", "64", "--device", device];
+        sentence(
+            &[&arguments[..], &["--partitioning", "integer"]].concat(),
+            &["out.glb", "943718400 triangles", "lower the factor"],
+        );
+    }
+}

@@ -1,0 +1,98 @@
+//! What goes wrong: sentences, exit codes, no display.
+
+use std::path::Path;
+
+use crate::{Folder, command, failure, output, run, sentence};
+
+#[test]
+fn failures_are_one_sentence_and_exit_code_1() {
+    let folder = Folder::new("failures");
+    let [out, text, broken] = ["out.png", "notes.txt", "broken.gltf"].map(|name| folder.path(name));
+    std::fs::write(&text, "no mesh").expect("a writable folder");
+    std::fs::write(&broken, "{\"asset\":").expect("a writable folder");
+    sentence(&["info", "nowhere.glb"], &["nowhere.glb", "can't be read"]);
+    sentence(&["info", &text], &["notes.txt", ".gltf or .glb"]);
+    sentence(&["info", &folder.path("")], &["is not a file"]);
+    sentence(&["info", &broken], &["broken.gltf", "not a glTF 2.0 document"]);
+    sentence(
+        &["render", "shape:torus", "-o", &folder.path("no/such/folder/out.png")],
+        &["out.png", "could not be written"],
+    );
+    sentence(
+        &["render", "shape:torus", "-o", &out, "--reference", "nowhere.png"],
+        &["nowhere.png", "could not be read"],
+    );
+    sentence(&["tessellate", "shape:torus", "-o", &folder.path("out.stl")], &["out.stl", ".glb or .obj"]);
+    sentence(&["domain", "--partitioning", "integer", "--input", &text], &["notes.txt, line 1", "four numbers"]);
+}
+
+#[test]
+fn a_picture_too_large_for_the_device_is_a_sentence() {
+    let folder = Folder::new("large");
+    let path = folder.path("out.png");
+    let output = run(&["render", "shape:torus", "-o", &path, "--size", "16384x16384"]);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    // A device with memory enough may draw it.
+    assert!(output.status.success() || output.status.code() == Some(1), "{errors}");
+    assert!(errors.lines().count() <= 1 && !errors.contains("panicked"), "{errors}");
+    assert_eq!(output.status.success(), Path::new(&path).exists());
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    for arguments in [
+        &["render", "shape:torus"][..],
+        &["render", "shape:teapot", "-o", "x.png"],
+        &["render", "shape:torus", "-o", "x.png", "--factor", "65"],
+        &["render", "shape:torus", "-o", "x.png", "--surface", "nurbs"],
+        &["render", "shape:torus", "-o", "x.png", "--size", "0x0"],
+        &["render", "shape:torus", "-o", "x.png", "--camera", "1"],
+        &["domain", "--partitioning", "integer"],
+        &["domain", "--partitioning", "thirds", "--factors", "1,1,1,1"],
+        &["domain", "--partitioning", "integer", "--factors", "1,1,1"],
+        &["adjacency", "shape:torus", "--indices", "10", "-o", "-"],
+        &["info", "shape:torus", "--weld", "0.2"],
+        &["info", "shape:torus", "--weld", "-1"],
+        &["info", "shape:torus", "--weld=-0.001"],
+        &["info", "shape:torus", "--weld", "nan"],
+        &["render", "shape:torus", "-o", "x.png", "--weld=-0.001"],
+        &["tessellate", "shape:torus", "-o", "x.glb", "--weld", "nan"],
+        &["stability", "shape:torus", "--device", "cpu", "--weld=-0.001"],
+        &["stability", "shape:torus", "--device", "cpu", "--weld", "nan"],
+        &["render", "shape:torus", "-o", "x.png", "--edges", "published"],
+        &["render", "shape:torus", "-o", "x.png", "--lod", "edgelength"],
+        &["tessellate", "shape:torus", "-o", "x.glb", "--lod", "edge_length"],
+        &["render", "shape:torus", "-o", "x.png", "--clip", "frustrum"],
+        &["tessellate", "shape:torus", "-o", "x.glb", "--clip", "frusta"],
+        &["frobnicate", "--hard"],
+    ] {
+        failure(arguments, 2);
+    }
+}
+
+#[test]
+fn without_a_display_the_window_becomes_a_picture() {
+    let folder = Folder::new("preview");
+    let output = command(&[]).current_dir(&folder.0).output().expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("no display") && said.contains("pnaen-preview.png"), "{said}");
+    assert_eq!(said.lines().count(), 1);
+    let picture = image::open(folder.path("pnaen-preview.png")).expect("a PNG file");
+    assert_eq!((picture.width(), picture.height()), (1280, 720));
+    let missing = command(&["nowhere.glb"]).current_dir(&folder.0).output().expect("the program starts");
+    assert_eq!(missing.status.code(), Some(1));
+}
+
+#[test]
+fn two_overlays_that_colour_the_surface_are_wrong_usage() {
+    let folder = Folder::new("overlays");
+    let picture = folder.path("out.png");
+    let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
+    for list in ["barycentric,factors", "triangle-size,wireframe,low-factors"] {
+        let errors = failure(&overlays(list), 2);
+        assert!(errors.contains("each colours the whole surface"), "{errors}");
+        assert!(!Path::new(&picture).exists(), "before anything is drawn");
+    }
+    output(&overlays("triangle-size,wireframe,normals,back-faces"));
+}
