@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::gpu::layout::Vertex;
 use crate::mesh::EdgeKind;
 use crate::settings::Overlays;
 
@@ -30,6 +31,24 @@ pub struct Material {
     /// Linear RGBA.
     pub base_color: [f32; 4],
 }
+
+/// What lies under a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Pick {
+    /// As emitted; zero for an input triangle.
+    pub vertices: [Vertex; 3],
+    /// [`FOUND_EMITTED`] for an emitted triangle, another number but 0 for an input triangle, 0 for nothing.
+    pub found: u32,
+    pub patch_index: u32,
+    /// Number of the emitted triangle within its patch.
+    pub triangle: u32,
+    /// The weight (0 u, 1 v, 2 w) that is fewest px from 0.
+    pub weight: u32,
+}
+
+/// An emitted triangle; the same in `shaders/draw_types.wgsl`.
+pub const FOUND_EMITTED: u32 = 1;
 
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks and T-junctions are lines of their own.
 pub fn overlay_bits(overlays: &Overlays) -> u32 {
