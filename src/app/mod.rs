@@ -3,9 +3,13 @@
 mod checks;
 mod document;
 mod facts;
+mod labels;
 mod measuring;
 mod menu;
 mod panels;
+mod patch;
+mod pattern;
+mod pick;
 mod status;
 mod text;
 mod viewport;
@@ -26,6 +30,7 @@ use crate::tessellate::LodView;
 
 use document::{Document, Load};
 use measuring::Measuring;
+use pick::Selection;
 use viewport::{Marked, Viewport};
 
 #[derive(Debug, Error)]
@@ -95,6 +100,7 @@ pub struct App {
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
     selected_edge: Option<u32>,
+    selection: Selection,
     /// What is being typed as a path to open, while that window is open.
     typed_path: Option<String>,
     shows_keys: bool,
@@ -124,6 +130,7 @@ impl App {
             measuring: Measuring::default(),
             marked: None,
             selected_edge: None,
+            selection: Selection::default(),
             typed_path: None,
             shows_keys: false,
             error: None,
@@ -195,7 +202,7 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy()
+        self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy() || self.selection.is_busy()
     }
 
     /// Whether the mesh is still being looked through: that doesn't change the picture by itself.
@@ -220,7 +227,7 @@ impl App {
                     self.error = None;
                 }
                 self.measuring = Measuring::default();
-                self.selected_edge = None;
+                self.deselect();
             }
             Err(Some(error)) => {
                 self.error = Some(error);

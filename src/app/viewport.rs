@@ -7,11 +7,12 @@ use std::time::Instant;
 use egui::{Key, PointerButton, Sense};
 use glam::{Mat4, Vec2, vec2};
 
+use super::pick::Outlined;
 use super::{App, Document};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks};
-use crate::render::{Camera, Target, t_junction_lines};
+use crate::render::{Camera, Pixel, Target, t_junction_lines};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, LodView};
 
@@ -44,6 +45,7 @@ pub struct Marked {
     cracks: bool,
     t_junctions: bool,
     selected_edge: Option<u32>,
+    outlined: Outlined,
     /// Counts the times that they changed.
     generation: u64,
 }
@@ -112,6 +114,18 @@ impl Viewport {
     /// The gap of one edge in px, seen as the last picture was.
     pub fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
+    }
+
+    /// A pixel (from the left and the top) of the last picture.
+    pub fn pixel(&self, at: [u32; 2]) -> Option<Pixel> {
+        let Wanted { clip_from_object, settings, .. } = self.drawn?;
+        let size = self.target.as_ref()?.0.size;
+        Some(Pixel { clip_from_object, size, at, split: settings.split })
+    }
+
+    /// How the last picture shows object units, and its size in px.
+    pub fn projection(&self) -> Option<(Mat4, Vec2)> {
+        self.drawn.as_ref().map(|drawn| (drawn.clip_from_object, drawn.viewport))
     }
 
     /// Bytes of the textures drawn into.
@@ -202,6 +216,7 @@ impl App {
         let points = vec2(rect.width(), rect.height());
         self.move_camera(ui, &response, points);
         let scale = ui.ctx().pixels_per_point();
+        self.click(&response, scale);
         let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
         if let Err(error) = self.advance(ui.ctx(), size) {
             self.error = Some(error.to_string());
@@ -210,6 +225,7 @@ impl App {
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             ui.painter().image(*id, rect, whole, egui::Color32::WHITE);
         }
+        self.patch_labels(ui, rect);
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
     }
@@ -240,7 +256,7 @@ impl App {
         if shown && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?;
         }
-        if self.is_busy() {
+        if self.pick()? || self.is_busy() {
             context.request_repaint();
         }
         Ok(())
@@ -251,12 +267,14 @@ impl App {
         let Some(document) = &self.document else { return };
         let overlays = self.settings.overlays;
         let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
+        let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
         let wanted = Marked {
             document: document.generation,
-            measured: if overlays.cracks || self.selected_edge.is_some() { self.measuring.generation } else { 0 },
+            measured: if overlays.cracks || is_selected { self.measuring.generation } else { 0 },
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge,
+            outlined: self.outlined(),
             generation: self.marked.map_or(0, |marked| marked.generation),
         };
         if self.marked == Some(wanted) {
@@ -268,6 +286,7 @@ impl App {
             lines.extend(found.crack_lines(&topology));
         }
         // Over all else.
+        lines.extend(self.patch_outline(&topology));
         lines.extend(self.selection_lines(&topology));
         self.marked = Some(Marked { generation: wanted.generation + 1, ..wanted });
         if let Some(document) = &mut self.document {
@@ -370,9 +389,15 @@ impl App {
 
 /// A short text over the picture, legible on any of it.
 fn note(ui: &egui::Ui, position: egui::Pos2, align: egui::Align2, text: &str) {
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::from_gray(235));
-    let rect = align.anchor_size(position, galley.size());
+    let galley = note_text(ui, text, egui::Color32::from_gray(235));
+    paint_note(ui, align.anchor_size(position, galley.size()), galley);
+}
+
+pub(super) fn note_text(ui: &egui::Ui, text: &str, color: egui::Color32) -> Arc<egui::Galley> {
+    ui.painter().layout_no_wrap(text.to_owned(), egui::TextStyle::Body.resolve(ui.style()), color)
+}
+
+pub(super) fn paint_note(ui: &egui::Ui, rect: egui::Rect, galley: Arc<egui::Galley>) {
     ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(170));
     ui.painter().galley(rect.min, galley, egui::Color32::WHITE);
 }

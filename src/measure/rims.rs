@@ -119,6 +119,17 @@ impl Rims {
         topology.edges[edge as usize].sides.clone().filter_map(|side| self.side(topology, side)).collect()
     }
 
+    /// What a patch (an index into [`Topology::patches`]) has made of its sides 0, 1 and 2; none if it emits nothing.
+    pub fn patch(&self, topology: &Topology, patch: u32) -> Option<[EdgeSide; 3]> {
+        let [a, b, c] = topology.patches[patch as usize].sides.map(|side| self.side(topology, side));
+        Some([a?, b?, c?])
+    }
+
+    /// The factors that a patch was emitted with.
+    pub fn factors(&self, patch: u32) -> PatchFactors {
+        self.factors[patch as usize]
+    }
+
     fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
         let Side { patch, index: k, reversed, .. } = topology.sides[index as usize];
         let ring = self.ring(patch);

@@ -89,6 +89,10 @@ pub const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
 pub const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
 
+/// sRGB colours of the edges of a selected patch, by the factor that cuts them: those of u, v and w as barycentric colours
+/// have them, but paler.
+pub const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
+
 /// sRGB bytes in linear light, 0 to 1.
 pub fn linear(srgb: [u8; 3]) -> [f32; 3] {
     srgb.map(|byte| {

@@ -1,0 +1,87 @@
+//! Names over the picture: the selected patch's corners with their weights, and its edges with their factors.
+
+use egui::{Color32, Pos2, Rect, Vec2};
+
+use super::App;
+use super::patch::letter;
+use super::text::factor;
+use super::viewport::{note_text, paint_note};
+use crate::render::layout::FACTOR_COLORS;
+use crate::render::project;
+use crate::tessellate::{factor_side, segments};
+
+/// Points on screen that a patch must extend over to be labelled.
+const LEAST_EXTENT: f32 = 60.0;
+/// Points between what is labelled and its label, and around a label.
+const GAP: f32 = 10.0;
+const MARGIN: Vec2 = Vec2::new(6.0, 3.0);
+
+impl App {
+    /// Labels the selected patch in a picture shown in `rect`, if it is large enough there.
+    pub(super) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
+        let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
+        let Some((clip_from_object, viewport)) = self.viewport.projection() else { return };
+        let topology = &document.loaded.topology;
+        let at = |position| {
+            let px = project(clip_from_object, viewport, position)?;
+            Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
+        };
+        let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
+        let extent = Rect::from_points(&[a, b, c]).size().max_elem();
+        if extent < LEAST_EXTENT {
+            return;
+        }
+        let middle = ((a.to_vec2() + b.to_vec2() + c.to_vec2()) / 3.0).to_pos2();
+        let corners = (0..).zip([a, b, c]).map(|(k, place)| {
+            let text = format!("{k} {}", letter(self.convention(), k));
+            (place, text, Color32::from_gray(235))
+        });
+        let corners: Vec<_> = corners.collect();
+        let edges = (0..).zip(self.patch_edges(topology, patch)).filter_map(|(i, points)| {
+            let [r, g, b] = FACTOR_COLORS[i as usize];
+            let place = points.get(points.len() / 2).copied().and_then(at)?;
+            Some((i, place, self.factor_text(patch, i), Color32::from_rgb(r, g, b)))
+        });
+        let edges: Vec<_> = edges.collect();
+        // The longest names of edges that leave room for one another, or none.
+        for name in ["TessFactor", ""] {
+            let named = edges.iter().map(|(i, place, value, color)| (*place, format!("{name}[{i}]{value}"), *color));
+            let labels: Vec<_> = corners.iter().cloned().chain(named).collect();
+            if show(ui, rect, middle, &labels) {
+                return;
+            }
+        }
+        show(ui, rect, middle, &corners);
+    }
+
+    /// Factor `i` of a patch as LOD gave it, and the segments that it became.
+    fn factor_text(&self, patch: u32, i: u32) -> String {
+        let (Some(document), Some(found)) = (&self.document, self.measuring.found()) else { return " = …".into() };
+        let Some(sides) = found.rims.patch(&document.loaded.topology, patch) else { return String::new() };
+        let asked = sides[factor_side(self.convention(), i) as usize].factor;
+        let cut = segments(found.rims.factors(patch).outside[i as usize]);
+        format!(" = {} -> {cut}", factor(f64::from(asked), 2))
+    }
+}
+
+/// Writes each text beside its place and away from `middle`, where the place is in sight; false, and nothing, if two would
+/// overlap.
+fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color32)]) -> bool {
+    let mut placed: Vec<(Rect, _)> = Vec::new();
+    for (place, text, color) in labels.iter().filter(|(place, ..)| rect.contains(*place)) {
+        let galley = note_text(ui, text, *color);
+        let away = (*place - middle).normalized();
+        let half = galley.size() / 2.0 + MARGIN;
+        let center = *place + away * (GAP + (away.x * half.x).abs() + (away.y * half.y).abs());
+        let room = rect.shrink2(half);
+        let own = Rect::from_center_size(if room.is_positive() { room.clamp(center) } else { center }, half * 2.0);
+        if placed.iter().any(|(other, _)| other.intersects(own)) {
+            return false;
+        }
+        placed.push((own, galley));
+    }
+    for (own, galley) in placed {
+        paint_note(ui, own.shrink2(MARGIN), galley);
+    }
+    true
+}
