@@ -39,7 +39,8 @@ impl App {
         let corners: Vec<_> = corners.collect();
         let edges = (0..).zip(self.patch_edges(topology, patch)).filter_map(|(i, points)| {
             let [r, g, b] = FACTOR_COLORS[i as usize];
-            let place = points.get(points.len() / 2).copied().and_then(at)?;
+            let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
+            let place = at((*before + *after) / 2.0)?;
             Some((i, place, self.factor_text(patch, i), Color32::from_rgb(r, g, b)))
         });
         let edges: Vec<_> = edges.collect();

@@ -116,7 +116,8 @@ impl App {
         if entry(ui, "Frame", "F") {
             self.frame();
         }
-        if entry(ui, "Frame patch", "Shift+F") {
+        let frame_patch = egui::Button::new("Frame patch").shortcut_text("Shift+F");
+        if ui.add_enabled(self.selected_patch().is_some(), frame_patch).clicked() {
             self.frame_patch();
         }
         for (text, key, standpoint) in

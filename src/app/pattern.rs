@@ -1,14 +1,14 @@
 //! The domain pattern of one patch: the points and triangles that the tessellator makes of its factors.
 
-use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, pos2, vec2};
+use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::{FIXED_ONE, PatchFactors, domain_point, domain_triangle, point_count, triangle_count};
 
 /// Width and height of the plot, in points.
-const SIZE: Vec2 = vec2(250.0, 232.0);
+const SIZE: Vec2 = vec2(250.0, 244.0);
 /// Points around the triangle, for the letters of its corners.
-const MARGIN: Vec2 = vec2(14.0, 20.0);
+const MARGIN: Vec2 = vec2(14.0, 26.0);
 /// Points of a pattern that can be numbered: more would not be read.
 const NUMBERED: u32 = 60;
 /// Points on screen within which a domain point is under the pointer.
@@ -82,7 +82,7 @@ fn draw_outline(ui: &Ui, rect: Rect, letters: [String; 3]) {
         ui.painter().line_segment(ends, Stroke::new(2.0, Color32::from_rgb(r, g, b)));
     }
     let color = ui.visuals().text_color();
-    for (corner, (letter, below)) in corners.into_iter().zip(letters.into_iter().zip([-11.0, 11.0, 11.0])) {
+    for (corner, (letter, below)) in corners.into_iter().zip(letters.into_iter().zip([-19.0, 14.0, 14.0])) {
         text(ui, corner + vec2(0.0, below), &letter, color);
     }
 }
@@ -118,6 +118,6 @@ fn hover(ui: &Ui, response: Response, factors: PatchFactors, points: &[Pos2]) ->
 }
 
 fn text(ui: &Ui, center: Pos2, text: &str, color: Color32) {
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    ui.painter().text(pos2(center.x, center.y), egui::Align2::CENTER_CENTER, text, font, color);
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    ui.painter().text(center, egui::Align2::CENTER_CENTER, text, font, color);
 }

@@ -5,8 +5,9 @@ use glam::Vec3;
 
 use super::App;
 use crate::gpu::GpuError;
+use crate::measure::patch_edges;
 use crate::mesh::Topology;
-use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
+use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, convention, patch_lines};
 use crate::tessellate::{Convention, domain_side};
 
 /// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
@@ -56,7 +57,7 @@ impl App {
 
     /// What factors and weights are taken for.
     pub(super) fn convention(&self) -> Convention {
-        Convention::default()
+        convention(&self.settings)
     }
 
     /// Selects a triangle. The selected edge stays if it is one of its edges.
@@ -137,17 +138,9 @@ impl App {
         Outlined { triangle: self.selection.triangle, hit: self.hit().map(|hit| hit.number) }
     }
 
-    /// The edges that factors 0, 1 and 2 cut, point by point as they were emitted; straight until that is known.
+    /// See [`patch_edges`].
     pub(super) fn patch_edges(&self, topology: &Topology, patch: u32) -> [Vec<Vec3>; 3] {
-        let corners = topology.patch_positions(patch);
-        let sides = self.measuring.found().and_then(|found| found.rims.patch(topology, patch));
-        [0, 1, 2].map(|i| {
-            let k = domain_side(self.convention(), i) as usize;
-            match &sides {
-                Some(sides) => sides[k].positions().collect(),
-                None => vec![corners[k], corners[(k + 1) % 3]],
-            }
-        })
+        patch_edges(topology, patch, self.measuring.found().map(|found| &found.rims), self.convention())
     }
 
     /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.

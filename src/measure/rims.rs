@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 use crate::mesh::{Side, Topology};
-use crate::tessellate::{Edges, Partitioning, PatchFactors, Vertex, outer_count, point_count, segments};
+use crate::tessellate::{
+    Convention, Edges, Partitioning, PatchFactors, Vertex, domain_side, outer_count, point_count, segments,
+};
 
 /// A vertex on a patch's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,6 +54,20 @@ impl AskedFactors {
         let index = if self.per_side { side } else { topology.sides[side as usize].edge };
         self.factors.get(index as usize).copied().unwrap_or(f32::NAN)
     }
+}
+
+/// The edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut, point by point as they were
+/// emitted; straight where that isn't known, or nothing is emitted.
+pub fn patch_edges(topology: &Topology, patch: u32, rims: Option<&Rims>, convention: Convention) -> [Vec<Vec3>; 3] {
+    let corners = topology.patch_positions(patch);
+    let sides = rims.and_then(|rims| rims.patch(topology, patch));
+    [0, 1, 2].map(|i| {
+        let k = domain_side(convention, i) as usize;
+        match &sides {
+            Some(sides) => sides[k].positions().collect(),
+            None => vec![corners[k], corners[(k + 1) % 3]],
+        }
+    })
 }
 
 /// What one side has made of an edge.

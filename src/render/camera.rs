@@ -203,6 +203,25 @@ mod tests {
     }
 
     #[test]
+    fn a_framed_triangle_is_in_the_middle_and_faces_the_eye() {
+        let viewport = vec2(800.0, 600.0);
+        let mut camera = Camera::framing(&unit_bounds(), viewport);
+        let corners = [vec3(0.5, 0.1, 0.2), vec3(0.9, 0.1, 0.3), vec3(0.6, 0.4, 0.5)];
+        camera.frame_triangle(corners, &unit_bounds());
+        let [a, b, c] = corners;
+        assert!(camera.axes()[2].distance((b - a).cross(c - a).normalize()) < 1e-5);
+        let clip = camera.clip_from_object(viewport, &unit_bounds());
+        let [a, b, c] = corners.map(|p| project(clip, viewport, p).expect("in front of the eye"));
+        assert!((a + b + c).distance(viewport * 1.5) < 3.0);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        assert!((350.0..450.0).contains(&longest), "{longest} px");
+        let before = camera;
+        camera.frame_triangle([Vec3::ONE; 3], &unit_bounds());
+        assert_eq!((camera.azimuth, camera.elevation), (before.azimuth, before.elevation), "a point faces nowhere");
+        assert!(camera.distance > 0.0);
+    }
+
+    #[test]
     fn zooming_keeps_what_is_under_the_pointer() {
         let viewport = vec2(800.0, 600.0);
         let mut camera = Camera::framing(&unit_bounds(), viewport);

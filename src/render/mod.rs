@@ -12,7 +12,7 @@ mod target;
 pub use camera::{Camera, Standpoint, project};
 pub use leaks::{LeakCounter, is_beyond_near};
 pub use marks::{patch_lines, t_junction_lines};
-pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
+pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel, convention};
 pub use renderer::Renderer;
 pub use scene::{LineSegment, Scene};
 pub use target::Target;

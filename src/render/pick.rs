@@ -12,6 +12,8 @@ use crate::gpu::layout::Vertex;
 use crate::gpu::{
     DEPTH_FORMAT, Gpu, GpuError, Recorder, Timing, compute_pipeline, mapped_bytes, shader_module, staging_buffer, wait,
 };
+use crate::settings::Settings;
+use crate::tessellate::Convention;
 
 /// A number and a weight, see `pick_fragment`; four of them are what every adapter draws into.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
@@ -24,7 +26,7 @@ pub struct Pixel {
     pub size: [u32; 2],
     /// From the left and from the top.
     pub at: [u32; 2],
-    /// Where the picture is split, as in [`crate::settings::Settings`].
+    /// Where the picture is split, as in [`Settings`].
     pub split: Option<f32>,
 }
 
@@ -45,6 +47,11 @@ pub struct PickedTriangle {
     /// Its number within its patch: see [`crate::tessellate::domain_triangle`].
     pub number: u32,
     pub vertices: [Vertex; 3],
+}
+
+/// What factors and weights are taken for under these settings.
+pub fn convention(_settings: &Settings) -> Convention {
+    Convention::default()
 }
 
 /// Finds what is drawn at a pixel. Long-lived: the pipelines.
