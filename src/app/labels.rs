@@ -1,14 +1,14 @@
 //! Names over the picture: the selected patch's corners with their weights, and its edges with their factors.
 
-use egui::{Color32, Pos2, Rect, Vec2};
+use egui::{Color32, Pos2, Rect, Stroke, Vec2};
 
 use super::App;
 use super::patch::letter;
 use super::text::factor;
 use super::viewport::{note_text, paint_note};
-use crate::render::layout::FACTOR_COLORS;
+use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
 use crate::render::project;
-use crate::tessellate::{factor_side, segments};
+use crate::tessellate::{domain_side, factor_side, segments};
 
 /// Points on screen that a patch must extend over to be labelled.
 const LEAST_EXTENT: f32 = 60.0;
@@ -27,6 +27,10 @@ impl App {
             Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
         };
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
+        if let Some(split) = self.settings.split {
+            let source = rect.with_max_x(rect.left() + rect.width() * split);
+            self.source_outline(&ui.painter_at(source), [a, b, c]);
+        }
         let extent = Rect::from_points(&[a, b, c]).size().max_elem();
         if extent < LEAST_EXTENT {
             return;
@@ -38,10 +42,9 @@ impl App {
         });
         let corners: Vec<_> = corners.collect();
         let edges = (0..).zip(self.patch_edges(topology, patch)).filter_map(|(i, points)| {
-            let [r, g, b] = FACTOR_COLORS[i as usize];
             let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
             let place = at((*before + *after) / 2.0)?;
-            Some((i, place, self.factor_text(patch, i), Color32::from_rgb(r, g, b)))
+            Some((i, place, self.factor_text(patch, i), rgb(FACTOR_COLORS[i as usize])))
         });
         let edges: Vec<_> = edges.collect();
         // The longest names of edges that leave room for one another, or none.
@@ -53,6 +56,19 @@ impl App {
             }
         }
         show(ui, rect, middle, &corners);
+    }
+
+    /// Outlines the triangle as it came, left of the split, where the picture has no lines over the mesh.
+    fn source_outline(&self, painter: &egui::Painter, corners: [Pos2; 3]) {
+        let [casing, inner] = [8.0, 5.5].map(|px| px / painter.pixels_per_point());
+        let side = |i: u32| domain_side(self.convention(), i) as usize;
+        let ends = [0, 1, 2].map(|i| [corners[side(i)], corners[(side(i) + 1) % 3]]);
+        for line in ends {
+            painter.line_segment(line, Stroke::new(casing, rgb(OUTLINE_COLOR)));
+        }
+        for (line, color) in ends.into_iter().zip(FACTOR_COLORS) {
+            painter.line_segment(line, Stroke::new(inner, rgb(color)));
+        }
     }
 
     /// Factor `i` of a patch as LOD gave it, and the segments that it became.
@@ -85,4 +101,26 @@ fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color3
         paint_note(ui, own.shrink2(MARGIN), galley);
     }
     true
+}
+
+fn rgb([r, g, b]: [u8; 3]) -> Color32 {
+    Color32::from_rgb(r, g, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn labels_are_all_shown_or_none_where_two_would_overlap() {
+        let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 300.0));
+        let label = |x, y| (pos2(x, y), "TessFactor[0] = 8.00 -> 9".to_owned(), Color32::WHITE);
+        egui::__run_test_ui(|ui| {
+            let all = |labels: &[_]| show(ui, rect, pos2(200.0, 150.0), labels);
+            assert!(all(&[label(200.0, 50.0), label(200.0, 250.0)]), "above and below");
+            assert!(!all(&[label(200.0, 50.0), label(210.0, 52.0)]), "one over the other");
+            assert!(all(&[label(200.0, 50.0), label(200.0, -50.0)]), "what is out of sight has no label");
+        });
+    }
 }

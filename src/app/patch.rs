@@ -98,7 +98,9 @@ fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Opti
             .speed(0.1)
             .update_while_editing(false)
             .custom_formatter(|number, _| if number < 0.0 { "none".into() } else { format!("{number}") })
-            .custom_parser(|text| if text.trim() == "none" { Some(-1.0) } else { text.trim().parse().ok() });
+            .custom_parser(|text| {
+                if text.trim() == "none" { Some(-1.0) } else { text.trim().parse::<u32>().ok().map(f64::from) }
+            });
         let response = ui.add_sized([64.0, ui.spacing().interact_size.y], drag).labelled_by(label.id);
         if response.on_hover_text(hover).changed() {
             wish = Some(Wish::Select(u32::try_from(number).ok()));
@@ -281,11 +283,21 @@ fn neighbours(ui: &mut Ui, topology: &Topology, patches: &[u32]) -> Option<u32> 
         }
         [patch] => button(ui, patch),
         several => {
-            let one = |ui: &mut Ui| several.iter().fold(None, |clicked, patch| button(ui, patch).or(clicked));
-            ui.vertical(one).inner
+            let listed = |ui: &mut Ui| {
+                let shown = several.iter().take(LISTED_NEIGHBOURS);
+                let clicked = shown.fold(None, |clicked, patch| button(ui, patch).or(clicked));
+                if several.len() > LISTED_NEIGHBOURS {
+                    ui.weak(format!("{} more", several.len() - LISTED_NEIGHBOURS));
+                }
+                clicked
+            };
+            ui.vertical(listed).inner
         }
     }
 }
+
+/// Triangles that are listed across one edge: of a hundred, one looks at the first few.
+const LISTED_NEIGHBOURS: usize = 16;
 
 /// Names of the weights.
 const LETTERS: [char; 3] = ['u', 'v', 'w'];
