@@ -3,7 +3,7 @@
 use egui::{Color32, Pos2, Rect, Stroke, Vec2};
 
 use super::App;
-use super::patch::letter;
+use super::names::letter;
 use super::text::factor;
 use super::viewport::{note_text, paint_note};
 use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};

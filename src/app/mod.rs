@@ -6,6 +6,7 @@ mod facts;
 mod labels;
 mod measuring;
 mod menu;
+mod names;
 mod panels;
 mod patch;
 mod pattern;

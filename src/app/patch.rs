@@ -4,6 +4,7 @@ use egui::{RichText, Ui};
 
 use super::App;
 use super::facts::EDGE_KINDS;
+use super::names::{LETTERS, ends_text, letter, mistake};
 use super::pattern::{pattern_plot, weights_text};
 use super::text::{factor, short};
 use super::widgets::{SWATCH, swatch};
@@ -299,27 +300,6 @@ fn neighbours(ui: &mut Ui, topology: &Topology, patches: &[u32]) -> Option<u32> 
 /// Triangles that are listed across one edge: of a hundred, one looks at the first few.
 const LISTED_NEIGHBOURS: usize = 16;
 
-/// Names of the weights.
-const LETTERS: [char; 3] = ['u', 'v', 'w'];
-
-/// The weight that is 1 on corner `k`.
-pub fn letter(convention: Convention, k: u32) -> char {
-    let found = (0..3).find(|&i| weight_corner(convention, i) == k);
-    found.map_or(' ', |i| LETTERS[i as usize])
-}
-
-/// A side by the corners that it runs between.
-fn ends_text(k: u32) -> String {
-    format!("{k}-{}", (k + 1) % 3)
-}
-
-/// What goes wrong with factor `i`, if anything does.
-fn mistake(convention: Convention, i: u32) -> Option<String> {
-    let (of, cuts) = (factor_side(convention, i), domain_side(convention, i));
-    (of != cuts)
-        .then(|| format!("TessFactor[{i}] is that of edge {} and cuts edge {}.", ends_text(of), ends_text(cuts)))
-}
-
 /// The factor in a word: see [`PatchFactors`].
 fn used(word: u32) -> f64 {
     f64::from(word & !FACTOR_ODD) / f64::from(FIXED_ONE)
@@ -346,29 +326,4 @@ fn dense(text: impl Into<String>) -> RichText {
 fn title(ui: &mut Ui, text: &str, hover: &str) {
     ui.add_space(6.0);
     ui.label(text).on_hover_text(hover);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mistake_names_both_edges_and_a_convention_makes_none() {
-        for right in [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder] {
-            assert_eq!([0, 1, 2].map(|i| mistake(right, i)), [None, None, None], "{right:?}");
-        }
-        assert_eq!(
-            mistake(Convention::Rotated, 0).as_deref(),
-            Some("TessFactor[0] is that of edge 0-1 and cuts edge 1-2.")
-        );
-        assert_eq!(mistake(Convention::Mirrored, 2), None, "its third factor is right");
-    }
-
-    #[test]
-    fn every_corner_has_its_weight() {
-        let letters = |convention| [0, 1, 2].map(|k| letter(convention, k));
-        assert_eq!(letters(Convention::D3d11), ['u', 'v', 'w']);
-        assert_eq!(letters(Convention::AmdPn), ['w', 'u', 'v']);
-        assert_eq!(letters(Convention::EdgeOrder), ['v', 'w', 'u']);
-    }
 }
