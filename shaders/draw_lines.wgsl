@@ -1,11 +1,25 @@
-// Thick lines, faint where something is in front of them: one instance a segment, a quad facing the screen.
+// Thick lines, faint where something is in front of them: one instance a segment, or a vertex whose normal is drawn; a
+// quad facing the screen.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
+// Only for normals.
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(3) var<storage, read> patches: array<Patch>;
+@group(2) @binding(0) var<uniform> slab: Slab;
+@group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
 const NEARER: f32 = 1.003;
 
 // What is left of a line behind something.
 const HIDDEN: f32 = 0.3;
+
+// As NORMAL_COLOR in src/render/layout.rs, in linear light.
+const NORMAL_COLOR: vec3<f32> = vec3<f32>(0.045, 0.680, 1.0);
+
+// How long a normal is across the view, how wide to either side, and how far from the next one if there are many, in px.
+const NORMAL_LENGTH: f32 = 18.0;
+const NORMAL_HALF_WIDTH: f32 = 0.6;
+const NORMAL_SPACING: f32 = 24.0;
 
 struct LineVaryings {
     @builtin(position) clip: vec4<f32>,
@@ -13,6 +27,8 @@ struct LineVaryings {
     @location(0) @interpolate(linear) across: f32,
     @location(1) @interpolate(flat) color: vec3<f32>,
     @location(2) @interpolate(flat) half_width: f32,
+    // How many times the line is drawn, as far as is known.
+    @location(3) @interpolate(flat) times: f32,
 }
 
 // Moves `a` along the segment until it lies in front of the eye.
@@ -24,14 +40,7 @@ fn in_front(a: vec4<f32>, b: vec4<f32>) -> vec4<f32> {
     return mix(a, b, (least - a.w) / (b.w - a.w));
 }
 
-@vertex
-fn line_vertex(
-    @builtin(vertex_index) index: u32,
-    @location(0) start: vec3<f32>,
-    @location(1) end: vec3<f32>,
-    @location(2) color: vec3<f32>,
-    @location(3) half_width: f32,
-) -> LineVaryings {
+fn line(index: u32, start: vec3<f32>, end: vec3<f32>, color: vec3<f32>, half_width: f32, times: f32) -> LineVaryings {
     let a = frame.clip_from_object * vec4<f32>(start, 1.0);
     let b = frame.clip_from_object * vec4<f32>(end, 1.0);
     let from_clip = in_front(a, b);
@@ -51,7 +60,77 @@ fn line_vertex(
     let offset = (across * side * reach + cap) / half_viewport;
     // A little nearer than the surface that the line lies on; depth is reversed.
     let z = min(clip.z * NEARER, clip.w);
-    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, color, half_width);
+    return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, color, half_width, times);
+}
+
+@vertex
+fn line_vertex(
+    @builtin(vertex_index) index: u32,
+    @location(0) start: vec3<f32>,
+    @location(1) end: vec3<f32>,
+    @location(2) color: vec3<f32>,
+    @location(3) half_width: f32,
+) -> LineVaryings {
+    return line(index, start, end, color, half_width, 1.0);
+}
+
+// How many px a unit of length across the view is, at a depth.
+fn px_per_unit(w: f32) -> f32 {
+    let upwards = vec3<f32>(frame.clip_from_object[0].y, frame.clip_from_object[1].y, frame.clip_from_object[2].y);
+    return 0.5 * frame.viewport.y * length(upwards) / w;
+}
+
+// About how much of a patch there is for each of its vertices, in square object units.
+fn area_per_vertex(patch_index: u32) -> f32 {
+    let at = patches[patch_index].points;
+    let a = points[at[0]].xyz;
+    let doubled = length(cross(points[at[1]].xyz - a, points[at[2]].xyz - a));
+    let n = f32(max(segments(patch_factors[patch_index - slab.first_patch].inside), 1u));
+    return doubled / (n * n);
+}
+
+// A number from 0 to 1 that is the same for every vertex at a position (a permuted congruential generator, O'Neill 2014).
+fn chance(position: vec3<f32>) -> f32 {
+    let bits = bitcast<vec3<u32>>(position);
+    var hash = 0u;
+    for (var k = 0u; k < 3u; k++) {
+        let state = (hash ^ bits[k]) * 747796405u + 2891336453u;
+        let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+        hash = (word >> 22u) ^ word;
+    }
+    return f32(hash >> 8u) / 16777216.0;
+}
+
+// How many patches emit a vertex: as many as are usual around a corner, on an edge, inside.
+fn usual_times(domain: vec2<u32>) -> f32 {
+    let last = FIXED_ONE - domain.x - domain.y;
+    let zeros = u32(domain.x == 0u) + u32(domain.y == 0u) + u32(last == 0u);
+    return select(select(1.0, 2.0, zeros == 1u), 6.0, zeros == 2u);
+}
+
+@vertex
+fn normal_vertex(
+    @builtin(vertex_index) index: u32,
+    @location(0) position: vec3<f32>,
+    @location(1) key: vec2<u32>,
+    @location(2) normal: u32,
+) -> LineVaryings {
+    let w = dot(vec4<f32>(position, 1.0), vec4<f32>(
+        frame.clip_from_object[0].w,
+        frame.clip_from_object[1].w,
+        frame.clip_from_object[2].w,
+        frame.clip_from_object[3].w,
+    ));
+    let px = px_per_unit(max(w, 1e-30));
+    let direction = unpack_normal(normal);
+    let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
+    // Where vertices are closer than normals may be, some have none; at the outline, where all stand out, at least some do.
+    let area = area_per_vertex(key_patch(key)) * px * px * max(abs(dot(direction, to_eye)), 0.2);
+    if w <= 0.0 || chance(position) * NORMAL_SPACING * NORMAL_SPACING >= area {
+        return LineVaryings();
+    }
+    let end = position + direction * (NORMAL_LENGTH / px);
+    return line(index, position, end, NORMAL_COLOR, NORMAL_HALF_WIDTH, usual_times(key_uv(key)));
 }
 
 fn line_coverage(in: LineVaryings) -> f32 {
@@ -65,5 +144,6 @@ fn line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
 
 @fragment
 fn hidden_line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    return vec4<f32>(in.color, HIDDEN * line_coverage(in));
+    // One on top of another, they come to what one line leaves.
+    return vec4<f32>(in.color, (1.0 - pow(1.0 - HIDDEN, 1.0 / in.times)) * line_coverage(in));
 }

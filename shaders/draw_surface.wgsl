@@ -10,6 +10,9 @@
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
+// Only for what was emitted.
+@group(2) @binding(0) var<uniform> slab: Slab;
+@group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
@@ -23,6 +26,12 @@ struct Varyings {
     @location(5) @interpolate(flat) edge_kinds: vec3<u32>,
     // 1 where the drawn triangle faces away from the side that its patch faces.
     @location(6) @interpolate(flat) folded: u32,
+    // Factors on the edges where u, v, w is 0, and inside; 0 where the patch is drawn as it came.
+    @location(7) @interpolate(flat) factors: vec4<f32>,
+    // 1 where they are all below 2.
+    @location(8) @interpolate(flat) low: u32,
+    // Size of the drawn triangle in px.
+    @location(9) @interpolate(flat) size: f32,
 }
 
 fn varyings(
@@ -78,6 +87,40 @@ fn vertex_domain(index: u32) -> vec2<u32> {
     return key_uv(vec2<u32>(vertex.key0, vertex.key1));
 }
 
+fn factor_value(word: u32) -> f32 {
+    return f32(word & ~FACTOR_ODD) * UNIT;
+}
+
+fn with_factors(varyings: Varyings, patch_index: u32) -> Varyings {
+    var out = varyings;
+    if (frame.overlays & (OVERLAY_FACTORS | OVERLAY_LOW_FACTORS)) != 0u {
+        let own = patch_factors[patch_index - slab.first_patch];
+        for (var i = 0u; i < 3u; i++) {
+            // Opposite side s is corner s + 2.
+            out.factors[(domain_side(frame.convention, i) + 2u) % 3u] = factor_value(own.outside[i]);
+        }
+        out.factors.w = factor_value(own.inside);
+        out.low = u32(patch_is_low(own));
+    }
+    return out;
+}
+
+// As in src/measure/sizes.rs, in f32; as large as any where the near plane cuts.
+fn size_px(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> f32 {
+    let corners = array<vec3<f32>, 3>(a, b, c);
+    var places: array<vec2<f32>, 3>;
+    for (var k = 0u; k < 3u; k++) {
+        let clip = frame.clip_from_object * vec4<f32>(corners[k], 1.0);
+        if clip.w <= 0.0 || clip.z > clip.w {
+            return frame.scale_most;
+        }
+        places[k] = clip.xy / clip.w * 0.5 * frame.viewport;
+    }
+    let ab = places[1] - places[0];
+    let ac = places[2] - places[0];
+    return sqrt(abs(ab.x * ac.y - ab.y * ac.x));
+}
+
 fn unit_corner(k: u32) -> vec3<f32> {
     return vec3<f32>(f32(k == 0u), f32(k == 1u), f32(k == 2u));
 }
@@ -89,7 +132,8 @@ fn indexed_vertex(
     @location(2) normal: u32,
     @location(3) uv: vec2<f32>,
 ) -> Varyings {
-    return varyings(position, unpack_normal(normal), uv, key_patch(key), key_uv(key), vec3<f32>(1.0));
+    let out = varyings(position, unpack_normal(normal), uv, key_patch(key), key_uv(key), vec3<f32>(1.0));
+    return with_factors(out, key_patch(key));
 }
 
 @vertex
@@ -99,14 +143,17 @@ fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let position = vec3<f32>(vertex.x, vertex.y, vertex.z);
     let normal = unpack_normal(vertex.normal);
     var out = varyings(position, normal, vertex.uv, key_patch(key), key_uv(key), unit_corner(index % 3u));
+    let first = index - index % 3u;
     if (frame.overlays & OVERLAY_FOLDS) != 0u {
-        let first = index - index % 3u;
         let back = runs_back(vertex_domain(first), vertex_domain(first + 1u), vertex_domain(first + 2u));
         let a = vertex_position(first);
         let opposes = is_folded(key_patch(key), a, vertex_position(first + 1u), vertex_position(first + 2u));
         out.folded = u32(opposes && !back);
     }
-    return out;
+    if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
+        out.size = size_px(vertex_position(first), vertex_position(first + 1u), vertex_position(first + 2u));
+    }
+    return with_factors(out, key_patch(key));
 }
 
 @vertex
@@ -115,7 +162,12 @@ fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let corner = corners[patches[index / 3u].corners[k]];
     let position = points[patches[index / 3u].points[k]].xyz;
     let domain = vec2<u32>(select(0u, FIXED_ONE, k == 0u), select(0u, FIXED_ONE, k == 1u));
-    return varyings(position, corner.normal, corner.uv, index / 3u, domain, unit_corner(k));
+    var out = varyings(position, corner.normal, corner.uv, index / 3u, domain, unit_corner(k));
+    if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
+        let at = patches[index / 3u].points;
+        out.size = size_px(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
+    }
+    return out;
 }
 
 // As the window's legend has it: src/render/layout.rs.
@@ -123,6 +175,9 @@ const FOLD_COLOR: vec3<f32> = vec3<f32>(0.515, 0.061, 1.0);
 
 // The same.
 const BACK_FACE_COLOR: vec3<f32> = vec3<f32>(0.753, 0.013, 0.156);
+
+// The same.
+const WASTE_COLOR: vec3<f32> = vec3<f32>(0.665, 0.112, 0.0);
 
 // Colours of edge kinds, as the window's legend has them: src/render/layout.rs.
 fn edge_color(kind: u32) -> vec3<f32> {
@@ -160,22 +215,73 @@ fn shade(base: vec3<f32>, normal: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
     return base * (0.62 * key + 0.22 * fill + 0.04) + vec3<f32>(gloss);
 }
 
+// Barely lit, so that colours can be read against a legend: as they are where the surface faces the eye.
+fn shade_flat(base: vec3<f32>, normal: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
+    let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
+    return base * (0.7 + 0.3 * abs(dot(normal, to_eye)));
+}
+
+fn from_srgb(color: vec3<f32>) -> vec3<f32> {
+    return select(pow((color + 0.055) / 1.055, vec3<f32>(2.4)), color / 12.92, color <= vec3<f32>(0.04045));
+}
+
+// As in src/render/scale.rs, in linear light.
+fn scale_color(number: f32) -> vec3<f32> {
+    let place = log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least);
+    let at = clamp(place, 0.0, 1.0) * 6.0;
+    let below = min(u32(at), 5u);
+    return from_srgb(mix(frame.scale[below].rgb, frame.scale[below + 1u].rgb, at - f32(below)));
+}
+
+// The inside of a patch by its inside factor, a band along each edge by that edge's. Bands are some px wide: more in large
+// patches, and less in small ones, which would be nothing but bands.
+fn factor_color(factors: vec4<f32>, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec3<f32> {
+    var nearest = 0u;
+    for (var k = 1u; k < 3u; k++) {
+        nearest = select(nearest, k, to_edges[k] < to_edges[nearest]);
+    }
+    let width = min(0.14 * edge_heights[nearest], max(5.0, 0.05 * edge_heights[nearest]));
+    let on_edge = line_coverage(to_edges[nearest], width);
+    return mix(scale_color(factors.w), scale_color(factors[nearest]), on_edge);
+}
+
+// What the surface's colours mean, where they aren't the material's: the colour, and 1 where there is one.
+fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
+    if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
+        return vec4<f32>(factor_color(in.factors, to_edges, edge_heights), 1.0);
+    }
+    if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
+        return vec4<f32>(select(scale_color(in.size), WASTE_COLOR, in.size < frame.scale_least), 1.0);
+    }
+    return vec4<f32>(WASTE_COLOR, f32(in.low));
+}
+
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     // Derivatives and samples first: both need uniform control flow.
-    let to_edges = in.domain * heights(in.domain);
+    let edge_heights = heights(in.domain);
+    let to_edges = in.domain * edge_heights;
     let side_heights = heights(in.corner);
     let to_sides = in.corner * side_heights;
     let texel = textureSample(base_texture, base_sampler, in.uv);
     var base = material.base_color.rgb * texel.rgb;
+    if (frame.overlays & OVERLAY_LOW_FACTORS) != 0u {
+        // The mesh's own colours could be the mark's.
+        base = vec3<f32>(0.5);
+    }
+    let marked_back = (frame.overlays & OVERLAY_BACK_FACES) != 0u && !front;
     if (frame.overlays & OVERLAY_BARYCENTRIC) != 0u {
         base = clamp(in.domain, vec3<f32>(0.0), vec3<f32>(1.0));
     }
-    if (frame.overlays & OVERLAY_BACK_FACES) != 0u && !front {
+    if marked_back {
         base = BACK_FACE_COLOR;
     }
     let normal = normalize(select(-in.normal, in.normal, front));
+    let meant = meaning(in, to_edges, edge_heights);
     var color = shade(base, normal, in.position);
+    if meant.a > 0.0 && !marked_back {
+        color = shade_flat(meant.rgb, normal, in.position);
+    }
     if in.folded != 0u {
         // Unlit: folds mostly face away from the light.
         color = FOLD_COLOR;

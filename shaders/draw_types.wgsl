@@ -13,6 +13,13 @@ struct Frame {
     overlays: u32,
     // One unit in the last place of the mesh's largest coordinate.
     ulp: f32,
+    // Which side each of a patch's factors lies on: CONVENTION_*.
+    convention: u32,
+    // The scale that the surface's colours are read against, if they are numbers.
+    scale_least: f32,
+    scale_most: f32,
+    // sRGB, 0 to 1.
+    scale: array<vec4<f32>, 7>,
 }
 
 struct Material {
@@ -42,3 +49,6 @@ const OVERLAY_BARYCENTRIC: u32 = 4u;
 const OVERLAY_ADJACENCY: u32 = 8u;
 const OVERLAY_FOLDS: u32 = 16u;
 const OVERLAY_BACK_FACES: u32 = 32u;
+const OVERLAY_FACTORS: u32 = 64u;
+const OVERLAY_TRIANGLE_SIZE: u32 = 128u;
+const OVERLAY_LOW_FACTORS: u32 = 256u;

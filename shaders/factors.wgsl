@@ -102,6 +102,11 @@ fn patch_is_minimal(factors: PatchFactors) -> bool {
     return edges_are_one && (factors.inside & ~FACTOR_ODD) == FIXED_ONE;
 }
 
+fn patch_is_low(factors: PatchFactors) -> bool {
+    let edges_are_low = all((factors.outside & vec3<u32>(~FACTOR_ODD)) < vec3<u32>(2u * FIXED_ONE));
+    return !patch_is_culled(factors) && edges_are_low && (factors.inside & ~FACTOR_ODD) < 2u * FIXED_ONE;
+}
+
 fn odd_parity(word: u32) -> u32 {
     return word >> 31u;
 }

@@ -30,14 +30,21 @@ fn counts_main(
     for (var i = 0u; i < 3u; i++) {
         edges[i] = edge_factors[patches[patch_index].factors[(i + 1u) % 3u] >> 3u];
     }
-    var inside = max(max(edges.x, edges.y), edges.z);
-    if params.lod == LOD_ERROR && params.surface != SURFACE_FLAT {
-        let net = load_net(patch_index);
-        inside = inside_error_factor(params.view, params.tolerance, params.partitioning, net, edges);
+    let culls_back = params.culls_back == 1u;
+    let by_error = params.lod == LOD_ERROR && params.surface != SURFACE_FLAT;
+    var net: ControlNet;
+    if by_error || culls_back || params.clip != CLIP_OFF {
+        net = load_net(patch_index);
     }
-    var factors = process(params.partitioning, edges, inside);
-    if params.clip != CLIP_OFF && patch_is_unseen(params.clip, params.view, load_net(patch_index)) {
-        factors = PatchFactors();
+    let why = unseen(params.clip, culls_back, params.view, net);
+    var factors: PatchFactors;
+    factors.inside = why;
+    if why == SEEN {
+        var inside = max(max(edges.x, edges.y), edges.z);
+        if by_error {
+            inside = inside_error_factor(params.view, params.tolerance, params.partitioning, net, edges);
+        }
+        factors = process(params.partitioning, edges, inside);
     }
     patch_factors[index] = factors;
     offsets[index] = vec2<u32>(point_count(factors), triangle_count(factors));

@@ -17,6 +17,8 @@ struct Params {
     tolerance: f32,
     near: f32,
     far: f32,
+    // 1 where patches that face away are left out.
+    culls_back: u32,
 }
 
 // The run of patches that one scan covers, and what the arena holds.

@@ -4,11 +4,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
-use crate::measure::{AskedFactors, Deviant, Deviation, Measured, Survey};
+use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
-use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target, is_beyond_near};
+use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
-use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex};
+use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex, is_beyond_near};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -192,8 +192,19 @@ impl Engine {
         Ok(deviation.worst())
     }
 
+    /// How large what is emitted is on screen. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn sizes(&self, scene: &mut Scene, view: ScreenView) -> Result<Sizes, GpuError> {
+        let mut sizes = Sizes::new(view);
+        self.read_chunks(scene, true, |_, vertices, triangles| sizes.take(vertices, triangles))?;
+        Ok(sizes)
+    }
+
     /// Pixels through which one looks into what should be closed, seen from `camera`: see [`LeakCounter`]. None
-    /// where that says nothing: the mesh is open, or reaches the near plane. The counts must be known.
+    /// where that says nothing: the mesh is open, or reaches the near plane, or its backs are left out. The counts must be
+    /// known.
     ///
     /// # Errors
     /// The device was lost.
@@ -208,7 +219,8 @@ impl Engine {
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
         // What clipping left out isn't in what was measured; its corners say whether it lies behind the near plane.
         let whole = [measured.extent[0].min(scene.bounds.min), measured.extent[1].max(scene.bounds.max)];
-        if !scene.tessellator.topology().is_closed_and_oriented() || !is_beyond_near(clip_from_object, whole) {
+        let closed = scene.tessellator.topology().is_closed_and_oriented() && measured.culled.facing_away == 0;
+        if !closed || !is_beyond_near(clip_from_object, whole) {
             return Ok(None);
         }
         self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)

@@ -31,6 +31,8 @@ pub struct Settings {
     pub near: f32,
     pub far: f32,
     pub clip: Clip,
+    /// Whether patches that show their backs only are left out, of meshes that are closed and single-sided.
+    pub cull_back_faces: bool,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
     pub split: Option<f32>,
@@ -51,6 +53,7 @@ impl Default for Settings {
             near: 2.0,
             far: 10.0,
             clip: Clip::Off,
+            cull_back_faces: false,
             overlays: Overlays::default(),
             split: None,
             background: [0x2b, 0x2e, 0x33],
@@ -58,15 +61,30 @@ impl Default for Settings {
     }
 }
 
+/// What the surface's colours mean: one thing at a time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colors {
+    /// The mesh's own.
+    #[default]
+    Material,
+    /// Domain coordinates: u red, v green, w blue.
+    Barycentric,
+    /// Factors as the tessellator uses them: inside each patch, and along each edge.
+    Factors,
+    /// How large each triangle is on screen.
+    TriangleSize,
+    /// Patches whose factors are all below 2.
+    LowFactors,
+}
+
 /// What is drawn over the shaded surface; any of them together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Overlays {
+    pub colors: Colors,
     /// Edges of the tessellated triangles.
     pub wireframe: bool,
     /// Borders of the input triangles.
     pub patches: bool,
-    /// Domain coordinates as colours: u red, v green, w blue.
-    pub barycentric: bool,
     /// Borders of the input triangles in the colour of their edge's kind.
     pub adjacency: bool,
     /// Edges whose sides differ in position.
@@ -77,6 +95,8 @@ pub struct Overlays {
     pub back_faces: bool,
     /// Open edges that another triangle's point lies on, and those points.
     pub t_junctions: bool,
+    /// Normals of emitted vertices.
+    pub normals: bool,
 }
 
 /// One of [`Overlays`], by name.
@@ -90,10 +110,14 @@ pub enum Overlay {
     Folds,
     TJunctions,
     BackFaces,
+    Factors,
+    TriangleSize,
+    LowFactors,
+    Normals,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 12] = [
         Self::Wireframe,
         Self::Patches,
         Self::Barycentric,
@@ -102,30 +126,57 @@ impl Overlay {
         Self::Folds,
         Self::TJunctions,
         Self::BackFaces,
+        Self::Factors,
+        Self::TriangleSize,
+        Self::LowFactors,
+        Self::Normals,
     ];
 }
 
+/// What turns an overlay on: a switch of its own, or the surface's colours, with those that it gives them.
+pub enum Control<'a> {
+    Switch(&'a mut bool),
+    Colors(&'a mut Colors, Colors),
+}
+
 impl Overlays {
-    /// The switch of one overlay.
-    pub fn get_mut(&mut self, overlay: Overlay) -> &mut bool {
-        match overlay {
+    /// What turns `overlay` on.
+    pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
+        Control::Switch(match overlay {
+            Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
+            Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
+            Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),
+            Overlay::LowFactors => return Control::Colors(&mut self.colors, Colors::LowFactors),
             Overlay::Wireframe => &mut self.wireframe,
             Overlay::Patches => &mut self.patches,
-            Overlay::Barycentric => &mut self.barycentric,
             Overlay::Adjacency => &mut self.adjacency,
             Overlay::Cracks => &mut self.cracks,
             Overlay::Folds => &mut self.folds,
             Overlay::TJunctions => &mut self.t_junctions,
             Overlay::BackFaces => &mut self.back_faces,
+            Overlay::Normals => &mut self.normals,
+        })
+    }
+
+    /// Turns an overlay on if it is off, and off if it is on. One that colours the surface takes the place of another.
+    pub fn toggle(&mut self, overlay: Overlay) {
+        match self.control(overlay) {
+            Control::Switch(switch) => *switch = !*switch,
+            Control::Colors(colors, own) => *colors = if *colors == own { Colors::Material } else { own },
         }
     }
-}
 
-impl FromIterator<Overlay> for Overlays {
-    fn from_iter<I: IntoIterator<Item = Overlay>>(overlays: I) -> Self {
+    /// These overlays on, all others off; none if two of them colour the surface.
+    pub fn of(overlays: &[Overlay]) -> Option<Self> {
         let mut all = Self::default();
-        overlays.into_iter().for_each(|overlay| *all.get_mut(overlay) = true);
-        all
+        for &overlay in overlays {
+            match all.control(overlay) {
+                Control::Switch(switch) => *switch = true,
+                Control::Colors(colors, own) if [Colors::Material, own].contains(colors) => *colors = own,
+                Control::Colors(..) => return None,
+            }
+        }
+        Some(all)
     }
 }
 
@@ -153,13 +204,31 @@ impl Settings {
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
         let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, .. } = *self;
-        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, view }
+        let cull_back_faces = self.cull_back_faces;
+        Inputs { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, clip, cull_back_faces, view }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_overlay_at_a_time_colours_the_surface() {
+        let mut overlays = Overlays::default();
+        for overlay in Overlay::ALL {
+            overlays.toggle(overlay);
+            assert_ne!(overlays, Overlays::default(), "{overlay:?}");
+        }
+        assert_eq!(overlays.colors, Colors::LowFactors, "the last one");
+        overlays.toggle(Overlay::Factors);
+        assert_eq!(overlays.colors, Colors::Factors);
+        overlays.toggle(Overlay::Factors);
+        assert_eq!(overlays.colors, Colors::Material);
+        let factors = Overlays { colors: Colors::Factors, wireframe: true, ..Overlays::default() };
+        assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Wireframe, Overlay::Factors]), Some(factors));
+        assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Barycentric]), None);
+    }
 
     #[test]
     fn as_published_takes_lod_and_clipping_along() {

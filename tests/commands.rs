@@ -826,3 +826,38 @@ fn without_a_display_the_window_becomes_a_picture() {
     let missing = command(&["nowhere.glb"]).current_dir(&folder.0).output().expect("the program starts");
     assert_eq!(missing.status.code(), Some(1));
 }
+
+#[test]
+fn stats_count_small_triangles_and_patches_with_low_factors() {
+    let counts = |arguments: &[&str]| {
+        let stats = stats(arguments);
+        ["/triangles_out", "/triangles_in_view", "/triangles_below_3_px", "/patches_below_factor_2"]
+            .map(|path| number(&stats, path))
+    };
+    let coarse = ["shape:torus", "--factor", "1", "--partitioning", "integer", "--measure-error", "false"];
+    // Framed in 160 x 120 px, the torus's 256 patches are some 5 px large.
+    let [out, in_view, small, low] = counts(&coarse);
+    assert_eq!([out, in_view, low], [256.0; 3]);
+    assert!(small < 128.0, "{small} of 256 patches");
+    let fine = ["shape:torus", "--factor", "16", "--partitioning", "integer", "--measure-error", "false"];
+    let [out, in_view, small, low] = counts(&fine);
+    assert_eq!([in_view, small, low], [out, out, 0.0]);
+    let close = [&coarse[..], &["--camera", "30,20,0.5"]].concat();
+    let [out, in_view, small, _] = counts(&close);
+    assert!(in_view < out / 2.0 && small < in_view, "{small} of {in_view} of {out}");
+    let even = ["shape:torus", "--factor", "1", "--partitioning", "fractional-even", "--measure-error", "false"];
+    assert_eq!(counts(&even)[3], 0.0, "an even factor is at least 2");
+}
+
+#[test]
+fn two_overlays_that_colour_the_surface_are_wrong_usage() {
+    let folder = Folder::new("overlays");
+    let picture = folder.path("out.png");
+    let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
+    for list in ["barycentric,factors", "triangle-size,wireframe,low-factors"] {
+        let errors = failure(&overlays(list), 2);
+        assert!(errors.contains("each colours the whole surface"), "{errors}");
+        assert!(!Path::new(&picture).exists(), "before anything is drawn");
+    }
+    output(&overlays("triangle-size,wireframe,normals,back-faces"));
+}

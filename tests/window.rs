@@ -11,6 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
+use pnaen::settings::Colors;
 use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Longer than anything here takes on two slow cores.
@@ -21,6 +22,19 @@ fn window(source: Option<Source>) -> Harness<'static, App> {
         .with_size([1200.0, 800.0])
         .wgpu()
         .build_eframe(move |context| App::new(context, source).expect("these tests need a graphics adapter"));
+    settle(&mut harness);
+    harness
+}
+
+/// A window that draws every patch, in fractional segments by one factor: pictures and counts of these tests are of such.
+fn uniform(source: Option<Source>) -> Harness<'static, App> {
+    let mut harness = window(source);
+    choose(&mut harness, "Partitioning", "Fractional odd");
+    choose(&mut harness, "LOD", "Uniform");
+    choose(&mut harness, "Clipping", "Off");
+    if harness.state().settings().cull_back_faces {
+        harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
+    }
     settle(&mut harness);
     harness
 }
@@ -61,18 +75,21 @@ fn vase() -> Source {
 
 #[test]
 fn it_opens_on_a_cube_without_cracks() {
-    let harness = window(None);
+    let mut harness = window(None);
     let app = harness.state();
     assert_eq!(app.source(), Some(&Source::Shape(Shape::CubeSplit)));
-    assert_eq!((app.settings().surface, app.settings().factor), (Surface::PnAen, 8.0));
+    assert_eq!((app.settings().surface, app.settings().lod), (Surface::PnAen, Lod::Error));
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(0));
     harness.get_by_label("cracks 0");
+    harness.get_by_label("6 of 12 patches");
+    harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
+    settle(&mut harness);
     harness.get_by_label("12 of 12 patches");
 }
 
 #[test]
 fn choosing_pn_lights_up_the_cracks() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     choose(&mut harness, "Surface", "PN");
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
     settle(&mut harness);
@@ -85,7 +102,7 @@ fn choosing_pn_lights_up_the_cracks() {
 
 #[test]
 fn the_factor_can_be_slid_typed_and_stepped() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     let before = harness.state().totals();
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(12.0);
     settle(&mut harness);
@@ -99,10 +116,9 @@ fn the_factor_can_be_slid_typed_and_stepped() {
 
 #[test]
 fn every_switch_does_what_it_says() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     for (label, is_on) in [
         ("Patch borders", (|app: &App| app.settings().overlays.patches) as fn(&App) -> bool),
-        ("Barycentric colours", |app| app.settings().overlays.barycentric),
         ("Adjacency edges", |app| app.settings().overlays.adjacency),
         ("Cracks", |app| app.settings().overlays.cracks),
         ("Folds", |app| app.settings().overlays.folds),
@@ -138,8 +154,62 @@ fn every_switch_does_what_it_says() {
 }
 
 #[test]
+fn colours_exclude_each_other_and_numbers_have_a_legend() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
+    let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
+    assert_eq!(shown(&harness), [false; 3]);
+    for (entry, colors, expected) in [
+        ("Factors", Colors::Factors, [true, false, false]),
+        ("Triangle size", Colors::TriangleSize, [false, true, false]),
+        ("Factors below 2", Colors::LowFactors, [false, false, true]),
+        ("Barycentric", Colors::Barycentric, [false; 3]),
+        ("Material", Colors::Material, [false; 3]),
+    ] {
+        let pictures = harness.state().pictures();
+        choose(&mut harness, "Colours", entry);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+        assert_eq!(shown(&harness), expected, "{entry}");
+        assert!(harness.state().pictures() > pictures, "{entry}: a new picture");
+    }
+    for (key, colors) in [
+        (egui::Key::H, Colors::Factors),
+        (egui::Key::X, Colors::TriangleSize),
+        (egui::Key::U, Colors::LowFactors),
+        (egui::Key::B, Colors::Barycentric),
+        (egui::Key::B, Colors::Material),
+    ] {
+        press(&mut harness, key);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+    }
+    press(&mut harness, egui::Key::N);
+    assert!(harness.state().settings().overlays.normals);
+}
+
+#[test]
+fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let count = |harness: &Harness<App>| harness.state().sizes_shown().map(|sizes| (sizes.in_view, sizes.small));
+    let (_, triangles) = harness.state().totals().expect("counted");
+    let (in_view, small) = count(&harness).expect("measured");
+    assert_eq!(in_view, triangles, "all of it is framed");
+    assert!(small > 0);
+    // From farther away nothing is tessellated anew, so nothing is measured.
+    press(&mut harness, egui::Key::PageDown);
+    assert_eq!(count(&harness), None);
+    // Unless one looks at the sizes.
+    press(&mut harness, egui::Key::X);
+    let (_, smaller) = count(&harness).expect("measured");
+    assert!(smaller > small, "{smaller}, and {small} from nearer");
+    press(&mut harness, egui::Key::PageDown);
+    let (_, smallest) = count(&harness).expect("measured");
+    assert!(smallest > smaller, "{smallest}, and {smaller} from nearer");
+    assert!(harness.state().cracks().is_some(), "which the view doesn't change");
+}
+
+#[test]
 fn the_worst_edges_are_listed_and_one_click_frames_one() {
-    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let app = harness.state();
     let cracks = app.cracks().expect("measured").clone();
@@ -172,7 +242,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
 
 #[test]
 fn keys_go_through_a_list_beyond_the_rows_in_sight() {
-    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
     harness.get_by_label_contains(&format!("{:<6}split normal", edges[0])).focus();
@@ -193,7 +263,7 @@ fn keys_go_through_a_list_beyond_the_rows_in_sight() {
 
 #[test]
 fn escape_closes_a_list_before_it_deselects() {
-    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     harness.state_mut().select_edge(3);
     settle(&mut harness);
     harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
@@ -206,7 +276,7 @@ fn escape_closes_a_list_before_it_deselects() {
 
 #[test]
 fn as_published_edges_crack_and_once_an_edge_they_close() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     press(&mut harness, egui::Key::E);
     let cracked = harness.state().cracks().expect("measured").different_bits;
     assert!(cracked > 1000, "{cracked}");
@@ -216,7 +286,7 @@ fn as_published_edges_crack_and_once_an_edge_they_close() {
 
 #[test]
 fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
-    let mut harness = window(Some(Source::Shape(Shape::Saddle)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Saddle)));
     let start = Instant::now();
     while harness.state().is_checking() {
         assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
@@ -232,7 +302,7 @@ fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
 
 #[test]
 fn nothing_is_drawn_when_nothing_changed() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
     harness.hover_at(egui::pos2(600.0, 400.0));
     harness.run_steps(20);
@@ -243,7 +313,7 @@ fn nothing_is_drawn_when_nothing_changed() {
 
 #[test]
 fn frozen_lod_stays_while_the_camera_moves() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     press(&mut harness, egui::Key::L);
     let before = harness.state().totals();
     press(&mut harness, egui::Key::Z);
@@ -256,7 +326,7 @@ fn frozen_lod_stays_while_the_camera_moves() {
 
 #[test]
 fn the_pointer_orbits_and_zooms() {
-    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
     let before = *harness.state().camera();
     harness.drag_at(egui::pos2(600.0, 400.0));
@@ -285,7 +355,7 @@ fn the_pointer_orbits_and_zooms() {
 
 #[test]
 fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     press(&mut harness, egui::Key::B);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::L);
     settle(&mut harness);
@@ -300,12 +370,12 @@ fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
     let camera = *harness.state().camera();
     press(&mut harness, egui::Key::R);
     assert_eq!(*harness.state().camera(), camera);
-    assert!(harness.state().settings().overlays.barycentric);
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Barycentric);
 }
 
 #[test]
 fn a_file_that_cannot_be_loaded_changes_nothing() {
-    let mut harness = window(Some(vase()));
+    let mut harness = uniform(Some(vase()));
     press(&mut harness, egui::Key::A);
     let (settings, camera) = (*harness.state().settings(), *harness.state().camera());
     let context = harness.ctx.clone();
@@ -330,7 +400,7 @@ fn a_dropped_file_is_opened() {
             std::fs::read(&self.0).map_err(|error| error.to_string())
         }
     }
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
     harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
     settle(&mut harness);
@@ -339,7 +409,7 @@ fn a_dropped_file_is_opened() {
 
 #[test]
 fn every_shape_is_in_the_menu() {
-    let mut harness = window(None);
+    let mut harness = uniform(None);
     for shape in Shape::ALL {
         click(&mut harness, "File");
         harness.get_by_label_contains("Shapes").click();
@@ -367,4 +437,35 @@ fn both_themes_show_the_picture_and_legible_controls() {
         let middle = picture.get_pixel(610, 400).0;
         assert!(middle[2] > middle[0], "{theme:?}: {middle:?}");
     }
+}
+
+#[test]
+fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
+    let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
+    let made = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
+        .args(["tessellate", "shape:torus", "--factor", "3", "-o"])
+        .arg(&path)
+        .status();
+    assert!(made.is_ok_and(|status| status.success()));
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let (pictures, before) = (harness.state().pictures(), harness.state().totals());
+    // Some 20 million triangles: more than anyone would wait for here.
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
+    let start = Instant::now();
+    while harness.query_by_label_contains("Drawing ").is_none() {
+        assert!(start.elapsed() < PATIENCE, "nothing is being drawn");
+        harness.step();
+    }
+    click(&mut harness, "Cancel");
+    assert_eq!((harness.state().pictures(), harness.state().settings().factor), (pictures, 64.0));
+    assert!(!harness.state().is_busy());
+    harness.get_by_label_contains("Not drawn: ");
+    harness.get_by_label("Draw").click();
+    harness.run_steps(3);
+    harness.get_by_label_contains("Drawing ");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(8.0);
+    settle(&mut harness);
+    // The last picture is of that: it only has to be counted again.
+    assert_eq!((harness.state().pictures(), harness.state().totals()), (pictures, before));
+    let _ = std::fs::remove_file(path);
 }

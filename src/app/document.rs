@@ -77,7 +77,9 @@ fn load(
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => return Err(Some(error.to_string())),
     };
-    let scene = engine.scene(&loaded, ARENA_BYTES).map_err(|error| Some(error.to_string()))?;
+    // Steps that a software adapter takes no longer for than a person notices.
+    let arena = if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES };
+    let scene = engine.scene(&loaded, arena).map_err(|error| Some(error.to_string()))?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, loaded.mesh.clone(), loaded.topology.clone());
     Ok(Document { loaded, scene, edges, checks, generation })

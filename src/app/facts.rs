@@ -3,11 +3,11 @@
 use egui::RichText;
 
 use super::App;
-use super::text::{grouped, short};
+use super::text::{grouped, part, short};
 use super::widgets::{fact, heading, number, swatch};
-use crate::measure::{Cracks, ulp};
+use crate::measure::{Cracks, Culled, ulp};
 use crate::mesh::EdgeKind;
-use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, edge_color};
+use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
 
 /// Name and explanation of each kind of edge.
 pub(super) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
@@ -28,6 +28,10 @@ impl App {
             self.worst_edges(ui);
             self.t_junction_list(ui);
             self.edge_details(ui);
+            heading(ui, "Patches");
+            self.patch_facts(ui);
+            heading(ui, "Waste");
+            self.waste_facts(ui);
             heading(ui, "Edges");
             self.edge_legend(ui);
             heading(ui, "Mesh");
@@ -86,6 +90,39 @@ impl App {
             });
             number(ui, &self.measuring.found().map_or_else(|| "…".into(), |found| grouped(found.folds)));
             ui.end_row();
+        });
+    }
+
+    fn patch_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let all = document.loaded.topology.patches.len() as u64;
+        let culled = self.measuring.found().map(|found| found.culled);
+        let count =
+            |number: &dyn Fn(Culled) -> u64| culled.map_or_else(|| "…".into(), |culled| grouped(number(culled)));
+        egui::Grid::new("patches").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let drawn = count(&|culled| all - u64::from(culled.total()));
+            fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
+            let hover = "Patches left out by clipping, for the LOD camera.";
+            fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
+            let hover = "Patches left out because their surface shows its back everywhere, to the LOD camera.";
+            fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
+        });
+    }
+
+    /// What is tessellated too finely, or for nothing.
+    fn waste_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let patches = document.loaded.topology.patches.len() as u64;
+        let unknown = || if self.measuring.is_busy() { "…".to_owned() } else { "-".to_owned() };
+        let small = self.sizes_shown().map_or_else(unknown, |sizes| part(sizes.small, sizes.in_view));
+        let low = self.measuring.found().map_or_else(unknown, |found| part(found.patches_low.into(), patches));
+        egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "Triangles in view that are half of squares with sides of less than 3 px, and their share of those \
+                         in view. Where only the camera moved, they are counted anew while the triangle size is shown.";
+            marked(ui, "Below 3 px", &small, hover);
+            let hover = "Patches whose factors are all below 2, and their share of all patches: drawing them untessellated \
+                         would hardly show.";
+            marked(ui, "Below factor 2", &low, hover);
         });
     }
 
@@ -151,4 +188,14 @@ impl App {
         let hover = "Corners whose normal runs along one of their edges.";
         fact(ui, "Normals along edge", &count(faults.map(|faults| faults.along_edge)), hover);
     }
+}
+
+/// A row whose name has the colour that it has over the mesh.
+fn marked(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
+    ui.horizontal(|ui| {
+        swatch(ui, WASTE_COLOR);
+        ui.label(name).on_hover_text(hover);
+    });
+    number(ui, value);
+    ui.end_row();
 }

@@ -6,6 +6,7 @@ use super::App;
 use super::names::letter;
 use super::text::factor;
 use super::viewport::{note_text, paint_note};
+use crate::measure::ScreenView;
 use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
 use crate::render::project;
 use crate::tessellate::{domain_side, factor_side, segments};
@@ -20,7 +21,7 @@ impl App {
     /// Labels the selected patch in a picture shown in `rect`, if it is large enough there.
     pub(super) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
-        let Some((clip_from_object, viewport)) = self.viewport.projection() else { return };
+        let Some(ScreenView { clip_from_object, viewport }) = self.viewport.seen_from() else { return };
         let topology = &document.loaded.topology;
         let at = |position| {
             let px = project(clip_from_object, viewport, position)?;

@@ -1,10 +1,10 @@
 //! What is shown, measured beside the window: chunk after chunk is copied back without waiting, and looked at on a
 //! thread of its own.
 
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
-use crate::measure::{AskedFactors, Cracks, Measured, Survey};
+use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
 use crate::tessellate::{Edges, PatchFactors, Vertex};
@@ -14,16 +14,20 @@ use crate::tessellate::{Edges, PatchFactors, Vertex};
 pub struct Measuring {
     /// Document and tessellation that were last asked for.
     of: Option<(u64, u64)>,
-    copying: Option<Copying>,
+    /// Where sizes on screen were last asked for.
+    seen_from: Option<ScreenView>,
+    /// Before the copying: dropped first, so that its thread doesn't take an end of parts for all of them.
     comparing: Option<Comparing>,
+    copying: Option<Copying>,
     found: Option<Measured>,
+    sizes: Option<Sizes>,
     /// Counts results, and their absence.
     pub generation: u64,
 }
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<Measured>,
+    found: Receiver<(Measured, Sizes)>,
     wanted: Progress,
 }
 
@@ -38,9 +42,13 @@ struct Copying {
     staging: wgpu::Buffer,
     part: PartKind,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+    is_mapped: bool,
     next_chunk: usize,
-    parts: Sender<Part>,
+    parts: SyncSender<Part>,
 }
+
+/// Parts that wait for the comparing thread at most: each is as large as the arena.
+const WAITING: usize = 1;
 
 /// What a copy holds.
 #[derive(Clone, Copy)]
@@ -51,12 +59,8 @@ enum PartKind {
     Chunk { first_patch: u32, vertex_bytes: usize },
 }
 
-/// A copy on its way to the comparing thread.
-enum Part {
-    Copied(PartKind, Vec<u8>),
-    /// All there is.
-    End,
-}
+/// A copy that the comparing thread can read.
+struct Part(PartKind, wgpu::Buffer);
 
 impl Measuring {
     /// What is shown, once measured.
@@ -69,27 +73,53 @@ impl Measuring {
         self.found.as_ref().map(|found| &found.cracks)
     }
 
+    /// Sizes of the triangles shown, once measured; they say where they were seen from.
+    pub fn sizes(&self) -> Option<&Sizes> {
+        self.sizes.as_ref()
+    }
+
     pub fn is_busy(&self) -> bool {
         self.copying.is_some() || self.comparing.is_some()
     }
 
-    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now. True
-    /// when what is known has changed.
+    /// Forgets what was found about anything but this document and tessellation.
+    pub fn keep_only(&mut self, document: u64, tessellation: u64) {
+        if self.of.is_some_and(|of| of != (document, tessellation)) {
+            *self = Self { generation: self.generation + 1, ..Self::default() };
+        }
+    }
+
+    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now, and if
+    /// `follows` is set also if it is seen from elsewhere. True when what is known has changed.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, document: u64) -> Result<bool, GpuError> {
+    pub fn go_on(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut Scene,
+        document: u64,
+        view: ScreenView,
+        follows: bool,
+    ) -> Result<bool, GpuError> {
         let of = Some((document, scene.tessellator.generation()));
         if self.of != of {
-            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene) };
+            *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene, view) };
+            return Ok(true);
+        }
+        if follows && self.seen_from != Some(view) {
+            // What doesn't depend on the view stays known.
+            let (found, generation) = (self.found.take(), self.generation);
+            *self = Self { of, found, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
         self.copy_on(gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok(found)) => {
+            Some(Ok((found, sizes))) => {
                 self.comparing = None;
+                self.generation += u64::from(self.found.is_none());
                 self.found = Some(found);
-                self.generation += 1;
+                self.sizes = Some(sizes);
                 Ok(true)
             }
             Some(Err(TryRecvError::Disconnected)) => {
@@ -100,44 +130,52 @@ impl Measuring {
         }
     }
 
-    fn start(gpu: &Gpu, scene: &Scene) -> Self {
-        let (parts, received) = channel();
+    /// The part of all chunks that has been copied, 0 to 1.
+    pub fn fraction(&self, chunks: usize) -> f32 {
+        let copied = self.copying.as_ref().map_or(chunks, |copying| copying.next_chunk);
+        copied as f32 / chunks.max(1) as f32
+    }
+
+    fn start(gpu: &Gpu, scene: &Scene, view: ScreenView) -> Self {
+        let (parts, received) = sync_channel(WAITING);
         let (sender, found) = channel();
         let wanted = Progress::default();
         let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
         let still_wanted = wanted.clone();
         std::thread::spawn(move || {
-            if let Some(result) = survey(&received, &mesh, &topology, &still_wanted) {
+            if let Some(result) = survey(&received, &mesh, &topology, view, &still_wanted) {
                 let _ = sender.send(result);
             }
         });
         let copying = Some(copy_factors(gpu, scene, parts));
-        Self { copying, comparing: Some(Comparing { found, wanted }), ..Self::default() }
+        let comparing = Some(Comparing { found, wanted });
+        Self { copying, comparing, seen_from: Some(view), ..Self::default() }
     }
 
     /// Sends on what has been copied, and copies the next chunk.
     fn copy_on(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<(), GpuError> {
-        let Some(copying) = &self.copying else { return Ok(()) };
-        match copying.mapped.try_recv() {
-            Err(TryRecvError::Empty) => return Ok(()),
-            Err(TryRecvError::Disconnected) => return Err(GpuError::Readback("a copy was dropped".into())),
-            Ok(Err(error)) => return Err(GpuError::Readback(error.to_string())),
-            Ok(Ok(())) => {}
+        let Some(copying) = &mut self.copying else { return Ok(()) };
+        if !copying.is_mapped {
+            match copying.mapped.try_recv() {
+                Err(TryRecvError::Empty) => return Ok(()),
+                Err(TryRecvError::Disconnected) => return Err(GpuError::Readback("a copy was dropped".into())),
+                Ok(Err(error)) => return Err(GpuError::Readback(error.to_string())),
+                Ok(Ok(())) => copying.is_mapped = true,
+            }
         }
+        if let Err(TrySendError::Full(_)) = copying.parts.try_send(Part(copying.part, copying.staging.clone())) {
+            return Ok(());
+        }
+        // The comparing thread ends early only when the measurement was replaced; without a sender it knows of the end.
         let Some(copying) = self.copying.take() else { return Ok(()) };
-        let bytes = mapped_bytes(&copying.staging)?;
-        // The comparing thread ends early only when the measurement was replaced.
-        let _ = copying.parts.send(Part::Copied(copying.part, bytes));
         if copying.next_chunk < scene.tessellator.chunk_count() {
             self.copying = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
-        } else {
-            let _ = copying.parts.send(Part::End);
         }
         Ok(())
     }
 }
 
-fn copy_factors(gpu: &Gpu, scene: &Scene, parts: Sender<Part>) -> Copying {
+fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
     let item = size_of::<PatchFactors>() as u64;
     let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, u64::from(count) * item));
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes).sum();
@@ -145,10 +183,10 @@ fn copy_factors(gpu: &Gpu, scene: &Scene, parts: Sender<Part>) -> Copying {
     let asked_bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
     let staging = copy(gpu, buffers.chain([(asked, asked_bytes)]));
     let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges };
-    Copying { mapped: map(&staging), staging, part, next_chunk: 0, parts }
+    Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: 0, parts }
 }
 
-fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: Sender<Part>) -> Copying {
+fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: SyncSender<Part>) -> Copying {
     let mut timing = Timing::Off;
     let mut recorder = Recorder::new(gpu, &mut timing);
     scene.tessellator.emit(&mut recorder, index);
@@ -158,7 +196,7 @@ fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: Sender<Part>) -
     let index_bytes = u64::from(chunk.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
     let staging = copy(gpu, [(chunk.vertices, vertex_bytes), (chunk.indices, index_bytes)].into_iter());
     let part = PartKind::Chunk { first_patch: chunk.chunk.first_patch, vertex_bytes: vertex_bytes as usize };
-    Copying { mapped: map(&staging), staging, part, next_chunk: index + 1, parts }
+    Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: index + 1, parts }
 }
 
 /// Copies the starts of buffers, one after another, where the host can read them.
@@ -184,22 +222,30 @@ fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
     mapped
 }
 
-/// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted.
-fn survey(parts: &Receiver<Part>, mesh: &Mesh, topology: &Topology, wanted: &Progress) -> Option<Measured> {
-    let Ok(Part::Copied(PartKind::Factors { patch_bytes, edges }, bytes)) = parts.recv() else { return None };
+/// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted, or the device was lost.
+fn survey(
+    parts: &Receiver<Part>,
+    mesh: &Mesh,
+    topology: &Topology,
+    view: ScreenView,
+    wanted: &Progress,
+) -> Option<(Measured, Sizes)> {
+    let Ok(Part(PartKind::Factors { patch_bytes, edges }, staging)) = parts.recv() else { return None };
+    let bytes = mapped_bytes(&staging).ok()?;
     let (factors, asked) = bytes.split_at(patch_bytes);
     let asked = AskedFactors::new(edges, bytemuck::pod_collect_to_vec(asked));
+    let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
-    loop {
+    for Part(part, staging) in parts {
         wanted.check().ok()?;
-        match parts.recv().ok()? {
-            Part::Copied(PartKind::Chunk { first_patch, vertex_bytes }, bytes) => {
-                let (vertices, indices) = bytes.split_at(vertex_bytes);
-                let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
-                survey.take(first_patch, &vertices, &bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
-            }
-            Part::Copied(PartKind::Factors { .. }, _) | Part::End => break,
-        }
+        let PartKind::Chunk { first_patch, vertex_bytes } = part else { continue };
+        let bytes = mapped_bytes(&staging).ok()?;
+        let (vertices, indices) = bytes.split_at(vertex_bytes);
+        let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
+        let triangles = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
+        survey.take(first_patch, &vertices, &triangles);
+        sizes.take(&vertices, &triangles);
     }
-    Some(survey.finish())
+    wanted.check().ok()?;
+    Some((survey.finish(), sizes))
 }

@@ -13,7 +13,7 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 26] = [
+pub const KEYS: [(&str, &str); 30] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -25,12 +25,16 @@ pub const KEYS: [(&str, &str); 26] = [
     ("+, -", "tessellation factor up or down by 1"),
     ("W", "wireframe"),
     ("P", "patch borders"),
-    ("B", "barycentric colours"),
+    ("B", "colours: barycentric"),
     ("A", "adjacency edges"),
     ("C", "cracks"),
     ("O", "folds"),
     ("T", "T-junctions"),
     ("K", "back faces"),
+    ("H", "colours: factors"),
+    ("X", "colours: triangle size"),
+    ("U", "colours: factors below 2"),
+    ("N", "normals"),
     ("S", "split view"),
     ("E", "edges as published, or computed once"),
     ("L", "adaptive LOD"),
@@ -47,6 +51,8 @@ pub fn style(context: &egui::Context) {
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.slider_width = 86.0;
+        // Beside it a number as wide as the rest of a combo box.
+        style.spacing.interact_size.x = 54.0;
         // Beside what scrolls, not over it.
         style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style.spacing.combo_width = 148.0;
@@ -217,12 +223,10 @@ impl App {
     }
 
     fn overlay_keys(&mut self, context: &egui::Context) {
-        for (key, overlay) in
-            [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T, Key::K].into_iter().zip(Overlay::ALL)
-        {
+        let keys = [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T, Key::K, Key::H, Key::X, Key::U, Key::N];
+        for (key, overlay) in keys.into_iter().zip(Overlay::ALL) {
             if pressed(context, key) {
-                let switch = self.settings.overlays.get_mut(overlay);
-                *switch = !*switch;
+                self.settings.overlays.toggle(overlay);
             }
         }
         if pressed(context, Key::S) {

@@ -4,6 +4,7 @@ mod checks;
 mod document;
 mod facts;
 mod labels;
+mod legend;
 mod measuring;
 mod menu;
 mod names;
@@ -23,11 +24,11 @@ use thiserror::Error;
 
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError, device_descriptor};
-use crate::measure::Cracks;
+use crate::measure::{Cracks, Sizes};
 use crate::mesh::Source;
 use crate::render::Camera;
-use crate::settings::Settings;
-use crate::tessellate::LodView;
+use crate::settings::{Overlays, Settings};
+use crate::tessellate::{Clip, Lod, LodView, Partitioning};
 
 use document::{Document, Load};
 use measuring::Measuring;
@@ -109,6 +110,18 @@ pub struct App {
     error: Option<String>,
 }
 
+/// What the window opens with: no more than the picture needs, and its triangles.
+fn first_settings() -> Settings {
+    Settings {
+        lod: Lod::Error,
+        partitioning: Partitioning::Integer,
+        clip: Clip::Frustum,
+        cull_back_faces: true,
+        overlays: Overlays { wireframe: true, ..Overlays::default() },
+        ..Settings::default()
+    }
+}
+
 impl App {
     /// # Errors
     /// The window isn't drawn through wgpu.
@@ -121,7 +134,7 @@ impl App {
             viewport: Viewport::new(&engine),
             engine,
             render_state,
-            settings: Settings::default(),
+            settings: first_settings(),
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             last_split: 0.5,
             frozen: None,
@@ -136,7 +149,6 @@ impl App {
             shows_keys: false,
             error: None,
         };
-        app.settings.overlays.wireframe = true;
         app.open(&context.egui_ctx, source.unwrap_or_default());
         Ok(app)
     }
@@ -174,6 +186,12 @@ impl App {
     /// Cracks of what is shown, once they are measured.
     pub fn cracks(&self) -> Option<&Cracks> {
         self.measuring.cracks()
+    }
+
+    /// Sizes of the triangles shown, if they were measured from where one looks.
+    pub fn sizes_shown(&self) -> Option<&Sizes> {
+        let seen_from = self.viewport.seen_from()?;
+        self.measuring.sizes().filter(|sizes| sizes.view == seen_from)
     }
 
     /// The edge that is looked at.

@@ -3,7 +3,9 @@
 use super::App;
 use super::text::short;
 use super::widgets::{chooser, heading};
-use crate::settings::{DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
+use crate::settings::{
+    Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+};
 use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Name and explanation of each surface, partitioning and overlay.
@@ -94,14 +96,35 @@ const CLIPS: [(Clip, &str, &str); 3] = [
          patches that cross the view (McDonald and Kilgard 2010).",
     ),
 ];
+const COLORS: [(Colors, &str, &str); 5] = [
+    (Colors::Material, "Material", "The mesh's own."),
+    (
+        Colors::Barycentric,
+        "Barycentric",
+        "Domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2 (B).",
+    ),
+    (
+        Colors::Factors,
+        "Factors",
+        "Tessellation factors after clamping and rounding: inside each patch its inside factor, and along each edge that \
+         edge's (H).",
+    ),
+    (
+        Colors::TriangleSize,
+        "Triangle size",
+        "How large triangles are on screen: the side, in px, of the square that has twice the triangle's area. Those below \
+         3 px, of which a GPU shades up to four times as many px as it shows, stand out (X).",
+    ),
+    (
+        Colors::LowFactors,
+        "Factors below 2",
+        "Patches whose factors are all below 2, edges and inside: drawing them untessellated would hardly show, and cost \
+         less (U).",
+    ),
+];
 const OVERLAYS: [(Overlay, &str, &str); 8] = [
     (Overlay::Wireframe, "Wireframe", "Edges of the tessellated triangles (W)."),
     (Overlay::Patches, "Patch borders", "Borders of the input triangles (P)."),
-    (
-        Overlay::Barycentric,
-        "Barycentric colours",
-        "Domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2 (B).",
-    ),
     (Overlay::Adjacency, "Adjacency edges", "Borders of the input triangles, coloured by the kind of edge (A)."),
     (Overlay::Cracks, "Cracks", "Edges whose sides put a point at different positions, faint behind the surface (C)."),
     (Overlay::Folds, "Folds", "Triangles that face away from the side that their patch faces (O)."),
@@ -111,7 +134,14 @@ const OVERLAYS: [(Overlay, &str, &str); 8] = [
         "Open edges that another triangle's point lies on, faint behind the surface (T).",
     ),
     (Overlay::BackFaces, "Back faces", "Faces seen from behind: open meshes, and triangles wound the other way (K)."),
+    (
+        Overlay::Normals,
+        "Normals",
+        "Normals of emitted vertices, 18 px long across the view, faint behind the surface. Where vertices are many, only as \
+         many as leave about 24 px between them (N).",
+    ),
 ];
+
 impl App {
     pub(super) fn settings_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -122,8 +152,14 @@ impl App {
             heading(ui, "Mesh");
             egui::Grid::new("weld").num_columns(2).min_col_width(84.0).show(ui, |ui| self.weld_row(ui));
             heading(ui, "Overlays");
+            let overlays = &mut self.settings.overlays;
+            egui::Grid::new("colors").num_columns(2).min_col_width(84.0).show(ui, |ui| {
+                chooser(ui, "Colours", "What the surface's colours mean.", &mut overlays.colors, &COLORS);
+            });
             for (overlay, name, hover) in OVERLAYS {
-                ui.checkbox(self.settings.overlays.get_mut(overlay), name).on_hover_text(hover);
+                if let Control::Switch(switch) = overlays.control(overlay) {
+                    ui.checkbox(switch, name).on_hover_text(hover);
+                }
             }
             heading(ui, "View");
             self.view_rows(ui);
@@ -159,11 +195,26 @@ impl App {
             ui.end_row();
             chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
         });
+        self.back_face_row(ui);
         let mut frozen = self.frozen.is_some();
         let hover = "LOD and clipping stay as they are for the camera of now, while you look from elsewhere (Z).";
         if ui.checkbox(&mut frozen, "Freeze LOD camera").on_hover_text(hover).changed() {
             self.toggle_frozen();
         }
+    }
+
+    fn back_face_row(&mut self, ui: &mut egui::Ui) {
+        let scene = self.document.as_ref().map(|document| &document.scene);
+        let is_solid = scene.is_some_and(|scene| scene.tessellator.is_solid());
+        let check = egui::Checkbox::new(&mut self.settings.cull_back_faces, "Cull back faces");
+        ui.add_enabled(is_solid, check)
+            .on_hover_text(
+                "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not while \
+                 the near plane cuts the mesh, nor where PN or edges as published tear it.",
+            )
+            .on_disabled_hover_text(
+                "Backs of this mesh can be seen: it is open, a part of it is wound inward, or a material is double-sided.",
+            );
     }
 
     /// The tolerances, each with what it would join; another one loads the mesh again.

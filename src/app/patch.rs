@@ -15,8 +15,8 @@ use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
 use crate::tessellate::{
-    Convention, FACTOR_ODD, FIXED_ONE, Lod, PatchFactors, Vertex, domain_side, domain_triangle, factor_side,
-    point_count, segments, triangle_count, weight_corner,
+    Convention, FACING_AWAY, FACTOR_ODD, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_side,
+    domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
 };
 
 /// What was asked for in the section.
@@ -155,7 +155,7 @@ impl Shown<'_> {
     /// Three columns; dots until they are known.
     fn factor_numbers(&self, asked: Option<f32>, word: Option<u32>, cut: Option<u32>) -> String {
         match (asked, word, cut) {
-            _ if self.factors.is_some_and(patch_is_culled) => format!("{:>22}", "clipped"),
+            _ if self.factors.is_some_and(patch_is_culled) => format!("{:>22}", "culled"),
             (Some(asked), Some(word), Some(cut)) => {
                 format!("{:>8}{:>8}{cut:>6}", factor(f64::from(asked), 3), factor(used(word), 3))
             }
@@ -174,13 +174,20 @@ impl Shown<'_> {
             "Domain points and triangles that the tessellator makes of the factors.",
         );
         let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
-        pattern_plot(ui, self.factors, self.hit.map(|hit| hit.number), letters);
+        let empty = match self.factors {
+            None => "measuring…",
+            Some(PatchFactors { inside: OUT_OF_VIEW, .. }) => "out of view: nothing is emitted",
+            Some(PatchFactors { inside: FACING_AWAY, .. }) => "facing away: nothing is emitted",
+            Some(_) => "culled by a factor: nothing is emitted",
+        };
+        pattern_plot(ui, self.factors, self.hit.map(|hit| hit.number), letters, empty);
     }
 
     /// Every edge: its kind, and the triangles across it.
     fn edge_rows(&self, ui: &mut Ui, wish: &mut Option<Wish>) {
         title(ui, "Edges of the patch", "From corner to corner; a click selects one.");
-        let grid = egui::Grid::new("patch edges").num_columns(4).min_row_height(0.0).spacing([8.0, 3.0]);
+        let grid =
+            egui::Grid::new("patch edges").num_columns(4).min_col_width(14.0).min_row_height(0.0).spacing([8.0, 3.0]);
         grid.show(ui, |ui| {
             for text in ["", "edge", "kind", "neighbour"] {
                 ui.weak(text);
@@ -238,7 +245,7 @@ impl Shown<'_> {
         title(ui, "Adjacency indices", hover);
         let twelve = adjacency::twelve(self.topology, self.patch);
         let row = |name: &str, indices: &[u32]| {
-            format!("{name:<10}{}", indices.iter().map(|index| format!("{index:>7}")).collect::<String>())
+            format!("{name:<10}{}", indices.iter().map(|index| format!("{index:>8}")).collect::<String>())
         };
         ui.label(dense(row("corners", &twelve[..3]))).on_hover_text("The triangle's own corners 0, 1, 2.");
         for k in 0..3_usize {

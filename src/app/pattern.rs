@@ -22,8 +22,14 @@ pub fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
 }
 
 /// Draws the pattern, or an empty one until the factors are known. `letters` are written where u, v and w are 1; triangle
-/// `hit` is filled.
-pub fn pattern_plot(ui: &mut Ui, factors: Option<PatchFactors>, hit: Option<u32>, letters: [String; 3]) -> Response {
+/// `hit` is filled; `empty` is said where there are no points.
+pub fn pattern_plot(
+    ui: &mut Ui,
+    factors: Option<PatchFactors>,
+    hit: Option<u32>,
+    letters: [String; 3],
+    empty: &str,
+) -> Response {
     let (rect, response) = ui.allocate_exact_size(SIZE, Sense::hover());
     let points: Vec<Pos2> = factors.map_or_else(Vec::new, |factors| {
         (0..point_count(factors)).map(|i| place(rect, domain_point(factors, i))).collect()
@@ -34,17 +40,14 @@ pub fn pattern_plot(ui: &mut Ui, factors: Option<PatchFactors>, hit: Option<u32>
     draw_outline(ui, rect, letters);
     let named = match factors {
         None => "Domain pattern, measuring".to_owned(),
+        Some(_) if points.is_empty() => format!("Domain pattern, {empty}"),
         Some(factors) => format!("Domain pattern, {} points, {} triangles", points.len(), triangle_count(factors)),
     };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &named));
-    let Some(factors) = factors else {
-        text(ui, rect.center(), "measuring…", ui.visuals().weak_text_color());
+    let (Some(factors), false) = (factors, points.is_empty()) else {
+        text(ui, rect.center(), empty, ui.visuals().weak_text_color());
         return response;
     };
-    if points.is_empty() {
-        text(ui, rect.center(), "clipped: nothing is emitted", ui.visuals().weak_text_color());
-        return response;
-    }
     draw_points(ui, &points);
     hover(ui, response, factors, &points)
 }

@@ -22,13 +22,13 @@ impl App {
                 |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
             );
             let patches = document.loaded.topology.patches.len() as u64;
-            let drawn = patches - u64::from(self.measuring.found().map_or(0, |found| found.patches_culled));
+            let drawn = patches - u64::from(self.measuring.found().map_or(0, |found| found.culled.total()));
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             status(
                 ui,
                 120.0,
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
-                "Patches drawn, of all; the rest is clipped.",
+                "Patches drawn, of all; the rest is out of view or faces away.",
             );
             status(
                 ui,
@@ -65,9 +65,11 @@ impl App {
     /// Tessellation and drawing, by the last run of each pass and the GPU's own clock; or else the last whole picture.
     fn times(&self) -> (String, String) {
         let times = &self.viewport.times;
-        let Some(draw) = times.iter().find(|time| time.pass == "draw") else {
+        let draw = times.iter().find(|time| time.pass == "draw" && self.viewport.pass_times_hold);
+        let Some(draw) = draw else {
             let ms = self.viewport.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
-            let why = "From submitting the last picture to its completion; this adapter can't time single passes.";
+            let why = "From submitting the last picture to its completion: this adapter can't time single passes, or the \
+                       picture was drawn in several steps.";
             return (ms, why.into());
         };
         let all: f64 = times.iter().map(|time| time.ms).sum();
@@ -81,7 +83,12 @@ impl App {
         const WIDTH: f32 = 150.0;
         let hover = "Edges whose sides differ, and the largest gap on screen.";
         match self.measuring.cracks() {
-            None => status(ui, WIDTH, "cracks …", hover),
+            None => {
+                let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
+                let percent = 100.0 * self.measuring.fraction(chunks);
+                let text = if chunks > 1 { format!("cracks … {percent:.0} %") } else { "cracks …".into() };
+                status(ui, WIDTH, text, hover);
+            }
             Some(cracks) if cracks.edges.is_empty() => status(ui, WIDTH, "cracks 0", hover),
             Some(cracks) => {
                 let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.gap_px(cracks)));

@@ -13,6 +13,12 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
+/// A number and its share of all.
+pub fn part(number: u64, all: u64) -> String {
+    let percent = 100.0 * number as f64 / all.max(1) as f64;
+    format!("{} ({percent:.1} %)", grouped(number))
+}
+
 /// Bytes in MiB.
 pub fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
@@ -43,6 +49,7 @@ mod tests {
     #[test]
     fn numbers_read_well() {
         assert_eq!([grouped(0), grouped(999), grouped(31600), grouped(1234567)], ["0", "999", "31,600", "1,234,567"]);
+        assert_eq!([part(1234, 10000), part(0, 0)], ["1,234 (12.3 %)", "0 (0.0 %)"]);
         assert_eq!([short(0.0), short(0.0123456), short(1.5), short(1234.5)], ["0", "0.0123", "1.50", "1234"]);
         assert_eq!([short(1.25e-7), short(123456.0)], ["1.25e-7", "1.23e5"]);
         assert_eq!([factor(7.3125, 2), factor(64.0, 3), factor(1.5e9, 2)], ["7.31", "64.000", "1.50e9"]);

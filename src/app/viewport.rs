@@ -7,13 +7,15 @@ use std::time::Instant;
 use egui::{Key, PointerButton, Sense};
 use glam::{Mat4, Vec2, vec2};
 
+use super::legend::legend;
 use super::pick::Outlined;
+use super::text::grouped;
 use super::{App, Document};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
-use crate::measure::{CrackedEdge, Cracks};
-use crate::render::{Camera, Pixel, Target, t_junction_lines};
-use crate::settings::Settings;
+use crate::measure::{CrackedEdge, Cracks, ScreenView};
+use crate::render::{Camera, Pixel, Renderer, Target, t_junction_lines};
+use crate::settings::{Colors, Settings};
 use crate::tessellate::{Inputs, LodView};
 
 /// Degrees that the camera turns for a point of dragging, and for a press of an arrow key.
@@ -50,20 +52,39 @@ pub struct Marked {
     generation: u64,
 }
 
+/// A picture under way: one step a submission, so that the window goes on beside it.
+struct Drawing {
+    wanted: Wanted,
+    start: Instant,
+    /// Steps that the device has been given, of all.
+    given: usize,
+    steps: usize,
+}
+
+/// Pictures of up to so many steps are finished also if something newer is wanted.
+const SHORT: usize = 8;
+
 /// The picture and what it cost.
 pub struct Viewport {
     target: Option<(Target, egui::TextureId)>,
     drawn: Option<Wanted>,
     /// What the device counts for: it is drawn before anything newer, so that a long drag shows pictures.
     counting: Option<Wanted>,
+    /// The picture that is being drawn, step by step.
+    drawing: Option<Drawing>,
+    /// What the person in front of the window doesn't want to wait for.
+    cancelled: Option<Wanted>,
     /// Whether the picture shown is not the one wanted.
     outdated: bool,
     timing: Timing,
     /// The last run of each pass, where the GPU's clock can be trusted.
     pub times: Vec<PassTime>,
+    /// Whether those make up the last picture, which was drawn in one step.
+    pub pass_times_hold: bool,
     /// From submitting the last picture to its completion, in ms.
     pub picture_ms: Option<f64>,
-    in_flight: Option<(Instant, Arc<AtomicBool>)>,
+    /// Whether the device has finished what it was last given.
+    in_flight: Option<Arc<AtomicBool>>,
     pictures: u64,
 }
 
@@ -78,9 +99,12 @@ impl Viewport {
             target: None,
             drawn: None,
             counting: None,
+            drawing: None,
+            cancelled: None,
             outdated: false,
             timing,
             times: Vec::new(),
+            pass_times_hold: false,
             picture_ms: None,
             in_flight: None,
             pictures: 0,
@@ -93,7 +117,7 @@ impl Viewport {
 
     /// Whether the picture shown is not the one wanted, or not complete.
     pub fn is_busy(&self) -> bool {
-        self.outdated || self.in_flight.is_some()
+        self.outdated || self.in_flight.is_some() || self.counting.is_some()
     }
 
     /// Width and height of the viewport, in px.
@@ -123,9 +147,10 @@ impl Viewport {
         Some(Pixel { clip_from_object, size, at, split: settings.split })
     }
 
-    /// How the last picture shows object units, and its size in px.
-    pub fn projection(&self) -> Option<(Mat4, Vec2)> {
-        self.drawn.as_ref().map(|drawn| (drawn.clip_from_object, drawn.viewport))
+    /// Where the picture that is shown was seen from.
+    pub fn seen_from(&self) -> Option<ScreenView> {
+        let Wanted { clip_from_object, viewport, .. } = self.drawn?;
+        Some(ScreenView { clip_from_object, viewport })
     }
 
     /// Bytes of the textures drawn into.
@@ -135,11 +160,14 @@ impl Viewport {
 
     /// Looks whether the picture in flight has landed, and takes the times that have come in.
     fn land(&mut self, engine: &Engine) {
-        if let Some((start, done)) = &self.in_flight
-            && done.load(Ordering::Acquire)
-        {
-            self.picture_ms = Some(start.elapsed().as_secs_f64() * 1e3);
+        if self.in_flight.as_ref().is_some_and(|done| done.load(Ordering::Acquire)) {
             self.in_flight = None;
+            if let Some(drawing) = self.drawing.take_if(|drawing| drawing.given == drawing.steps) {
+                self.picture_ms = Some(drawing.start.elapsed().as_secs_f64() * 1e3);
+                self.pass_times_hold = drawing.steps == 1;
+                self.drawn = Some(drawing.wanted);
+                self.pictures += 1;
+            }
         }
         for time in take_times(&engine.gpu, &mut self.timing) {
             match self.times.iter_mut().find(|known| known.pass == time.pass) {
@@ -166,19 +194,26 @@ impl Viewport {
         };
         self.target = Some((target, id));
         self.drawn = None;
+        self.drawing = None;
         Ok(())
     }
 
-    /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then the
-    /// last picture stays.
+    /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and
+    /// until all steps are drawn, the last picture stays.
     fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
         let tessellator = &mut document.scene.tessellator;
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
-        let wanted = match self.counting {
-            Some(counting) => counting,
-            None => *wanted,
+        let mut keeps_on = |drawing: &mut Drawing| {
+            drawing.wanted == *wanted || (drawing.steps <= SHORT && drawing.wanted.document == document.generation)
         };
-        if self.counting.is_none() {
+        self.drawing = self.drawing.take_if(&mut keeps_on);
+        self.cancelled = self.cancelled.filter(|cancelled| cancelled == wanted);
+        let under_way = self.drawing.as_ref().map(|drawing| drawing.wanted).or(self.counting);
+        let wanted = under_way.unwrap_or(*wanted);
+        if self.cancelled.is_some() {
+            return Ok(());
+        }
+        if under_way.is_none() {
             tessellator.set(&wanted.inputs)?;
         }
         if tessellator.needs_count() {
@@ -196,15 +231,24 @@ impl Viewport {
         if self.drawn == Some(wanted) {
             return Ok(());
         }
+        let scene = &mut document.scene;
+        let steps = Renderer::step_count(scene, &wanted.settings);
+        let start = || Drawing { wanted, start: Instant::now(), given: 0, steps };
+        let drawing = self.drawing.get_or_insert_with(start);
+        let next = drawing.given..drawing.given + 1;
+        drawing.given = next.end;
         let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
-        engine.renderer.draw(&mut recorder, &mut document.scene, target, &wanted.camera, &wanted.settings);
+        engine.renderer.draw_steps(&mut recorder, scene, target, &wanted.camera, &wanted.settings, next);
         let done = Arc::new(AtomicBool::new(false));
-        self.in_flight = Some((Instant::now(), done.clone()));
+        self.in_flight = Some(done.clone());
         recorder.submit();
         engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
-        self.drawn = Some(wanted);
-        self.pictures += 1;
         Ok(())
+    }
+
+    /// Leaves the picture under way as it is: the last one stays until something else is wanted.
+    fn cancel(&mut self) {
+        self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);
     }
 }
 
@@ -228,6 +272,7 @@ impl App {
         self.patch_labels(ui, rect);
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
+        legend(ui, rect, self.settings.overlays.colors);
     }
 
     /// Lets everything beside the window go on, and draws what is wanted.
@@ -251,10 +296,13 @@ impl App {
             viewport,
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
+        self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
         let shown = self.viewport.drawn.as_ref() == Some(&wanted);
-        self.viewport.outdated = !shown;
+        self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
         if shown && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
-            self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation)?;
+            let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
+            let follows = self.settings.overlays.colors == Colors::TriangleSize;
+            self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
         }
         if self.pick()? || self.is_busy() {
             context.request_repaint();
@@ -357,6 +405,12 @@ impl App {
         note(ui, egui::pos2(at + 8.0, rect.top() + 8.0), egui::Align2::LEFT_TOP, "tessellated");
     }
 
+    /// How many triangles what is wanted has.
+    fn triangles(&self) -> String {
+        let triangles = self.document.as_ref().map_or(0, |document| document.scene.tessellator.totals().1);
+        format!("{} triangles", grouped(triangles))
+    }
+
     /// What the picture alone doesn't say: loading, freezing.
     fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         if self.frozen.is_some() {
@@ -369,22 +423,48 @@ impl App {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(load) = &self.load {
-            let (title, fraction) = (load.source.title(), load.progress.fraction());
-            let area = egui::Rect::from_center_size(rect.center(), egui::vec2(280.0, 84.0));
-            let mut cancelled = false;
-            ui.scope_builder(egui::UiBuilder::new().max_rect(area), |ui| {
-                egui::Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.label(format!("Loading {title}"));
-                    ui.add(egui::ProgressBar::new(fraction).desired_width(260.0));
-                    cancelled = ui.button("Cancel").on_hover_text("Stops loading; what is open stays open").clicked();
-                });
-            });
-            if cancelled {
+            let title = format!("Loading {}", load.source.title());
+            let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what is open stays open.");
+            if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if self.viewport.cancelled.is_some() {
+            let hover = "Draws with these settings after all. Any other change draws too.";
+            if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
+                self.viewport.cancelled = None;
+                ui.ctx().request_repaint();
+            }
+        } else if let Some(drawing) = self.viewport.drawing.as_ref().filter(|drawing| drawing.steps > SHORT) {
+            let done = Some(drawing.given as f32 / drawing.steps as f32);
+            let hover = "Leaves the last picture as it is, and every setting too.";
+            if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", hover)) {
+                self.viewport.cancel();
+            }
         }
     }
+}
+
+/// What takes long and the part of it that is done, in the middle of the picture, and a button with its explanation. True
+/// when that is pressed.
+fn progress(
+    ui: &mut egui::Ui,
+    rect: egui::Rect,
+    title: &str,
+    done: Option<f32>,
+    (button, hover): (&str, &str),
+) -> bool {
+    let area = egui::Rect::from_center_size(rect.center(), egui::vec2(280.0, 84.0));
+    let show = |ui: &mut egui::Ui| {
+        ui.set_min_width(260.0);
+        ui.label(title);
+        if let Some(done) = done {
+            ui.add(egui::ProgressBar::new(done).desired_width(260.0));
+        }
+        ui.button(button).on_hover_text(hover).clicked()
+    };
+    let popup = |ui: &mut egui::Ui| egui::Frame::popup(ui.style()).show(ui, show).inner;
+    ui.scope_builder(egui::UiBuilder::new().max_rect(area), popup).inner
 }
 
 /// A short text over the picture, legible on any of it.

@@ -46,6 +46,9 @@ pub struct SurfaceOptions {
     /// plane of the view on its own
     #[arg(long, value_enum, default_value_t = Settings::default().clip)]
     pub clip: Clip,
+    /// Leave out patches that show their backs only, if the mesh is closed, wound outward and single-sided
+    #[arg(long)]
+    pub cull_back_faces: bool,
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: Option<u64>,
@@ -89,7 +92,7 @@ impl SurfaceOptions {
 
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
+        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, cull_back_faces, .. } = *self;
         let Distances { near, far } = self.distances;
         Settings {
             surface,
@@ -102,6 +105,7 @@ impl SurfaceOptions {
             near,
             far,
             clip,
+            cull_back_faces,
             ..Settings::default()
         }
     }

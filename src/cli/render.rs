@@ -8,10 +8,10 @@ use serde::Serialize;
 use super::{CliError, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
-use crate::measure::{Measured, compare, patch_edges, ulp};
+use crate::measure::{Measured, ScreenView, compare, patch_edges, ulp};
 use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
 use crate::render::{Camera, Scene, Target, convention, patch_lines, t_junction_lines};
-use crate::settings::{Overlay, Settings};
+use crate::settings::{Overlay, Overlays, Settings};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -69,19 +69,18 @@ impl Args {
         }
     }
 
-    /// The settings of a surface, with what is drawn over it.
-    fn settings(&self, surface: Settings) -> Settings {
-        Settings {
-            overlays: self.overlay.iter().copied().collect(),
-            split: self.split,
-            background: self.background,
-            ..surface
-        }
+    /// # Errors
+    /// Two overlays colour the surface.
+    fn overlays(&self) -> Result<Overlays, CliError> {
+        Overlays::of(&self.overlay).ok_or(CliError::Usage(
+            "--overlay takes one of barycentric, factors, triangle-size and low-factors: each colours the whole surface",
+        ))
     }
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
+    let overlays = args.overlays()?;
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file, args.surface.weld)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
@@ -94,7 +93,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
         Ok(scene.tessellator.totals().1)
     })?;
-    let settings = args.settings(surface);
+    let settings = Settings { overlays, split: args.split, background: args.background, ..surface };
 
     let inputs = settings.inputs(view);
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
@@ -127,7 +126,12 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         let leaks = engine.leaks(&mut scene, &measured, target.size, &camera)?;
         let max_error_px = deviation.map(|worst| worst.px);
         let factors_capped = engine.asked_factors(&scene)?.beyond(settings.partitioning);
+        let viewport = target.viewport();
+        let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
+        let sizes = engine.sizes(&mut scene, ScreenView { clip_from_object, viewport })?;
         let stats = Stats {
+            triangles_in_view: sizes.in_view,
+            triangles_below_3_px: sizes.small,
             leaks,
             max_error_px,
             factors_capped,
@@ -200,12 +204,22 @@ struct Stats {
     edges: EdgeCounts,
     degenerate: u32,
     patches: u64,
+    /// For whatever reason.
     patches_culled: u32,
+    patches_out_of_view: u32,
+    patches_facing_away: u32,
+    /// Patches drawn with factors that are all below 2, edges and inside.
+    patches_below_factor_2: u32,
     triangles_out: u64,
+    /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
+    triangles_in_view: u64,
+    /// Those of them that are half of squares with sides of less than 3 px.
+    triangles_below_3_px: u64,
     vertices_out: u64,
     bytes: Bytes,
     cracks: CrackStats,
-    /// Px through which one looks into the mesh; none if it is open, or reaches the near plane.
+    /// Px through which one looks into the mesh; none if it is open, reaches the near plane, or patches that face away were
+    /// left out.
     leaks: Option<u64>,
     /// Triangles that face away from the side that their patch faces.
     folds: u64,
@@ -269,8 +283,13 @@ impl Stats {
             edges: topology.edge_counts(),
             degenerate: topology.degenerate,
             patches: topology.patches.len() as u64,
-            patches_culled: measured.patches_culled,
+            patches_culled: measured.culled.total(),
+            patches_out_of_view: measured.culled.out_of_view,
+            patches_facing_away: measured.culled.facing_away,
+            patches_below_factor_2: measured.patches_low,
             triangles_out,
+            triangles_in_view: 0,
+            triangles_below_3_px: 0,
             vertices_out,
             bytes: Bytes {
                 input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,

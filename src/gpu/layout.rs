@@ -37,7 +37,9 @@ pub struct Params {
     /// Bounding radii.
     pub near: f32,
     pub far: f32,
-    pub _pad: [f32; 2],
+    /// 1 where patches that face away are left out.
+    pub culls_back: u32,
+    pub _pad: f32,
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

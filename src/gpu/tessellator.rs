@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 
+use glam::Mat4;
+
 use super::arena::Arena;
 use super::layout::{Chunk, DrawArgs, EmitArgs, LodView, Params};
 use super::pipelines::bind_group;
@@ -10,7 +12,7 @@ use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
 use crate::mesh::{Mesh, Sharing, Topology};
-use crate::tessellate::{Clip, Edges, Inputs, Lod, sharing};
+use crate::tessellate::{self, Clip, Edges, Inputs, Lod, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -21,7 +23,9 @@ pub struct Tessellator {
     pipelines: Arc<ComputePipelines>,
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
+    solid: Option<Solid>,
     buffers: MeshBuffers,
+    inputs: Option<Inputs>,
     params: Params,
     params_buffer: wgpu::Buffer,
     arena: Arena,
@@ -53,6 +57,8 @@ pub struct ChunkBuffers<'a> {
     /// The factors of the slab's patches, the first of which is `first_patch`.
     pub patch_factors: &'a wgpu::Buffer,
     pub first_patch: u32,
+    /// The slab itself: a [`super::layout::Slab`].
+    pub slab: &'a wgpu::Buffer,
 }
 
 impl Tessellator {
@@ -79,9 +85,11 @@ impl Tessellator {
         Ok(Self {
             gpu: gpu.clone(),
             pipelines,
+            solid: Solid::find(&mesh, &topology),
             mesh,
             topology,
             buffers,
+            inputs: None,
             params,
             params_buffer,
             arena,
@@ -108,6 +116,7 @@ impl Tessellator {
             self.nets_done = None;
             self.slabs.iter_mut().for_each(|slab| slab.groups = None);
         }
+        self.inputs = Some(*inputs);
         let params = self.params_of(inputs);
         if params != self.params || self.nets_done.is_none() {
             self.params = params;
@@ -130,7 +139,8 @@ impl Tessellator {
         let (adaptive, by_error) = (inputs.lod != Lod::Uniform, inputs.lod == Lod::Error);
         let by_distance = inputs.lod == Lod::Distance;
         let by_length = matches!(inputs.lod, Lod::Paper | Lod::EdgeLength);
-        let looks = adaptive || inputs.clip != Clip::Off;
+        let culls_back = inputs.cull_back_faces && self.solid.is_some_and(|solid| solid.hides_backs(inputs));
+        let looks = adaptive || inputs.clip != Clip::Off || culls_back;
         let view = LodView {
             clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
             half_viewport: inputs.view.half_viewport.to_array(),
@@ -154,8 +164,23 @@ impl Tessellator {
             tolerance: if by_error { inputs.tolerance } else { 0.0 },
             near: if by_distance { inputs.near } else { 0.0 },
             far: if by_distance { inputs.far } else { 0.0 },
-            _pad: [0.0; 2],
+            culls_back: u32::from(culls_back),
+            _pad: 0.0,
         }
+    }
+
+    /// Whether patches that face away can be left out of this mesh at all.
+    pub fn is_solid(&self) -> bool {
+        self.solid.is_some()
+    }
+
+    /// Whether all that is seen in this view is the front of something: so of a solid whose surface nothing tears, as long
+    /// as nothing was left out for another view.
+    pub fn shows_fronts_only(&self, clip_from_object: Mat4) -> bool {
+        let (Some(solid), Some(inputs)) = (self.solid, self.inputs) else { return false };
+        let leaves_out = inputs.cull_back_faces || inputs.clip != Clip::Off;
+        let seen = Inputs { view: tessellate::LodView { clip_from_object, ..inputs.view }, ..inputs };
+        (!leaves_out || inputs.view.clip_from_object == clip_from_object) && solid.hides_backs(&seen)
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -344,6 +369,7 @@ impl Tessellator {
             draw_args_offset: u64::from(chunk_index) * row,
             patch_factors: &slab.patch_factors,
             first_patch: slab.slab.first_patch,
+            slab: &slab.slab_buffer,
         }
     }
 

@@ -6,6 +6,7 @@ mod deviation;
 mod folds;
 mod picture;
 mod rims;
+mod sizes;
 mod survey;
 mod sweep;
 
@@ -14,5 +15,6 @@ pub use cracks::{CrackedEdge, Cracks, ulp};
 pub use deviation::{Deviant, Deviation};
 pub use picture::{CompareError, Comparison, compare};
 pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims, patch_edges};
-pub use survey::{Measured, Survey};
+pub use sizes::{SMALL_PX, ScreenView, Sizes};
+pub use survey::{Culled, Measured, Survey};
 pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};

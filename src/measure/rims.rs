@@ -4,7 +4,8 @@ use glam::Vec3;
 
 use crate::mesh::{Side, Topology};
 use crate::tessellate::{
-    Convention, Edges, Partitioning, PatchFactors, Vertex, domain_side, outer_count, point_count, segments,
+    Convention, Edges, Partitioning, PatchFactors, Vertex, domain_side, outer_count, patch_is_low, point_count,
+    segments,
 };
 
 /// A vertex on a patch's outline.
@@ -124,9 +125,9 @@ impl Rims {
         }
     }
 
-    /// How many patches emit nothing.
-    pub fn culled(&self) -> u32 {
-        self.starts.windows(2).filter(|ring| ring[0] == ring[1]).count() as u32
+    /// How many patches are drawn with factors that are all below 2.
+    pub fn low(&self) -> u32 {
+        self.factors.iter().filter(|&&factors| patch_is_low(factors)).count() as u32
     }
 
     /// What the sides of an edge (an index into [`Topology::edges`]) have made of it. Patches that emit nothing are left

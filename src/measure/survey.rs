@@ -8,23 +8,53 @@ use super::rims::{AskedFactors, Rims};
 use crate::mesh::{Mesh, Topology};
 use crate::render::LineSegment;
 use crate::render::layout::CRACK_COLOR;
-use crate::tessellate::{PatchFactors, Tessellated, Vertex};
+use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, Vertex, patch_is_culled};
 
 /// What has been seen so far.
 pub struct Survey<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     ulp: f64,
+    culled: Culled,
     rims: Rims,
     folds: u64,
     not_finite: u64,
     extent: [Vec3; 2],
 }
 
+/// How many patches emitted nothing, and why.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Culled {
+    pub out_of_view: u32,
+    pub facing_away: u32,
+    /// A factor was not greater than zero.
+    pub by_factors: u32,
+}
+
+impl Culled {
+    fn of(factors: &[PatchFactors]) -> Self {
+        let mut culled = Self::default();
+        for patch in factors.iter().filter(|patch| patch_is_culled(**patch)) {
+            *match patch.inside {
+                OUT_OF_VIEW => &mut culled.out_of_view,
+                FACING_AWAY => &mut culled.facing_away,
+                _ => &mut culled.by_factors,
+            } += 1;
+        }
+        culled
+    }
+
+    pub fn total(&self) -> u32 {
+        self.out_of_view + self.facing_away + self.by_factors
+    }
+}
+
 /// What was emitted, measured.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    pub patches_culled: u32,
+    pub culled: Culled,
+    /// Patches drawn with factors that are all below 2.
+    pub patches_low: u32,
     pub cracks: Cracks,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
@@ -39,8 +69,9 @@ impl<'a> Survey<'a> {
     /// A survey of patches with these factors.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let culled = Culled::of(&factors);
         let rims = Rims::new(factors, asked);
-        Self { mesh, topology, ulp: ulp(topology), rims, folds: 0, not_finite: 0, extent }
+        Self { mesh, topology, ulp: ulp(topology), culled, rims, folds: 0, not_finite: 0, extent }
     }
 
     /// Takes the output of patches from `first_patch` on; whole patches, in order. Triangles are indices into `vertices`.
@@ -60,7 +91,8 @@ impl<'a> Survey<'a> {
     /// Compares the sides of every edge, once all is taken.
     pub fn finish(self) -> Measured {
         Measured {
-            patches_culled: self.rims.culled(),
+            culled: self.culled,
+            patches_low: self.rims.low(),
             cracks: Cracks::find(self.mesh, self.topology, &self.rims),
             folds: self.folds,
             not_finite: self.not_finite,

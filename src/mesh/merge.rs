@@ -133,7 +133,7 @@ fn corner_id(ids: &mut HashMap<[u32; 8], u32>, corners: &mut Vec<Corner>, loose:
 impl Material {
     /// A material of one colour (linear RGBA), without triangles yet.
     pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
-        Self { name: name.to_owned(), base_color, texture: None, triangles: 0..0 }
+        Self { name: name.to_owned(), base_color, texture: None, double_sided: false, triangles: 0..0 }
     }
 }
 

@@ -11,6 +11,7 @@ pub mod load;
 pub mod merge;
 pub mod normal_faults;
 pub mod normals;
+mod parts;
 pub mod progress;
 pub mod repairs;
 pub mod shapes;
@@ -72,6 +73,8 @@ pub struct Material {
     pub base_color: [f32; 4],
     /// Index into no list: the pixels themselves, shared between materials that use one image.
     pub texture: Option<std::sync::Arc<Texture>>,
+    /// Whether its triangles are meant to be seen from behind too.
+    pub double_sided: bool,
     /// The triangles of the mesh that wear it.
     pub triangles: Range<u32>,
 }

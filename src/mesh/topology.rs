@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::Vec3;
 use serde::Serialize;
 
+use super::parts::Parts;
 use super::progress::{Cancelled, Progress};
 use super::weld::weld_within;
 use super::{Corner, Mesh};
@@ -168,6 +169,25 @@ impl Topology {
             _ => false,
         };
         !self.edges.is_empty() && self.edges.iter().all(opposed)
+    }
+
+    /// The volumes of the parts that hang together by edges, in cubic object units: less than 0 where a part is wound
+    /// inward. Only of a closed mesh do they mean anything.
+    pub fn part_volumes(&self) -> impl Iterator<Item = f64> {
+        let mut parts = Parts::new(self.patches.len());
+        for edge in &self.edges {
+            for pair in self.edge_sides(edge).windows(2) {
+                parts.join(pair[0].patch, pair[1].patch);
+            }
+        }
+        let mut volumes = vec![None; self.patches.len()];
+        for (i, patch) in self.patches.iter().enumerate() {
+            let [a, b, c] = patch.corners.map(|c| self.points[self.corner_points[c as usize] as usize].as_dvec3());
+            // From a place of the part's own, so that what is far away is no less exact.
+            let (at, volume) = volumes[parts.of(i as u32) as usize].get_or_insert((a, 0.0));
+            *volume += (a - *at).dot((b - *at).cross(c - *at)) / 6.0;
+        }
+        volumes.into_iter().flatten().map(|(_, volume)| volume)
     }
 
     /// The sides of an edge.

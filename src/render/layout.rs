@@ -2,9 +2,10 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::Scale;
 use crate::gpu::layout::Vertex;
 use crate::mesh::EdgeKind;
-use crate::settings::Overlays;
+use crate::settings::{Colors, Overlays};
 
 /// One picture's view.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -22,6 +23,14 @@ pub struct Frame {
     pub overlays: u32,
     /// One unit in the last place of the mesh's largest coordinate, in object units.
     pub ulp: f32,
+    /// Which side each of a patch's factors lies on: a [`crate::tessellate::Convention`].
+    pub convention: u32,
+    /// The scale that the surface's colours are read against, if they are numbers.
+    pub scale_least: f32,
+    pub scale_most: f32,
+    pub _pad: f32,
+    /// sRGB, 0 to 1; the fourth is nothing.
+    pub scale: [[f32; 4]; Scale::STOPS],
 }
 
 /// A material's constants.
@@ -50,14 +59,18 @@ pub struct Pick {
 /// An emitted triangle; the same in `shaders/draw_types.wgsl`.
 pub const FOUND_EMITTED: u32 = 1;
 
-/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks and T-junctions are lines of their own.
+/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and
+/// normals are lines of their own.
 pub fn overlay_bits(overlays: &Overlays) -> u32 {
     u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
-        | u32::from(overlays.barycentric) << 2
+        | u32::from(overlays.colors == Colors::Barycentric) << 2
         | u32::from(overlays.adjacency) << 3
         | u32::from(overlays.folds) << 4
         | u32::from(overlays.back_faces) << 5
+        | u32::from(overlays.colors == Colors::Factors) << 6
+        | u32::from(overlays.colors == Colors::TriangleSize) << 7
+        | u32::from(overlays.colors == Colors::LowFactors) << 8
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
@@ -84,6 +97,13 @@ pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 /// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface.wgsl` has the same
 /// in linear light.
 pub const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
+
+/// sRGB colour of what tessellation is wasted on: triangles too small, patches whose factors are too low; `WASTE_COLOR` in
+/// `shaders/draw_surface.wgsl` has the same in linear light. Vermilion (Okabe and Ito 2008).
+pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
+
+/// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
+pub const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
 /// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.
 pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];

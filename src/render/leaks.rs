@@ -1,12 +1,11 @@
 //! Leaks: pixels through which one looks into a closed mesh.
 
-use glam::{Mat4, Vec3};
+use glam::Mat4;
 use wgpu::util::DeviceExt;
 
 use super::Scene;
 use crate::gpu::layout::Vertex;
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, read_staging, shader_module, staging_buffer};
-use crate::tessellate::beyond_near;
 
 /// Counts of either sign, exact far beyond what any pixel sees, and blendable on every adapter.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
@@ -136,12 +135,4 @@ impl LeakCounter {
         }
         recorder.submit();
     }
-}
-
-/// Whether a box (its least and greatest coordinates) lies beyond the near plane as a whole, so that nothing in it is cut.
-pub fn is_beyond_near(clip_from_object: Mat4, [min, max]: [Vec3; 2]) -> bool {
-    (0..8).all(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
-        beyond_near(clip_from_object * Vec3::new(pick(0), pick(1), pick(2)).extend(1.0))
-    })
 }

@@ -6,13 +6,15 @@ mod leaks;
 mod marks;
 mod pick;
 mod renderer;
+mod scale;
 mod scene;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
-pub use leaks::{LeakCounter, is_beyond_near};
+pub use leaks::LeakCounter;
 pub use marks::{patch_lines, t_junction_lines};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel, convention};
 pub use renderer::Renderer;
+pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
 pub use scene::{LineSegment, Scene};
 pub use target::Target;

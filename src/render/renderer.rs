@@ -1,61 +1,80 @@
 //! Pipelines that draw a scene, and the one way a picture is drawn.
 
+use std::ops::Range;
+
 use wgpu::util::DeviceExt;
 
 use super::layout::{Frame, linear, overlay_bits};
+use super::scale::{FACTOR_SCALE, Scale};
 use super::scene::{LineSegment, upload};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::Vertex;
 use crate::gpu::{COLOR_FORMAT, ChunkBuffers, DEPTH_FORMAT, Gpu, Recorder};
 use crate::mesh::Texture;
-use crate::settings::Settings;
+use crate::settings::{Colors, Overlays, Settings};
+use crate::tessellate::Convention;
 
 /// Long-lived: one for a device, whatever is loaded.
 pub struct Renderer {
     gpu: Gpu,
     scene_layout: wgpu::BindGroupLayout,
     pub(super) material_layout: wgpu::BindGroupLayout,
+    chunk_layout: wgpu::BindGroupLayout,
     pub(super) white: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
-    indexed: wgpu::RenderPipeline,
-    pulled: wgpu::RenderPipeline,
+    /// Both sides, then fronts only.
+    indexed: [wgpu::RenderPipeline; 2],
+    pulled: [wgpu::RenderPipeline; 2],
     source: wgpu::RenderPipeline,
     /// Through everything and faint, then what is in sight.
     lines: [wgpu::RenderPipeline; 2],
+    normals: [wgpu::RenderPipeline; 2],
 }
 
 /// Bytes from a [`crate::gpu::layout::DrawArgs`]'s start to its arguments for pulled drawing.
 const PULL_ARGS: u64 = std::mem::offset_of!(crate::gpu::layout::DrawArgs, pull_vertex_count) as u64;
 
+/// Both sides, then fronts only.
+const SIDES: [Layer; 2] = [Layer::Surface, Layer::Fronts];
+
+const VERTEX_ATTRIBUTES: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2];
+
 impl Renderer {
     pub fn new(gpu: &Gpu) -> Self {
         let scene_layout = scene_layout(gpu);
         let material_layout = material_layout(gpu);
+        let chunk_layout = chunk_layout(gpu);
         let surface = crate::gpu::shader_module(gpu, "draw");
-        let vertex = [wgpu::VertexBufferLayout {
+        let vertex = |step_mode| wgpu::VertexBufferLayout {
             array_stride: size_of::<Vertex>() as u64,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2],
-        }];
-        let layouts = [Some(&scene_layout), Some(&material_layout)];
-        let surface =
-            |entry, buffers| pipeline(gpu, &layouts, &surface, (entry, "surface_fragment"), buffers, Layer::Surface);
+            step_mode,
+            attributes: &VERTEX_ATTRIBUTES,
+        };
+        let layouts = [Some(&scene_layout), Some(&material_layout), Some(&chunk_layout)];
+        let surface = |entry, groups: usize, buffers: &[_], layer| {
+            pipeline(gpu, &layouts[..groups], &surface, (entry, "surface_fragment"), buffers, layer)
+        };
         let segment = wgpu::VertexBufferLayout {
             array_stride: size_of::<LineSegment>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32],
         };
         let lines = crate::gpu::shader_module(gpu, "lines");
-        let lines = |entry, layer| {
-            pipeline(gpu, &layouts[..1], &lines, ("line_vertex", entry), &[Some(segment.clone())], layer)
+        let lines = |vertex, layouts: &[_], buffer| {
+            let buffers = [Some(buffer)];
+            [("hidden_line_fragment", Layer::Everywhere), ("line_fragment", Layer::InSight)]
+                .map(|(fragment, layer)| pipeline(gpu, layouts, &lines, (vertex, fragment), &buffers, layer))
         };
-        let [vertex] = vertex;
+        let with_chunk = [layouts[0], None, layouts[2]];
+        let per_vertex = [Some(vertex(wgpu::VertexStepMode::Vertex))];
         Self {
             gpu: gpu.clone(),
-            indexed: surface("indexed_vertex", &[Some(vertex)]),
-            pulled: surface("pulled_vertex", &[]),
-            source: surface("source_vertex", &[]),
-            lines: [lines("hidden_line_fragment", Layer::Everywhere), lines("line_fragment", Layer::InSight)],
+            indexed: SIDES.map(|layer| surface("indexed_vertex", 3, &per_vertex, layer)),
+            pulled: SIDES.map(|layer| surface("pulled_vertex", 3, &[], layer)),
+            source: surface("source_vertex", 2, &[], Layer::Surface),
+            lines: lines("line_vertex", &layouts[..1], segment),
+            normals: lines("normal_vertex", &with_chunk, vertex(wgpu::VertexStepMode::Instance)),
             white: upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] }),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("base color"),
@@ -68,11 +87,12 @@ impl Renderer {
             }),
             scene_layout,
             material_layout,
+            chunk_layout,
         }
     }
 
     /// Draws the scene, whose counts must be known, into the target: chunk after chunk, each emitted unless the arena
-    /// still holds it.
+    /// still holds it. Normals come after all surfaces, which could hide them: another round of chunks.
     pub fn draw(
         &self,
         recorder: &mut Recorder,
@@ -81,19 +101,38 @@ impl Renderer {
         camera: &Camera,
         settings: &Settings,
     ) {
+        let all = 0..Self::step_count(scene, settings);
+        self.draw_steps(recorder, scene, target, camera, settings, all);
+    }
+
+    /// In how many steps [`Self::draw_steps`] draws the scene: one a chunk and round, and one if there is none.
+    pub fn step_count(scene: &Scene, settings: &Settings) -> usize {
+        steps(scene.tessellator.chunk_count(), settings.overlays.normals).len()
+    }
+
+    /// Draws some of the steps of a picture; all of them, in order, make it. It is seen once the last is done.
+    pub fn draw_steps(
+        &self,
+        recorder: &mut Recorder,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+        range: Range<usize>,
+    ) {
         let frame = self.frame(scene, target, camera, settings);
         let frame = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("frame"),
             contents: bytemuck::bytes_of(&frame),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let passes = scene.tessellator.chunk_count().max(1);
-        for index in 0..passes {
-            let emitted = index < scene.tessellator.chunk_count();
-            if emitted {
-                scene.tessellator.emit(recorder, index);
+        let (pipeline, pulled) = self.surface_pipeline(scene, target, camera, settings);
+        let steps = steps(scene.tessellator.chunk_count(), settings.overlays.normals);
+        for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
+            if let Step::Surface(chunk) | Step::Normals(chunk) = *step {
+                scene.tessellator.emit(recorder, chunk);
             }
-            let (first, last) = (index == 0, index + 1 == passes);
+            let (first, last) = (index == 0, index + 1 == steps.len());
             let color = target.color(linear_color(settings.background), first, last);
             let group = self.scene_group(scene, &frame);
             recorder.render("draw", color, target.depth(first), |pass| {
@@ -102,10 +141,12 @@ impl Renderer {
                 if first {
                     self.draw_source(pass, scene, left);
                 }
-                if emitted {
-                    // These look at whole triangles.
-                    let pulled = settings.overlays.wireframe || settings.overlays.folds;
-                    self.draw_chunk(pass, scene, right, pulled, &scene.tessellator.chunk(index));
+                match *step {
+                    Step::Surface(chunk) => {
+                        self.draw_chunk(pass, scene, right, (pipeline, pulled), &scene.tessellator.chunk(chunk));
+                    }
+                    Step::Normals(chunk) => self.draw_normals(pass, right, &scene.tessellator.chunk(chunk)),
+                    Step::Nothing => {}
                 }
                 if last {
                     self.draw_lines(pass, scene, right);
@@ -114,10 +155,28 @@ impl Renderer {
         }
     }
 
+    /// The pipeline of the emitted triangles, and whether it pulls their vertices.
+    fn surface_pipeline(
+        &self,
+        scene: &Scene,
+        target: &Target,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> (&wgpu::RenderPipeline, bool) {
+        // These look at whole triangles, and at backs.
+        let Overlays { wireframe, folds, back_faces, colors, .. } = settings.overlays;
+        let pulled = wireframe || folds || colors == Colors::TriangleSize;
+        let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
+        let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
+        let both = if pulled { &self.pulled } else { &self.indexed };
+        (&both[usize::from(fronts)], pulled)
+    }
+
     fn frame(&self, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Frame {
         let viewport = target.viewport();
         let [right, up, back] = camera.axes();
         let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
+        let scale = Scale::of(settings.overlays.colors).unwrap_or(&FACTOR_SCALE);
         Frame {
             clip_from_object: camera.clip_from_object(viewport, &scene.bounds).to_cols_array_2d(),
             key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
@@ -126,6 +185,11 @@ impl Renderer {
             viewport: viewport.to_array(),
             overlays: overlay_bits(&settings.overlays),
             ulp: scene.ulp,
+            convention: Convention::D3d11 as u32,
+            scale_least: scale.least,
+            scale_most: scale.most,
+            _pad: 0.0,
+            scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
         }
     }
 
@@ -146,17 +210,16 @@ impl Renderer {
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
         [x, y, width, height]: [u32; 4],
-        pulled: bool,
+        (pipeline, pulled): (&wgpu::RenderPipeline, bool),
         chunk: &ChunkBuffers,
     ) {
         if width == 0 || height == 0 {
             return;
         }
         pass.set_scissor_rect(x, y, width, height);
-        if pulled {
-            pass.set_pipeline(&self.pulled);
-        } else {
-            pass.set_pipeline(&self.indexed);
+        pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
+        pass.set_pipeline(pipeline);
+        if !pulled {
             pass.set_vertex_buffer(0, chunk.vertices.slice(..));
             pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
         }
@@ -169,6 +232,20 @@ impl Renderer {
                 pass.draw_indexed_indirect(chunk.draw_args, args);
             }
             args += size_of::<crate::gpu::layout::DrawArgs>() as u64;
+        }
+    }
+
+    /// A line from every vertex of a chunk.
+    fn draw_normals(&self, pass: &mut wgpu::RenderPass, [x, y, width, height]: [u32; 4], chunk: &ChunkBuffers) {
+        if width == 0 || height == 0 {
+            return;
+        }
+        pass.set_scissor_rect(x, y, width, height);
+        pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
+        pass.set_vertex_buffer(0, chunk.vertices.slice(..));
+        for pipeline in &self.normals {
+            pass.set_pipeline(pipeline);
+            pass.draw(0..6, 0..chunk.chunk.vertex_count);
         }
     }
 
@@ -193,6 +270,28 @@ impl Renderer {
         let bound: Vec<_> = (0..).zip(bound).collect();
         crate::gpu::bind_group(&self.gpu, "scene", &self.scene_layout, &bound)
     }
+
+    fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {
+        crate::gpu::bind_group(&self.gpu, "chunk", &self.chunk_layout, &[(0, chunk.slab), (1, chunk.patch_factors)])
+    }
+}
+
+/// What one render pass of a picture adds.
+enum Step {
+    /// The background alone: nothing is emitted.
+    Nothing,
+    /// The triangles of a chunk.
+    Surface(usize),
+    /// The normals of a chunk.
+    Normals(usize),
+}
+
+fn steps(chunks: usize, normals: bool) -> Vec<Step> {
+    if chunks == 0 {
+        return vec![Step::Nothing];
+    }
+    let with_normals = if normals { chunks } else { 0 };
+    (0..chunks).map(Step::Surface).chain((0..with_normals).map(Step::Normals)).collect()
 }
 
 /// The picture left and right of the split: x, y, width, height in px.
@@ -207,18 +306,30 @@ fn linear_color(srgb: [u8; 3]) -> wgpu::Color {
     wgpu::Color { r, g, b, a: 1.0 }
 }
 
+/// The frame, points, corners, patches, and the arena's vertices and indices.
 fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entry = |binding, ty, visibility| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-        count: None,
-    };
     let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-    let storage = wgpu::BufferBindingType::Storage { read_only: true };
-    let mut entries = vec![entry(0, wgpu::BufferBindingType::Uniform, both)];
-    entries.extend((1..6).map(|binding| entry(binding, storage, wgpu::ShaderStages::VERTEX)));
+    let mut entries = vec![buffer_entry(0, wgpu::BufferBindingType::Uniform, both)];
+    entries.extend((1..6).map(|binding| buffer_entry(binding, READ, wgpu::ShaderStages::VERTEX)));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
+}
+
+/// The slab that a chunk is of, and its patches' factors.
+fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries = [(0, wgpu::BufferBindingType::Uniform), (1, READ)]
+        .map(|(binding, ty)| buffer_entry(binding, ty, wgpu::ShaderStages::VERTEX));
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
+}
+
+const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
+
+fn buffer_entry(
+    binding: u32,
+    ty: wgpu::BufferBindingType,
+    visibility: wgpu::ShaderStages,
+) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
 fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
@@ -245,6 +356,8 @@ fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 enum Layer {
     /// Opaque, in depth.
     Surface,
+    /// The same without what faces away.
+    Fronts,
     /// Blended, whatever is in front.
     Everywhere,
     /// Blended, where nothing is in front.
@@ -265,10 +378,11 @@ fn pipeline(
         ..Default::default()
     });
     let compare = match layer {
-        Layer::Surface | Layer::InSight => wgpu::CompareFunction::Greater,
+        Layer::Surface | Layer::Fronts | Layer::InSight => wgpu::CompareFunction::Greater,
         Layer::Everywhere => wgpu::CompareFunction::Always,
     };
-    let opaque = layer == Layer::Surface;
+    let opaque = matches!(layer, Layer::Surface | Layer::Fronts);
+    let cull_mode = (layer == Layer::Fronts).then_some(wgpu::Face::Back);
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
@@ -278,7 +392,7 @@ fn pipeline(
             compilation_options: Default::default(),
             buffers,
         },
-        primitive: wgpu::PrimitiveState::default(),
+        primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
             depth_write_enabled: Some(opaque),

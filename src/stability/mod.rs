@@ -13,6 +13,7 @@ pub use meshes::soup;
 pub use picture::{PictureError, picture};
 pub use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
 pub use run::{Effort, run};
+pub use views::random as random_camera;
 
 use serde::Serialize;
 

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use glam::{Vec3, Vec4};
 
-use super::lod::LodView;
+use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
 
 /// Whether patches that cannot be seen are left out.
@@ -61,12 +61,101 @@ pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
     shared != 0
 }
 
-/// Whether a patch is left out.
-pub fn patch_is_unseen(clip: Clip, view: &LodView, net: &ControlNet) -> bool {
-    match clip {
+/// The six control points that weigh in where corner `i`'s weight is taken out of a patch once: of a quadratic triangle,
+/// in the order 200, 110, 020, 011, 002, 101. Its points and those of the other two corners differ by the patch's
+/// tangents.
+pub fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
+    let [b300, b030, b003] = net.corners;
+    let [b210, b120, b021, b012, b102, b201] = net.edges;
+    let b111 = net.center;
+    match i {
+        0 => [b300, b210, b120, b111, b102, b201],
+        1 => [b210, b120, b030, b021, b012, b111],
+        _ => [b201, b111, b021, b012, b003, b102],
+    }
+}
+
+/// How far a surface must be from being seen edge-on, about as a sine: more than rounding, and enough that also a
+/// rasteriser that snaps vertices to 1/256 px finds its back.
+pub const FACING_MARGIN: f32 = 1e-3;
+
+/// The part of the largest term that rounding may put into a sum.
+pub const FACING_ROUNDING: f32 = 1e-6;
+
+/// Digits to base 5 of the second and third index of the [`polar_points`], and how often each counts: those of a product
+/// of two quadratic polynomials are sums of theirs, from 0 to 4.
+pub const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
+pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
+
+/// Whether a patch's surface shows its back everywhere. The patch must lie beyond the near plane.
+///
+/// In homogeneous coordinates of the screen (x, y, w), a point p and the tangents s and t there show their front where
+/// p . (s x t) > 0, also without perspective. Tangents are quadratic polynomials, whose cross product is a quartic one: a
+/// mean of 15 control vectors with weights that are not negative. p lies in the box around the control points. So it is
+/// less than 0 everywhere if it is for each of the 15 with all of the box.
+pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
+    let rows = [clip_row(view, 0), clip_row(view, 1), clip_row(view, 3)];
+    let turned = |d: Vec3| Vec3::new(rows[0].dot(d), rows[1].dot(d), rows[2].dot(d));
+    let [at_u, at_v, at_w] = [polar_points(net, 0), polar_points(net, 1), polar_points(net, 2)];
+    let mut least = Vec3::splat(3.4e38);
+    let mut greatest = Vec3::splat(-3.4e38);
+    let mut toward_u = [Vec3::ZERO; 6];
+    let mut toward_v = [Vec3::ZERO; 6];
+    for k in 0..6 {
+        for p in [at_u[k], at_v[k], at_w[k]] {
+            let clip = view.clip_from_object * p.extend(1.0);
+            let seen = Vec3::new(clip.x, clip.y, clip.w);
+            least = least.min(seen);
+            greatest = greatest.max(seen);
+        }
+        toward_u[k] = turned(at_u[k] - at_w[k]);
+        toward_v[k] = turned(at_v[k] - at_w[k]);
+    }
+    let middle = (least + greatest) * 0.5;
+    let reach = (greatest - least) * 0.5 + (middle.abs() + greatest - least) * FACING_MARGIN;
+    let mut facing = [Vec3::ZERO; 25];
+    let mut terms = [Vec3::ZERO; 25];
+    for i in 0..6 {
+        for j in 0..6 {
+            let product = toward_u[i].cross(toward_v[j]) * (POLAR_WEIGHTS[i] * POLAR_WEIGHTS[j]);
+            facing[POLAR_INDICES[i] + POLAR_INDICES[j]] += product;
+            terms[POLAR_INDICES[i] + POLAR_INDICES[j]] += product.abs();
+        }
+    }
+    for i in 0..5 {
+        for j in 0..5 - i {
+            let own = facing[5 * i + j];
+            let rounding = terms[5 * i + j].dot(middle.abs()) * FACING_ROUNDING;
+            // No less than 0 also where it is no number.
+            let away = own.dot(middle) + own.abs().dot(reach) + rounding < 0.0;
+            if !away {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// Why a patch emits nothing: it doesn't, its own factors cull it being no matter of this.
+pub const SEEN: u32 = 0;
+/// It is out of view.
+pub const OUT_OF_VIEW: u32 = 1;
+/// It shows its back only.
+pub const FACING_AWAY: u32 = 2;
+
+/// Whether a patch is left out, and why; those that face away if `culls_back` is set.
+pub fn unseen(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
+    let outside = match clip {
         Clip::Off => false,
         Clip::Paper => patch_is_clipped(view, net),
         Clip::Frustum => patch_is_outside(view, net),
+    };
+    if outside {
+        OUT_OF_VIEW
+    } else if culls_back && faces_away(view, net) {
+        FACING_AWAY
+    } else {
+        SEEN
     }
 }
 
@@ -88,11 +177,11 @@ mod tests {
         // Every control point lies outside, but on different sides: the middle of the view is covered.
         let around = flat([vec3(-9.0, -6.0, 0.5), vec3(9.0, -6.0, 0.5), vec3(0.0, 12.0, 0.5)]);
         let around = ControlNet { center: vec3(0.0, 2.0, 0.5), ..around };
-        assert!(patch_is_unseen(Clip::Paper, &view, &around));
-        assert!(!patch_is_unseen(Clip::Frustum, &view, &around));
+        assert_eq!(unseen(Clip::Paper, false, &view, &around), OUT_OF_VIEW);
+        assert_eq!(unseen(Clip::Frustum, false, &view, &around), SEEN);
         let left = flat([vec3(-9.0, 0.0, 0.5), vec3(-2.0, -5.0, 0.5), vec3(-1.5, 5.0, 0.5)]);
-        assert!(patch_is_unseen(Clip::Frustum, &view, &left));
-        assert!(!patch_is_unseen(Clip::Off, &view, &left));
+        assert_eq!(unseen(Clip::Frustum, false, &view, &left), OUT_OF_VIEW);
+        assert_eq!(unseen(Clip::Off, false, &view, &left), SEEN);
     }
 
     #[test]
@@ -104,5 +193,55 @@ mod tests {
         }
         assert_eq!(planes_outside(vec3(0.0, 0.0, 0.1).extend(-1.0)) & 1, 1, "behind the eye, left of the left plane");
         assert_eq!(planes_outside(vec3(1.0, -1.0, 0.0).extend(1.0)), 0, "on the planes");
+    }
+
+    /// A patch about a unit large, bent by up to `bend`, in front of an eye at the origin that looks along +z.
+    fn bent(random: [f32; 30], bend: f32) -> ControlNet {
+        let corners = [vec3(-0.4, -0.3, 3.0), vec3(0.5, -0.4, 3.2), vec3(0.0, 0.6, 2.9)];
+        let mut net = flat(corners);
+        let off = |k: usize| vec3(random[3 * k], random[3 * k + 1], random[3 * k + 2]) * bend;
+        (0..3).for_each(|k| net.corners[k] += off(k) * 3.0);
+        (0..6).for_each(|k| net.edges[k] += off(3 + k));
+        net.center += off(9);
+        net
+    }
+
+    /// How much of the front a surface shows at a place, in no unit: less than 0 where it shows its back.
+    fn front(net: &ControlNet, u: f64, v: f64) -> f64 {
+        let weights =
+            [u * u, 2.0 * u * v, v * v, 2.0 * v * (1.0 - u - v), (1.0 - u - v).powi(2), 2.0 * u * (1.0 - u - v)];
+        let at = |i: usize| -> glam::DVec3 {
+            polar_points(net, i).iter().zip(weights).map(|(p, weight)| p.as_dvec3() * weight).sum()
+        };
+        let (at_u, at_v, at_w) = (at(0), at(1), at(2));
+        let position = at_u * u + at_v * v + at_w * (1.0 - u - v);
+        // Seen along +z, x to the right and y upwards: what is wound clockwise in x and y shows its back.
+        position.dot((at_u - at_w).cross(at_v - at_w))
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn what_faces_away_shows_its_back_everywhere(
+            random in proptest::array::uniform30(-1.0f32..1.0),
+            bend in 0.0f32..0.6,
+        ) {
+            let mut clip_from_object = Mat4::from_diagonal(glam::Vec4::new(1.0, 1.0, 0.0, 0.0));
+            clip_from_object.z_axis.w = 1.0;
+            clip_from_object.w_axis.z = 0.01;
+            let view = LodView::new(clip_from_object, Vec2::ONE);
+            let net = bent(random, bend);
+            let places = (0..=24).flat_map(|i| (0..=24 - i).map(move |j| (f64::from(i) / 24.0, f64::from(j) / 24.0)));
+            let most = places.map(|(u, v)| front(&net, u, v)).fold(f64::NEG_INFINITY, f64::max);
+            let turned = ControlNet {
+                corners: [0, 2, 1].map(|k| net.corners[k]),
+                edges: [5, 4, 3, 2, 1, 0].map(|k| net.edges[k]),
+                center: net.center,
+            };
+            let away = [faces_away(&view, &net), faces_away(&view, &turned)];
+            proptest::prop_assert!(!(away[0] && away[1]));
+            proptest::prop_assert!(!away[0] || most < 0.0, "{most}");
+            // What is nearly flat is told for sure, one way or the other.
+            proptest::prop_assert!(bend > 0.02 || away[0] == (most < 0.0), "{bend} {most}");
+        }
     }
 }

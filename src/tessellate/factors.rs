@@ -79,7 +79,8 @@ impl FromStr for Partitioning {
 }
 
 /// A patch's factors as the tessellator uses them. Each word is a factor of 1..=64 in 16.16 fixed point, clamped and
-/// rounded, with [`FACTOR_ODD`] set where its parity is odd. A culled patch is all zeros.
+/// rounded, with [`FACTOR_ODD`] set where its parity is odd. Of a culled patch the edges' are zeros, and the inside's says
+/// why (see [`super::cull`]): 0 where its own factors cull it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchFactors {
@@ -170,6 +171,12 @@ pub fn patch_is_culled(factors: PatchFactors) -> bool {
 pub fn patch_is_minimal(factors: PatchFactors) -> bool {
     let edges_are_one = factors.outside == [FACTOR_ODD | FIXED_ONE; 3];
     edges_are_one && (factors.inside & !FACTOR_ODD) == FIXED_ONE
+}
+
+/// Whether the patch is drawn with factors that are all below 2, so that drawing it untessellated would hardly show.
+pub fn patch_is_low(factors: PatchFactors) -> bool {
+    let low = |word: u32| word & !FACTOR_ODD < 2 * FIXED_ONE;
+    !patch_is_culled(factors) && factors.outside.into_iter().all(low) && low(factors.inside)
 }
 
 /// 1 where the word's parity is odd, else 0.

@@ -5,11 +5,11 @@ use clap::ValueEnum;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{
-    Clip, ControlNet, EDGE_SHARE, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, Surface, center_control_point,
-    distance_factor, domain_point, domain_triangle, edge_control_point, edge_error_factor, edge_length_factor,
-    edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, pack_normal,
-    paper_edge_factor, patch_is_unseen, patch_position, point_count, process, round_pow2, straight_control_point,
-    triangle_count,
+    Clip, ControlNet, EDGE_SHARE, FIXED_ONE, Lod, LodView, Partitioning, PatchFactors, SEEN, Solid, Surface,
+    center_control_point, distance_factor, domain_point, domain_triangle, edge_control_point, edge_error_factor,
+    edge_length_factor, edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv,
+    pack_normal, paper_edge_factor, patch_position, point_count, process, round_pow2, straight_control_point,
+    triangle_count, unseen,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -40,6 +40,8 @@ pub struct Inputs {
     pub near: f32,
     pub far: f32,
     pub clip: Clip,
+    /// Whether patches that show their backs only are left out, where [`Solid`] allows it.
+    pub cull_back_faces: bool,
     pub view: LodView,
 }
 
@@ -100,13 +102,16 @@ pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let nets = Nets::new(mesh, topology, inputs);
     let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs), <[f32]>::to_vec);
+    let solid = if inputs.cull_back_faces { Solid::find(mesh, topology) } else { None };
+    let culls_back = solid.is_some_and(|solid| solid.hides_backs(inputs));
     let mut out = Tessellated::default();
     for patch in 0..topology.patches.len() as u32 {
         let net = nets.patch(patch);
-        let mut factors = nets.patch_factors(inputs, &edge_factors, patch);
-        if patch_is_unseen(inputs.clip, &inputs.view, &net) {
-            factors = PatchFactors::zeroed();
-        }
+        let why = unseen(inputs.clip, culls_back, &inputs.view, &net);
+        let factors = match why {
+            SEEN => nets.patch_factors(inputs, &edge_factors, patch),
+            why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
+        };
         let base = out.vertices.len() as u32;
         out.vertices.extend((0..point_count(factors)).map(|i| nets.vertex(patch, &net, domain_point(factors, i))));
         out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));

@@ -9,22 +9,26 @@ mod error;
 pub mod factors;
 mod lod;
 mod mesh;
+mod solid;
 mod surface;
 
 pub use budget::fit_budget;
 pub use convention::{Convention, corner_weights, domain_side, factor_side, weight_corner};
-pub use cull::{Clip, is_clipped, outside_view, patch_is_clipped, patch_is_outside, patch_is_unseen, planes_outside};
+pub use cull::{
+    Clip, FACING_AWAY, OUT_OF_VIEW, SEEN, faces_away, is_clipped, patch_is_outside, planes_outside, unseen,
+};
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
-    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, point_count,
-    process, round_pow2, segments, triangle_count,
+    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
+    point_count, process, round_pow2, segments, triangle_count,
 };
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
     project_and_scale,
 };
 pub use mesh::{Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, pack_key, sharing, tessellate, totals};
+pub use solid::{Solid, is_beyond_near};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,
     linear_uv, pack_normal, patch_position, straight_control_point, unpack_normal,

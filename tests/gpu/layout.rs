@@ -70,6 +70,7 @@ fn shared_structs_have_one_layout() {
         tolerance,
         near,
         far,
+        culls_back,
     });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
@@ -90,7 +91,19 @@ fn shared_structs_have_one_layout() {
         pull_first_instance,
     });
     same!(DomainParams { partitioning, set_count });
-    same!(Frame { clip_from_object, key_light, fill_light, eye, viewport, overlays, ulp });
+    same!(Frame {
+        clip_from_object,
+        key_light,
+        fill_light,
+        eye,
+        viewport,
+        overlays,
+        ulp,
+        convention,
+        scale_least,
+        scale_most,
+        scale,
+    });
     same!(Material { base_color });
     same!(Pick { vertices, found, patch_index, triangle, weight });
 }

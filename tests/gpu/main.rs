@@ -2,6 +2,7 @@
 //!
 //! These tests fail, rather than pass over, where there is no adapter. In CI it must be the software one.
 
+mod culling;
 mod domain;
 mod error;
 mod layout;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pnaen::engine::Loaded;
 use pnaen::gpu::{Timing, read_buffer, take_times};
-use pnaen::measure::ulp;
+use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
 use pnaen::mesh::{Corner, Material, Mesh, Progress, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
@@ -155,6 +155,40 @@ fn factors_by_edge_length_are_those_of_the_formula_behind_the_eye_too() {
 }
 
 #[test]
+fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
+    let (loaded, mut scene) = scene(Shape::Torus);
+    let camera = Camera::framing(&scene.bounds, VIEWPORT);
+    let view = ScreenView { clip_from_object: camera.clip_from_object(VIEWPORT, &scene.bounds), viewport: VIEWPORT };
+    for partitioning in Partitioning::ALL {
+        for factor in [1.0, 1.9, 12.0] {
+            let settings = Settings { partitioning, factor, ..Settings::default() };
+            let inputs = inputs(&loaded, &settings);
+            let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+            engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+            let asked = engine().asked_factors(&scene).expect("a readback");
+            let on_cpu = Measured::of(&loaded.mesh, &loaded.topology, asked, &cpu);
+            let on_gpu = engine().measure(&mut scene).expect("a readback");
+            let what = format!("{partitioning} {factor}");
+            assert_eq!(on_gpu.patches_low, on_cpu.patches_low, "{what}");
+            // 1.9 is rounded up where it becomes a whole number, and an even number of segments is at least 2.
+            let low = match partitioning {
+                Partitioning::FractionalOdd => factor < 2.0,
+                Partitioning::FractionalEven => false,
+                Partitioning::Integer | Partitioning::Pow2 => factor == 1.0,
+            };
+            assert_eq!(on_gpu.patches_low, if low { 256 } else { 0 }, "{what}");
+            let mut sizes = Sizes::new(view);
+            sizes.take(&cpu.vertices, &cpu.triangles);
+            let seen = engine().sizes(&mut scene, view).expect("a readback");
+            assert_eq!(seen.in_view, sizes.in_view, "{what}");
+            // Positions differ by a few ULP, which may take a triangle across 3 px.
+            assert!(seen.small.abs_diff(sizes.small) <= 2, "{what}: {} and {}", seen.small, sizes.small);
+            assert!(factor < 12.0 || seen.small > seen.in_view / 2, "{what}: {} of {}", seen.small, seen.in_view);
+        }
+    }
+}
+
+#[test]
 fn every_shared_point_has_the_same_bits_from_all_sides() {
     for shape in Shape::ALL {
         let (loaded, mut scene) = scene(shape);
@@ -206,7 +240,7 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
 }
 
 /// A flat sheet of so many quads either way, two triangles each.
-fn sheet(columns: u32, rows: u32) -> Loaded {
+pub fn sheet(columns: u32, rows: u32) -> Loaded {
     let corner = |i: u32, j: u32| Corner {
         position: glam::vec3(i as f32, 0.0, j as f32),
         normal: glam::Vec3::Y,

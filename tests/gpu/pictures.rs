@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 use image::RgbaImage;
 use pnaen::measure::compare;
 use pnaen::mesh::{EdgeKind, Progress, Shape, t_junctions};
-use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR, edge_color};
-use pnaen::render::{Camera, Scene, Target, t_junction_lines};
-use pnaen::settings::{Overlay, Overlays, Settings};
-use pnaen::tessellate::{Lod, Partitioning, Surface};
+use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
+use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, project, t_junction_lines};
+use pnaen::settings::{ARENA_BYTES, Colors, Overlay, Overlays, Settings};
+use pnaen::tessellate::{Convention, FACTOR_ODD, FIXED_ONE, Lod, Partitioning, Surface, domain_side};
 
+use crate::passes::sheet;
 use crate::stability::{case, seen};
 use crate::{engine, picture, scene};
 
@@ -60,7 +61,7 @@ fn surfaces_look_as_they_did() {
 #[test]
 fn partitionings_look_as_they_did() {
     let (_, mut scene) = scene(Shape::Icosahedron);
-    let overlays = [Overlay::Wireframe, Overlay::Patches].into_iter().collect();
+    let overlays = Overlays { wireframe: true, patches: true, ..Overlays::default() };
     let pictures = Partitioning::ALL.map(|partitioning| {
         let settings = Settings { partitioning, factor: 4.6, overlays, ..Settings::default() };
         (format!("partitioning-{partitioning}"), picture(&mut scene, &settings, SIZE))
@@ -78,11 +79,27 @@ fn overlays_look_as_they_did() {
         ("adjacency-cylinder", Shape::Cylinder, Overlay::Adjacency),
         ("adjacency-moebius", Shape::Moebius, Overlay::Adjacency),
         ("cracks", Shape::CubeSplit, Overlay::Cracks),
+        ("normals", Shape::CubeSplit, Overlay::Normals),
     ] {
         let (_, mut scene) = scene(shape);
-        let overlays = [overlay].into_iter().collect();
+        let overlays = Overlays::of(&[overlay]).expect("one overlay");
         let settings = Settings { surface: Surface::Pn, overlays, ..Settings::default() };
         pictures.push((format!("overlay-{name}"), picture(&mut scene, &settings, SIZE)));
+    }
+    assert_eq!(differing(pictures), Vec::<String>::new());
+}
+
+#[test]
+fn colours_look_as_they_did() {
+    let mut pictures = Vec::new();
+    for (name, shape, colors, settings) in [
+        ("factors", Shape::Torus, Colors::Factors, Settings { lod: Lod::Error, ..Settings::default() }),
+        ("triangle-size", Shape::Torus, Colors::TriangleSize, Settings { lod: Lod::EdgeLength, ..Settings::default() }),
+        ("low-factors", Shape::Torus, Colors::LowFactors, Settings { lod: Lod::EdgeLength, ..Settings::default() }),
+    ] {
+        let (_, mut scene) = scene(shape);
+        let settings = Settings { overlays: Overlays { colors, ..Overlays::default() }, pixels: 12.0, ..settings };
+        pictures.push((format!("colours-{name}"), picture(&mut scene, &settings, SIZE)));
     }
     assert_eq!(differing(pictures), Vec::<String>::new());
 }
@@ -125,7 +142,7 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
         elevation: 0.0,
         ..pnaen::render::Camera::framing(&scene.bounds, target.viewport())
     };
-    let overlays = Overlays { barycentric: true, ..Overlays::default() };
+    let overlays = Overlays { colors: Colors::Barycentric, ..Overlays::default() };
     let settings = Settings { surface: Surface::Flat, overlays, ..Settings::default() };
     let mut timing = pnaen::gpu::Timing::Off;
     engine.draw(&mut scene, &target, &camera, &settings, &mut timing).expect("a draw");
@@ -164,11 +181,134 @@ fn lines_have_the_colours_of_their_legend() {
     ];
     for (shape, overlay, color) in legend {
         let (_, mut scene) = scene(shape);
-        let settings =
-            Settings { surface: Surface::Pn, overlays: [overlay].into_iter().collect(), ..Settings::default() };
+        let overlays = Overlays::of(&[overlay]).expect("one overlay");
+        let settings = Settings { surface: Surface::Pn, overlays, ..Settings::default() };
         let found = pixels_of(&picture(&mut scene, &settings, [640, 480]), color);
         assert!(found > 50, "{shape:?} {overlay:?}: {found} px of {color:?}");
     }
+}
+
+/// Whether a px is a factor's colour: it may be a little darker where the surface is slanted, but has its hue.
+fn shows(picture: &RgbaImage, at: glam::Vec2, factor: f32) -> bool {
+    let [r, g, b, _] = picture.get_pixel(at.x as u32, at.y as u32).0;
+    let hue = |c: [u8; 3]| c.map(|x| f32::from(x) / f32::from(c[0].max(c[1]).max(c[2])));
+    let (found, expected) = (hue([r, g, b]), hue(FACTOR_SCALE.color(FACTOR_SCALE.place(factor))));
+    (0..3).all(|c| (found[c] - expected[c]).abs() < 0.06)
+}
+
+/// The factor that the tessellator works with.
+fn value(word: u32) -> f32 {
+    (word & !FACTOR_ODD) as f32 / FIXED_ONE as f32
+}
+
+/// A camera that looks straight at a cube's front face.
+fn in_front(scene: &Scene, target: &Target) -> Camera {
+    Camera { azimuth: 0.0, elevation: 0.0, ..Camera::framing(&scene.bounds, target.viewport()) }
+}
+
+#[test]
+fn factors_have_the_colours_of_their_scale_on_edges_and_inside() {
+    let (_, mut cube) = scene(Shape::CubeSplit);
+    let target = Target::new(&engine().gpu, [400, 400]).expect("a small picture");
+    let camera = Camera { orthographic: true, ..in_front(&cube, &target) };
+    let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
+    for (stop, factor) in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0].into_iter().enumerate() {
+        let flat = Settings { surface: Surface::Flat, partitioning: Partitioning::Integer, ..Settings::default() };
+        let settings = Settings { factor, overlays, ..flat };
+        let found = pixels_of(&seen(&mut cube, &target, &settings, &camera), FACTOR_SCALE.colors[stop]);
+        assert!(found > 10_000, "{factor}: {found} px");
+    }
+}
+
+#[test]
+fn every_edge_has_the_colour_of_its_own_factor() {
+    let (loaded, mut saddle) = scene(Shape::Saddle);
+    let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
+    let camera = Camera { elevation: 70.0, ..Camera::framing(&saddle.bounds, target.viewport()) };
+    let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
+    let settings = Settings { surface: Surface::Flat, lod: Lod::EdgeLength, overlays, ..Settings::default() };
+    let picture = seen(&mut saddle, &target, &settings, &camera);
+    let factors = engine().patch_factors(&saddle).expect("a readback");
+    let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
+    let (mut wrong, mut differ) = (Vec::new(), 0);
+    for (patch, factors) in loaded.topology.patches.iter().zip(&factors) {
+        let corners = patch.corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let sides = (0..3).map(|i| {
+            let k = domain_side(Convention::D3d11, i) as usize;
+            (corners[k].midpoint(corners[(k + 1) % 3]).lerp(middle, 0.06), value(factors.outside[i as usize]))
+        });
+        let words: Vec<_> = sides.chain([(middle, value(factors.inside))]).collect();
+        differ += usize::from(words.iter().any(|(_, factor)| *factor != words[0].1));
+        for (place, factor) in words {
+            let at = project(clip, target.viewport(), place).expect("in front of the eye");
+            if !shows(&picture, at, factor) {
+                wrong.push((factor, at));
+            }
+        }
+    }
+    assert!(differ > loaded.topology.patches.len() / 2, "factors of {differ} patches differ");
+    assert_eq!(wrong, []);
+}
+
+#[test]
+fn patches_of_every_slab_have_the_colours_of_their_own_factors() {
+    let loaded = sheet(600, 500);
+    let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("it fits");
+    let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
+    let camera = Camera { elevation: 40.0, azimuth: 90.0, ..Camera::framing(&scene.bounds, target.viewport()) };
+    let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
+    let by_distance =
+        Settings { lod: Lod::Distance, factor: 4.0, near: 2.0, far: 3.5, overlays, ..Settings::default() };
+    let settings = Settings { partitioning: Partitioning::Integer, surface: Surface::Flat, ..by_distance };
+    let picture = seen(&mut scene, &target, &settings, &camera);
+    let factors = engine().patch_factors(&scene).expect("a readback");
+    let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
+    let sampled: Vec<_> = (0..factors.len()).step_by(1009).collect();
+    let wrong = sampled.iter().filter(|&&patch| {
+        let corners = loaded.topology.patches[patch].corners.map(|c| loaded.mesh.corners[c as usize].position);
+        let at = project(clip, target.viewport(), (corners[0] + corners[1] + corners[2]) / 3.0);
+        !shows(&picture, at.expect("in front of the eye"), value(factors[patch].inside))
+    });
+    // Some lie where one factor ends and another starts.
+    let (wrong, all) = (wrong.count(), sampled.len());
+    assert!(wrong < all / 25, "{wrong} of {all}");
+    let different: std::collections::HashSet<_> = sampled.iter().map(|&patch| factors[patch].inside).collect();
+    assert!(different.len() > 2, "{different:?}");
+}
+
+#[test]
+fn small_triangles_and_low_factors_are_marked_and_others_are_not() {
+    let (_, mut cube) = scene(Shape::CubeSplit);
+    let target = Target::new(&engine().gpu, [400, 400]).expect("a small picture");
+    let camera = Camera { orthographic: true, ..in_front(&cube, &target) };
+    let mut marked = |colors, factor| {
+        let overlays = Overlays { colors, ..Overlays::default() };
+        let flat = Settings { surface: Surface::Flat, partitioning: Partitioning::Integer, ..Settings::default() };
+        let picture = seen(&mut cube, &target, &Settings { factor, overlays, ..flat }, &camera);
+        pixels_of(&picture, WASTE_COLOR)
+    };
+    // The face is some 230 px wide, and its rings of triangles are smaller than a square grid's.
+    assert_eq!(marked(Colors::TriangleSize, 16.0), 0);
+    assert!(marked(Colors::TriangleSize, 64.0) > 10_000);
+    assert!(marked(Colors::LowFactors, 1.0) > 10_000);
+    assert_eq!(marked(Colors::LowFactors, 2.0), 0);
+}
+
+#[test]
+fn normals_are_drawn_chunk_by_chunk_and_not_hidden_by_later_chunks() {
+    let loaded = crate::loaded(Shape::Torus);
+    let settings =
+        Settings { factor: 63.0, overlays: Overlays { normals: true, ..Overlays::default() }, ..Settings::default() };
+    let [whole, pieces] = [ARENA_BYTES, 4 << 20].map(|arena| {
+        let mut scene = engine().scene(&loaded, arena).expect("shapes are small");
+        let drawn = picture(&mut scene, &settings, SIZE);
+        (scene.tessellator.chunk_count(), drawn)
+    });
+    assert!(whole.0 == 1 && pieces.0 > 4, "{} chunks and {}", whole.0, pieces.0);
+    assert!(pixels_of(&whole.1, NORMAL_COLOR) > 100);
+    let difference = compare(&whole.1, &pieces.1).expect("one size").difference;
+    assert!(difference < 1e-4, "{difference}");
 }
 
 #[test]

@@ -330,7 +330,7 @@ fn clipping_by_each_plane_changes_no_picture_and_the_papers_does() {
                     seen(&mut scene, &target, &by_plane, &camera) == whole,
                     "{shape:?} {surface:?}, camera {index}"
                 );
-                left_out += measured(&mut scene, &by_plane, &camera).patches_culled;
+                left_out += measured(&mut scene, &by_plane, &camera).culled.total();
                 let paper = seen(&mut scene, &target, &Settings { clip: Clip::Paper, ..off }, &camera);
                 changed += u32::from(paper != whole);
             }

@@ -7,10 +7,10 @@ use pnaen::app::App;
 use pnaen::mesh::{EdgeKind, Shape, Source};
 use pnaen::tessellate::Surface;
 
-use crate::{choose, click, press, settle, window};
+use crate::{choose, click, press, settle, uniform};
 
 fn cube() -> Harness<'static, App> {
-    window(Some(Source::Shape(Shape::CubeSplit)))
+    uniform(Some(Source::Shape(Shape::CubeSplit)))
 }
 
 /// Clicks in the picture, so far from its middle in points.
@@ -44,8 +44,10 @@ fn a_click_selects_what_is_under_the_pointer() {
     harness.get_by_label("Click a triangle, or give its number.");
     press(&mut harness, egui::Key::Num1);
     let before = *harness.state().camera();
+    let picture = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
     // Seen from the front, the middle lies on the front face, a little above its diagonal.
     click_beside_the_middle(&mut harness, egui::vec2(-8.0, -12.0));
+    assert_eq!(harness.get_by_role_and_label(Role::Image, "Viewport").rect(), picture, "the panel stays as wide");
     let app = harness.state();
     assert_eq!(*app.camera(), before, "a click doesn't orbit");
     let loaded = app.loaded().expect("a mesh");
@@ -181,4 +183,22 @@ fn left_of_the_split_the_triangle_itself_is_picked() {
         assert!(app.selected_triangle().is_some() && app.selected_edge().is_some());
         assert_eq!(app.hit().is_some(), emitted, "{offset} points from the divider");
     }
+}
+
+#[test]
+fn a_patch_that_is_left_out_says_why() {
+    let mut harness = cube();
+    press(&mut harness, egui::Key::Num1);
+    // The back, seen from the front: selected while it is drawn, and left out then.
+    let loaded = harness.state().loaded().expect("a mesh");
+    let behind =
+        |corners: &[u32; 3]| corners.iter().all(|&corner| loaded.mesh.corners[corner as usize].position.z < 0.0);
+    let triangle = loaded.mesh.triangles.iter().position(behind).expect("a cube has a back") as u32;
+    harness.state_mut().select_triangle(Some(triangle));
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::Image, "Domain pattern, 75 points, 121 triangles");
+    harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::Image, "Domain pattern, facing away: nothing is emitted");
+    assert_eq!(harness.state().selected_triangle(), Some(triangle));
 }

@@ -57,7 +57,9 @@ impl<'a> Materials<'a> {
         let info = pbr.base_color_texture();
         let texture = info.as_ref().and_then(|info| self.texture(info.texture().source().index(), &name));
         let uv_set = info.map_or(0, |info| info.tex_coord());
-        let index = builder.material(Material { texture, ..Material::plain(&name, pbr.base_color_factor()) });
+        let double_sided = material.double_sided();
+        let plain = Material::plain(&name, pbr.base_color_factor());
+        let index = builder.material(Material { texture, double_sided, ..plain });
         let resolved = Resolved { index, uv_set };
         self.resolved.insert(material.index(), resolved);
         resolved

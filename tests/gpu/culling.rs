@@ -1,0 +1,110 @@
+//! Culling: what is left out is never missed.
+
+use glam::Vec2;
+use pnaen::gpu::Timing;
+use pnaen::measure::Culled;
+use pnaen::mesh::Shape;
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::{Overlays, Settings};
+use pnaen::stability::random_camera;
+use pnaen::tessellate::{Clip, Edges, Lod, Surface, tessellate};
+
+use crate::{engine, scene};
+
+const CAMERAS: u32 = 500;
+
+/// The shapes of which nothing but the outside is ever seen.
+const SOLIDS: [Shape; 6] =
+    [Shape::CubeSplit, Shape::CubeSmooth, Shape::Icosahedron, Shape::Icosphere, Shape::Torus, Shape::Cylinder];
+
+fn seen(scene: &mut Scene, target: &Target, camera: &Camera, settings: &Settings) -> image::RgbaImage {
+    engine().draw(scene, target, camera, settings, &mut Timing::Off).expect("a draw");
+    target.read(&engine().gpu).expect("a readback")
+}
+
+fn differing(a: &image::RgbaImage, b: &image::RgbaImage) -> usize {
+    a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count()
+}
+
+fn culled(scene: &mut Scene) -> Culled {
+    engine().measure(scene).expect("a readback").culled
+}
+
+#[test]
+fn no_pixel_differs_whatever_is_left_out() {
+    let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
+    let mut removed = Culled::default();
+    for (k, shape) in SOLIDS.into_iter().enumerate() {
+        let (_, mut scene) = scene(shape);
+        for index in (k as u32..CAMERAS).step_by(SOLIDS.len()) {
+            let camera = random_camera(&scene.bounds, index);
+            let lod = [Lod::Error, Lod::Uniform][index as usize / 7 % 2];
+            let surface = [Surface::PnAen, Surface::Flat][index as usize / 5 % 2];
+            let all = Settings { lod, surface, factor: 3.0, ..Settings::default() };
+            let needed = Settings { clip: Clip::Frustum, cull_back_faces: true, ..all };
+            if index % 10 == 0 {
+                // With backs drawn too: silhouettes alone may differ, where front and back are equally far.
+                let backs = |settings: Settings| Settings {
+                    overlays: Overlays { back_faces: true, ..Overlays::default() },
+                    ..settings
+                };
+                let pictures = [all, needed].map(|settings| seen(&mut scene, &target, &camera, &backs(settings)));
+                let differing = differing(&pictures[0], &pictures[1]);
+                assert!(differing < 12, "{differing} px of {shape:?} from {camera:?} under {lod:?} on {surface:?}");
+            }
+            let expected = seen(&mut scene, &target, &camera, &all);
+            let found = seen(&mut scene, &target, &camera, &needed);
+            assert_eq!(differing(&expected, &found), 0, "px of {shape:?} from {camera:?} under {lod:?} on {surface:?}");
+            let own = culled(&mut scene);
+            removed.out_of_view += own.out_of_view;
+            removed.facing_away += own.facing_away;
+        }
+    }
+    println!("{CAMERAS} cameras: {removed:?}");
+    assert!(removed.out_of_view > 9_000 && removed.facing_away > 9_000, "{removed:?}");
+}
+
+/// Patches that face away, from a camera that sees all of the mesh.
+fn facing_away(shape: Shape, settings: &Settings) -> u32 {
+    let (_, mut scene) = scene(shape);
+    let viewport = Vec2::new(320.0, 240.0);
+    let camera = Camera::framing(&scene.bounds, viewport);
+    let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
+    engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+    culled(&mut scene).facing_away
+}
+
+#[test]
+fn backs_are_kept_where_they_could_be_seen() {
+    let culling = Settings { cull_back_faces: true, ..Settings::default() };
+    let flat = Settings { surface: Surface::Flat, ..culling };
+    assert_eq!(facing_away(Shape::CubeSplit, &flat), 6, "three of a cube's faces, two triangles each");
+    assert!(facing_away(Shape::Torus, &culling) > 90, "of 256, about half of which face away");
+    let torn = Settings { surface: Surface::Pn, ..culling };
+    assert_eq!(facing_away(Shape::CubeSplit, &torn), 0, "one looks in through the cracks");
+    let published = Settings { edges: Edges::AsPublished, ..culling };
+    assert_eq!(facing_away(Shape::CubeSplit, &published), 0, "the same");
+    assert_eq!(facing_away(Shape::Saddle, &culling), 0, "open");
+    assert_eq!(facing_away(Shape::Moebius, &culling), 0, "without an outside");
+}
+
+#[test]
+fn the_device_leaves_out_what_the_cpu_does() {
+    let viewport = Vec2::new(320.0, 240.0);
+    let (mut same, mut all) = (0, 0);
+    for shape in SOLIDS {
+        let (loaded, mut scene) = scene(shape);
+        for index in 0..12 {
+            let camera = random_camera(&scene.bounds, index);
+            let settings = Settings { factor: 1.0, clip: Clip::Frustum, cull_back_faces: true, ..Settings::default() };
+            let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
+            engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+            let device = engine().patch_factors(&scene).expect("a readback");
+            let host = tessellate(&loaded.mesh, &loaded.topology, &inputs, None).patch_factors;
+            same += device.iter().zip(&host).filter(|(a, b)| a == b).count();
+            all += host.len();
+        }
+    }
+    // What lies on a plane of the view, or is seen edge-on, rounding may put on either side.
+    assert!(same * 1000 >= all * 999, "{same} of {all} patches");
+}
