@@ -248,7 +248,7 @@ impl App {
         if pressed(context, Key::F) {
             self.frame();
         }
-        if context.input(|input| input.modifiers.shift_only() && input.key_pressed(Key::F)) {
+        if context.input_mut(|input| input.consume_key(Modifiers::SHIFT, Key::F)) {
             self.frame_patch();
         }
     }
