@@ -27,6 +27,22 @@ struct Material {
     base_color: vec4<f32>,
 }
 
+// What lies under a pixel.
+struct Pick {
+    // As emitted; zero for an input triangle.
+    vertices: array<Vertex, 3>,
+    // One of FOUND_*, or 0 for nothing.
+    found: u32,
+    patch_index: u32,
+    // Number of the emitted triangle within its patch.
+    triangle: u32,
+    // The weight (0 u, 1 v, 2 w) that is fewest px from 0.
+    weight: u32,
+}
+
+const FOUND_EMITTED: u32 = 1u;
+const FOUND_SOURCE: u32 = 2u;
+
 const OVERLAY_WIREFRAME: u32 = 1u;
 const OVERLAY_PATCHES: u32 = 2u;
 const OVERLAY_BARYCENTRIC: u32 = 4u;

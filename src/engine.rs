@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
 use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
-use crate::render::{Camera, LeakCounter, Renderer, Scene, Target};
+use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex, is_beyond_near};
 
@@ -47,6 +47,7 @@ pub struct Engine {
     pub gpu: Gpu,
     pub pipelines: Arc<ComputePipelines>,
     pub renderer: Arc<Renderer>,
+    pub picker: Arc<Picker>,
     leaks: Arc<LeakCounter>,
 }
 
@@ -54,8 +55,9 @@ impl Engine {
     pub fn new(gpu: Gpu) -> Self {
         let pipelines = Arc::new(ComputePipelines::new(&gpu));
         let renderer = Arc::new(Renderer::new(&gpu));
+        let picker = Arc::new(Picker::new(&gpu));
         let leaks = Arc::new(LeakCounter::new(&gpu));
-        Self { gpu, pipelines, renderer, leaks }
+        Self { gpu, pipelines, renderer, picker, leaks }
     }
 
     /// An engine on the machine's best adapter, without a window.

@@ -1,5 +1,8 @@
 //! The real window, driven by the names that its controls have for a screen reader.
 
+#[path = "window/picking.rs"]
+mod picking;
+
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 

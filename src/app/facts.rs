@@ -21,6 +21,8 @@ pub(super) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
 impl App {
     pub(super) fn facts_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            heading(ui, "Patch");
+            self.patch_section(ui);
             heading(ui, "Cracks");
             self.crack_facts(ui);
             self.worst_edges(ui);

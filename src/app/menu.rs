@@ -13,11 +13,13 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 28] = [
+pub const KEYS: [(&str, &str); 30] = [
+    ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
     ("Wheel, Page Up, Page Down", "zoom (the wheel: to the pointer)"),
     ("F", "frame the mesh"),
+    ("Shift+F", "frame the selected patch"),
     ("1, 3, 7", "look from the front, the right, the top"),
     ("5", "perspective or orthographic"),
     ("+, -", "tessellation factor up or down by 1"),
@@ -120,6 +122,10 @@ impl App {
         if entry(ui, "Frame", "F") {
             self.frame();
         }
+        let frame_patch = egui::Button::new("Frame patch").shortcut_text("Shift+F");
+        if ui.add_enabled(self.selected_patch().is_some(), frame_patch).clicked() {
+            self.frame_patch();
+        }
         for (text, key, standpoint) in
             [("Front", "1", Standpoint::Front), ("Right", "3", Standpoint::Right), ("Top", "7", Standpoint::Top)]
         {
@@ -189,7 +195,7 @@ impl App {
             self.error = None;
             self.typed_path = None;
             self.shows_keys = false;
-            self.selected_edge = None;
+            self.deselect();
         }
         if context.egui_wants_keyboard_input() {
             return;
@@ -241,6 +247,9 @@ impl App {
         }
         if pressed(context, Key::F) {
             self.frame();
+        }
+        if context.input_mut(|input| input.consume_key(Modifiers::SHIFT, Key::F)) {
+            self.frame_patch();
         }
     }
 

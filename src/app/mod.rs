@@ -3,10 +3,15 @@
 mod checks;
 mod document;
 mod facts;
+mod labels;
 mod legend;
 mod measuring;
 mod menu;
+mod names;
 mod panels;
+mod patch;
+mod pattern;
+mod pick;
 mod status;
 mod text;
 mod viewport;
@@ -27,6 +32,7 @@ use crate::tessellate::{Clip, Lod, LodView, Partitioning};
 
 use document::{Document, Load};
 use measuring::Measuring;
+use pick::Selection;
 use viewport::{Marked, Viewport};
 
 #[derive(Debug, Error)]
@@ -96,6 +102,7 @@ pub struct App {
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
     selected_edge: Option<u32>,
+    selection: Selection,
     /// What is being typed as a path to open, while that window is open.
     typed_path: Option<String>,
     shows_keys: bool,
@@ -137,6 +144,7 @@ impl App {
             measuring: Measuring::default(),
             marked: None,
             selected_edge: None,
+            selection: Selection::default(),
             typed_path: None,
             shows_keys: false,
             error: None,
@@ -213,7 +221,7 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy()
+        self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy() || self.selection.is_busy()
     }
 
     /// Whether the mesh is still being looked through: that doesn't change the picture by itself.
@@ -238,7 +246,7 @@ impl App {
                     self.error = None;
                 }
                 self.measuring = Measuring::default();
-                self.selected_edge = None;
+                self.deselect();
             }
             Err(Some(error)) => {
                 self.error = Some(error);

@@ -8,12 +8,13 @@ use egui::{Key, PointerButton, Sense};
 use glam::{Mat4, Vec2, vec2};
 
 use super::legend::legend;
+use super::pick::Outlined;
 use super::text::grouped;
 use super::{App, Document};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks, ScreenView};
-use crate::render::{Camera, Renderer, Target, t_junction_lines};
+use crate::render::{Camera, Pixel, Renderer, Target, t_junction_lines};
 use crate::settings::{Colors, Settings};
 use crate::tessellate::{Inputs, LodView};
 
@@ -46,6 +47,7 @@ pub struct Marked {
     cracks: bool,
     t_junctions: bool,
     selected_edge: Option<u32>,
+    outlined: Outlined,
     /// Counts the times that they changed.
     generation: u64,
 }
@@ -60,7 +62,7 @@ struct Drawing {
 }
 
 /// Pictures of up to so many steps are finished also if something newer is wanted.
-const SHORT: usize = 8;
+pub const SHORT: usize = 8;
 
 /// The picture and what it cost.
 pub struct Viewport {
@@ -136,6 +138,13 @@ impl Viewport {
     /// The gap of one edge in px, seen as the last picture was.
     pub fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
+    }
+
+    /// A pixel (from the left and the top) of the last picture.
+    pub fn pixel(&self, at: [u32; 2]) -> Option<Pixel> {
+        let Wanted { clip_from_object, settings, .. } = self.drawn?;
+        let size = self.target.as_ref()?.0.size;
+        Some(Pixel { clip_from_object, size, at, split: settings.split })
     }
 
     /// Where the picture that is shown was seen from.
@@ -251,6 +260,7 @@ impl App {
         let points = vec2(rect.width(), rect.height());
         self.move_camera(ui, &response, points);
         let scale = ui.ctx().pixels_per_point();
+        self.click(&response, scale);
         let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
         if let Err(error) = self.advance(ui.ctx(), size) {
             self.error = Some(error.to_string());
@@ -259,6 +269,7 @@ impl App {
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             ui.painter().image(*id, rect, whole, egui::Color32::WHITE);
         }
+        self.patch_labels(ui, rect);
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
         legend(ui, rect, self.settings.overlays.colors);
@@ -293,7 +304,7 @@ impl App {
             let follows = self.settings.overlays.colors == Colors::TriangleSize;
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
         }
-        if self.is_busy() {
+        if self.pick()? || self.is_busy() {
             context.request_repaint();
         }
         Ok(())
@@ -304,12 +315,14 @@ impl App {
         let Some(document) = &self.document else { return };
         let overlays = self.settings.overlays;
         let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
+        let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
         let wanted = Marked {
             document: document.generation,
-            measured: if overlays.cracks || self.selected_edge.is_some() { self.measuring.generation } else { 0 },
+            measured: if overlays.cracks || is_selected { self.measuring.generation } else { 0 },
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge,
+            outlined: self.outlined(),
             generation: self.marked.map_or(0, |marked| marked.generation),
         };
         if self.marked == Some(wanted) {
@@ -321,6 +334,7 @@ impl App {
             lines.extend(found.crack_lines(&topology));
         }
         // Over all else.
+        lines.extend(self.patch_outline(&topology));
         lines.extend(self.selection_lines(&topology));
         self.marked = Some(Marked { generation: wanted.generation + 1, ..wanted });
         if let Some(document) = &mut self.document {
@@ -455,9 +469,15 @@ fn progress(
 
 /// A short text over the picture, legible on any of it.
 fn note(ui: &egui::Ui, position: egui::Pos2, align: egui::Align2, text: &str) {
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::from_gray(235));
-    let rect = align.anchor_size(position, galley.size());
+    let galley = note_text(ui, text, egui::Color32::from_gray(235));
+    paint_note(ui, align.anchor_size(position, galley.size()), galley);
+}
+
+pub(super) fn note_text(ui: &egui::Ui, text: &str, color: egui::Color32) -> Arc<egui::Galley> {
+    ui.painter().layout_no_wrap(text.to_owned(), egui::TextStyle::Body.resolve(ui.style()), color)
+}
+
+pub(super) fn paint_note(ui: &egui::Ui, rect: egui::Rect, galley: Arc<egui::Galley>) {
     ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(170));
     ui.painter().galley(rect.min, galley, egui::Color32::WHITE);
 }

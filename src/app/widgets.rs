@@ -104,9 +104,12 @@ fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
     next.into_iter().find(|(key, _)| pressed(*key)).map(|(_, next)| next)
 }
 
+/// Width and height of a swatch, in points.
+pub const SWATCH: egui::Vec2 = egui::vec2(14.0, 10.0);
+
 /// A patch of colour, as in a legend.
 pub fn swatch(ui: &mut egui::Ui, [r, g, b]: [u8; 3]) {
-    let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 10.0), egui::Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
     ui.painter().rect_filled(rect, 2.0, egui::Color32::from_rgb(r, g, b));
 }
 

@@ -133,6 +133,7 @@ impl App {
         let ends = chosen.points.map(|point| topology.points[point as usize]);
         self.camera.frame_edge(ends, topology.edge_facing(chosen), &document.scene.bounds);
         self.selected_edge = Some(edge);
+        self.keep_triangle_of(edge);
     }
 
     /// The crack along an edge, if there is one.
@@ -190,7 +191,7 @@ fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     });
 }
 
-fn kind_name(kind: EdgeKind) -> &'static str {
+pub(super) fn kind_name(kind: EdgeKind) -> &'static str {
     EDGE_KINDS.iter().find(|(known, ..)| *known == kind).map_or("", |(_, name, _)| name)
 }
 

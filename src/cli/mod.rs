@@ -86,6 +86,10 @@ pub enum CliError {
          fewer"
     )]
     Budget { most: u64, least: u64, largest: f32 },
+    #[error("{file} has triangles 0 to {last}, and no triangle {triangle}")]
+    NoTriangle { file: String, last: usize, triangle: u32 },
+    #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
+    NoPatch { file: String, triangle: u32 },
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }

@@ -9,9 +9,9 @@ use super::given::FactorsFile;
 use super::{CliError, GivenOption, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
-use crate::measure::{Measured, ScreenView, compare, ulp};
+use crate::measure::{Measured, ScreenView, compare, patch_edges, ulp};
 use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
-use crate::render::{Camera, Scene, Target, t_junction_lines};
+use crate::render::{Camera, Scene, Target, patch_lines, t_junction_lines};
 use crate::settings::{Overlay, Overlays, Settings};
 
 #[derive(Debug, clap::Args)]
@@ -32,6 +32,10 @@ pub struct Args {
     /// Left of this fraction of the width, show the mesh untessellated
     #[arg(long, value_name = "FRACTION", value_parser = options::fraction)]
     pub split: Option<f32>,
+    /// Outline this triangle (its number in the mesh, from 0), its edges in the colours of factors 0, 1 and 2: red, green,
+    /// blue
+    #[arg(long, value_name = "TRIANGLE")]
+    pub select: Option<u32>,
     /// sRGB colour behind the mesh
     #[arg(long, value_name = "RRGGBB", default_value = "2b2e33", value_parser = options::color)]
     pub background: [u8; 3],
@@ -60,6 +64,7 @@ impl Args {
             given: GivenOption::default(),
             overlay: vec![Overlay::Wireframe],
             split: None,
+            select: None,
             background,
             stats: None,
             measure_error: true,
@@ -83,6 +88,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file, args.surface.weld)?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention)?;
+    let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
@@ -98,7 +104,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 
     let inputs = settings.inputs(view);
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
-    let measured = if settings.overlays.cracks || args.stats.is_some() {
+    let measured = if settings.overlays.cracks || selected.is_some() || args.stats.is_some() {
         let measured = engine.measure(&mut scene)?;
         Some(measured)
     } else {
@@ -111,6 +117,10 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     if settings.overlays.t_junctions {
         let junctions = t_junctions(&loaded.topology, &Progress::default()).map_err(LoadError::from)?;
         lines.extend(t_junction_lines(&loaded.topology, &junctions));
+    }
+    if let Some(patch) = selected {
+        let rims = measured.as_ref().map(|measured| &measured.rims);
+        lines.extend(patch_lines(&patch_edges(&loaded.topology, patch, rims, settings.convention)));
     }
     scene.set_lines(&engine.gpu, &lines);
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;
@@ -141,6 +151,15 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         Some((path, reference)) => hold_against(args, &picture, path, &reference),
         None => Ok(()),
     }
+}
+
+/// The patch of a triangle of the mesh.
+fn selected_patch(loaded: &Loaded, triangle: u32) -> Result<u32, CliError> {
+    let (file, count) = (loaded.source.to_string(), loaded.mesh.triangles.len());
+    if triangle as usize >= count {
+        return Err(CliError::NoTriangle { file, last: count.saturating_sub(1), triangle });
+    }
+    loaded.topology.patch_of(triangle).ok_or(CliError::NoPatch { file, triangle })
 }
 
 /// Reads the reference before anything is drawn or written.

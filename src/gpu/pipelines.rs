@@ -17,7 +17,7 @@ const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 const ROOMS: [&str; 8] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
-pub const SHADERS: [(&str, &[&str]); 10] = [
+pub const SHADERS: [(&str, &[&str]); 11] = [
     ("nets", &[LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
     ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
@@ -27,6 +27,7 @@ pub const SHADERS: [(&str, &[&str]); 10] = [
     ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
     ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
     ("leaks", &[include_str!("../../shaders/draw_leaks.wgsl")]),
+    ("pick", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_pick.wgsl")]),
     ("lines", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_lines.wgsl")]),
 ];
 

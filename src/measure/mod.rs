@@ -16,7 +16,7 @@ pub use chart::{CHART_RANGE, ChartError, sweep_chart, write_text};
 pub use cracks::{CrackedEdge, Cracks, ulp};
 pub use deviation::{Deviant, Deviation};
 pub use picture::{CompareError, Comparison, compare};
-pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims};
+pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims, patch_edges};
 pub use sizes::{SMALL_PX, ScreenView, Sizes};
 pub use survey::{Culled, Measured, Survey};
 pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};

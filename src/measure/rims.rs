@@ -88,6 +88,20 @@ impl AskedFactors {
     }
 }
 
+/// The edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut, point by point as they were
+/// emitted; straight where that isn't known, or nothing is emitted.
+pub fn patch_edges(topology: &Topology, patch: u32, rims: Option<&Rims>, convention: Convention) -> [Vec<Vec3>; 3] {
+    let corners = topology.patch_positions(patch);
+    let sides = rims.and_then(|rims| rims.patch(topology, patch));
+    [0, 1, 2].map(|i| {
+        let k = domain_side(convention, i) as usize;
+        match &sides {
+            Some(sides) => sides[k].positions().collect(),
+            None => vec![corners[k], corners[(k + 1) % 3]],
+        }
+    })
+}
+
 /// What one side has made of an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeSide {
@@ -151,6 +165,17 @@ impl Rims {
     /// out.
     pub fn edge(&self, topology: &Topology, edge: u32) -> Vec<EdgeSide> {
         topology.edges[edge as usize].sides.clone().filter_map(|side| self.side(topology, side)).collect()
+    }
+
+    /// What a patch (an index into [`Topology::patches`]) has made of its sides 0, 1 and 2; none if it emits nothing.
+    pub fn patch(&self, topology: &Topology, patch: u32) -> Option<[EdgeSide; 3]> {
+        let [a, b, c] = topology.patches[patch as usize].sides.map(|side| self.side(topology, side));
+        Some([a?, b?, c?])
+    }
+
+    /// The factors that a patch was emitted with.
+    pub fn factors(&self, patch: u32) -> PatchFactors {
+        self.factors[patch as usize]
     }
 
     fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {

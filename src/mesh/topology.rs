@@ -195,11 +195,22 @@ impl Topology {
         &self.sides[edge.sides.start as usize..edge.sides.end as usize]
     }
 
+    /// The patch that a triangle of the mesh has become; none if it is degenerate.
+    pub fn patch_of(&self, triangle: u32) -> Option<u32> {
+        // Patches are in the order of their triangles.
+        self.patches.binary_search_by_key(&triangle, |patch| patch.triangle).ok().map(|patch| patch as u32)
+    }
+
+    /// Where a patch's corners lie, in object units.
+    pub fn patch_positions(&self, patch: u32) -> [Vec3; 3] {
+        let corners = self.patches[patch as usize].corners;
+        corners.map(|corner| self.points[self.corner_points[corner as usize] as usize])
+    }
+
     /// The direction that an edge's patches face together: the sum of their facings, by area; zero where they cancel.
     pub fn edge_facing(&self, edge: &Edge) -> Vec3 {
         let facing = |side: &Side| {
-            let corners = self.patches[side.patch as usize].corners;
-            let [a, b, c] = corners.map(|c| self.points[self.corner_points[c as usize] as usize].as_dvec3());
+            let [a, b, c] = self.patch_positions(side.patch).map(Vec3::as_dvec3);
             (b - a).cross(c - a)
         };
         let sum: glam::DVec3 = self.edge_sides(edge).iter().map(facing).sum();

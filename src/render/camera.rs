@@ -58,8 +58,19 @@ impl Camera {
     /// Puts an edge in the middle, two thirds of the view's height long, seen from where it faces (or from where one is, if it
     /// faces nowhere). `bounds` are the mesh's.
     pub fn frame_edge(&mut self, [a, b]: [Vec3; 2], facing: Vec3, bounds: &Bounds) {
-        self.target = a * 0.5 + b * 0.5;
-        self.distance = (FRAMED_EDGE * a.distance(b)).max(1e-4 * bounds.radius());
+        self.frame_at(a * 0.5 + b * 0.5, a.distance(b), facing, bounds);
+    }
+
+    /// The same for a triangle, whose longest edge then is that long.
+    pub fn frame_triangle(&mut self, [a, b, c]: [Vec3; 3], bounds: &Bounds) {
+        let facing = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        self.frame_at(a / 3.0 + b / 3.0 + c / 3.0, longest, facing, bounds);
+    }
+
+    fn frame_at(&mut self, target: Vec3, length: f32, facing: Vec3, bounds: &Bounds) {
+        self.target = target;
+        self.distance = (FRAMED_EDGE * length).max(1e-4 * bounds.radius());
         if facing != Vec3::ZERO {
             self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
             self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
@@ -189,6 +200,25 @@ mod tests {
         assert!((a + b).distance(viewport) < 2.0);
         let length = a.distance(b);
         assert!((350.0..450.0).contains(&length), "{length} px");
+    }
+
+    #[test]
+    fn a_framed_triangle_is_in_the_middle_and_faces_the_eye() {
+        let viewport = vec2(800.0, 600.0);
+        let mut camera = Camera::framing(&unit_bounds(), viewport);
+        let corners = [vec3(0.5, 0.1, 0.2), vec3(0.9, 0.1, 0.3), vec3(0.6, 0.4, 0.5)];
+        camera.frame_triangle(corners, &unit_bounds());
+        let [a, b, c] = corners;
+        assert!(camera.axes()[2].distance((b - a).cross(c - a).normalize()) < 1e-5);
+        let clip = camera.clip_from_object(viewport, &unit_bounds());
+        let [a, b, c] = corners.map(|p| project(clip, viewport, p).expect("in front of the eye"));
+        assert!((a + b + c).distance(viewport * 1.5) < 3.0);
+        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        assert!((350.0..450.0).contains(&longest), "{longest} px");
+        let before = camera;
+        camera.frame_triangle([Vec3::ONE; 3], &unit_bounds());
+        assert_eq!((camera.azimuth, camera.elevation), (before.azimuth, before.elevation), "a point faces nowhere");
+        assert!(camera.distance > 0.0);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::Scale;
+use crate::gpu::layout::Vertex;
 use crate::mesh::EdgeKind;
 use crate::settings::{Colors, Overlays};
 
@@ -39,6 +40,24 @@ pub struct Material {
     /// Linear RGBA.
     pub base_color: [f32; 4],
 }
+
+/// What lies under a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Pick {
+    /// As emitted; zero for an input triangle.
+    pub vertices: [Vertex; 3],
+    /// [`FOUND_EMITTED`] for an emitted triangle, another number but 0 for an input triangle, 0 for nothing.
+    pub found: u32,
+    pub patch_index: u32,
+    /// Number of the emitted triangle within its patch.
+    pub triangle: u32,
+    /// The weight (0 u, 1 v, 2 w) that is fewest px from 0.
+    pub weight: u32,
+}
+
+/// An emitted triangle; the same in `shaders/draw_types.wgsl`.
+pub const FOUND_EMITTED: u32 = 1;
 
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and
 /// normals are lines of their own.
@@ -89,6 +108,10 @@ pub const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 /// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.
 pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
 pub const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
+
+/// sRGB colours of the edges of a selected patch, by the factor that cuts them: those of u, v and w as barycentric colours
+/// have them, but paler.
+pub const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
 
 /// sRGB bytes in linear light, 0 to 1.
 pub fn linear(srgb: [u8; 3]) -> [f32; 3] {

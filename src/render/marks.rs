@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::LineSegment;
-use super::layout::T_JUNCTION_COLOR;
+use super::layout::{FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR};
 use crate::mesh::{TJunction, Topology};
 
 /// The open edges that T-junctions lie on, and a dot on each point.
@@ -15,4 +15,15 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
         [LineSegment::new(a, b, T_JUNCTION_COLOR), dot(at(junction.point))]
     });
     marks.collect()
+}
+
+/// The outline of a selected patch: lines through the points of the edges that factors 0, 1 and 2 cut.
+pub fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
+    let edge = |points: &[Vec3], color, half_width| {
+        let ends = points.windows(2).map(move |ends| LineSegment::new(ends[0], ends[1], color));
+        ends.map(|line| LineSegment { half_width, ..line }).collect::<Vec<_>>()
+    };
+    let outline = edges.iter().flat_map(|points| edge(points, OUTLINE_COLOR, 4.0));
+    let colored = edges.iter().zip(FACTOR_COLORS).flat_map(|(points, color)| edge(points, color, 2.75));
+    outline.chain(colored).collect()
 }

@@ -4,6 +4,7 @@ mod camera;
 pub mod layout;
 mod leaks;
 mod marks;
+mod pick;
 mod renderer;
 mod scale;
 mod scene;
@@ -11,7 +12,8 @@ mod target;
 
 pub use camera::{Camera, Standpoint, project};
 pub use leaks::LeakCounter;
-pub use marks::t_junction_lines;
+pub use marks::{patch_lines, t_junction_lines};
+pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::Renderer;
 pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
 pub use scene::{LineSegment, Scene};

@@ -294,7 +294,7 @@ fn steps(chunks: usize, normals: bool) -> Vec<Step> {
 }
 
 /// The picture left and right of the split: x, y, width, height in px.
-fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
+pub(super) fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
     let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
     [[0, 0, at, height], [at, 0, width - at, height]]
 }

@@ -35,6 +35,12 @@ impl Convention {
     pub fn is_consistent(self) -> bool {
         (0..3).all(|i| factor_side(self, i) == domain_side(self, i))
     }
+
+    /// What [`corner_weights`] made its argument into, back again: U and V of weights on corners 0 and 1.
+    pub fn domain_weights(self, [a, b]: [u32; 2]) -> [u32; 2] {
+        let on_corners = [a, b, super::FIXED_ONE - a - b];
+        [0, 1].map(|i| on_corners[weight_corner(self, i) as usize])
+    }
 }
 
 /// The side (k runs from corner k to corner k + 1) whose factor the hull shader writes as factor `i`.
@@ -101,6 +107,15 @@ mod tests {
                 on_corners[weight_corner(convention, i as u32) as usize] = weights[i];
             }
             assert_eq!(corner_weights(convention, [1, 2]), on_corners[..2], "{convention:?}");
+        }
+    }
+
+    #[test]
+    fn weights_go_to_corners_and_back() {
+        for convention in Convention::ALL {
+            for domain in [[0, 0], [65536, 0], [1, 2], [20000, 30000]] {
+                assert_eq!(convention.domain_weights(corner_weights(convention, domain)), domain, "{convention:?}");
+            }
         }
     }
 

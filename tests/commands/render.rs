@@ -171,3 +171,29 @@ fn stats_count_small_triangles_and_patches_with_low_factors() {
     let even = ["shape:torus", "--factor", "1", "--partitioning", "fractional-even", "--measure-error", "false"];
     assert_eq!(counts(&even)[3], 0.0, "an even factor is at least 2");
 }
+
+#[test]
+fn a_selected_triangle_is_outlined() {
+    let folder = Folder::new("select");
+    let drawn = |name: &str, options: &[&str]| {
+        let path = folder.path(name);
+        let base = ["render", "shape:cube-split", "-o", &path, "--size", "320x240", "--camera", "0,0"];
+        output(&[&base[..], options].concat());
+        image::open(&path).expect("a PNG file").to_rgba8()
+    };
+    // Pink, lime and blue as src/render/layout.rs has them.
+    let colors: [[i32; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
+    let count = |picture: &image::RgbaImage, color: [i32; 3]| {
+        let near = |pixel: &image::Rgba<u8>| (0..3).all(|c| (i32::from(pixel.0[c]) - color[c]).abs() <= 4);
+        picture.pixels().filter(|pixel| near(pixel)).count()
+    };
+    let plain = drawn("plain.png", &[]);
+    let outlined = drawn("outlined.png", &["--select", "8"]);
+    for color in colors {
+        assert_eq!(count(&plain, color), 0, "{color:?}");
+        assert!(count(&outlined, color) > 100, "{color:?}: {}", count(&outlined, color));
+    }
+    let path = folder.path("none.png");
+    sentence(&["render", "shape:cube-split", "-o", &path, "--select", "12"], &["0 to 11", "no triangle 12"]);
+    assert!(!Path::new(&path).exists());
+}

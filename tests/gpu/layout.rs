@@ -7,7 +7,7 @@ use pnaen::gpu::layout::{
     Chunk, Corner, Curve, CurveNet, DrawArgs, EmitArgs, LodView, Params, Patch, PatchFactors, Slab, Vertex,
 };
 use pnaen::gpu::{DomainParams, SHADERS, shader_source};
-use pnaen::render::layout::{Frame, Material};
+use pnaen::render::layout::{Frame, Material, Pick};
 
 fn parse(name: &str) -> naga::Module {
     let source = shader_source(name);
@@ -106,6 +106,7 @@ fn shared_structs_have_one_layout() {
         scale,
     });
     same!(Material { base_color });
+    same!(Pick { vertices, found, patch_index, triangle, weight });
 }
 
 #[test]

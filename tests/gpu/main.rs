@@ -8,6 +8,7 @@ mod domain;
 mod error;
 mod layout;
 mod passes;
+mod picking;
 mod pictures;
 mod stability;
 

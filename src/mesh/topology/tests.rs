@@ -221,3 +221,11 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_triangle_knows_its_patch_unless_it_is_degenerate() {
+    let topology = build(&mesh(&[0, 1, 2, 3, 1], &[[0, 1, 2], [1, 4, 2], [2, 1, 3]]));
+    assert_eq!([0, 1, 2, 3].map(|triangle| topology.patch_of(triangle)), [Some(0), None, Some(1), None]);
+    let [a, b, c] = topology.patch_positions(1);
+    assert_eq!([a.x, b.x, c.x], [2.0, 1.0, 3.0]);
+}

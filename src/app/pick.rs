@@ -1,0 +1,163 @@
+//! What is selected: a triangle of the mesh, one of its edges, and the emitted triangle that was clicked on.
+
+use egui::Response;
+use glam::Vec3;
+
+use super::App;
+use super::viewport::SHORT;
+use crate::gpu::GpuError;
+use crate::measure::patch_edges;
+use crate::mesh::Topology;
+use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
+use crate::tessellate::Convention;
+
+/// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
+#[derive(Default)]
+pub struct Selection {
+    /// Index into the mesh's triangles.
+    triangle: Option<u32>,
+    /// With the tessellation that it belongs to.
+    hit: Option<(u64, PickedTriangle)>,
+    /// A click on a picture whose tessellation isn't known yet.
+    clicked: Option<Pixel>,
+    /// With the tessellation that is searched.
+    picking: Option<(u64, Picking)>,
+}
+
+/// What the lines over a selected patch are a function of, besides what was measured.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Outlined {
+    triangle: Option<u32>,
+    /// Number of the emitted triangle in its patch.
+    hit: Option<u32>,
+}
+
+impl Selection {
+    /// Whether a click is still being answered.
+    pub fn is_busy(&self) -> bool {
+        self.clicked.is_some() || self.picking.is_some()
+    }
+}
+
+impl App {
+    /// The triangle that is looked at: an index into the mesh's triangles.
+    pub fn selected_triangle(&self) -> Option<u32> {
+        self.selection.triangle
+    }
+
+    /// The emitted triangle that was clicked on, as long as it is emitted.
+    pub fn hit(&self) -> Option<&PickedTriangle> {
+        let emitted = self.document.as_ref()?.scene.tessellator.generation();
+        self.selection.hit.as_ref().filter(|(of, _)| *of == emitted).map(|(_, triangle)| triangle)
+    }
+
+    /// The patch of the triangle that is looked at.
+    pub(super) fn selected_patch(&self) -> Option<u32> {
+        self.document.as_ref()?.loaded.topology.patch_of(self.selection.triangle?)
+    }
+
+    /// What factors and weights are taken for.
+    pub(super) fn convention(&self) -> Convention {
+        self.settings.convention
+    }
+
+    /// Selects a triangle. The selected edge stays if it is one of its edges.
+    pub fn select_triangle(&mut self, triangle: Option<u32>) {
+        let Some(document) = &self.document else { return };
+        let triangle = triangle.filter(|&triangle| (triangle as usize) < document.loaded.mesh.triangles.len());
+        self.selection = Selection { triangle, ..Selection::default() };
+        if self.selected_edge.is_some_and(|edge| !self.patch_has(edge)) {
+            self.selected_edge = None;
+        }
+    }
+
+    /// Lets go of the triangle, unless `edge` is one of its edges: one looks at that now.
+    pub(super) fn keep_triangle_of(&mut self, edge: u32) {
+        if !self.patch_has(edge) {
+            self.selection = Selection::default();
+        }
+    }
+
+    fn patch_has(&self, edge: u32) -> bool {
+        let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return false };
+        let topology = &document.loaded.topology;
+        topology.patches[patch as usize].sides.iter().any(|&side| topology.sides[side as usize].edge == edge)
+    }
+
+    /// Nothing is looked at any more.
+    pub(super) fn deselect(&mut self) {
+        self.selection = Selection::default();
+        self.selected_edge = None;
+    }
+
+    /// Asks what the picture shows where it was clicked.
+    pub(super) fn click(&mut self, response: &Response, pixels_per_point: f32) {
+        let Some(pointer) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let place = (pointer - response.rect.min) * pixels_per_point;
+        self.selection.clicked = self.viewport.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
+    }
+
+    /// Lets the device look for what was clicked on, and takes what it has found: true if it has.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(super) fn pick(&mut self) -> Result<bool, GpuError> {
+        let Some(document) = &mut self.document else { return Ok(false) };
+        let scene = &mut document.scene;
+        if scene.tessellator.is_counted()
+            && let Some(pixel) = self.selection.clicked.take()
+        {
+            // What takes many steps to draw would take as long to pick: then it is done without emitted triangles.
+            let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
+            let pixel = Pixel { split, ..pixel };
+            let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel);
+            self.selection.picking = Some((scene.tessellator.generation(), picking));
+        }
+        let Some((emitted, picking)) = self.selection.picking.take() else { return Ok(false) };
+        let Some(found) = picking.poll()? else {
+            self.selection.picking = Some((emitted, picking));
+            return Ok(false);
+        };
+        self.take_picked(emitted, found);
+        Ok(true)
+    }
+
+    fn take_picked(&mut self, emitted: u64, found: Option<Picked>) {
+        let (Some(picked), Some(document)) = (found, &self.document) else { return self.deselect() };
+        let topology = &document.loaded.topology;
+        let Some(patch) = topology.patches.get(picked.patch as usize) else { return self.deselect() };
+        // Weights are by corner: opposite corner k is side k + 1.
+        let side = patch.sides[(picked.weight as usize + 1) % 3];
+        self.selected_edge = Some(topology.sides[side as usize].edge);
+        let hit = picked.triangle.map(|triangle| (emitted, triangle));
+        self.selection = Selection { triangle: Some(patch.triangle), hit, ..Selection::default() };
+    }
+
+    /// Turns the camera so that the selected patch is in the middle, seen from the side that it faces.
+    pub(super) fn frame_patch(&mut self) {
+        let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
+        self.camera.frame_triangle(document.loaded.topology.patch_positions(patch), &document.scene.bounds);
+    }
+
+    pub(super) fn outlined(&self) -> Outlined {
+        Outlined { triangle: self.selection.triangle, hit: self.hit().map(|hit| hit.number) }
+    }
+
+    /// See [`patch_edges`].
+    pub(super) fn patch_edges(&self, topology: &Topology, patch: u32) -> [Vec<Vec3>; 3] {
+        patch_edges(topology, patch, self.measuring.found().map(|found| &found.rims), self.convention())
+    }
+
+    /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.
+    pub(super) fn patch_outline(&self, topology: &Topology) -> Vec<LineSegment> {
+        let Some(patch) = self.selected_patch() else { return Vec::new() };
+        let mut lines = patch_lines(&self.patch_edges(topology, patch));
+        if let Some(hit) = self.hit() {
+            let corners = hit.vertices.map(|vertex| Vec3::from(vertex.position));
+            let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
+            let edge = |(a, b)| LineSegment { half_width: 1.25, ..LineSegment::new(a, b, [255; 3]) };
+            lines.extend(edges.map(edge));
+        }
+        lines
+    }
+}

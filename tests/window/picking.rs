@@ -1,0 +1,204 @@
+//! Picking in the window: clicks in the picture, and what the section about the patch says.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::mesh::{EdgeKind, Shape, Source};
+use pnaen::tessellate::Surface;
+
+use crate::{choose, click, press, settle, uniform};
+
+fn cube() -> Harness<'static, App> {
+    uniform(Some(Source::Shape(Shape::CubeSplit)))
+}
+
+/// Clicks in the picture, so far from its middle in points.
+fn click_beside_the_middle(harness: &mut Harness<App>, offset: egui::Vec2) {
+    let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center() + offset;
+    harness.hover_at(place);
+    harness.drag_at(place);
+    harness.run_steps(1);
+    harness.drop_at(place);
+    settle(harness);
+}
+
+fn neighbour(harness: &mut Harness<App>, triangle: u32) {
+    harness.get_by_role_and_label(Role::Button, &format!("Neighbour, triangle {triangle}")).click();
+    settle(harness);
+}
+
+/// The triangles across the selected one's edges.
+fn neighbours(app: &App) -> Vec<u32> {
+    let topology = &app.loaded().expect("a mesh").topology;
+    let patch = topology.patch_of(app.selected_triangle().expect("one is selected")).expect("no shape is degenerate");
+    let edges = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize].edge);
+    let others = edges.into_iter().flat_map(|edge| topology.edge_sides(&topology.edges[edge as usize]).iter());
+    let others = others.filter(|side| side.patch != patch);
+    others.map(|side| topology.patches[side.patch as usize].triangle).collect()
+}
+
+#[test]
+fn a_click_selects_what_is_under_the_pointer() {
+    let mut harness = cube();
+    harness.get_by_label("Click a triangle, or give its number.");
+    press(&mut harness, egui::Key::Num1);
+    let before = *harness.state().camera();
+    let picture = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
+    // Seen from the front, the middle lies on the front face, a little above its diagonal.
+    click_beside_the_middle(&mut harness, egui::vec2(-8.0, -12.0));
+    assert_eq!(harness.get_by_role_and_label(Role::Image, "Viewport").rect(), picture, "the panel stays as wide");
+    let app = harness.state();
+    assert_eq!(*app.camera(), before, "a click doesn't orbit");
+    let loaded = app.loaded().expect("a mesh");
+    let triangle = app.selected_triangle().expect("a triangle");
+    let corners = loaded.mesh.triangles[triangle as usize].map(|corner| loaded.mesh.corners[corner as usize]);
+    assert!(corners.iter().all(|corner| corner.position.z == 0.6), "it faces the eye: {corners:?}");
+    let edge = app.selected_edge().expect("its nearest edge") as usize;
+    assert_eq!(loaded.topology.edges[edge].kind, EdgeKind::Smooth, "the diagonal is nearest");
+    let hit = app.hit().expect("an emitted triangle").number;
+    // The field, its factors, its pattern, its neighbours, its emitted triangle.
+    assert_eq!(harness.get_by_role_and_label(Role::SpinButton, "Triangle").value(), Some(triangle.to_string()));
+    for row in ["[0] 1-2    8.000   8.000     9", "[1] 2-0    8.000   8.000     9", "[2] 0-1    8.000   8.000     9"] {
+        harness.get_by_label(row);
+    }
+    harness.get_by_label("inside     8.000   8.000     9");
+    harness.get_by_role_and_label(Role::Image, "Domain pattern, 75 points, 121 triangles");
+    harness.get_by_label(&format!("Emitted triangle {hit}"));
+    harness.get_by_label(&format!("Edge {edge}"));
+    for triangle in neighbours(harness.state()) {
+        harness.get_by_role_and_label(Role::Button, &format!("Neighbour, triangle {triangle}"));
+    }
+}
+
+#[test]
+fn escape_and_a_click_beside_the_mesh_let_go() {
+    let mut harness = cube();
+    click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
+    assert!(harness.state().selected_triangle().is_some());
+    press(&mut harness, egui::Key::Escape);
+    let nothing = |app: &App| (app.selected_triangle(), app.selected_edge()) == (None, None) && app.hit().is_none();
+    assert!(nothing(harness.state()));
+    click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
+    assert!(!nothing(harness.state()));
+    click_beside_the_middle(&mut harness, egui::vec2(-300.0, -330.0));
+    assert!(nothing(harness.state()), "there is no cube there");
+    click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
+    click(&mut harness, "Deselect patch");
+    assert!(nothing(harness.state()));
+}
+
+#[test]
+fn neighbours_lead_from_triangle_to_triangle() {
+    let mut harness = cube();
+    click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
+    for _ in 0..3 {
+        let (from, next) = (harness.state().selected_triangle(), neighbours(harness.state())[1]);
+        neighbour(&mut harness, next);
+        assert_eq!(harness.state().selected_triangle(), Some(next));
+        assert!(neighbours(harness.state()).contains(&from.expect("one was selected")), "neighbours are mutual");
+        assert!(harness.state().hit().is_none(), "nothing of this one was clicked on");
+    }
+}
+
+#[test]
+fn settings_keep_the_patch_and_let_go_of_what_is_no_longer_emitted() {
+    let mut harness = cube();
+    click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
+    let selected = |app: &App| (app.selected_triangle(), app.selected_edge());
+    let before = selected(harness.state());
+    assert!(before.0.is_some() && before.1.is_some() && harness.state().hit().is_some());
+    press(&mut harness, egui::Key::Num3);
+    assert!(harness.state().hit().is_some(), "another view changes nothing that is emitted");
+    press(&mut harness, egui::Key::Plus);
+    assert_eq!(selected(harness.state()), before);
+    assert!(harness.state().hit().is_none());
+    harness.get_by_label("[0] 1-2    9.000   9.000     9");
+    choose(&mut harness, "Surface", "PN");
+    assert_eq!((selected(harness.state()), harness.state().settings().surface), (before, Surface::Pn));
+    press(&mut harness, egui::Key::R);
+    assert_eq!(selected(harness.state()), (None, None), "loaded again");
+}
+
+#[test]
+fn a_triangle_is_selected_by_its_number_and_framed_by_a_key() {
+    let mut harness = cube();
+    let typed = |harness: &mut Harness<App>, text: &str| {
+        harness.get_by_role_and_label(Role::SpinButton, "Triangle").focus();
+        settle(harness);
+        harness.event(egui::Event::Text(text.into()));
+        settle(harness);
+        press(harness, egui::Key::Enter);
+    };
+    typed(&mut harness, "0");
+    assert_eq!(harness.state().selected_triangle(), Some(0));
+    typed(&mut harness, "99");
+    assert_eq!(harness.state().selected_triangle(), Some(11), "the last one there is");
+    // Away from the field, where keys are text.
+    press(&mut harness, egui::Key::Escape);
+    typed(&mut harness, "5");
+    let app = harness.state();
+    let topology = &app.loaded().expect("a mesh").topology;
+    let [a, b, c] = topology.patch_positions(topology.patch_of(5).expect("no shape is degenerate"));
+    click(&mut harness, "Frame");
+    let camera = *harness.state().camera();
+    assert!(camera.target.distance((a + b + c) / 3.0) < 1e-6, "it is in the middle");
+    assert!(camera.axes()[2].dot((b - a).cross(c - a).normalize()) > 0.999, "and faces the eye");
+    press(&mut harness, egui::Key::F);
+    assert_ne!(*harness.state().camera(), camera);
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::F);
+    settle(&mut harness);
+    assert_eq!(*harness.state().camera(), camera);
+}
+
+#[test]
+fn an_edge_and_a_triangle_are_selected_together_or_not_at_all() {
+    let mut harness = cube();
+    click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
+    let triangle = harness.state().selected_triangle();
+    for edge in ["0-1", "1-2", "2-0"] {
+        click(&mut harness, &format!("Edge {edge} of the patch"));
+        let edge = harness.state().selected_edge().expect("an edge");
+        harness.state_mut().select_edge(edge);
+        settle(&mut harness);
+        assert_eq!(harness.state().selected_triangle(), triangle, "edge {edge} is one of its edges");
+    }
+    let app = harness.state();
+    let topology = &app.loaded().expect("a mesh").topology;
+    let own = topology.patches[topology.patch_of(triangle.expect("one is selected")).expect("a patch") as usize].sides;
+    let own = own.map(|side| topology.sides[side as usize].edge);
+    let other = (0..).find(|edge| !own.contains(edge)).expect("a cube has more edges");
+    harness.state_mut().select_edge(other);
+    settle(&mut harness);
+    assert_eq!((harness.state().selected_triangle(), harness.state().selected_edge()), (None, Some(other)));
+}
+
+#[test]
+fn left_of_the_split_the_triangle_itself_is_picked() {
+    let mut harness = cube();
+    press(&mut harness, egui::Key::S);
+    for (offset, emitted) in [(-60.0, false), (60.0, true)] {
+        click_beside_the_middle(&mut harness, egui::vec2(offset, 0.0));
+        let app = harness.state();
+        assert!(app.selected_triangle().is_some() && app.selected_edge().is_some());
+        assert_eq!(app.hit().is_some(), emitted, "{offset} points from the divider");
+    }
+}
+
+#[test]
+fn a_patch_that_is_left_out_says_why() {
+    let mut harness = cube();
+    press(&mut harness, egui::Key::Num1);
+    // The back, seen from the front: selected while it is drawn, and left out then.
+    let loaded = harness.state().loaded().expect("a mesh");
+    let behind =
+        |corners: &[u32; 3]| corners.iter().all(|&corner| loaded.mesh.corners[corner as usize].position.z < 0.0);
+    let triangle = loaded.mesh.triangles.iter().position(behind).expect("a cube has a back") as u32;
+    harness.state_mut().select_triangle(Some(triangle));
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::Image, "Domain pattern, 75 points, 121 triangles");
+    harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::Image, "Domain pattern, facing away: nothing is emitted");
+    assert_eq!(harness.state().selected_triangle(), Some(triangle));
+}
