@@ -182,15 +182,15 @@ fn seen_differences(view: LodView, sight: Sight, net: ControlNet, k: u32) -> vec
 }
 
 // Filip et al. 1986.
-fn row_error(seen: vec3<f32>, reach: f32, height: f32) -> f32 {
-    return 0.751 * (seen.x * reach * reach + 2.0 * seen.y * reach * height + seen.z * height * height);
+fn row_error(seen: vec3<f32>, reach: f32, slant: f32, height: f32) -> f32 {
+    return 0.751 * (seen.x * reach * reach + 2.0 * seen.y * slant * height + seen.z * height * height);
 }
 
 fn inner_error(seen: array<vec3<f32>, 3>, segments: f32) -> f32 {
     let size = 1.0 / segments;
     var worst = 0.0;
     for (var k = 0u; k < 3u; k++) {
-        worst = max(worst, max(row_error(seen[k], size, size), 1.001 * seen[k].x * size * size));
+        worst = max(worst, max(row_error(seen[k], size, size, size), 1.001 * seen[k].x * size * size));
     }
     return worst;
 }
@@ -216,7 +216,10 @@ fn rim_error(
     let own = max(at_p, at_q);
     let along = own + share * max(at_k - own, 0.0);
     let size = 1.0 / segments;
-    return row_error(vec3<f32>(along, seen.y, seen.z), max(size, 1.0 / factor), size);
+    let reach = max(size, 1.0 / factor);
+    // An edge of one segment: half of the row's triangles start at either end.
+    let slant = select(reach, 0.5 + 0.5 * size, factor <= 1.0);
+    return row_error(vec3<f32>(along, seen.y, seen.z), reach, slant, size);
 }
 
 fn whole(partitioning: u32, least: f32) -> f32 {
@@ -253,7 +256,7 @@ fn inside_error_factor(
     let least = max(sqrt(single / tolerance), 2.0);
     let last = select(64.0, 63.0, partitioning == PARTITIONING_FRACTIONAL_ODD);
     var inside = whole(partitioning, least);
-    while inside < last {
+    while inside <= last && least <= last {
         let segments = u32(inside);
         if nests(edges.x, segments) && nests(edges.y, segments) && nests(edges.z, segments) {
             var rims = 0.0;
@@ -264,7 +267,10 @@ fn inside_error_factor(
                 return inside;
             }
         }
-        inside = whole(partitioning, inside + 1.0);
+        if inside == last {
+            break;
+        }
+        inside = min(whole(partitioning, inside + 1.0), last);
     }
-    return inside;
+    return max(least, 64.5);
 }

@@ -13,6 +13,7 @@ use crate::measure::{Measured, ScreenView, compare, patch_edges, ulp};
 use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
 use crate::render::{Camera, Scene, Target, patch_lines, t_junction_lines};
 use crate::settings::{Overlay, Overlays, Settings};
+use crate::tessellate::Lod;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -132,7 +133,11 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         let passes = engine.time(&mut scene, &target, &camera, &settings)?;
         let leaks = engine.leaks(&mut scene, &measured, target.size, &camera)?;
         let max_error_px = deviation.map(|worst| worst.px);
-        let factors_capped = engine.asked_factors(&scene)?.beyond(settings.partitioning);
+        let mut factors_capped = engine.asked_factors(&scene)?.beyond(settings.partitioning);
+        if settings.lod == Lod::Error {
+            let written = scene.tessellator.hull_factors()?;
+            factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
+        }
         let viewport = target.viewport();
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
         let sizes = engine.sizes(&mut scene, ScreenView { clip_from_object, viewport })?;
@@ -236,7 +241,8 @@ struct Stats {
     /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
     /// nothing is in view.
     max_error_px: Option<f64>,
-    /// Edges (as published or from a file, sides) that asked for more segments than the partitioning has.
+    /// Edges (as published or from a file, sides), and under LOD by error insides, that asked for more segments than the
+    /// partitioning has.
     factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     factors_file: Option<FactorsFile>,

@@ -201,10 +201,11 @@ pub fn seen_differences(view: &LodView, sight: Sight, net: &ControlNet, k: usize
     largest
 }
 
-/// The bound on the error of triangles that reach so far along an edge and inward, in px (Filip et al. 1986): 6/8 of
-/// second differences. A thousandth more, as points of the domain are rounded to 16.16.
-pub fn row_error(seen: [f32; 3], reach: f32, height: f32) -> f32 {
-    0.751 * (seen[0] * reach * reach + 2.0 * seen[1] * reach * height + seen[2] * height * height)
+/// The bound on the error of triangles that reach so far along an edge and inward, and whose sides across the row lean so
+/// far along it, in px (Filip et al. 1986): 6/8 of second differences. A thousandth more, as points of the domain are
+/// rounded to 16.16.
+pub fn row_error(seen: [f32; 3], reach: f32, slant: f32, height: f32) -> f32 {
+    0.751 * (seen[0] * reach * reach + 2.0 * seen[1] * slant * height + seen[2] * height * height)
 }
 
 /// The bound for all rows between rings if there are `segments` inside, and for the triangle in the middle, which has
@@ -213,7 +214,7 @@ pub fn inner_error(seen: [[f32; 3]; 3], segments: f32) -> f32 {
     let size = 1.0 / segments;
     let mut worst = 0.0f32;
     for own in seen {
-        worst = worst.max(row_error(own, size, size)).max(1.001 * own[0] * size * size);
+        worst = worst.max(row_error(own, size, size, size)).max(1.001 * own[0] * size * size);
     }
     worst
 }
@@ -242,7 +243,11 @@ pub fn rim_error(
     let own = at_p.max(at_q);
     let along = own + share * (at_k - own).max(0.0);
     let size = 1.0 / segments;
-    row_error([along, seen[1], seen[2]], size.max(1.0 / factor), size)
+    let reach = size.max(1.0 / factor);
+    // An edge of one segment is the side of one triangle, to the middle of the row, and half of the others start at either
+    // end.
+    let slant = if factor <= 1.0 { 0.5 + 0.5 * size } else { reach };
+    row_error([along, seen[1], seen[2]], reach, slant, size)
 }
 
 /// The least number of segments, `least` or more, that a partitioning has without fractions: 1, 2, 4 and so on, or even,
@@ -257,7 +262,8 @@ pub fn whole(partitioning: Partitioning, least: f32) -> f32 {
 }
 
 /// The fewest segments inside that keep a patch within `tolerance` px of its surface, given the levels of the edges
-/// U == 0, V == 0 and W == 0; of numbers that the partitioning has, and that nest with the edges.
+/// U == 0, V == 0 and W == 0; of numbers that the partitioning has, and that nest with the edges. More than 64 where none
+/// does, so that one can tell.
 pub fn inside_error_factor(
     view: &LodView,
     tolerance: f32,
@@ -279,7 +285,7 @@ pub fn inside_error_factor(
     let least = (single / tolerance).sqrt().max(2.0);
     let last = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
     let mut inside = whole(partitioning, least);
-    while inside < last {
+    while inside <= last && least <= last {
         let segments = inside as u32;
         if nests(edges[0], segments) && nests(edges[1], segments) && nests(edges[2], segments) {
             let mut rims = 0.0f32;
@@ -290,9 +296,12 @@ pub fn inside_error_factor(
                 return inside;
             }
         }
-        inside = whole(partitioning, inside + 1.0);
+        if inside == last {
+            break;
+        }
+        inside = whole(partitioning, inside + 1.0).min(last);
     }
-    inside
+    least.max(64.5)
 }
 #[cfg(test)]
 mod tests {
@@ -343,6 +352,18 @@ mod tests {
             assert_eq!(inside_error_factor(&VIEW, 0.25, partitioning, &net, [1.0; 3]), 1.0);
         }
         assert_eq!(edge_error_factor(&VIEW, 0.25, [Vec3::X, Vec3::X * 2.0, Vec3::X * 3.0, Vec3::X * 4.0]), 1.0);
+    }
+
+    #[test]
+    fn what_no_number_of_segments_suffices_for_can_be_told() {
+        let net = raised(CORNERS, 0.0);
+        let twisted = ControlNet { center: net.center + Vec3::X * 0.2, ..net };
+        for partitioning in Partitioning::ALL {
+            let inside = |tolerance| inside_error_factor(&VIEW, tolerance, partitioning, &twisted, [1.0; 3]);
+            assert!(inside(1e-4) > 64.0 && inside(1e-9) > 64.0, "{partitioning}");
+            let enough = inside(5.0);
+            assert!(enough > 1.0 && enough <= 64.0, "{partitioning}: {enough}");
+        }
     }
 
     #[test]
@@ -400,6 +421,34 @@ mod tests {
             }
         }
         longest * f64::from(factor.min(inside))
+    }
+
+    /// How far the sides across the row along U == 0 lean along it, as a part of the edge.
+    fn slant(factor: f32, inside: f32) -> f64 {
+        let factors = process(Partitioning::Integer, [factor, inside, inside], inside);
+        let mut longest = 0.0f64;
+        for triangle in 0..triangle_count(factors) {
+            let corners =
+                domain_triangle(factors, triangle).map(|i| domain_point(factors, i).map(|x| f64::from(x) / 65536.0));
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let ([a, v], [b, w]) = (corners[a], corners[b]);
+                // Other edges' rows start at this one's ends.
+                let beside = v.min(1.0 - a - v) >= a - 1e-4 && w.min(1.0 - b - w) >= b - 1e-4;
+                if beside && (a == 0.0) != (b == 0.0) {
+                    longest = longest.max((v + a / 2.0 - w - b / 2.0).abs());
+                }
+            }
+        }
+        longest
+    }
+
+    #[test]
+    fn an_edge_of_one_segment_gives_each_end_half_of_its_row() {
+        for inside in 2..=64u8 {
+            let (slant, most) = (slant(1.0, inside.into()), 0.5 + 0.5 / f64::from(inside));
+            assert!(slant <= most * 1.0005 && slant >= 0.4995, "{inside}: {slant}");
+        }
+        assert!(slant(2.0, 64.0) > 0.48, "of longer rows one end may get all");
     }
 
     #[test]

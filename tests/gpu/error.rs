@@ -6,7 +6,7 @@ use pnaen::measure::Deviation;
 use pnaen::mesh::{Mesh, Progress, Shape, Topology};
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{Inputs, Lod, Partitioning, PatchFactors, Surface, Tessellated, segments, tessellate};
+use pnaen::tessellate::{HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, hull_factors, tessellate};
 use proptest::prelude::*;
 
 use crate::stability::{Trial, any_trial};
@@ -15,9 +15,8 @@ use crate::{engine, scene};
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 
 /// Whether anything asks for more segments than there are, so that no promise is made.
-fn is_capped(partitioning: Partitioning, asked: &[f32], patches: &[PatchFactors]) -> bool {
-    let most = if partitioning == Partitioning::FractionalOdd { 63 } else { 64 };
-    asked.iter().any(|&factor| factor > 64.0) || patches.iter().any(|factors| segments(factors.inside) >= most)
+fn is_capped(written: &[HullFactors]) -> bool {
+    written.iter().any(|factors| factors.inside > 64.0 || factors.edges.iter().any(|&factor| factor > 64.0))
 }
 
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
@@ -54,7 +53,7 @@ proptest! {
         // An eye nearer than f32 can tell has no view.
         prop_assume!(inputs.view.clip_from_object.is_finite());
         let out = tessellate(&mesh, &topology, &inputs, None);
-        if !is_capped(settings.partitioning, &out.edge_factors, &out.patch_factors) {
+        if !is_capped(&hull_factors(&mesh, &topology, &inputs)) {
             let px = deviation_px(&mesh, &topology, &inputs, &out);
             let most = f64::from(settings.tolerance) + rounding_px(&mesh, &inputs);
             prop_assert!(px <= most, "{px} px of {} under {:?}", settings.tolerance, settings);
@@ -87,7 +86,7 @@ fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
             let partitioning = Partitioning::ALL[(index + shape as usize) % 4];
             let settings = by_error(Settings { surface, partitioning, ..Settings::default() }, tolerance);
             let (inputs, out) = on_device(&mut scene, &settings, &camera);
-            if is_capped(partitioning, &out.edge_factors, &out.patch_factors) {
+            if is_capped(&scene.tessellator.hull_factors().expect("a readback")) {
                 continue;
             }
             let px = deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out);
