@@ -183,6 +183,18 @@ impl Overlays {
 }
 
 impl Settings {
+    /// What the window opens with: no more than the picture needs, and its triangles.
+    pub fn opening() -> Self {
+        Self {
+            lod: Lod::Error,
+            partitioning: Partitioning::Integer,
+            clip: Clip::Frustum,
+            cull_back_faces: true,
+            overlays: Overlays { wireframe: true, ..Overlays::default() },
+            ..Self::default()
+        }
+    }
+
     /// Changes who computes what an edge's sides agree on. As published, LOD by length and clipping are the white paper's
     /// too, and otherwise their forms that hold near the eye.
     pub fn set_edges(&mut self, edges: Edges) {

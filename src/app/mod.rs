@@ -27,8 +27,8 @@ use crate::gpu::{Gpu, GpuError, device_descriptor};
 use crate::measure::{Cracks, Sizes};
 use crate::mesh::Source;
 use crate::render::Camera;
-use crate::settings::{Overlays, Settings};
-use crate::tessellate::{Clip, Lod, LodView, Partitioning};
+use crate::settings::Settings;
+use crate::tessellate::LodView;
 
 use document::{Document, Load};
 use measuring::Measuring;
@@ -110,18 +110,6 @@ pub struct App {
     error: Option<String>,
 }
 
-/// What the window opens with: no more than the picture needs, and its triangles.
-fn first_settings() -> Settings {
-    Settings {
-        lod: Lod::Error,
-        partitioning: Partitioning::Integer,
-        clip: Clip::Frustum,
-        cull_back_faces: true,
-        overlays: Overlays { wireframe: true, ..Overlays::default() },
-        ..Settings::default()
-    }
-}
-
 impl App {
     /// # Errors
     /// The window isn't drawn through wgpu.
@@ -134,7 +122,7 @@ impl App {
             viewport: Viewport::new(&engine),
             engine,
             render_state,
-            settings: first_settings(),
+            settings: Settings::opening(),
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             last_split: 0.5,
             frozen: None,

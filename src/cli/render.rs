@@ -57,11 +57,11 @@ pub struct Args {
 impl Args {
     /// What the window shows when it opens.
     pub fn preview(file: Source, output: &Path) -> Self {
-        let Settings { background, .. } = Settings::default();
+        let Settings { lod, partitioning, clip, cull_back_faces, background, .. } = Settings::opening();
         Self {
             file,
             output: output.to_owned(),
-            surface: SurfaceOptions::default(),
+            surface: SurfaceOptions { lod, partitioning, clip, cull_back_faces, ..SurfaceOptions::default() },
             given: GivenOption::default(),
             overlay: vec![Overlay::Wireframe],
             split: None,
