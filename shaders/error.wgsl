@@ -167,18 +167,34 @@ fn second_differences(net: ControlNet, i: u32, k: u32) -> array<vec3<f32>, 3> {
     return array<vec3<f32>, 3>(along, mixed, inward);
 }
 
-fn seen_differences(view: LodView, sight: Sight, net: ControlNet, k: u32) -> vec3<f32> {
-    var largest = vec3<f32>(0.0);
+// The last: along the diagonals of a segment each way.
+fn seen_differences(view: LodView, sight: Sight, net: ControlNet, k: u32) -> vec4<f32> {
+    var largest = vec4<f32>(0.0);
     for (var i = 0u; i < 3u; i++) {
         let own = second_differences(net, i, k);
-        let seen = vec3<f32>(
+        let rising = seen_length(view, sight, own[0] + own[1] * 2.0 + own[2]);
+        let falling = seen_length(view, sight, own[0] - own[1] * 2.0 + own[2]);
+        let seen = vec4<f32>(
             seen_length(view, sight, own[0]),
             seen_length(view, sight, own[1]),
             seen_length(view, sight, own[2]),
+            max(rising, falling),
         );
         largest = max(largest, seen);
     }
     return largest;
+}
+
+// 3 times the squared radius of the least circle around a triangle with these squared sides.
+fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
+    let most = max(max(a, b), c);
+    let least = min(min(a, b), c);
+    let middle = max(min(a, b), min(max(a, b), c));
+    let more = least - (most - middle);
+    if more <= 0.0 {
+        return 0.75 * most;
+    }
+    return 3.0 * most / (4.0 - (more / least) * (more / middle));
 }
 
 // Filip et al. 1986.
@@ -186,33 +202,41 @@ fn row_error(seen: vec3<f32>, reach: f32, slant: f32, height: f32) -> f32 {
     return 0.751 * (seen.x * reach * reach + 2.0 * seen.y * slant * height + seen.z * height * height);
 }
 
-fn inner_error(seen: array<vec3<f32>, 3>, segments: f32) -> f32 {
-    let size = 1.0 / segments;
-    var worst = 0.0;
+fn inner_error(seen: array<vec4<f32>, 3>, segments: f32) -> f32 {
+    var worst = triangle_error(seen[0].x, seen[1].x, seen[2].x);
     for (var k = 0u; k < 3u; k++) {
-        worst = max(worst, max(row_error(seen[k], size, size, size), 1.001 * seen[k].x * size * size));
+        worst = max(worst, triangle_error(seen[k].x, seen[k].z, seen[k].w));
     }
-    return worst;
+    return 1.001 * worst / (segments * segments);
 }
 
-fn rim_error(
-    view: LodView,
-    net: ControlNet,
+struct Rim {
     sight: Sight,
-    seen: vec3<f32>,
-    k: u32,
-    factor: f32,
-    segments: f32,
-) -> f32 {
-    let share = (2.0 / 3.0) / segments;
-    let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
+    along: array<vec3<f32>, 3>,
+}
+
+// Of the edge opposite corner k: its sight, and the second differences along it at its ends and opposite.
+fn edge_rim(view: LodView, net: ControlNet, k: u32) -> Rim {
     let p = (k + 1u) % 3u;
     let q = (k + 2u) % 3u;
-    let edge = edge_sight(view, net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]);
-    let beside = mixed_sight(edge, sight, outside);
-    let at_p = seen_length(view, beside, second_differences(net, p, k)[0]);
-    let at_q = seen_length(view, beside, second_differences(net, q, k)[0]);
-    let at_k = seen_length(view, beside, second_differences(net, k, k)[0]);
+    let sight = edge_sight(view, net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]);
+    return Rim(
+        sight,
+        array<vec3<f32>, 3>(
+            second_differences(net, p, k)[0],
+            second_differences(net, q, k)[0],
+            second_differences(net, k, k)[0],
+        ),
+    );
+}
+
+fn rim_error(view: LodView, rim: Rim, sight: Sight, seen: vec4<f32>, factor: f32, segments: f32) -> f32 {
+    let share = (2.0 / 3.0) / segments;
+    let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
+    let beside = mixed_sight(rim.sight, sight, outside);
+    let at_p = seen_length(view, beside, rim.along[0]);
+    let at_q = seen_length(view, beside, rim.along[1]);
+    let at_k = seen_length(view, beside, rim.along[2]);
     let own = max(at_p, at_q);
     let along = own + share * max(at_k - own, 0.0);
     let size = 1.0 / segments;
@@ -243,15 +267,17 @@ fn inside_error_factor(
     edges: vec3<f32>,
 ) -> f32 {
     let sight = net_sight(view, net);
-    var seen: array<vec3<f32>, 3>;
-    for (var k = 0u; k < 3u; k++) {
-        seen[k] = seen_differences(view, sight, net, k);
-    }
+    var seen = array<vec4<f32>, 3>(
+        seen_differences(view, sight, net, 0u),
+        seen_differences(view, sight, net, 1u),
+        seen_differences(view, sight, net, 2u),
+    );
     let minimal = max(max(edges.x, edges.y), edges.z) <= 1.0;
     let single = inner_error(seen, 1.0);
     if minimal && single <= tolerance {
         return 1.0;
     }
+    var all = array<Rim, 3>(edge_rim(view, net, 0u), edge_rim(view, net, 1u), edge_rim(view, net, 2u));
     // Errors fall with the square of the number of segments. One alone would act as two.
     let least = max(sqrt(single / tolerance), 2.0);
     let last = select(64.0, 63.0, partitioning == PARTITIONING_FRACTIONAL_ODD);
@@ -261,7 +287,7 @@ fn inside_error_factor(
         if nests(edges.x, segments) && nests(edges.y, segments) && nests(edges.z, segments) {
             var rims = 0.0;
             for (var k = 0u; k < 3u; k++) {
-                rims = max(rims, rim_error(view, net, sight, seen[k], k, edges[k], inside));
+                rims = max(rims, rim_error(view, all[k], sight, seen[k], edges[k], inside));
             }
             if rims <= tolerance {
                 return inside;

@@ -189,16 +189,33 @@ pub fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
     [along, mixed, inward]
 }
 
-/// The largest of them at any corner as they are seen, in px.
-pub fn seen_differences(view: &LodView, sight: Sight, net: &ControlNet, k: usize) -> [f32; 3] {
-    let mut largest = [0.0; 3];
+/// The largest of them at any corner as they are seen, in px; and the largest along the diagonals of a segment each way.
+pub fn seen_differences(view: &LodView, sight: Sight, net: &ControlNet, k: usize) -> [f32; 4] {
+    let mut largest = [0.0; 4];
     for i in 0..3 {
-        let own = second_differences(net, i, k);
-        for n in 0..3 {
-            largest[n] = seen_length(view, sight, own[n]).max(largest[n]);
-        }
+        let [along, mixed, inward] = second_differences(net, i, k);
+        let rising = seen_length(view, sight, along + mixed * 2.0 + inward);
+        let falling = seen_length(view, sight, along - mixed * 2.0 + inward);
+        largest[0] = seen_length(view, sight, along).max(largest[0]);
+        largest[1] = seen_length(view, sight, mixed).max(largest[1]);
+        largest[2] = seen_length(view, sight, inward).max(largest[2]);
+        largest[3] = rising.max(falling).max(largest[3]);
     }
     largest
+}
+
+/// The bound on the error of a triangle with such second differences along its sides, in px. A quadratic function's error is
+/// half the sum of its second derivatives along the sides, each times the weights of its ends; at most, 3 times the squared
+/// radius of the least circle around a triangle whose squared sides these are.
+pub fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
+    let most = a.max(b).max(c);
+    let least = a.min(b).min(c);
+    let middle = a.min(b).max(a.max(b).min(c));
+    let more = least - (most - middle);
+    if more <= 0.0 {
+        return 0.75 * most;
+    }
+    3.0 * most / (4.0 - (more / least) * (more / middle))
 }
 
 /// The bound on the error of triangles that reach so far along an edge and inward, and whose sides across the row lean so
@@ -208,38 +225,42 @@ pub fn row_error(seen: [f32; 3], reach: f32, slant: f32, height: f32) -> f32 {
     0.751 * (seen[0] * reach * reach + 2.0 * seen[1] * slant * height + seen[2] * height * height)
 }
 
-/// The bound for all rows between rings if there are `segments` inside, and for the triangle in the middle, which has
-/// three edges of one segment: 6/6 of the largest second difference along one. Second differences as seen, for each edge.
-pub fn inner_error(seen: [[f32; 3]; 3], segments: f32) -> f32 {
-    let size = 1.0 / segments;
-    let mut worst = 0.0f32;
+/// The bound for all rows between rings if there are `segments` inside, whose triangles have one side along the edge, one
+/// inward and one across; and for the triangle in the middle, which has three sides along edges. A thousandth more, as
+/// points of the domain are rounded to 16.16. Second differences as seen, for each edge.
+pub fn inner_error(seen: [[f32; 4]; 3], segments: f32) -> f32 {
+    let mut worst = triangle_error(seen[0][0], seen[1][0], seen[2][0]);
     for own in seen {
-        worst = worst.max(row_error(own, size, size, size)).max(1.001 * own[0] * size * size);
+        worst = worst.max(triangle_error(own[0], own[2], own[3]));
     }
-    worst
+    1.001 * worst / (segments * segments)
 }
 
-/// The bound for the row along the edge opposite corner `k`, which has `factor` segments, while there are `segments`
-/// inside. The row is 2/3 of a segment high; of its points' control points the third corner's share is small, so that what
-/// goes along the row is seen about as the edge is. `sight` and `seen` are the whole patch's, the latter for this edge.
-pub fn rim_error(
-    view: &LodView,
-    net: &ControlNet,
-    sight: Sight,
-    seen: [f32; 3],
-    k: usize,
-    factor: f32,
-    segments: f32,
-) -> f32 {
-    let share = (2.0 / 3.0) / segments;
-    let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
+/// What the row along an edge has of its own: how the edge is seen, and the second differences along it, at its ends and at
+/// the corner opposite.
+#[derive(Clone, Copy, Debug)]
+pub struct Rim {
+    pub sight: Sight,
+    pub along: [Vec3; 3],
+}
+
+/// Of the edge opposite corner `k`.
+pub fn edge_rim(view: &LodView, net: &ControlNet, k: usize) -> Rim {
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
     let edge = [net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]];
-    let beside = mixed_sight(edge_sight(view, edge), sight, outside);
-    let at_p = seen_length(view, beside, second_differences(net, p, k)[0]);
-    let at_q = seen_length(view, beside, second_differences(net, q, k)[0]);
-    let at_k = seen_length(view, beside, second_differences(net, k, k)[0]);
+    let along = [p, q, k].map(|corner| second_differences(net, corner, k)[0]);
+    Rim { sight: edge_sight(view, edge), along }
+}
+
+/// The bound for the row along an edge, which has `factor` segments, while there are `segments` inside. The row is 2/3 of a
+/// segment high; of its points' control points the third corner's share is small, so that what goes along the row is seen
+/// about as the edge is. `sight` and `seen` are the whole patch's, the latter for this edge.
+pub fn rim_error(view: &LodView, rim: Rim, sight: Sight, seen: [f32; 4], factor: f32, segments: f32) -> f32 {
+    let share = (2.0 / 3.0) / segments;
+    let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
+    let beside = mixed_sight(rim.sight, sight, outside);
+    let [at_p, at_q, at_k] = rim.along.map(|difference| seen_length(view, beside, difference));
     let own = at_p.max(at_q);
     let along = own + share * (at_k - own).max(0.0);
     let size = 1.0 / segments;
@@ -272,15 +293,13 @@ pub fn inside_error_factor(
     edges: [f32; 3],
 ) -> f32 {
     let sight = net_sight(view, net);
-    let mut seen = [[0.0f32; 3]; 3];
-    for (k, own) in seen.iter_mut().enumerate() {
-        *own = seen_differences(view, sight, net, k);
-    }
+    let seen = [0, 1, 2].map(|k| seen_differences(view, sight, net, k));
     let minimal = edges[0].max(edges[1]).max(edges[2]) <= 1.0;
     let single = inner_error(seen, 1.0);
     if minimal && single <= tolerance {
         return 1.0;
     }
+    let all = [0, 1, 2].map(|k| edge_rim(view, net, k));
     // Errors fall with the square of the number of segments. One alone would act as two.
     let least = (single / tolerance).sqrt().max(2.0);
     let last = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
@@ -290,7 +309,7 @@ pub fn inside_error_factor(
         if nests(edges[0], segments) && nests(edges[1], segments) && nests(edges[2], segments) {
             let mut rims = 0.0f32;
             for (k, factor) in edges.into_iter().enumerate() {
-                rims = rims.max(rim_error(view, net, sight, seen[k], k, factor, inside));
+                rims = rims.max(rim_error(view, all[k], sight, seen[k], factor, inside));
             }
             if rims <= tolerance {
                 return inside;
@@ -342,6 +361,25 @@ mod tests {
         for n in 1..20u8 {
             let factor = edge_error_factor(&VIEW, height / f32::from(n).powi(2), net);
             assert!((factor - f32::from(n)).abs() < 1e-3, "{n}: {factor}");
+        }
+    }
+
+    #[test]
+    fn a_triangles_error_is_the_largest_sum_over_its_weights() {
+        for [a, b, c] in [
+            [1.0, 1.0, 1.0],
+            [1.0, 1.0, 2.0],
+            [1.0, 2.0, 2.5],
+            [0.0, 1.0, 1.0],
+            [0.3, 0.0, 0.0],
+            [1.0, 0.9, 0.1],
+            [1e-6, 1.0, 1.0],
+        ] {
+            let sum = |u: f32, v: f32, w: f32| 3.0 * (u * v * a + v * w * b + w * u * c);
+            let steps = (0..=300).flat_map(|i| (0..=300 - i).map(move |j| [i as f32 / 300.0, j as f32 / 300.0]));
+            let most = steps.map(|[u, v]| sum(u, v, 1.0 - u - v)).fold(0.0, f32::max);
+            let bound = triangle_error(a, b, c);
+            assert!(bound >= most - 1e-6 && bound < most + 1e-4, "{a} {b} {c}: {bound}, {most}");
         }
     }
 
