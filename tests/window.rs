@@ -1,7 +1,11 @@
 //! The real window, driven by the names that its controls have for a screen reader.
 
+#[path = "window/lists.rs"]
+mod lists;
 #[path = "window/picking.rs"]
 mod picking;
+#[path = "window/spending.rs"]
+mod spending;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -12,7 +16,7 @@ use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
 use pnaen::settings::Colors;
-use pnaen::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface};
+use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
 /// Longer than anything here takes on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -88,19 +92,6 @@ fn it_opens_on_a_cube_without_cracks() {
 }
 
 #[test]
-fn choosing_pn_lights_up_the_cracks() {
-    let mut harness = uniform(None);
-    choose(&mut harness, "Surface", "PN");
-    harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
-    settle(&mut harness);
-    let app = harness.state();
-    assert_eq!(app.settings().surface, Surface::Pn);
-    assert!(app.settings().overlays.cracks);
-    assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(12));
-    harness.get_by_label_contains("cracks 12, ");
-}
-
-#[test]
 fn the_factor_can_be_slid_typed_and_stepped() {
     let mut harness = uniform(None);
     let before = harness.state().totals();
@@ -154,172 +145,6 @@ fn every_switch_does_what_it_says() {
 }
 
 #[test]
-fn colours_exclude_each_other_and_numbers_have_a_legend() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
-    let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
-    assert_eq!(shown(&harness), [false; 3]);
-    for (entry, colors, expected) in [
-        ("Factors", Colors::Factors, [true, false, false]),
-        ("Triangle size", Colors::TriangleSize, [false, true, false]),
-        ("Factors below 2", Colors::LowFactors, [false, false, true]),
-        ("Barycentric", Colors::Barycentric, [false; 3]),
-        ("Material", Colors::Material, [false; 3]),
-    ] {
-        let pictures = harness.state().pictures();
-        choose(&mut harness, "Colours", entry);
-        assert_eq!(harness.state().settings().overlays.colors, colors);
-        assert_eq!(shown(&harness), expected, "{entry}");
-        assert!(harness.state().pictures() > pictures, "{entry}: a new picture");
-    }
-    for (key, colors) in [
-        (egui::Key::H, Colors::Factors),
-        (egui::Key::X, Colors::TriangleSize),
-        (egui::Key::U, Colors::LowFactors),
-        (egui::Key::B, Colors::Barycentric),
-        (egui::Key::B, Colors::Material),
-    ] {
-        press(&mut harness, key);
-        assert_eq!(harness.state().settings().overlays.colors, colors);
-    }
-    press(&mut harness, egui::Key::N);
-    assert!(harness.state().settings().overlays.normals);
-}
-
-#[test]
-fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    let count = |harness: &Harness<App>| harness.state().sizes_shown().map(|sizes| (sizes.in_view, sizes.small));
-    let (_, triangles) = harness.state().totals().expect("counted");
-    let (in_view, small) = count(&harness).expect("measured");
-    assert_eq!(in_view, triangles, "all of it is framed");
-    assert!(small > 0);
-    // From farther away nothing is tessellated anew, so nothing is measured.
-    press(&mut harness, egui::Key::PageDown);
-    assert_eq!(count(&harness), None);
-    // Unless one looks at the sizes.
-    press(&mut harness, egui::Key::X);
-    let (_, smaller) = count(&harness).expect("measured");
-    assert!(smaller > small, "{smaller}, and {small} from nearer");
-    press(&mut harness, egui::Key::PageDown);
-    let (_, smallest) = count(&harness).expect("measured");
-    assert!(smallest > smaller, "{smallest}, and {smaller} from nearer");
-    assert!(harness.state().cracks().is_some(), "which the view doesn't change");
-}
-
-#[test]
-fn a_mistaken_convention_cracks_and_shows_both_factors() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    choose(&mut harness, "LOD", "Edge length");
-    let cracked = |harness: &Harness<App>| harness.state().cracks().map(|cracks| cracks.different_factors);
-    for (entry, convention) in [("AMD PN sample", Convention::AmdPn), ("Edge order", Convention::EdgeOrder)] {
-        choose(&mut harness, "Convention", entry);
-        assert_eq!((harness.state().settings().convention, cracked(&harness)), (convention, Some(0)));
-    }
-    choose(&mut harness, "Convention", "Mirrored, a mistake");
-    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
-    choose(&mut harness, "Convention", "Rotated, a mistake");
-    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
-    choose(&mut harness, "LOD", "Uniform");
-    assert_eq!(cracked(&harness), Some(0));
-    choose(&mut harness, "Convention", "Direct3D 11");
-    assert_eq!(harness.state().settings().convention, Convention::D3d11);
-}
-
-#[test]
-fn the_worst_edges_are_listed_and_one_click_frames_one() {
-    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
-    choose(&mut harness, "Surface", "PN");
-    let app = harness.state();
-    let cracks = app.cracks().expect("measured").clone();
-    let before = *app.camera();
-    // The list shows the widest gap first; its third row is as good as any.
-    let edge = cracks.edges[2].edge;
-    let row = format!("{edge:<6}split normal");
-    harness.get_by_label_contains(&row).click();
-    settle(&mut harness);
-    let app = harness.state();
-    assert_eq!(app.selected_edge(), Some(edge));
-    let topology = &app.loaded().expect("a mesh").topology;
-    let [a, b] = topology.edges[edge as usize].points.map(|point| topology.points[point as usize]);
-    assert_ne!(*app.camera(), before);
-    assert!(app.camera().target.distance((a + b) / 2.0) < 1e-6, "the edge is in the middle");
-    // Named, with its two triangles, both sides' factors and points.
-    harness.get_by_label(&format!("Edge {edge}"));
-    assert!(harness.get_all_by_label("split normal").next().is_some());
-    for side in topology.edge_sides(&topology.edges[edge as usize]) {
-        let triangle = topology.patches[side.patch as usize].triangle;
-        harness.get_by_label(&format!("Triangle {triangle}"));
-    }
-    assert_eq!(harness.get_all_by_label("8.00000").count(), 2, "both sides' factors");
-    assert_eq!(harness.get_all_by_label("9").count(), 2, "both sides' segments");
-    assert_eq!(harness.get_all_by_label_contains("apart, units").count(), 1, "their points");
-    harness.get_by_label("Deselect").click();
-    settle(&mut harness);
-    assert_eq!(harness.state().selected_edge(), None);
-}
-
-#[test]
-fn keys_go_through_a_list_beyond_the_rows_in_sight() {
-    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
-    choose(&mut harness, "Surface", "PN");
-    let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
-    harness.get_by_label_contains(&format!("{:<6}split normal", edges[0])).focus();
-    settle(&mut harness);
-    let steps = [egui::Key::ArrowDown; 9].into_iter().chain([egui::Key::ArrowUp, egui::Key::Enter]);
-    for key in steps {
-        press(&mut harness, key);
-    }
-    assert_eq!(harness.state().selected_edge(), Some(edges[8]));
-    for key in [egui::Key::End, egui::Key::Enter] {
-        press(&mut harness, key);
-    }
-    assert_eq!(harness.state().selected_edge(), Some(edges[11]));
-    press(&mut harness, egui::Key::Home);
-    press(&mut harness, egui::Key::Enter);
-    assert_eq!(harness.state().selected_edge(), Some(edges[0]));
-}
-
-#[test]
-fn escape_closes_a_list_before_it_deselects() {
-    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
-    harness.state_mut().select_edge(3);
-    settle(&mut harness);
-    harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
-    settle(&mut harness);
-    press(&mut harness, egui::Key::Escape);
-    assert_eq!(harness.state().selected_edge(), Some(3));
-    press(&mut harness, egui::Key::Escape);
-    assert_eq!(harness.state().selected_edge(), None);
-}
-
-#[test]
-fn as_published_edges_crack_and_once_an_edge_they_close() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    press(&mut harness, egui::Key::E);
-    let cracked = harness.state().cracks().expect("measured").different_bits;
-    assert!(cracked > 1000, "{cracked}");
-    press(&mut harness, egui::Key::E);
-    assert_eq!(harness.state().cracks().expect("measured").different_bits, 0);
-}
-
-#[test]
-fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Saddle)));
-    let start = Instant::now();
-    while harness.state().is_checking() {
-        assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
-        harness.step();
-    }
-    press(&mut harness, egui::Key::Num3);
-    let camera = *harness.state().camera();
-    choose(&mut harness, "Weld", "1e-5: joins nothing");
-    let app = harness.state();
-    assert_eq!(app.loaded().map(|loaded| loaded.weld), Some(1e-5));
-    assert_eq!(*app.camera(), camera, "the view stays");
-}
-
-#[test]
 fn nothing_is_drawn_when_nothing_changed() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
@@ -328,19 +153,6 @@ fn nothing_is_drawn_when_nothing_changed() {
     assert_eq!(harness.state().pictures(), pictures);
     press(&mut harness, egui::Key::Num1);
     assert_eq!(harness.state().pictures(), pictures + 1);
-}
-
-#[test]
-fn frozen_lod_stays_while_the_camera_moves() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    press(&mut harness, egui::Key::L);
-    let before = harness.state().totals();
-    press(&mut harness, egui::Key::Z);
-    press(&mut harness, egui::Key::PageUp);
-    press(&mut harness, egui::Key::PageUp);
-    assert_eq!(harness.state().totals(), before, "frozen");
-    press(&mut harness, egui::Key::Z);
-    assert!(harness.state().totals() > before, "nearer, so more triangles");
 }
 
 #[test]
@@ -456,35 +268,4 @@ fn both_themes_show_the_picture_and_legible_controls() {
         let middle = picture.get_pixel(610, 400).0;
         assert!(middle[2] > middle[0], "{theme:?}: {middle:?}");
     }
-}
-
-#[test]
-fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
-    let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
-    let made = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
-        .args(["tessellate", "shape:torus", "--factor", "3", "-o"])
-        .arg(&path)
-        .status();
-    assert!(made.is_ok_and(|status| status.success()));
-    let mut harness = uniform(Some(Source::File(path.clone())));
-    let (pictures, before) = (harness.state().pictures(), harness.state().totals());
-    // Some 20 million triangles: more than anyone would wait for here.
-    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
-    let start = Instant::now();
-    while harness.query_by_label_contains("Drawing ").is_none() {
-        assert!(start.elapsed() < PATIENCE, "nothing is being drawn");
-        harness.step();
-    }
-    click(&mut harness, "Cancel");
-    assert_eq!((harness.state().pictures(), harness.state().settings().factor), (pictures, 64.0));
-    assert!(!harness.state().is_busy());
-    harness.get_by_label_contains("Not drawn: ");
-    harness.get_by_label("Draw").click();
-    harness.run_steps(3);
-    harness.get_by_label_contains("Drawing ");
-    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(8.0);
-    settle(&mut harness);
-    // The last picture is of that: it only has to be counted again.
-    assert_eq!((harness.state().pictures(), harness.state().totals()), (pictures, before));
-    let _ = std::fs::remove_file(path);
 }

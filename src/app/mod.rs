@@ -12,6 +12,7 @@ mod panels;
 mod patch;
 mod pattern;
 mod pick;
+mod picture;
 mod status;
 mod text;
 mod viewport;
@@ -33,7 +34,8 @@ use crate::tessellate::LodView;
 use document::{Document, Load};
 use measuring::Measuring;
 use pick::Selection;
-use viewport::{Marked, Viewport};
+use picture::Viewport;
+use viewport::Marked;
 
 #[derive(Debug, Error)]
 pub enum WindowError {

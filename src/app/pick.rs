@@ -4,7 +4,7 @@ use egui::Response;
 use glam::Vec3;
 
 use super::App;
-use super::viewport::SHORT;
+use super::picture::SHORT;
 use crate::gpu::GpuError;
 use crate::measure::patch_edges;
 use crate::mesh::Topology;

@@ -5,11 +5,13 @@
 
 mod arena;
 mod buffers;
+mod counts;
 mod device;
 mod domain;
 mod error;
 mod hull;
 pub mod layout;
+mod params;
 mod pipelines;
 mod recorder;
 mod slab;

@@ -1,19 +1,20 @@
 //! One mesh being tessellated: what is recomputed when, and the passes from top to bottom.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError};
 
 use glam::Mat4;
 
 use super::arena::Arena;
 use super::buffers::filled;
-use super::layout::{Chunk, DrawArgs, EmitArgs, LOD_GIVEN, LodView, Params};
+use super::counts::PendingCounts;
+use super::layout::{Chunk, DrawArgs, EmitArgs, Params};
+use super::params::params_of;
 use super::pipelines::bind_group;
-use super::recorder::{Recorder, mapped_bytes, staging_buffer, wait};
+use super::recorder::{Recorder, staging_buffer, wait};
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Lod, Solid, sharing};
+use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -41,13 +42,6 @@ pub struct Tessellator {
     generation: u64,
     chunks: Vec<(usize, u32, Chunk)>,
     emitted: Option<(usize, u32)>,
-}
-
-/// Chunk tables on their way to the host.
-struct PendingCounts {
-    staging: wgpu::Buffer,
-    /// Once they have been asked for.
-    mapped: Option<Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
 /// What a chunk left in the arena, for whoever draws or reads it.
@@ -125,7 +119,8 @@ impl Tessellator {
         }
         self.inputs = Some(*inputs);
         self.convention = inputs.convention;
-        let params = self.params_of(inputs);
+        let culls_back = inputs.cull_back_faces && self.hides_backs(inputs);
+        let params = params_of(inputs, &self.buffers, self.given.is_some(), culls_back);
         if params != self.params || self.nets_done.is_none() {
             self.params = params;
             self.gpu.queue.write_buffer(&self.params_buffer, 0, bytemuck::bytes_of(&params));
@@ -153,42 +148,6 @@ impl Tessellator {
     /// Forgets all that was computed, so that every pass runs again: for timing.
     pub fn forget(&mut self) {
         self.nets_done = None;
-    }
-
-    /// Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes nothing.
-    fn params_of(&self, inputs: &Inputs) -> Params {
-        let lod = if self.given.is_some() { None } else { Some(inputs.lod) };
-        let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
-        let by_distance = lod == Some(Lod::Distance);
-        let by_length = matches!(lod, Some(Lod::Paper | Lod::EdgeLength));
-        let culls_back = inputs.cull_back_faces && self.hides_backs(inputs);
-        let looks = adaptive || inputs.clip != Clip::Off || culls_back;
-        let view = LodView {
-            clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
-            half_viewport: inputs.view.half_viewport.to_array(),
-            _pad: [0.0; 2],
-            eye: inputs.view.eye.to_array(),
-            radius: inputs.view.radius,
-        };
-        Params {
-            view: if looks { view } else { bytemuck::Zeroable::zeroed() },
-            factor: if by_distance || lod == Some(Lod::Uniform) { inputs.factor } else { 0.0 },
-            pixels_per_segment: if by_length { inputs.pixels } else { 0.0 },
-            surface: inputs.surface as u32,
-            partitioning: inputs.partitioning as u32,
-            lod: lod.map_or(LOD_GIVEN, |lod| lod as u32),
-            clip: inputs.clip as u32,
-            point_count: self.buffers.point_count,
-            patch_count: self.buffers.patch_count,
-            factor_count: self.buffers.factor_count,
-            curve_count: self.buffers.curve_count,
-            edges: inputs.edges as u32,
-            tolerance: if by_error { inputs.tolerance } else { 0.0 },
-            near: if by_distance { inputs.near } else { 0.0 },
-            far: if by_distance { inputs.far } else { 0.0 },
-            culls_back: u32::from(culls_back),
-            convention: inputs.convention as u32,
-        }
     }
 
     /// Whether patches that face away can be left out of this mesh at all.
@@ -240,7 +199,7 @@ impl Tessellator {
             recorder.encoder().copy_buffer_to_buffer(&slab.chunks, 0, &staging, offset, slab.chunks.size());
             offset += slab.chunks.size();
         }
-        self.pending = Some(PendingCounts { staging, mapped: None });
+        self.pending = Some(PendingCounts::new(staging));
     }
 
     fn record_nets(&self, recorder: &mut Recorder) {
@@ -273,12 +232,8 @@ impl Tessellator {
 
     /// Asks for the counts after the recorder was submitted; [`Self::poll_counts`] says when they are here.
     pub fn request_counts(&mut self) {
-        if let Some(pending) = self.pending.as_mut().filter(|pending| pending.mapped.is_none()) {
-            let (sender, receiver) = std::sync::mpsc::channel();
-            pending.staging.map_async(wgpu::MapMode::Read, .., move |result| {
-                let _ = sender.send(result);
-            });
-            pending.mapped = Some(receiver);
+        if let Some(pending) = &mut self.pending {
+            pending.request();
         }
     }
 
@@ -287,23 +242,11 @@ impl Tessellator {
     /// # Errors
     /// The device was lost.
     pub fn poll_counts(&mut self) -> Result<bool, GpuError> {
-        let Some(mapped) = self.pending.as_ref().and_then(|pending| pending.mapped.as_ref()) else {
-            return Ok(self.counts_done);
-        };
-        match mapped.try_recv() {
-            Err(TryRecvError::Empty) => Ok(false),
-            Err(error @ TryRecvError::Disconnected) => Err(GpuError::Readback(error.to_string())),
-            Ok(result) => self.take_counts(result).map(|()| true),
+        if let Some(table) = self.pending.as_ref().map(PendingCounts::poll).transpose()?.flatten() {
+            self.pending = None;
+            self.take_chunks(&table);
         }
-    }
-
-    fn take_counts(&mut self, mapped: Result<(), wgpu::BufferAsyncError>) -> Result<(), GpuError> {
-        mapped.map_err(|error| GpuError::Readback(error.to_string()))?;
-        if let Some(pending) = self.pending.take() {
-            let bytes = mapped_bytes(&pending.staging)?;
-            self.take_chunks(&bytemuck::pod_collect_to_vec::<u8, Chunk>(&bytes));
-        }
-        Ok(())
+        Ok(self.counts_done)
     }
 
     /// Waits for the counts, if they are on their way.
@@ -314,12 +257,11 @@ impl Tessellator {
         self.request_counts();
         wait(&self.gpu);
         self.gpu.check()?;
-        let Some(mapped) = self.pending.as_ref().and_then(|pending| pending.mapped.as_ref()) else { return Ok(()) };
-        // Another thread that polls may still be running the callback.
-        match mapped.recv() {
-            Ok(result) => self.take_counts(result),
-            Err(error) => Err(GpuError::Readback(error.to_string())),
+        if let Some(table) = self.pending.as_ref().map(PendingCounts::wait).transpose()?.flatten() {
+            self.pending = None;
+            self.take_chunks(&table);
         }
+        Ok(())
     }
 
     fn take_chunks(&mut self, table: &[Chunk]) {

@@ -5,6 +5,7 @@ pub mod layout;
 mod leaks;
 mod marks;
 mod pick;
+mod pipelines;
 mod renderer;
 mod scale;
 mod scene;

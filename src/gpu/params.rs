@@ -1,0 +1,41 @@
+//! What a tessellation's inputs are to the passes.
+
+use super::MeshBuffers;
+use super::layout::{LOD_GIVEN, LodView, Params};
+use crate::tessellate::{Clip, Inputs, Lod};
+
+/// What the device is told. Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes
+/// nothing. `is_given`: factors are, in place of LOD's. `culls_back`: patches that face away are left out.
+pub fn params_of(inputs: &Inputs, buffers: &MeshBuffers, is_given: bool, culls_back: bool) -> Params {
+    let lod = if is_given { None } else { Some(inputs.lod) };
+    let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
+    let by_distance = lod == Some(Lod::Distance);
+    let by_length = matches!(lod, Some(Lod::Paper | Lod::EdgeLength));
+    let looks = adaptive || inputs.clip != Clip::Off || culls_back;
+    let view = LodView {
+        clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
+        half_viewport: inputs.view.half_viewport.to_array(),
+        _pad: [0.0; 2],
+        eye: inputs.view.eye.to_array(),
+        radius: inputs.view.radius,
+    };
+    Params {
+        view: if looks { view } else { bytemuck::Zeroable::zeroed() },
+        factor: if by_distance || lod == Some(Lod::Uniform) { inputs.factor } else { 0.0 },
+        pixels_per_segment: if by_length { inputs.pixels } else { 0.0 },
+        surface: inputs.surface as u32,
+        partitioning: inputs.partitioning as u32,
+        lod: lod.map_or(LOD_GIVEN, |lod| lod as u32),
+        clip: inputs.clip as u32,
+        point_count: buffers.point_count,
+        patch_count: buffers.patch_count,
+        factor_count: buffers.factor_count,
+        curve_count: buffers.curve_count,
+        edges: inputs.edges as u32,
+        tolerance: if by_error { inputs.tolerance } else { 0.0 },
+        near: if by_distance { inputs.near } else { 0.0 },
+        far: if by_distance { inputs.far } else { 0.0 },
+        culls_back: u32::from(culls_back),
+        convention: inputs.convention as u32,
+    }
+}

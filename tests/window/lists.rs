@@ -1,0 +1,116 @@
+//! What is found about a mesh and listed: cracks, worst edges, what a weld would join.
+
+use std::time::Instant;
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable;
+use pnaen::mesh::{Shape, Source};
+use pnaen::tessellate::Surface;
+
+use crate::{PATIENCE, choose, press, settle, uniform};
+
+#[test]
+fn choosing_pn_lights_up_the_cracks() {
+    let mut harness = uniform(None);
+    choose(&mut harness, "Surface", "PN");
+    harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
+    settle(&mut harness);
+    let app = harness.state();
+    assert_eq!(app.settings().surface, Surface::Pn);
+    assert!(app.settings().overlays.cracks);
+    assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(12));
+    harness.get_by_label_contains("cracks 12, ");
+}
+
+#[test]
+fn the_worst_edges_are_listed_and_one_click_frames_one() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let app = harness.state();
+    let cracks = app.cracks().expect("measured").clone();
+    let before = *app.camera();
+    // The list shows the widest gap first; its third row is as good as any.
+    let edge = cracks.edges[2].edge;
+    let row = format!("{edge:<6}split normal");
+    harness.get_by_label_contains(&row).click();
+    settle(&mut harness);
+    let app = harness.state();
+    assert_eq!(app.selected_edge(), Some(edge));
+    let topology = &app.loaded().expect("a mesh").topology;
+    let [a, b] = topology.edges[edge as usize].points.map(|point| topology.points[point as usize]);
+    assert_ne!(*app.camera(), before);
+    assert!(app.camera().target.distance((a + b) / 2.0) < 1e-6, "the edge is in the middle");
+    // Named, with its two triangles, both sides' factors and points.
+    harness.get_by_label(&format!("Edge {edge}"));
+    assert!(harness.get_all_by_label("split normal").next().is_some());
+    for side in topology.edge_sides(&topology.edges[edge as usize]) {
+        let triangle = topology.patches[side.patch as usize].triangle;
+        harness.get_by_label(&format!("Triangle {triangle}"));
+    }
+    assert_eq!(harness.get_all_by_label("8.00000").count(), 2, "both sides' factors");
+    assert_eq!(harness.get_all_by_label("9").count(), 2, "both sides' segments");
+    assert_eq!(harness.get_all_by_label_contains("apart, units").count(), 1, "their points");
+    harness.get_by_label("Deselect").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().selected_edge(), None);
+}
+
+#[test]
+fn keys_go_through_a_list_beyond_the_rows_in_sight() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    choose(&mut harness, "Surface", "PN");
+    let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
+    harness.get_by_label_contains(&format!("{:<6}split normal", edges[0])).focus();
+    settle(&mut harness);
+    let steps = [egui::Key::ArrowDown; 9].into_iter().chain([egui::Key::ArrowUp, egui::Key::Enter]);
+    for key in steps {
+        press(&mut harness, key);
+    }
+    assert_eq!(harness.state().selected_edge(), Some(edges[8]));
+    for key in [egui::Key::End, egui::Key::Enter] {
+        press(&mut harness, key);
+    }
+    assert_eq!(harness.state().selected_edge(), Some(edges[11]));
+    press(&mut harness, egui::Key::Home);
+    press(&mut harness, egui::Key::Enter);
+    assert_eq!(harness.state().selected_edge(), Some(edges[0]));
+}
+
+#[test]
+fn escape_closes_a_list_before_it_deselects() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    harness.state_mut().select_edge(3);
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::ComboBox, "Surface").click();
+    settle(&mut harness);
+    press(&mut harness, egui::Key::Escape);
+    assert_eq!(harness.state().selected_edge(), Some(3));
+    press(&mut harness, egui::Key::Escape);
+    assert_eq!(harness.state().selected_edge(), None);
+}
+
+#[test]
+fn as_published_edges_crack_and_once_an_edge_they_close() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    press(&mut harness, egui::Key::E);
+    let cracked = harness.state().cracks().expect("measured").different_bits;
+    assert!(cracked > 1000, "{cracked}");
+    press(&mut harness, egui::Key::E);
+    assert_eq!(harness.state().cracks().expect("measured").different_bits, 0);
+}
+
+#[test]
+fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Saddle)));
+    let start = Instant::now();
+    while harness.state().is_checking() {
+        assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
+        harness.step();
+    }
+    press(&mut harness, egui::Key::Num3);
+    let camera = *harness.state().camera();
+    choose(&mut harness, "Weld", "1e-5: joins nothing");
+    let app = harness.state();
+    assert_eq!(app.loaded().map(|loaded| loaded.weld), Some(1e-5));
+    assert_eq!(*app.camera(), camera, "the view stays");
+}

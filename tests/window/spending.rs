@@ -1,0 +1,130 @@
+//! Where triangles are spent: LOD, conventions, colours, and pictures of many of them.
+
+use std::time::Instant;
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::mesh::{Shape, Source};
+use pnaen::settings::Colors;
+use pnaen::tessellate::Convention;
+
+use crate::{PATIENCE, choose, click, press, settle, uniform};
+
+#[test]
+fn colours_exclude_each_other_and_numbers_have_a_legend() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
+    let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
+    assert_eq!(shown(&harness), [false; 3]);
+    for (entry, colors, expected) in [
+        ("Factors", Colors::Factors, [true, false, false]),
+        ("Triangle size", Colors::TriangleSize, [false, true, false]),
+        ("Factors below 2", Colors::LowFactors, [false, false, true]),
+        ("Barycentric", Colors::Barycentric, [false; 3]),
+        ("Material", Colors::Material, [false; 3]),
+    ] {
+        let pictures = harness.state().pictures();
+        choose(&mut harness, "Colours", entry);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+        assert_eq!(shown(&harness), expected, "{entry}");
+        assert!(harness.state().pictures() > pictures, "{entry}: a new picture");
+    }
+    for (key, colors) in [
+        (egui::Key::H, Colors::Factors),
+        (egui::Key::X, Colors::TriangleSize),
+        (egui::Key::U, Colors::LowFactors),
+        (egui::Key::B, Colors::Barycentric),
+        (egui::Key::B, Colors::Material),
+    ] {
+        press(&mut harness, key);
+        assert_eq!(harness.state().settings().overlays.colors, colors);
+    }
+    press(&mut harness, egui::Key::N);
+    assert!(harness.state().settings().overlays.normals);
+}
+
+#[test]
+fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let count = |harness: &Harness<App>| harness.state().sizes_shown().map(|sizes| (sizes.in_view, sizes.small));
+    let (_, triangles) = harness.state().totals().expect("counted");
+    let (in_view, small) = count(&harness).expect("measured");
+    assert_eq!(in_view, triangles, "all of it is framed");
+    assert!(small > 0);
+    // From farther away nothing is tessellated anew, so nothing is measured.
+    press(&mut harness, egui::Key::PageDown);
+    assert_eq!(count(&harness), None);
+    // Unless one looks at the sizes.
+    press(&mut harness, egui::Key::X);
+    let (_, smaller) = count(&harness).expect("measured");
+    assert!(smaller > small, "{smaller}, and {small} from nearer");
+    press(&mut harness, egui::Key::PageDown);
+    let (_, smallest) = count(&harness).expect("measured");
+    assert!(smallest > smaller, "{smallest}, and {smaller} from nearer");
+    assert!(harness.state().cracks().is_some(), "which the view doesn't change");
+}
+
+#[test]
+fn a_mistaken_convention_cracks_and_shows_both_factors() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "LOD", "Edge length");
+    let cracked = |harness: &Harness<App>| harness.state().cracks().map(|cracks| cracks.different_factors);
+    for (entry, convention) in [("AMD PN sample", Convention::AmdPn), ("Edge order", Convention::EdgeOrder)] {
+        choose(&mut harness, "Convention", entry);
+        assert_eq!((harness.state().settings().convention, cracked(&harness)), (convention, Some(0)));
+    }
+    choose(&mut harness, "Convention", "Mirrored, a mistake");
+    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
+    choose(&mut harness, "Convention", "Rotated, a mistake");
+    assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
+    choose(&mut harness, "LOD", "Uniform");
+    assert_eq!(cracked(&harness), Some(0));
+    choose(&mut harness, "Convention", "Direct3D 11");
+    assert_eq!(harness.state().settings().convention, Convention::D3d11);
+}
+
+#[test]
+fn frozen_lod_stays_while_the_camera_moves() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    press(&mut harness, egui::Key::L);
+    let before = harness.state().totals();
+    press(&mut harness, egui::Key::Z);
+    press(&mut harness, egui::Key::PageUp);
+    press(&mut harness, egui::Key::PageUp);
+    assert_eq!(harness.state().totals(), before, "frozen");
+    press(&mut harness, egui::Key::Z);
+    assert!(harness.state().totals() > before, "nearer, so more triangles");
+}
+
+#[test]
+fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
+    let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
+    let made = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
+        .args(["tessellate", "shape:torus", "--factor", "3", "-o"])
+        .arg(&path)
+        .status();
+    assert!(made.is_ok_and(|status| status.success()));
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let (pictures, before) = (harness.state().pictures(), harness.state().totals());
+    // Some 20 million triangles: more than anyone would wait for here.
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
+    let start = Instant::now();
+    while harness.query_by_label_contains("Drawing ").is_none() {
+        assert!(start.elapsed() < PATIENCE, "nothing is being drawn");
+        harness.step();
+    }
+    click(&mut harness, "Cancel");
+    assert_eq!((harness.state().pictures(), harness.state().settings().factor), (pictures, 64.0));
+    assert!(!harness.state().is_busy());
+    harness.get_by_label_contains("Not drawn: ");
+    harness.get_by_label("Draw").click();
+    harness.run_steps(3);
+    harness.get_by_label_contains("Drawing ");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(8.0);
+    settle(&mut harness);
+    // The last picture is of that: it only has to be counted again.
+    assert_eq!((harness.state().pictures(), harness.state().totals()), (pictures, before));
+    let _ = std::fs::remove_file(path);
+}
