@@ -213,37 +213,41 @@ fn inner_error(seen: array<vec4<f32>, 3>, segments: f32) -> f32 {
 struct Rim {
     sight: Sight,
     along: array<vec3<f32>, 3>,
+    mixed: array<vec3<f32>, 3>,
 }
 
-// Of the edge opposite corner k: its sight, and the second differences along it at its ends and opposite.
+// Of the edge opposite corner k: its sight, and the second differences at its ends and opposite.
 fn edge_rim(view: LodView, net: ControlNet, k: u32) -> Rim {
     let p = (k + 1u) % 3u;
     let q = (k + 2u) % 3u;
     let sight = edge_sight(view, net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]);
-    return Rim(
-        sight,
-        array<vec3<f32>, 3>(
-            second_differences(net, p, k)[0],
-            second_differences(net, q, k)[0],
-            second_differences(net, k, k)[0],
-        ),
-    );
+    let at_p = second_differences(net, p, k);
+    let at_q = second_differences(net, q, k);
+    let at_k = second_differences(net, k, k);
+    let along = array<vec3<f32>, 3>(at_p[0], at_q[0], at_k[0]);
+    return Rim(sight, along, array<vec3<f32>, 3>(at_p[1], at_q[1], at_k[1]));
+}
+
+// Of differences of which the last has no more than this share.
+fn rim_length(view: LodView, beside: Sight, differences: array<vec3<f32>, 3>, share: f32) -> f32 {
+    let at_p = seen_length(view, beside, differences[0]);
+    let at_q = seen_length(view, beside, differences[1]);
+    let at_k = seen_length(view, beside, differences[2]);
+    let own = max(at_p, at_q);
+    return own + share * max(at_k - own, 0.0);
 }
 
 fn rim_error(view: LodView, rim: Rim, sight: Sight, seen: vec4<f32>, factor: f32, segments: f32) -> f32 {
     let share = (2.0 / 3.0) / segments;
     let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
     let beside = mixed_sight(rim.sight, sight, outside);
-    let at_p = seen_length(view, beside, rim.along[0]);
-    let at_q = seen_length(view, beside, rim.along[1]);
-    let at_k = seen_length(view, beside, rim.along[2]);
-    let own = max(at_p, at_q);
-    let along = own + share * max(at_k - own, 0.0);
+    let along = rim_length(view, beside, rim.along, share);
+    let mixed = rim_length(view, beside, rim.mixed, share);
     let size = 1.0 / segments;
     let reach = max(size, 1.0 / factor);
     // An edge of one segment: half of the row's triangles start at either end.
     let slant = select(reach, 0.5 + 0.5 * size, factor <= 1.0);
-    return row_error(vec3<f32>(along, seen.y, seen.z), reach, slant, size);
+    return row_error(vec3<f32>(along, mixed, seen.z), reach, slant, size);
 }
 
 fn whole(partitioning: u32, least: f32) -> f32 {

@@ -50,9 +50,9 @@ pub const KEYS: [(&str, &str); 30] = [
 pub fn style(context: &egui::Context) {
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
-        style.spacing.slider_width = 86.0;
+        style.spacing.slider_width = 82.0;
         // Beside it a number as wide as the rest of a combo box.
-        style.spacing.interact_size.x = 54.0;
+        style.spacing.interact_size.x = 58.0;
         // Beside what scrolls, not over it.
         style.spacing.scroll.floating_allocated_width = style.spacing.scroll.bar_width;
         style.spacing.combo_width = 148.0;

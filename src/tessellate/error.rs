@@ -236,12 +236,13 @@ pub fn inner_error(seen: [[f32; 4]; 3], segments: f32) -> f32 {
     1.001 * worst / (segments * segments)
 }
 
-/// What the row along an edge has of its own: how the edge is seen, and the second differences along it, at its ends and at
-/// the corner opposite.
+/// What the row along an edge has of its own: how the edge is seen, and the second differences along it, and along it and
+/// inward, at its ends and at the corner opposite.
 #[derive(Clone, Copy, Debug)]
 pub struct Rim {
     pub sight: Sight,
     pub along: [Vec3; 3],
+    pub mixed: [Vec3; 3],
 }
 
 /// Of the edge opposite corner `k`.
@@ -249,26 +250,32 @@ pub fn edge_rim(view: &LodView, net: &ControlNet, k: usize) -> Rim {
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
     let edge = [net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]];
-    let along = [p, q, k].map(|corner| second_differences(net, corner, k)[0]);
-    Rim { sight: edge_sight(view, edge), along }
+    let own = [p, q, k].map(|corner| second_differences(net, corner, k));
+    Rim { sight: edge_sight(view, edge), along: own.map(|own| own[0]), mixed: own.map(|own| own[1]) }
+}
+
+/// The most that differences look, of which the last has no more than this share, in px.
+pub fn rim_length(view: &LodView, beside: Sight, differences: [Vec3; 3], share: f32) -> f32 {
+    let [at_p, at_q, at_k] = differences.map(|difference| seen_length(view, beside, difference));
+    let own = at_p.max(at_q);
+    own + share * (at_k - own).max(0.0)
 }
 
 /// The bound for the row along an edge, which has `factor` segments, while there are `segments` inside. The row is 2/3 of a
-/// segment high; of its points' control points the third corner's share is small, so that what goes along the row is seen
-/// about as the edge is. `sight` and `seen` are the whole patch's, the latter for this edge.
+/// segment high; of its points' control points the third corner's share is small, so that differences are about the edge's
+/// and are seen about as it is. `sight` and `seen` are the whole patch's, the latter for this edge.
 pub fn rim_error(view: &LodView, rim: Rim, sight: Sight, seen: [f32; 4], factor: f32, segments: f32) -> f32 {
     let share = (2.0 / 3.0) / segments;
     let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
     let beside = mixed_sight(rim.sight, sight, outside);
-    let [at_p, at_q, at_k] = rim.along.map(|difference| seen_length(view, beside, difference));
-    let own = at_p.max(at_q);
-    let along = own + share * (at_k - own).max(0.0);
+    let along = rim_length(view, beside, rim.along, share);
+    let mixed = rim_length(view, beside, rim.mixed, share);
     let size = 1.0 / segments;
     let reach = size.max(1.0 / factor);
     // An edge of one segment is the side of one triangle, to the middle of the row, and half of the others start at either
     // end.
     let slant = if factor <= 1.0 { 0.5 + 0.5 * size } else { reach };
-    row_error([along, seen[1], seen[2]], reach, slant, size)
+    row_error([along, mixed, seen[2]], reach, slant, size)
 }
 
 /// The least number of segments, `least` or more, that a partitioning has without fractions: 1, 2, 4 and so on, or even,
