@@ -1,7 +1,8 @@
 // Thick lines, faint where something is in front of them: one instance a segment, or a vertex whose normal is drawn; a
 // quad facing the screen.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+@group(0) @binding(0) var<storage, read> frame: Frame;
 // Only for normals.
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;

@@ -1,7 +1,8 @@
 // Draws patches: the emitted triangles (indexed, or pulled one corner at a time so that each knows its own
 // barycentric coordinates), or the input triangles as they are.
 
-@group(0) @binding(0) var<uniform> frame: Frame;
+// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+@group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;

@@ -1,6 +1,7 @@
 // What every patch of a slab will emit: its processed factors, and its numbers of vertices and triangles.
 
-@group(0) @binding(0) var<uniform> params: Params;
+// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;

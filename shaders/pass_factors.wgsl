@@ -1,7 +1,8 @@
 // One factor an edge, or as published one a curve. An edge whose sides do not all share one curve takes the largest that
 // any of its curves asks for.
 
-@group(0) @binding(0) var<uniform> params: Params;
+// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+@group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;

@@ -1,6 +1,7 @@
 // Once a mesh and surface: the control points of every curve, then of every patch's centre.
 
-@group(0) @binding(0) var<uniform> params: Params;
+// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+@group(0) @binding(0) var<storage, read> params: Params;
 // Points, then every patch's centre.
 @group(0) @binding(1) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;

@@ -5,7 +5,7 @@ use crate::gpu::{COLOR_FORMAT, DEPTH_FORMAT, Gpu};
 /// The frame, points, corners, patches, and the arena's vertices and indices.
 pub fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
-    let mut entries = vec![buffer_entry(0, wgpu::BufferBindingType::Uniform, both)];
+    let mut entries = vec![buffer_entry(0, READ, both)];
     entries.extend((1..6).map(|binding| buffer_entry(binding, READ, wgpu::ShaderStages::VERTEX)));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
 }

@@ -124,7 +124,7 @@ impl Renderer {
         let frame = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("frame"),
             contents: bytemuck::bytes_of(&frame),
-            usage: wgpu::BufferUsages::UNIFORM,
+            usage: wgpu::BufferUsages::STORAGE,
         });
         let (pipeline, pulled) = self.surface_pipeline(scene, target, camera, settings);
         let steps = steps(scene.tessellator.chunk_count(), settings.overlays.normals);
