@@ -130,10 +130,9 @@ impl Measuring {
         }
     }
 
-    /// The part of all chunks that has been copied, 0 to 1.
-    pub fn fraction(&self, chunks: usize) -> f32 {
-        let copied = self.copying.as_ref().map_or(chunks, |copying| copying.next_chunk);
-        copied as f32 / chunks.max(1) as f32
+    /// The part of all chunks that has been copied, 0 to 1, while they are.
+    pub fn fraction(&self, chunks: usize) -> Option<f32> {
+        self.copying.as_ref().map(|copying| copying.next_chunk as f32 / chunks.max(1) as f32)
     }
 
     fn start(gpu: &Gpu, scene: &Scene, view: ScreenView) -> Self {

@@ -243,7 +243,7 @@ impl App {
         ui.add_enabled(is_solid, check)
             .on_hover_text(
                 "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not while \
-                 the near plane cuts the mesh, nor where PN or edges as published tear it.",
+                 the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
             )
             .on_disabled_hover_text(
                 "Backs of this mesh can be seen: it is open, a part of it is wound inward, or a material is double-sided.",

@@ -182,7 +182,9 @@ impl Viewport {
             drawing.wanted == *wanted || (drawing.steps <= SHORT && drawing.wanted.document == document.generation)
         };
         self.drawing = self.drawing.take_if(&mut keeps_on);
-        self.cancelled = self.cancelled.filter(|cancelled| cancelled == wanted);
+        // What is selected meanwhile is no reason to draw after all.
+        let same = |cancelled: &Wanted| Wanted { lines: wanted.lines, ..*cancelled } == *wanted;
+        self.cancelled = self.cancelled.filter(same);
         let under_way = self.drawing.as_ref().map(|drawing| drawing.wanted).or(self.counting);
         let wanted = under_way.unwrap_or(*wanted);
         if self.cancelled.is_some() {

@@ -85,8 +85,11 @@ impl App {
         match self.measuring.cracks() {
             None => {
                 let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
-                let percent = 100.0 * self.measuring.fraction(chunks);
-                let text = if chunks > 1 { format!("cracks … {percent:.0} %") } else { "cracks …".into() };
+                let text = match self.measuring.fraction(chunks) {
+                    Some(part) if chunks > 1 => format!("cracks … {:.0} %", 100.0 * part),
+                    _ if self.is_busy() => "cracks …".into(),
+                    _ => "cracks not measured".into(),
+                };
                 status(ui, WIDTH, text, hover);
             }
             Some(cracks) if cracks.edges.is_empty() => status(ui, WIDTH, "cracks 0", hover),

@@ -143,7 +143,8 @@ impl App {
                 self.camera.zoom(ratio, vec2(pointer.x, pointer.y), points);
             }
         }
-        if ui.memory(|memory| memory.focused().is_none()) {
+        // An open list takes the keys, also before one of its entries has the focus.
+        if ui.memory(|memory| memory.focused().is_none()) && !egui::Popup::is_any_open(ui.ctx()) {
             self.move_camera_by_keys(ui, points);
         }
     }

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::mesh::{Side, Topology};
 use crate::tessellate::{
     Convention, Edges, HullFactors, Partitioning, PatchFactors, Vertex, domain_side, factor_side, outer_count,
-    patch_is_low, point_count, segments,
+    patch_is_culled, patch_is_low, point_count, segments,
 };
 
 /// A vertex on a patch's outline.
@@ -156,6 +156,15 @@ impl Rims {
         }
     }
 
+    /// How many patches are drawn with a factor of 63 or more: they may have asked for more than there is.
+    pub fn at_limit(&self) -> u32 {
+        let is_last = |word: u32| segments(word) >= 63;
+        let any = |factors: &&PatchFactors| {
+            !patch_is_culled(**factors) && (is_last(factors.inside) || factors.outside.into_iter().any(is_last))
+        };
+        self.factors.iter().filter(any).count() as u32
+    }
+
     /// How many patches are drawn with factors that are all below 2.
     pub fn low(&self) -> u32 {
         self.factors.iter().filter(|&&factors| patch_is_low(factors)).count() as u32
@@ -209,5 +218,26 @@ impl Rims {
     pub fn ring_mut(&mut self, patch: u32) -> &mut [RimPoint] {
         let patch = patch as usize;
         &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tessellate::process;
+
+    #[test]
+    fn patches_at_the_limit_and_below_two_are_counted_and_culled_ones_are_neither() {
+        let of = |edges, inside| process(Partitioning::Integer, edges, inside);
+        let factors = vec![
+            of([64.0, 1.0, 1.0], 2.0),
+            of([3.0; 3], 64.0),
+            of([63.5; 3], 9.0),
+            of([1.0; 3], 1.0),
+            of([0.0; 3], 64.0),
+        ];
+        let asked = AskedFactors::new(Edges::PerEdge, Convention::D3d11, Vec::new());
+        let rims = Rims::new(factors, asked);
+        assert_eq!((rims.at_limit(), rims.low()), (3, 1));
     }
 }

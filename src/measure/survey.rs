@@ -55,6 +55,8 @@ pub struct Measured {
     pub culled: Culled,
     /// Patches drawn with factors that are all below 2.
     pub patches_low: u32,
+    /// Patches drawn with a factor that is the largest there is.
+    pub patches_at_limit: u32,
     pub cracks: Cracks,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
@@ -93,6 +95,7 @@ impl<'a> Survey<'a> {
         Measured {
             culled: self.culled,
             patches_low: self.rims.low(),
+            patches_at_limit: self.rims.at_limit(),
             cracks: Cracks::find(self.mesh, self.topology, &self.rims),
             folds: self.folds,
             not_finite: self.not_finite,
