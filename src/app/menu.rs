@@ -191,11 +191,15 @@ impl App {
         }
         // A list that is open takes the key for itself.
         if context.input(|input| input.key_pressed(Key::Escape)) && !egui::Popup::is_any_open(context) {
-            self.load = None;
-            self.error = None;
-            self.typed_path = None;
-            self.shows_keys = false;
-            self.deselect();
+            if self.load.is_none() && self.viewport.is_long() {
+                self.viewport.cancel();
+            } else {
+                self.load = None;
+                self.error = None;
+                self.typed_path = None;
+                self.shows_keys = false;
+                self.deselect();
+            }
         }
         if context.egui_wants_keyboard_input() {
             return;

@@ -223,6 +223,11 @@ impl Viewport {
         Ok(())
     }
 
+    /// Whether a picture is under way that takes more than a few steps.
+    pub fn is_long(&self) -> bool {
+        self.drawing.as_ref().is_some_and(|drawing| drawing.steps > SHORT)
+    }
+
     /// Leaves the picture under way as it is: the last one stays until something else is wanted.
     pub fn cancel(&mut self) {
         self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);

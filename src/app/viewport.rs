@@ -8,7 +8,7 @@ use glam::{Vec2, vec2};
 use super::App;
 use super::legend::legend;
 use super::pick::Outlined;
-use super::picture::{SHORT, Wanted};
+use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
@@ -220,9 +220,9 @@ impl App {
                 self.viewport.cancelled = None;
                 ui.ctx().request_repaint();
             }
-        } else if let Some(drawing) = self.viewport.drawing.as_ref().filter(|drawing| drawing.steps > SHORT) {
+        } else if let Some(drawing) = self.viewport.drawing.as_ref().filter(|_| self.viewport.is_long()) {
             let done = Some(drawing.given as f32 / drawing.steps as f32);
-            let hover = "Leaves the last picture as it is, and every setting too.";
+            let hover = "Leaves the last picture as it is, and every setting too (Esc).";
             if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", hover)) {
                 self.viewport.cancel();
             }

@@ -1,6 +1,7 @@
 //! Options that several commands share, and how their values are read.
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
@@ -162,6 +163,20 @@ impl SurfaceOptions {
     pub fn viewport(&self) -> Vec2 {
         Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
     }
+}
+
+/// Reads where to write a picture: not a name that says it is no PNG file.
+pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|path| {
+        let path = PathBuf::from(path);
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some(other @ ("jpg" | "jpeg" | "webp" | "bmp" | "gif" | "tif" | "tiff")) => {
+                Err(format!("pictures are PNG files, not .{other}: name it .png"))
+            }
+            _ => Ok(path),
+        }
+    })
 }
 
 /// Which points are one.

@@ -21,7 +21,7 @@ pub struct Args {
     #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Picture to write, a PNG file
-    #[arg(short, long, value_name = "OUT.png")]
+    #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,

@@ -96,3 +96,10 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     }
     output(&overlays("triangle-size,wireframe,normals,back-faces"));
 }
+
+#[test]
+fn a_picture_is_not_named_what_it_is_not() {
+    let folder = Folder::new("named");
+    let errors = failure(&["render", "shape:cube-split", "-o", &folder.path("out.jpg")], 2);
+    assert!(errors.contains("PNG") && errors.contains("name it .png"), "{errors}");
+}

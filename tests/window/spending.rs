@@ -127,6 +127,8 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
     harness.get_by_label("Draw").click();
     harness.run_steps(3);
     harness.get_by_label_contains("Drawing ");
+    press(&mut harness, egui::Key::Escape);
+    harness.get_by_label_contains("Not drawn: ");
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(8.0);
     settle(&mut harness);
     assert_eq!(harness.state().totals(), before);
