@@ -80,7 +80,7 @@ impl FromStr for Partitioning {
 
 /// A patch's factors as the tessellator uses them. Each word is a factor of 1..=64 in 16.16 fixed point, clamped and
 /// rounded, with [`FACTOR_ODD`] set where its parity is odd. Of a culled patch the edges' are zeros, and the inside's says
-/// why (see [`super::cull`]): 0 where its own factors cull it.
+/// why (see `cull.rs`): 0 where its own factors cull it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchFactors {
