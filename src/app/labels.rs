@@ -6,6 +6,7 @@ use super::App;
 use super::names::letter;
 use super::text::factor;
 use super::viewport::{note_text, paint_note};
+use super::widgets::rgb;
 use crate::measure::ScreenView;
 use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
 use crate::render::project;
@@ -102,10 +103,6 @@ fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color3
         paint_note(ui, own.shrink2(MARGIN), galley);
     }
     true
-}
-
-fn rgb([r, g, b]: [u8; 3]) -> Color32 {
-    Color32::from_rgb(r, g, b)
 }
 
 #[cfg(test)]

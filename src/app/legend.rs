@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 
+use super::widgets::rgb;
 use crate::render::layout::WASTE_COLOR;
 use crate::render::{FACTOR_SCALE, SIZE_SCALE, Scale};
 use crate::settings::Colors;
@@ -67,7 +68,7 @@ pub fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors) {
     let inner = Rect::from_center_size(place.center(), inner);
     let Some((scale, ticks)) = legend.scale else {
         let mark = Rect::from_center_size(inner.left_center() + vec2(BAR.y / 2.0, 0.0), egui::Vec2::splat(BAR.y));
-        ui.painter().rect_filled(mark, 0.0, color(WASTE_COLOR));
+        ui.painter().rect_filled(mark, 0.0, rgb(WASTE_COLOR));
         text(ui, mark.right_center() + vec2(8.0, 0.0), Align2::LEFT_CENTER, legend.title);
         return;
     };
@@ -76,7 +77,7 @@ pub fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors) {
     bar(ui, Rect::from_min_size(pos2(inner.left() + before, top), vec2(bar_width, BAR.y)), scale, ticks);
     if legend.waste {
         let block = Rect::from_min_size(pos2(inner.left(), top), vec2(BLOCK_WIDTH, BAR.y));
-        ui.painter().rect_filled(block, 0.0, color(WASTE_COLOR));
+        ui.painter().rect_filled(block, 0.0, rgb(WASTE_COLOR));
         text(ui, block.center_bottom() + vec2(0.0, 4.0), Align2::CENTER_TOP, &format!("below {}", scale.least));
     }
 }
@@ -86,7 +87,7 @@ fn bar(ui: &egui::Ui, rect: Rect, scale: &Scale, ticks: &[f32]) {
     for piece in 0..PIECES {
         let [from, to] = [piece, piece + 1].map(|end| f32::from(end) / f32::from(PIECES));
         let part = Rect::from_x_y_ranges(at(from)..=at(to), rect.y_range());
-        ui.painter().rect_filled(part, 0.0, color(scale.color(0.5 * (from + to))));
+        ui.painter().rect_filled(part, 0.0, rgb(scale.color(0.5 * (from + to))));
     }
     for &tick in ticks {
         let x = at(scale.place(tick));
@@ -98,8 +99,4 @@ fn bar(ui: &egui::Ui, rect: Rect, scale: &Scale, ticks: &[f32]) {
 
 fn text(ui: &egui::Ui, at: Pos2, align: Align2, text: &str) {
     ui.painter().text(at, align, text, egui::FontId::proportional(TEXT), Color32::from_gray(235));
-}
-
-fn color([r, g, b]: [u8; 3]) -> Color32 {
-    Color32::from_rgb(r, g, b)
 }

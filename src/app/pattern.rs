@@ -2,6 +2,7 @@
 
 use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
+use super::widgets::rgb;
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::{FIXED_ONE, PatchFactors, domain_point, domain_triangle, point_count, triangle_count};
 
@@ -80,9 +81,9 @@ fn draw_triangles(ui: &Ui, factors: PatchFactors, points: &[Pos2], hit: Option<u
 /// The edges on which u, v and w are 0, in the colours of their factors, and the corners' letters.
 fn draw_outline(ui: &Ui, rect: Rect, letters: [String; 3]) {
     let corners = [[FIXED_ONE, 0], [0, FIXED_ONE], [0, 0]].map(|uv| place(rect, uv));
-    for (i, [r, g, b]) in FACTOR_COLORS.into_iter().enumerate() {
+    for (i, color) in FACTOR_COLORS.into_iter().enumerate() {
         let ends = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
-        ui.painter().line_segment(ends, Stroke::new(2.0, Color32::from_rgb(r, g, b)));
+        ui.painter().line_segment(ends, Stroke::new(2.0, rgb(color)));
     }
     let color = ui.visuals().text_color();
     for (corner, (letter, below)) in corners.into_iter().zip(letters.into_iter().zip([-19.0, 14.0, 14.0])) {

@@ -4,7 +4,7 @@ use egui::RichText;
 
 use super::App;
 use super::text::{grouped, mebibytes, short};
-use super::widgets::status;
+use super::widgets::{rgb, status};
 use crate::render::layout::CRACK_COLOR;
 
 impl App {
@@ -95,9 +95,8 @@ impl App {
             Some(cracks) if cracks.edges.is_empty() => status(ui, WIDTH, "cracks 0", hover),
             Some(cracks) => {
                 let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.gap_px(cracks)));
-                let [r, g, b] = CRACK_COLOR;
                 let text = RichText::new(format!("cracks {count}, {px} px"));
-                status(ui, WIDTH, text.color(egui::Color32::from_rgb(r, g, b)).strong(), hover);
+                status(ui, WIDTH, text.color(rgb(CRACK_COLOR)).strong(), hover);
             }
         }
     }

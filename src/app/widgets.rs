@@ -107,10 +107,15 @@ fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
 /// Width and height of a swatch, in points.
 pub const SWATCH: egui::Vec2 = egui::vec2(14.0, 10.0);
 
+/// An sRGB colour as egui has it.
+pub fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
+    egui::Color32::from_rgb(r, g, b)
+}
+
 /// A patch of colour, as in a legend.
-pub fn swatch(ui: &mut egui::Ui, [r, g, b]: [u8; 3]) {
+pub fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
-    ui.painter().rect_filled(rect, 2.0, egui::Color32::from_rgb(r, g, b));
+    ui.painter().rect_filled(rect, 2.0, rgb(color));
 }
 
 /// A field of the status line, of one width whatever it says.

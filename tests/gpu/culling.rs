@@ -108,3 +108,26 @@ fn the_device_leaves_out_what_the_cpu_does() {
     // What lies on a plane of the view, or is seen edge-on, rounding may put on either side.
     assert!(same * 1000 >= all * 999, "{same} of {all} patches");
 }
+
+#[test]
+fn backs_that_are_not_rasterised_are_not_missed_either() {
+    let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
+    let (mut inside, mut most) = (0, 0);
+    for (k, shape) in SOLIDS.into_iter().enumerate() {
+        let (_, mut scene) = scene(shape);
+        for index in (k as u32..120).step_by(SOLIDS.len()) {
+            let camera = random_camera(&scene.bounds, index);
+            let usual = Settings { factor: 3.0, ..Settings::default() };
+            // These shapes have no folds: all that this changes is that backs are rasterised.
+            let both = Settings { overlays: Overlays { folds: true, ..Overlays::default() }, ..usual };
+            let pictures = [usual, both].map(|settings| seen(&mut scene, &target, &camera, &settings));
+            let differing = differing(&pictures[0], &pictures[1]);
+            assert!(differing < 12, "{differing} px of {shape:?} from {camera:?}");
+            most = most.max(differing);
+            let center = 0.5 * (scene.bounds.min + scene.bounds.max);
+            inside += u32::from(camera.eye().distance(center) < 0.5 * scene.bounds.radius());
+        }
+    }
+    println!("{inside} cameras deep inside; at most {most} px differ, at silhouettes");
+    assert!(inside > 5, "{inside}");
+}
