@@ -90,18 +90,29 @@ fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
     if t == FIXED_ONE {
         position = b;
     }
-    return DomainVertex(position, edge_normal(at_a.normal, at_b.normal, t), edge_uv(at_a.uv, at_b.uv, t));
+    var normal: vec3<f32>;
+    if params.normals == NORMALS_QUADRATIC {
+        normal = quadratic_edge_normal(a, b, at_a.normal, at_b.normal, t);
+    } else {
+        normal = edge_normal(at_a.normal, at_b.normal, t);
+    }
+    return DomainVertex(position, normal, edge_uv(at_a.uv, at_b.uv, t));
 }
 
 fn patch_vertex(patch_index: u32, u: u32, v: u32) -> DomainVertex {
     let a = corners[patches[patch_index].corners[0]];
     let b = corners[patches[patch_index].corners[1]];
     let c = corners[patches[patch_index].corners[2]];
-    return DomainVertex(
-        patch_position(params.surface, load_net(patch_index), u, v),
-        linear_normal(array<vec3<f32>, 3>(a.normal, b.normal, c.normal), u, v),
-        linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v),
-    );
+    let net = load_net(patch_index);
+    let normals = array<vec3<f32>, 3>(a.normal, b.normal, c.normal);
+    var normal: vec3<f32>;
+    if params.normals == NORMALS_QUADRATIC {
+        normal = quadratic_normal(net.corners, normals, u, v);
+    } else {
+        normal = linear_normal(normals, u, v);
+    }
+    let position = patch_position(params.surface, net, u, v);
+    return DomainVertex(position, normal, linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v));
 }
 
 @compute @workgroup_size(256)
@@ -127,6 +138,10 @@ fn emit_vertices_main(
         made = patch_vertex(patch_index, uv.x, uv.y);
     } else {
         made = rim_vertex(patch_index, at.side, at.t);
+    }
+    if params.normals == NORMALS_SURFACE {
+        // Every patch's own, also on its rim, where its neighbours' differ.
+        made.normal = surface_normal(params.surface, load_net(patch_index), uv.x, uv.y, made.normal);
     }
     let key = pack_key(patch_index, uv.x, uv.y);
     let p = made.position;

@@ -23,20 +23,27 @@ fn curve_nets_main(
     let curve = curves[index];
     let a = points[curve.points[0]].xyz;
     let b = points[curve.points[1]].xyz;
-    if params.surface == SURFACE_FLAT {
-        curve_nets[index] = CurveNet(straight_control_point(a, b), straight_control_point(b, a));
-        return;
-    }
     // The mean over the curve's sides of each side's own proposal.
     var ab = vec3<f32>(0.0);
     var ba = vec3<f32>(0.0);
+    var around_a: Meeting;
+    var around_b: Meeting;
     for (var i = 0u; i < curve.side_count; i++) {
         let side = curve_sides[curve.first_side + i];
-        ab += edge_control_point(a, b, corners[side.x].normal);
-        ba += edge_control_point(b, a, corners[side.y].normal);
+        let at_a = corners[side.x].normal;
+        let at_b = corners[side.y].normal;
+        let proposed = side_control_points(params.surface, params.alpha, a, b, at_a, at_b);
+        ab += proposed[0];
+        ba += proposed[1];
+        around_a = meet(around_a, at_a);
+        around_b = meet(around_b, at_b);
     }
     let share = 1.0 / f32(curve.side_count);
-    curve_nets[index] = CurveNet(ab * share, ba * share);
+    var net = CurveNet(ab * share, ba * share);
+    if params.surface == SURFACE_PN_CREASE {
+        net = CurveNet(crease_control_point(a, b, around_a, net.ab), crease_control_point(b, a, around_b, net.ba));
+    }
+    curve_nets[index] = net;
 }
 
 @compute @workgroup_size(256)

@@ -20,6 +20,9 @@ struct Params {
     // 1 where patches that face away are left out.
     culls_back: u32,
     convention: u32,
+    // How strong Phong tessellation is, 0 to 1.
+    alpha: f32,
+    normals: u32,
 }
 
 // In place of a LOD: factors are given patch by patch.

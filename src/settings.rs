@@ -1,9 +1,11 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use crate::tessellate::{Clip, Convention, Edges, Inputs, Lod, LodView, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface};
 
 /// The smallest and largest tessellation factor.
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
+/// The least and most strength of Phong tessellation.
+pub const ALPHA_RANGE: std::ops::RangeInclusive<f32> = 0.0..=1.0;
 /// The smallest and largest length of a segment that adaptive LOD is asked for, in px.
 pub const PIXELS_RANGE: std::ops::RangeInclusive<f32> = 1.0..=256.0;
 /// The smallest and largest tolerance of LOD by error, in px.
@@ -17,6 +19,9 @@ pub const ARENA_BYTES: u64 = 256 << 20;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     pub surface: Surface,
+    /// How strong Phong tessellation is, 0 (flat) to 1.
+    pub alpha: f32,
+    pub normals: Normals,
     pub edges: Edges,
     /// Tessellation factor under uniform LOD, 1 to 64.
     pub factor: f32,
@@ -45,6 +50,8 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             surface: Surface::PnAen,
+            alpha: 0.75,
+            normals: Normals::Linear,
             edges: Edges::PerEdge,
             factor: 8.0,
             partitioning: Partitioning::FractionalOdd,
@@ -217,10 +224,12 @@ impl Settings {
 
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, near, far, .. } = *self;
-        let Self { clip, cull_back_faces, convention, .. } = *self;
+        let Self { surface, alpha, normals, edges, factor, partitioning, lod, pixels, tolerance, .. } = *self;
+        let Self { near, far, clip, cull_back_faces, convention, .. } = *self;
         Inputs {
             surface,
+            alpha,
+            normals,
             edges,
             factor,
             partitioning,

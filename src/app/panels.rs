@@ -2,27 +2,45 @@
 
 use super::App;
 use super::text::short;
-use super::widgets::{chooser, heading};
+use super::widgets::{chooser, heading, value_chooser};
 use crate::settings::{
-    Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
 };
-use crate::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Edges, Lod, Normals, Partitioning, Surface};
 
-/// Name and explanation of each surface, partitioning and overlay.
-const SURFACES: [(Surface, &str, &str); 3] = [
-    (Surface::Flat, "Flat", "Flat dicing: more triangles, the same shape."),
-    (
-        Surface::Pn,
-        "PN",
-        "PN triangles (Vlachos et al. 2001): cubic patches from positions and normals. Cracks where normals are split.",
-    ),
-    (
-        Surface::PnAen,
-        "PN-AEN",
-        "PN triangles with adjacent edge normals (McDonald and Kilgard 2010): both sides of an edge share the mean of \
-         their control points, so nothing cracks.",
-    ),
+/// What values are called here; what they are is said where they are defined, for the commands too.
+const SURFACES: [(Surface, &str); 8] = [
+    (Surface::Flat, "Flat"),
+    (Surface::Pn, "PN"),
+    (Surface::PnAen, "PN-AEN"),
+    (Surface::PnCrease, "PN crease"),
+    (Surface::Phong, "Phong"),
+    (Surface::PhongAen, "Phong AEN"),
+    (Surface::Nagata, "Nagata"),
+    (Surface::NagataAen, "Nagata AEN"),
 ];
+const NORMALS: [(Normals, &str); 3] = [
+    (Normals::Linear, "Linear normals"),
+    (Normals::Quadratic, "Quadratic normals"),
+    (Normals::Surface, "Surface normals"),
+];
+const EDGES: [(Edges, &str); 2] = [(Edges::PerEdge, "Once an edge"), (Edges::AsPublished, "As published")];
+const LODS: [(Lod, &str); 5] = [
+    (Lod::Uniform, "Uniform"),
+    (Lod::Error, "Error"),
+    (Lod::EdgeLength, "Edge length"),
+    (Lod::Distance, "Distance"),
+    (Lod::Paper, "White paper"),
+];
+const CLIPS: [(Clip, &str); 3] = [(Clip::Off, "Off"), (Clip::Frustum, "Frustum"), (Clip::Paper, "White paper")];
+const CONVENTIONS: [(Convention, &str); 5] = [
+    (Convention::D3d11, "Direct3D 11"),
+    (Convention::AmdPn, "AMD PN sample"),
+    (Convention::EdgeOrder, "Edge order"),
+    (Convention::Rotated, "Rotated, a mistake"),
+    (Convention::Mirrored, "Mirrored, a mistake"),
+];
+/// Name and explanation of each partitioning, meaning of colours and overlay.
 const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
     (Partitioning::Integer, "Integer", "Factors are rounded up: every segment is as long, and the pattern pops."),
     (
@@ -39,91 +57,6 @@ const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
         Partitioning::FractionalEven,
         "Fractional even",
         "An even number of segments, two of which grow from nothing; at least 2.",
-    ),
-];
-const EDGES: [(Edges, &str, &str); 2] = [
-    (
-        Edges::PerEdge,
-        "Once an edge",
-        "What an edge's sides must agree on is computed once, by the edge, in its own direction: no crack, to the last bit.",
-    ),
-    (
-        Edges::AsPublished,
-        "As published",
-        "Every patch computes control points, factors and points for itself, as the white paper's shaders do: edges \
-         differ in their last bits. LOD by length and clipping switch to the white paper's form too.",
-    ),
-];
-const LODS: [(Lod, &str, &str); 5] = [
-    (Lod::Uniform, "Uniform", "The same factor everywhere."),
-    (
-        Lod::Error,
-        "Error",
-        "Every edge and every inside gets the fewest segments that keep it within the tolerance of its surface on screen \
-         (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64. What is flat stays whole.",
-    ),
-    (
-        Lod::EdgeLength,
-        "Edge length",
-        "Every edge gets as many segments as its control polygon is long on screen, divided by the px per segment, at \
-         least 1; inside, the largest of the three. Edges that are not all in front of the eye are measured where they \
-         come nearest.",
-    ),
-    (
-        Lod::Distance,
-        "Distance",
-        "The factor up to a near distance from the eye, 1 from a far one on, and linear between; an edge takes the mean of \
-         its ends. What engines commonly do.",
-    ),
-    (
-        Lod::Paper,
-        "White paper",
-        "As the edge length, but for edges near or behind the eye, which it mirrors in front: those get any factor \
-         (McDonald and Kilgard 2010).",
-    ),
-];
-const CLIPS: [(Clip, &str, &str); 3] = [
-    (Clip::Off, "Off", "Every patch is drawn."),
-    (
-        Clip::Frustum,
-        "Frustum",
-        "Leaves out patches whose ten control points all lie outside one and the same side of the view.",
-    ),
-    (
-        Clip::Paper,
-        "White paper",
-        "Leaves out patches whose ten control points all lie outside the view, whichever side each is on: it can drop \
-         patches that cross the view (McDonald and Kilgard 2010).",
-    ),
-];
-const CONVENTIONS: [(Convention, &str, &str); 5] = [
-    (
-        Convention::D3d11,
-        "Direct3D 11",
-        "Weights u, v, w are on corners 0, 1, 2, and TessFactor[0..2] are those of the edges opposite them. So has Vulkan, \
-         and the white paper.",
-    ),
-    (
-        Convention::AmdPn,
-        "AMD PN sample",
-        "Weights w, u, v are on corners 0, 1, 2, and TessFactor[0..2] are those of the edges opposite u, v and w.",
-    ),
-    (
-        Convention::EdgeOrder,
-        "Edge order",
-        "TessFactor[0..2] are those of the edges (0, 1), (1, 2), (2, 0), and weights v, w, u are on corners 0, 1, 2.",
-    ),
-    (
-        Convention::Rotated,
-        "Rotated, a mistake",
-        "Factors in edge order, but weights as in Direct3D 11: every edge gets the factor of another, and adaptive LOD \
-         cracks.",
-    ),
-    (
-        Convention::Mirrored,
-        "Mirrored, a mistake",
-        "As Direct3D 11, but TessFactor[0] and [1] are exchanged, as if patches were wound the other way: adaptive LOD \
-         cracks.",
     ),
 ];
 const COLORS: [(Colors, &str, &str); 5] = [
@@ -198,7 +131,16 @@ impl App {
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
-        chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
+        value_chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
+        let hover = "How strong Phong tessellation is, from 0, flat, to 1; its authors use 0.75.";
+        let label = ui.label("Alpha").on_hover_text(hover);
+        let slider = egui::Slider::new(&mut settings.alpha, ALPHA_RANGE).max_decimals(2);
+        ui.add_enabled(settings.surface.is_phong(), slider)
+            .labelled_by(label.id)
+            .on_hover_text(hover)
+            .on_disabled_hover_text("Only Phong tessellation has a strength.");
+        ui.end_row();
+        value_chooser(ui, "Shading", "Which normals the surface is shaded with.", &mut settings.normals, &NORMALS);
         let hover = "Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -). Under LOD by distance, the \
                      largest.";
         let label = ui.label("Factor").on_hover_text(hover);
@@ -213,20 +155,20 @@ impl App {
         ui.end_row();
         chooser(ui, "Partitioning", "How factors become segments.", &mut settings.partitioning, &PARTITIONINGS);
         let mut edges = settings.edges;
-        chooser(ui, "Edges", "Who computes what the sides of an edge must agree on (E).", &mut edges, &EDGES);
+        value_chooser(ui, "Edges", "Who computes what the sides of an edge must agree on (E).", &mut edges, &EDGES);
         settings.set_edges(edges);
     }
 
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
         egui::Grid::new("lod").num_columns(2).min_col_width(84.0).show(ui, |ui| {
-            chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
+            value_chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
             lod_row(ui, settings);
             ui.end_row();
-            chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
+            value_chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
             let hover =
                 "Which edge each factor is for, and which corner each weight: what hull and domain shader agree on.";
-            chooser(ui, "Convention", hover, &mut settings.convention, &CONVENTIONS);
+            value_chooser(ui, "Convention", hover, &mut settings.convention, &CONVENTIONS);
         });
         self.back_face_row(ui);
         let mut frozen = self.frozen.is_some();

@@ -1,5 +1,6 @@
 //! Pieces that the panels share.
 
+use clap::ValueEnum;
 use egui::RichText;
 
 /// A section's name, and a line under it.
@@ -26,6 +27,24 @@ pub fn chooser<T: Copy + PartialEq>(
     });
     combo.response.labelled_by(label.id).on_hover_text(hover);
     ui.end_row();
+}
+
+/// The same for values that commands take too: their explanations are the commands'.
+pub fn value_chooser<T: ValueEnum + PartialEq + Copy>(
+    ui: &mut egui::Ui,
+    name: &str,
+    hover: &str,
+    value: &mut T,
+    choices: &[(T, &str)],
+) {
+    let explanation = |choice: &T| {
+        let help = choice.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
+        format!("{}.", help.unwrap_or_default())
+    };
+    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(choice)).collect();
+    let all: Vec<_> =
+        choices.iter().zip(&explanations).map(|(&(choice, text), help)| (choice, text, help.as_str())).collect();
+    chooser(ui, name, hover, value, &all);
 }
 
 /// A row with a name and a right-aligned number.

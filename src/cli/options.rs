@@ -11,8 +11,10 @@ use glam::Vec2;
 use super::CliError;
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
-use crate::settings::{ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE};
-use crate::tessellate::{Clip, Convention, Edges, Lod, Partitioning, Surface, fit_budget};
+use crate::settings::{
+    ALPHA_RANGE, ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+};
+use crate::tessellate::{Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, fit_budget};
 
 /// What is tessellated how, and seen from where.
 #[derive(Clone, Debug, Args)]
@@ -20,6 +22,12 @@ pub struct SurfaceOptions {
     /// Surface that each triangle becomes
     #[arg(long, value_enum, default_value_t = Settings::default().surface)]
     pub surface: Surface,
+    /// How strong Phong tessellation is, 0 (flat) to 1; its authors use 0.75 (Boubekeur and Alexa 2008)
+    #[arg(long, value_name = "A", default_value_t = Settings::default().alpha, value_parser = alpha)]
+    pub alpha: f32,
+    /// Which normals the surface is shaded with
+    #[arg(long, value_enum, default_value_t = Settings::default().normals)]
+    pub normals: Normals,
     /// Who computes what an edge's sides must agree on: the edge once, or every patch for itself as the white paper does
     #[arg(long, value_enum, default_value_t = Settings::default().edges)]
     pub edges: Edges,
@@ -97,11 +105,13 @@ impl SurfaceOptions {
 
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
-        let Self { surface, edges, factor, partitioning, lod, pixels, tolerance, clip, .. } = *self;
-        let Self { cull_back_faces, convention, .. } = *self;
+        let Self { surface, alpha, normals, edges, factor, partitioning, lod, pixels, .. } = *self;
+        let Self { tolerance, clip, cull_back_faces, convention, .. } = *self;
         let Distances { near, far } = self.distances;
         Settings {
             surface,
+            alpha,
+            normals,
             edges,
             factor,
             partitioning,
@@ -279,6 +289,10 @@ pub fn weld(text: &str) -> Result<f32, String> {
 
 fn factor(text: &str) -> Result<f32, String> {
     within(text, FACTOR_RANGE)
+}
+
+fn alpha(text: &str) -> Result<f32, String> {
+    within(text, ALPHA_RANGE)
 }
 
 fn pixels(text: &str) -> Result<f32, String> {

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use serde::Serialize;
 
 use super::given::FactorsFile;
@@ -148,7 +149,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             max_error_px,
             factors_capped,
             factors_file,
-            ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes)
+            ..Stats::new(&engine, &loaded, &scene, &measured, &settings, &camera, &target, &passes)
         };
         write_text(path, &to_json(&stats)?)?;
     }
@@ -211,6 +212,7 @@ fn hold_against(
 #[derive(Debug, Serialize)]
 struct Stats {
     adapter: String,
+    settings: SettingsStats,
     triangles_in: u64,
     points: u64,
     corners: u64,
@@ -249,6 +251,40 @@ struct Stats {
     ms: BTreeMap<&'static str, f64>,
 }
 
+/// What was drawn, in the options' names.
+#[derive(Debug, Serialize)]
+struct SettingsStats {
+    surface: String,
+    /// Of Phong tessellation alone.
+    alpha: Option<f32>,
+    normals: String,
+    edges: String,
+    partitioning: &'static str,
+    lod: String,
+    clip: String,
+    convention: String,
+}
+
+impl SettingsStats {
+    fn new(settings: &Settings) -> Self {
+        Self {
+            surface: option_name(settings.surface),
+            alpha: settings.surface.is_phong().then_some(settings.alpha),
+            normals: option_name(settings.normals),
+            edges: option_name(settings.edges),
+            partitioning: settings.partitioning.name(),
+            lod: option_name(settings.lod),
+            clip: option_name(settings.clip),
+            convention: option_name(settings.convention),
+        }
+    }
+}
+
+/// What a value is called on the command line.
+fn option_name(value: impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
 /// Memory, in bytes.
 #[derive(Debug, Serialize)]
 struct Bytes {
@@ -281,6 +317,7 @@ impl Stats {
         loaded: &Loaded,
         scene: &Scene,
         measured: &Measured,
+        settings: &Settings,
         camera: &Camera,
         target: &Target,
         passes: &[PassTime],
@@ -293,6 +330,7 @@ impl Stats {
         ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
         Self {
             adapter: engine.gpu.info.name.clone(),
+            settings: SettingsStats::new(settings),
             triangles_in: mesh.triangles.len() as u64,
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,

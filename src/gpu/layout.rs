@@ -43,6 +43,10 @@ pub struct Params {
     /// 1 where patches that face away are left out.
     pub culls_back: u32,
     pub convention: u32,
+    /// How strong Phong tessellation is, 0 to 1.
+    pub alpha: f32,
+    pub normals: u32,
+    pub _pad: [u32; 2],
 }
 
 /// The run of patches that one scan covers, and what the arena holds.

@@ -37,5 +37,8 @@ pub fn params_of(inputs: &Inputs, buffers: &MeshBuffers, is_given: bool, culls_b
         far: if by_distance { inputs.far } else { 0.0 },
         culls_back: u32::from(culls_back),
         convention: inputs.convention as u32,
+        alpha: if inputs.surface.is_phong() { inputs.alpha } else { 0.0 },
+        normals: inputs.normals as u32,
+        _pad: [0; 2],
     }
 }

@@ -5,6 +5,8 @@ use super::Gpu;
 /// Rooms of the tessellator itself, part of every module that tessellates.
 const DOMAIN: [&str; 2] = [include_str!("../../shaders/factors.wgsl"), include_str!("../../shaders/domain.wgsl")];
 const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
+const CONTROL_POINTS: &str = include_str!("../../shaders/control_points.wgsl");
+const NORMAL: &str = include_str!("../../shaders/normal.wgsl");
 const LOD: &str = include_str!("../../shaders/lod.wgsl");
 const ERROR: &str = include_str!("../../shaders/error.wgsl");
 const CULL: &str = include_str!("../../shaders/cull.wgsl");
@@ -14,7 +16,7 @@ const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
-const ROOMS: [&str; 8] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, ERROR, CULL, CONVENTION, TYPES];
+const ROOMS: [&str; 10] = [DOMAIN[0], DOMAIN[1], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 11] = [

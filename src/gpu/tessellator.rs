@@ -36,7 +36,8 @@ pub struct Tessellator {
     arena: Arena,
     slabs: Vec<SlabPasses>,
     nets: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
-    nets_done: Option<u32>,
+    /// For which surface, and how strong it is.
+    nets_done: Option<(u32, f32)>,
     counts_done: bool,
     pending: Option<PendingCounts>,
     generation: u64,
@@ -188,9 +189,10 @@ impl Tessellator {
     /// chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
     pub fn count(&mut self, recorder: &mut Recorder) {
         self.bind();
-        if self.nets_done != Some(self.params.surface) {
+        let shape = (self.params.surface, self.params.alpha);
+        if self.nets_done != Some(shape) {
             self.record_nets(recorder);
-            self.nets_done = Some(self.params.surface);
+            self.nets_done = Some(shape);
         }
         let staging = staging_buffer(&self.gpu, self.slabs.iter().map(|slab| slab.chunks.size()).sum());
         let mut offset = 0;

@@ -62,7 +62,7 @@ pub const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, tar
 const CASE: Case = Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
 
 /// Every case, in the order of the documentation.
-pub const CASES: [Case; 29] = [
+pub const CASES: [Case; 31] = [
     Case {
         name: "split-normals",
         about: "A cube whose faces have normals of their own. Under PN each face follows its own normals, and all twelve \
@@ -228,6 +228,26 @@ pub const CASES: [Case; 29] = [
         mesh: meshes::star,
         probe: Probe::Folds,
         look: Look { azimuth: -90.0, elevation: 20.0, distance: 0.3, target: [-0.3, 0.0, 0.3], factor: 14.0 },
+        ..CASE
+    },
+    Case {
+        name: "inflection",
+        about: "A level sheet whose normals all lean one way, some a little more than others. PN and Phong tessellation make a \
+                gentle swell of it. Nagata's edges are the flattest parabolas that keep both normals, which no flat parabola \
+                does where both ends rise: between planes that are nearly parallel they reach many edge lengths away, and the \
+                sheet folds. The guard at 0.1 degrees leaves only what is worse than this straight.",
+        mesh: meshes::inflection,
+        probe: Probe::Folds,
+        look: Look { azimuth: 20.0, elevation: 50.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "dart",
+        about: "A crease that ends within a sheet: along its last edge the sides' normals differ at one end only. Surfaces that \
+                go by each side's own normals tear up to that end. PN crease starts along the line that both tangent planes \
+                share where there are two of them, and as PN does where there is one.",
+        mesh: meshes::dart,
+        look: Look { azimuth: 60.0, elevation: 35.0, ..LOOK },
         ..CASE
     },
     Case {

@@ -224,6 +224,37 @@ pub fn star() -> Mesh {
     mesh((0..10).map(|k| [middle, at((k + 1) % 10), at(k)]))
 }
 
+/// A level sheet whose normals all lean one way, each a little more or less than the next: along every edge that runs that
+/// way, both ends' tangents rise, and their planes are nearly parallel.
+pub fn inflection() -> Mesh {
+    let at = |x: i32, z: i32| {
+        let lean = vec3(0.6 + 0.02 * (x * x - z) as f32, 1.0, 0.01 * (x * z) as f32);
+        corner(vec3(x as f32, 0.0, z as f32) * 0.5, lean.normalize())
+    };
+    let squares = (-2..2).flat_map(|x| (-2..2).map(move |z| (x, z)));
+    mesh(squares.flat_map(|(x, z)| {
+        let [a, b, c, d] = [at(x, z + 1), at(x + 1, z + 1), at(x + 1, z), at(x, z)];
+        [[a, b, c], [a, c, d]]
+    }))
+}
+
+/// A crease that ends within the sheet: along the first of two edges that follow one another the sides' normals differ at
+/// both ends, along the second at one, and beyond it nowhere.
+pub fn dart() -> Mesh {
+    let normal = |x: f32, z: f32| vec3(0.3 * x, 1.0, 0.3 * z).normalize();
+    let at = |x: i32, z: i32, side: f32| {
+        let (x, z) = (x as f32, z as f32);
+        let lean = if z == 0.0 && x < 0.5 { vec3(0.0, 0.0, 0.8 * side) } else { Vec3::ZERO };
+        let height = if z == 0.0 && x < 0.5 { 0.35 } else { 0.1 };
+        corner(vec3(x, height - 0.15 * (x * x + z * z), z), (normal(x, z) + lean).normalize())
+    };
+    let squares = (-2..2).flat_map(|x| [(x, 0, 1.0), (x, -1, -1.0)]);
+    mesh(squares.flat_map(|(x, z, side)| {
+        let [a, b, c, d] = [(x, z + 1), (x + 1, z + 1), (x + 1, z), (x, z)].map(|(x, z)| at(x, z, side));
+        [[a, b, c], [a, c, d]]
+    }))
+}
+
 /// A ground of two large triangles that rises towards its corners.
 pub fn ground() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.0, z) * 10.0, vec3(-0.2 * x, 1.0, -0.2 * z).normalize());

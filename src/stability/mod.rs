@@ -48,10 +48,25 @@ pub enum Method {
     Pn,
     PnAenAsPublished,
     PnAen,
+    PnCrease,
+    Phong,
+    PhongAen,
+    Nagata,
+    NagataAen,
 }
 
 impl Method {
-    pub const ALL: [Self; 4] = [Self::Flat, Self::Pn, Self::PnAenAsPublished, Self::PnAen];
+    pub const ALL: [Self; 9] = [
+        Self::Flat,
+        Self::Pn,
+        Self::PnAenAsPublished,
+        Self::PnAen,
+        Self::PnCrease,
+        Self::Phong,
+        Self::PhongAen,
+        Self::Nagata,
+        Self::NagataAen,
+    ];
 
     /// The name in tables and files.
     pub const fn name(self) -> &'static str {
@@ -60,18 +75,32 @@ impl Method {
             Self::Pn => "PN",
             Self::PnAenAsPublished => "PN-AEN as published",
             Self::PnAen => "PN-AEN",
+            Self::PnCrease => "PN crease",
+            Self::Phong => "Phong",
+            Self::PhongAen => "Phong AEN",
+            Self::Nagata => "Nagata",
+            Self::NagataAen => "Nagata AEN",
+        }
+    }
+
+    /// The surface that it makes.
+    pub const fn surface(self) -> Surface {
+        match self {
+            Self::Flat => Surface::Flat,
+            Self::Pn => Surface::Pn,
+            Self::PnAenAsPublished | Self::PnAen => Surface::PnAen,
+            Self::PnCrease => Surface::PnCrease,
+            Self::Phong => Surface::Phong,
+            Self::PhongAen => Surface::PhongAen,
+            Self::Nagata => Surface::Nagata,
+            Self::NagataAen => Surface::NagataAen,
         }
     }
 
     /// The settings that mean this method, at one factor.
     pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
-        let surface = match self {
-            Self::Flat => Surface::Flat,
-            Self::Pn => Surface::Pn,
-            Self::PnAenAsPublished | Self::PnAen => Surface::PnAen,
-        };
         let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
-        Settings { surface, edges, partitioning, factor, ..Settings::default() }
+        Settings { surface: self.surface(), edges, partitioning, factor, ..Settings::default() }
     }
 
     /// The same with adaptive LOD and clipping: the paper's own for what is as published.

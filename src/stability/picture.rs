@@ -29,8 +29,11 @@ const PART: [u32; 2] = [300, 240];
 /// Between parts and around them, and room for a line of text, in px.
 const GAP: u32 = 4;
 const CAPTION: u32 = 24;
+/// Parts in a row.
+const COLUMNS: u32 = 3;
 
-/// Draws the methods in a row, each under its name: 1,220 by 272 px. A sweep is its chart, 960 by 600 px, under PN-AEN.
+/// Draws the methods in rows of three, each under its name: 916 by 808 px. A sweep is its chart, 960 by 600 px, under
+/// PN-AEN.
 ///
 /// # Errors
 /// The device fails.
@@ -39,15 +42,15 @@ pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImag
         return chart(case, sweep_to);
     }
     let [width, height] = PART;
-    let count = Method::ALL.len() as u32;
-    let white = image::Rgb([255; 3]);
-    let mut row = RgbImage::from_pixel(count * (width + GAP) + GAP, height + 2 * GAP + CAPTION, white);
-    for (index, part) in parts(case, engine)?.into_iter().enumerate() {
-        let left = GAP + index as u32 * (width + GAP);
-        imageops::replace(&mut row, &part, left.into(), (GAP + CAPTION).into());
-        write_text(&mut row, [left as i32 + 2, GAP as i32 + 2], 18, Method::ALL[index].name())?;
+    let rows = (Method::ALL.len() as u32).div_ceil(COLUMNS);
+    let (across, down) = (width + GAP, height + GAP + CAPTION);
+    let mut all = RgbImage::from_pixel(COLUMNS * across + GAP, rows * down + GAP, image::Rgb([255; 3]));
+    for (index, part) in (0..).zip(parts(case, engine)?) {
+        let (left, top) = (GAP + index % COLUMNS * across, GAP + index / COLUMNS * down);
+        imageops::replace(&mut all, &part, left.into(), (top + CAPTION).into());
+        write_text(&mut all, [left as i32 + 2, top as i32 + 2], 18, Method::ALL[index as usize].name())?;
     }
-    Ok(row)
+    Ok(all)
 }
 
 fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {

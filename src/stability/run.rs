@@ -288,8 +288,8 @@ fn promised(method: Method, quantity: Quantity) -> bool {
         Quantity::Pop => false,
         // A surface that bends may fold; only a flat one can't.
         Quantity::Folds => method == Method::Flat,
-        // PN tears where normals are split: that is PN.
-        Quantity::Points | Quantity::Leaks => matches!(method, Method::Flat | Method::PnAen),
+        // Surfaces that go by each side's own normals tear where those are split: that is what they are.
+        Quantity::Points | Quantity::Leaks => method != Method::PnAenAsPublished && !method.surface().tears(),
         _ => method != Method::PnAenAsPublished,
     }
 }

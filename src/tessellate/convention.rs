@@ -10,20 +10,24 @@ use clap::ValueEnum;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum)]
 #[repr(u32)]
 pub enum Convention {
-    /// Direct3D 11's, Vulkan's and the white paper's: u on corner 0, v on 1, w on 2; factors of the edges opposite.
+    /// Direct3D 11's, Vulkan's and the white paper's: weights u, v, w are on corners 0, 1, 2, and TessFactor[0..2] are those
+    /// of the edges opposite them.
     #[default]
     #[value(name = "d3d11")]
     D3d11 = 0,
-    /// AMD's PN triangles sample for Direct3D 11: w on corner 0, u on 1, v on 2; factors of the edges opposite.
+    /// AMD's PN triangles sample for Direct3D 11: weights w, u, v are on corners 0, 1, 2, and TessFactor[0..2] are those of
+    /// the edges opposite u, v and w.
     #[value(name = "amd-pn")]
     AmdPn = 1,
-    /// Factor e is that of the edge from corner e to corner e + 1; w on corner 1, u on 2, v on 0.
+    /// TessFactor[0..2] are those of the edges (0, 1), (1, 2), (2, 0), and weights v, w, u are on corners 0, 1, 2.
     #[value(name = "edge-order")]
     EdgeOrder = 2,
-    /// A mistake: factor e is that of the edge from corner e to corner e + 1, but weights are Direct3D 11's.
+    /// A mistake: factors in edge order, but weights as in Direct3D 11, so that every edge gets the factor of another, and
+    /// adaptive LOD cracks.
     #[value(name = "rotated")]
     Rotated = 3,
-    /// A mistake: weights are Direct3D 11's, but factors 0 and 1 are exchanged, as if patches were wound the other way.
+    /// A mistake: as Direct3D 11, but TessFactor[0] and [1] are exchanged, as if patches were wound the other way, and
+    /// adaptive LOD cracks.
     #[value(name = "mirrored")]
     Mirrored = 4,
 }

@@ -12,11 +12,11 @@ use super::surface::ControlNet;
 pub enum Clip {
     /// Every patch is drawn.
     Off = 0,
-    /// A patch goes when each of its ten control points lies outside the view volume, whichever plane each is outside
-    /// of (McDonald and Kilgard 2010): it can drop patches that cross the view.
+    /// Leaves out patches whose ten control points all lie outside the view, whichever side each is on (McDonald and Kilgard
+    /// 2010): it can drop patches that cross the view.
     Paper = 1,
-    /// A patch goes when its ten control points all lie outside one and the same plane of the view volume; then so does
-    /// the whole patch, which lies in their convex hull.
+    /// Leaves out patches whose ten control points all lie outside one and the same side of the view: then so does all of the
+    /// patch, which lies in their convex hull.
     Frustum = 2,
 }
 

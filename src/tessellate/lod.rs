@@ -9,16 +9,17 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 pub enum Lod {
     /// The same factor everywhere.
     Uniform = 0,
-    /// Projected length of the control polygon over pixels per segment, at least 1 (McDonald and Kilgard 2010). Divides
-    /// by w wherever a control point lies, so edges behind the eye or across its plane get any factor.
+    /// As many segments as an edge's control polygon is long on screen, divided by the px per segment (McDonald and Kilgard
+    /// 2010); inside, the largest of the three. Divides by w wherever a control point lies, so that edges near or behind the
+    /// eye get any factor.
     Paper = 1,
-    /// As the white paper's for edges beyond the near plane; others are measured at the nearest depth of a sphere around them.
+    /// As the white paper's, but edges that are not all in front of the eye are measured where they come nearest.
     EdgeLength = 2,
-    /// The fewest segments that keep what is emitted within a tolerance in px of the surface, on edges and inside
-    /// (Wang 1984; Filip et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64.
+    /// The fewest segments that keep every edge and every inside within a tolerance in px of their surface (Wang 1984; Filip
+    /// et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64. What is flat stays whole.
     Error = 3,
-    /// From the factor asked for at a near distance down to 1 at a far one, linearly at every point; an edge takes the mean
-    /// of its ends. What engines commonly do (Unity's `UnityDistanceBasedTess`, say).
+    /// The factor up to a near distance from the eye, 1 from a far one on, and linear between; an edge takes the mean of its
+    /// ends. What engines commonly do (Unity's `UnityDistanceBasedTess`, say).
     Distance = 4,
 }
 

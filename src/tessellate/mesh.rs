@@ -5,11 +5,12 @@ use clap::ValueEnum;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::{
-    Clip, ControlNet, Convention, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Partitioning, PatchFactors, SEEN,
-    Solid, Surface, center_control_point, corner_weights, distance_factor, domain_point, domain_triangle,
-    edge_control_point, edge_error_factor, edge_length_factor, edge_normal, edge_position, edge_uv,
-    inside_error_factor, level, linear_normal, linear_uv, pack_normal, paper_edge_factor, patch_position, point_count,
-    round_pow2, straight_control_point, triangle_count, unseen,
+    Clip, ControlNet, Convention, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Meeting, Normals, Partitioning,
+    PatchFactors, SEEN, Solid, Surface, center_control_point, corner_weights, crease_control_point, distance_factor,
+    domain_point, domain_triangle, edge_error_factor, edge_length_factor, edge_normal, edge_position, edge_uv,
+    inside_error_factor, level, linear_normal, linear_uv, meet, pack_normal, paper_edge_factor, patch_position,
+    point_count, quadratic_edge_normal, quadratic_normal, round_pow2, side_control_points, surface_normal,
+    triangle_count, unseen,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -17,10 +18,11 @@ use crate::mesh::{Curves, Mesh, Sharing, Topology};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
 #[repr(u32)]
 pub enum Edges {
-    /// The edge itself, once, in its own direction: all sides get the same bits.
+    /// The edge itself, once, in its own direction: all sides get the same bits, and nothing cracks.
     PerEdge = 0,
     /// Every patch for itself, in its own direction, as the white paper's shaders do (McDonald and Kilgard 2010): the
-    /// same but for rounding, so that edges crack in their last bits.
+    /// same but for rounding, so that edges crack in their last bits. In the window, LOD by length and clipping switch to
+    /// the white paper's form too.
     AsPublished = 1,
 }
 
@@ -28,6 +30,9 @@ pub enum Edges {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
     pub surface: Surface,
+    /// How strong Phong tessellation is, 0 (flat) to 1.
+    pub alpha: f32,
+    pub normals: Normals,
     pub edges: Edges,
     pub factor: f32,
     pub partitioning: Partitioning,
@@ -90,11 +95,12 @@ pub struct Tessellated {
 
 /// Which sides share a curve under a surface.
 pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
-    match (edges, surface) {
-        (Edges::PerEdge, Surface::Pn) => Sharing::EqualNormals,
-        (Edges::PerEdge, Surface::Flat | Surface::PnAen) => Sharing::AllSides,
-        (Edges::AsPublished, Surface::PnAen) => Sharing::NoneAveraged,
-        (Edges::AsPublished, Surface::Flat | Surface::Pn) => Sharing::None,
+    let alone = surface.tears() || surface == Surface::Flat;
+    match edges {
+        Edges::PerEdge if surface.tears() => Sharing::EqualNormals,
+        Edges::PerEdge => Sharing::AllSides,
+        Edges::AsPublished if alone => Sharing::None,
+        Edges::AsPublished => Sharing::NoneAveraged,
     }
 }
 
@@ -194,6 +200,7 @@ struct Nets<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     surface: Surface,
+    normals: Normals,
     edges: Edges,
     curves: Curves,
     curve_nets: Vec<[Vec3; 2]>,
@@ -201,25 +208,30 @@ struct Nets<'a> {
 
 impl<'a> Nets<'a> {
     fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        let Inputs { surface, edges, .. } = *inputs;
+        let Inputs { surface, alpha, normals, edges, .. } = *inputs;
         let curves = Curves::build(mesh, topology, sharing(surface, edges));
         let net = |curve: &crate::mesh::Curve| {
             let [a, b] = curve.points.map(|p| topology.points[p as usize]);
-            if surface == Surface::Flat {
-                return [straight_control_point(a, b), straight_control_point(b, a)];
-            }
             let sides = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];
             let (mut ab, mut ba) = (Vec3::ZERO, Vec3::ZERO);
+            let (mut around_a, mut around_b) = (Meeting::default(), Meeting::default());
             for side in sides {
                 let [at_a, at_b] = side.map(|corner| mesh.corners[corner as usize].normal);
-                ab += edge_control_point(a, b, at_a);
-                ba += edge_control_point(b, a, at_b);
+                let proposed = side_control_points(surface, alpha, a, b, at_a, at_b);
+                ab += proposed[0];
+                ba += proposed[1];
+                around_a = meet(around_a, at_a);
+                around_b = meet(around_b, at_b);
             }
             let share = 1.0 / curve.side_count as f32;
-            [ab * share, ba * share]
+            let (ab, ba) = (ab * share, ba * share);
+            if surface == Surface::PnCrease {
+                return [crease_control_point(a, b, around_a, ab), crease_control_point(b, a, around_b, ba)];
+            }
+            [ab, ba]
         };
         let curve_nets = curves.curves.iter().map(net).collect();
-        Self { mesh, topology, surface, edges, curves, curve_nets }
+        Self { mesh, topology, surface, normals, edges, curves, curve_nets }
     }
 
     /// The largest factor that any of an edge's curves asks for; as published, what each curve asks for.
@@ -315,15 +327,15 @@ impl<'a> Nets<'a> {
     }
 
     fn vertex(&self, patch: u32, net: &ControlNet, uv: [u32; 2]) -> Vertex {
-        let corners = self.topology.patches[patch as usize].corners.map(|c| self.mesh.corners[c as usize]);
         let [u, v] = uv;
         let (position, normal, texture_uv) = match place(u, v) {
             Some((side, t)) if self.edges == Edges::PerEdge => self.rim(patch, side, t),
-            _ => (
-                patch_position(self.surface, net, u, v),
-                linear_normal(corners.map(|corner| corner.normal), u, v),
-                linear_uv(corners.map(|corner| corner.uv), u, v),
-            ),
+            _ => self.inside(patch, net, u, v),
+        };
+        let normal = match self.normals {
+            // Every patch's own, also on its rim, where its neighbours' differ.
+            Normals::Surface => surface_normal(self.surface, net, u, v, normal),
+            Normals::Linear | Normals::Quadratic => normal,
         };
         Vertex {
             position: position.to_array(),
@@ -331,6 +343,17 @@ impl<'a> Nets<'a> {
             normal: pack_normal(normal),
             uv: texture_uv.to_array(),
         }
+    }
+
+    /// Position, normal and uv as the patch alone has them.
+    fn inside(&self, patch: u32, net: &ControlNet, u: u32, v: u32) -> (Vec3, Vec3, Vec2) {
+        let corners = self.topology.patches[patch as usize].corners.map(|c| self.mesh.corners[c as usize]);
+        let normals = corners.map(|corner| corner.normal);
+        let normal = match self.normals {
+            Normals::Quadratic => quadratic_normal(net.corners, normals, u, v),
+            Normals::Linear | Normals::Surface => linear_normal(normals, u, v),
+        };
+        (patch_position(self.surface, net, u, v), normal, linear_uv(corners.map(|corner| corner.uv), u, v))
     }
 
     /// Position, normal and uv of a point on a patch's rim, computed in the edge's own direction.
@@ -347,7 +370,11 @@ impl<'a> Nets<'a> {
             FIXED_ONE => b,
             t => edge_position(self.surface, a, ab, ba, b, t),
         };
-        (position, edge_normal(at_a.normal, at_b.normal, t), edge_uv(at_a.uv, at_b.uv, t))
+        let normal = match self.normals {
+            Normals::Quadratic => quadratic_edge_normal(a, b, at_a.normal, at_b.normal, t),
+            Normals::Linear | Normals::Surface => edge_normal(at_a.normal, at_b.normal, t),
+        };
+        (position, normal, edge_uv(at_a.uv, at_b.uv, t))
     }
 }
 

@@ -2,6 +2,7 @@
 //! `mesh.rs` does for a whole mesh what `shaders/pass_*.wgsl` do, and is their twin.
 
 mod budget;
+mod control_points;
 mod convention;
 mod cull;
 pub mod domain;
@@ -10,10 +11,15 @@ pub mod factors;
 mod hull;
 mod lod;
 mod mesh;
+mod normal;
 mod solid;
 mod surface;
 
 pub use budget::fit_budget;
+pub use control_points::{
+    Meeting, center_control_point, crease_control_point, edge_control_point, meet, nagata_control_point,
+    phong_control_point, side_control_points, straight_control_point,
+};
 pub use convention::{Convention, corner_weights, domain_side, factor_side, weight_corner};
 pub use cull::{
     Clip, FACING_AWAY, OUT_OF_VIEW, SEEN, faces_away, is_clipped, patch_is_outside, planes_outside, unseen,
@@ -33,8 +39,9 @@ pub use mesh::{
     Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
     tessellate_given, totals,
 };
-pub use solid::{Solid, is_beyond_near};
-pub use surface::{
-    ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,
-    linear_uv, pack_normal, patch_position, straight_control_point, unpack_normal,
+pub use normal::{
+    Normals, edge_normal, linear_normal, middle_normal, pack_normal, quadratic_edge_normal, quadratic_normal,
+    surface_normal, unpack_normal,
 };
+pub use solid::{Solid, is_beyond_near};
+pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents};

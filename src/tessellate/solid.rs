@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::{Edges, Inputs, Surface, beyond_near};
+use super::{Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{EdgeKind, Mesh, Topology};
 
 /// A mesh that is closed, that is wound outward in all its parts, and whose materials are single-sided: a line of sight
@@ -10,9 +10,11 @@ use crate::mesh::{EdgeKind, Mesh, Topology};
 /// a mesh passes through itself inside out, a back may come first; what is behind it is seen then, never a hole.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
-    /// Least and greatest coordinates of all control points on any surface, in object units.
+    /// Least and greatest coordinates, in object units.
     pub extent: [Vec3; 2],
-    /// Whether PN triangles tear it.
+    /// How far control points may be from the triangles that they belong to, surface by surface.
+    reaches: [f32; Surface::ALL.len()],
+    /// Whether surfaces that go by each side's own normals tear it.
     pub has_split_normals: bool,
 }
 
@@ -23,30 +25,37 @@ impl Solid {
         if !single_sided || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
             return None;
         }
-        let reach = Vec3::splat(control_point_reach(mesh, topology));
         let bounds = mesh.bounds();
         let has_split_normals = topology.edges.iter().any(|edge| edge.kind == EdgeKind::Split);
-        Some(Self { extent: [bounds.min - reach, bounds.max + reach], has_split_normals })
+        let reaches = Surface::ALL.map(|surface| control_point_reach(surface, mesh, topology));
+        Some(Self { extent: [bounds.min, bounds.max], reaches, has_split_normals })
     }
 
     /// Whether nothing that faces away can be seen under these inputs: nothing tears, and the near plane cuts nothing open.
     pub fn hides_backs(&self, inputs: &Inputs) -> bool {
-        let tears = inputs.surface == Surface::Pn && self.has_split_normals;
+        let tears = inputs.surface.tears() && self.has_split_normals;
         let holds = inputs.edges == Edges::PerEdge && inputs.convention.is_consistent() && !tears;
-        holds && is_beyond_near(inputs.view.clip_from_object, self.extent)
+        holds && is_beyond_near(inputs.view.clip_from_object, self.extent_of(inputs.surface))
+    }
+
+    /// Least and greatest coordinates of all control points of a surface, in object units.
+    fn extent_of(&self, surface: Surface) -> [Vec3; 2] {
+        let reach = Vec3::splat(self.reaches[surface as usize]);
+        [self.extent[0] - reach, self.extent[1] + reach]
     }
 }
 
-/// How far control points may be from the triangles that they belong to: an edge's by a third of what the edge rises over
-/// a corner's plane, and a patch's centre by half as much again as those are on average.
-fn control_point_reach(mesh: &Mesh, topology: &Topology) -> f32 {
-    let rise = |side: &crate::mesh::Side| {
-        let [a, b] = side.corners.map(|corner| corner as usize);
-        let along =
-            topology.points[topology.corner_points[b] as usize] - topology.points[topology.corner_points[a] as usize];
-        along.dot(mesh.corners[a].normal).abs().max(along.dot(mesh.corners[b].normal).abs())
+/// How far control points may be from the triangles that they belong to: an edge's no farther than any side proposes, or
+/// its projection on a crease shortens it, and a patch's centre half as far again as those are on average.
+fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f32 {
+    let side = |side: &crate::mesh::Side| {
+        let [a, b] = side.corners.map(|c| topology.points[topology.corner_points[c as usize] as usize]);
+        let [at_a, at_b] = side.corners.map(|c| mesh.corners[c as usize].normal);
+        let [ab, ba] = side_control_points(surface, 1.0, a, b, at_a, at_b);
+        let own = ab.distance(straight_control_point(a, b)).max(ba.distance(straight_control_point(b, a)));
+        if surface == Surface::PnCrease { own.max(a.distance(b) * (1.0 / 3.0)) } else { own }
     };
-    topology.sides.iter().map(rise).fold(0.0, f32::max) * 0.5
+    topology.sides.iter().map(side).fold(0.0, f32::max) * 1.5
 }
 
 /// Whether a box (its least and greatest coordinates) lies beyond the near plane as a whole, so that nothing in it is cut.
@@ -101,10 +110,10 @@ mod tests {
         for shape in Shape::ALL {
             let mesh = shape.build();
             let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-            let reach = Vec3::splat(control_point_reach(&mesh, &topology));
-            let [min, max] = [mesh.bounds().min - reach, mesh.bounds().max + reach];
-            for surface in [Surface::Flat, Surface::Pn, Surface::PnAen] {
-                let settings = Settings { surface, ..Settings::default() };
+            let Some(solid) = Solid::find(&mesh, &topology) else { continue };
+            for surface in Surface::ALL {
+                let [min, max] = solid.extent_of(surface);
+                let settings = Settings { surface, alpha: 1.0, ..Settings::default() };
                 let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
                 let limit = Limit::new(&mesh, &topology, &inputs);
                 for patch in 0..topology.patches.len() as u32 {

@@ -72,6 +72,8 @@ fn shared_structs_have_one_layout() {
         far,
         culls_back,
         convention,
+        alpha,
+        normals,
     });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });

@@ -9,8 +9,8 @@ use pnaen::mesh::{Corner, Material, Mesh, Progress, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
-    Clip, Edges, Inputs, Lod, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, tessellate, totals,
-    unpack_normal,
+    Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, tessellate,
+    totals, unpack_normal,
 };
 
 use crate::{engine, loaded, picture, scene};
@@ -18,7 +18,9 @@ use crate::{engine, loaded, picture, scene};
 /// Width and height in px.
 const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
 
-const SURFACES: [Surface; 3] = [Surface::Flat, Surface::Pn, Surface::PnAen];
+const SURFACES: [Surface; 8] = Surface::ALL;
+
+const NORMALS: [Normals; 3] = [Normals::Linear, Normals::Quadratic, Normals::Surface];
 
 pub fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
     let bounds = loaded.mesh.bounds();
@@ -62,11 +64,12 @@ fn uniform_factors_agree_with_the_cpu() {
         for surface in SURFACES {
             for partitioning in Partitioning::ALL {
                 for (edges, factor) in [(Edges::PerEdge, 1.0), (Edges::PerEdge, 5.3), (Edges::AsPublished, 5.3)] {
-                    let settings = Settings { surface, edges, partitioning, factor, ..Settings::default() };
-                    let inputs = inputs(&loaded, &settings);
+                    let normals = NORMALS[(surface as usize + partitioning as usize) % 3];
+                    let base = Settings { surface, normals, alpha: 0.6, ..Settings::default() };
+                    let inputs = inputs(&loaded, &Settings { edges, partitioning, factor, ..base });
                     let gpu = on_gpu(&mut scene, &inputs);
                     let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
-                    let what = format!("{shape:?} {surface:?} {edges:?} {partitioning} {factor}");
+                    let what = format!("{shape:?} {surface:?} {normals:?} {edges:?} {partitioning} {factor}");
                     assert_agree(&loaded, &gpu, &cpu, &what);
                     let counted = totals(&loaded.mesh, &loaded.topology, &inputs);
                     assert_eq!(scene.tessellator.totals(), counted, "known before anything is emitted");

@@ -3,13 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use image::RgbaImage;
 use pnaen::measure::compare;
 use pnaen::mesh::{EdgeKind, Progress, Shape, t_junctions};
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
 use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, project, t_junction_lines};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlay, Overlays, Settings};
-use pnaen::tessellate::{Convention, FACTOR_ODD, FIXED_ONE, Lod, Partitioning, Surface, domain_side};
+use pnaen::tessellate::{Convention, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, domain_side};
 
 use crate::passes::sheet;
 use crate::stability::{case, seen};
@@ -50,10 +51,21 @@ fn differing(pictures: Vec<(String, RgbaImage)>) -> Vec<String> {
 #[test]
 fn surfaces_look_as_they_did() {
     let (_, mut scene) = scene(Shape::CubeSplit);
-    let surfaces = [("flat", Surface::Flat), ("pn", Surface::Pn), ("pn-aen", Surface::PnAen)];
-    let pictures = surfaces.map(|(name, surface)| {
+    let pictures = Surface::ALL.map(|surface| {
         let settings = Settings { surface, factor: 12.0, ..Settings::default() };
-        (format!("surface-{name}"), picture(&mut scene, &settings, SIZE))
+        let name = surface.to_possible_value().expect("a surface that can be chosen");
+        (format!("surface-{}", name.get_name()), picture(&mut scene, &settings, SIZE))
+    });
+    assert_eq!(differing(pictures.into()), Vec::<String>::new());
+}
+
+#[test]
+fn normals_look_as_they_did() {
+    let (_, mut scene) = scene(Shape::CubeSmooth);
+    let all = [("linear", Normals::Linear), ("quadratic", Normals::Quadratic), ("surface", Normals::Surface)];
+    let pictures = all.map(|(name, normals)| {
+        let settings = Settings { normals, factor: 16.0, ..Settings::default() };
+        (format!("normals-{name}"), picture(&mut scene, &settings, SIZE))
     });
     assert_eq!(differing(pictures.into()), Vec::<String>::new());
 }

@@ -1,0 +1,239 @@
+//! Normals that a surface is shaded with. Twin: `shaders/normal.wgsl`.
+
+use clap::ValueEnum;
+use glam::{Vec2, Vec3, vec2, vec3};
+
+use super::factors::FIXED_ONE;
+use super::surface::{ControlNet, Surface, UNIT, patch_tangents};
+
+/// Which normals emitted vertices get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[repr(u32)]
+pub enum Normals {
+    /// The corners', linearly interpolated: what the author's normals say, as Phong shading does.
+    Linear = 0,
+    /// The corners', quadratically interpolated (Vlachos et al. 2001, section 3.3): they bend with an edge that bends back.
+    Quadratic = 1,
+    /// The surface's own, the cross product of its tangents: exact, with a step wherever the surface has a crease, so between
+    /// most patches.
+    Surface = 2,
+}
+
+/// Shorter sums of weighted unit normals than this are what rounding leaves of normals that cancel.
+const CANCELLED: f32 = 1e-6;
+
+/// A weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) where they cancel.
+pub fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {
+    let length_squared = sum.dot(sum);
+    if length_squared > CANCELLED * CANCELLED { sum * (1.0 / length_squared.sqrt()) } else { nearest }
+}
+
+/// The shading normal at weights `u`, `v`: the corners' normals, linearly interpolated, unit length. Where they cancel
+/// it is the nearest corner's.
+pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
+    let w = FIXED_ONE - u - v;
+    let [a, b, c] = normals;
+    let nearest = if u >= v && u >= w {
+        a
+    } else if v >= w {
+        b
+    } else {
+        c
+    };
+    unit_or(a * (u as f32 * UNIT) + b * (v as f32 * UNIT) + c * (w as f32 * UNIT), nearest)
+}
+
+/// The shading normal at `t` (16.16) on the edge whose ends have normals `a` and `b`. Called in the edge's own
+/// direction only, as [`super::edge_position`] is.
+pub fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
+    let nearest = if 2 * t <= FIXED_ONE { a } else { b };
+    unit_or(a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT), nearest)
+}
+
+/// The control normal halfway along an edge (Vlachos et al. 2001, section 3.3): the sum of its ends' normals, mirrored in
+/// the plane perpendicular to the edge; unit length, or that of `at_a` where it cancels.
+pub fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
+    let along = b - a;
+    // Squares of very small or large lengths are none: only the direction matters.
+    let size = along.abs().max_element();
+    let sum = at_a + at_b;
+    if size == 0.0 {
+        return unit_or(sum, at_a);
+    }
+    let direction = along * (1.0 / size);
+    unit_or(sum - direction * (2.0 * direction.dot(sum) / direction.dot(direction)), at_a)
+}
+
+/// The shading normal at weights `u`, `v` of a patch with these corners: a quadratic triangle of the corners' normals and
+/// of [`middle_normal`]s, whose products count once as the paper has it; unit length. Where it cancels it is the linear one.
+pub fn quadratic_normal(corners: [Vec3; 3], normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
+    let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
+    let [a, b, c] = corners;
+    let [at_a, at_b, at_c] = normals;
+    let sum = at_a * (x * x)
+        + at_b * (y * y)
+        + at_c * (z * z)
+        + middle_normal(a, b, at_a, at_b) * (x * y)
+        + middle_normal(b, c, at_b, at_c) * (y * z)
+        + middle_normal(c, a, at_c, at_a) * (z * x);
+    unit_or(sum, linear_normal(normals, u, v))
+}
+
+/// The same at `t` (16.16) on the edge from `a` to `b`. Called in the edge's own direction only, as
+/// [`super::edge_position`] is.
+pub fn quadratic_edge_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3, t: u32) -> Vec3 {
+    let (x, y) = ((FIXED_ONE - t) as f32 * UNIT, t as f32 * UNIT);
+    let sum = at_a * (x * x) + middle_normal(a, b, at_a, at_b) * (x * y) + at_b * (y * y);
+    unit_or(sum, edge_normal(at_a, at_b, t))
+}
+
+/// The direction in which a surface with these tangents along u and v faces, or `otherwise` where they are parallel or
+/// none.
+pub fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
+    let [along_u, along_v] = tangents;
+    let size_u = along_u.abs().max_element();
+    let size_v = along_v.abs().max_element();
+    if size_u == 0.0 || size_v == 0.0 {
+        return otherwise;
+    }
+    unit_or((along_u * (1.0 / size_u)).cross(along_v * (1.0 / size_v)), otherwise)
+}
+
+/// The normal of the surface itself at weights `u`, `v`; `otherwise` where it has none.
+pub fn surface_normal(surface: Surface, net: &ControlNet, u: u32, v: u32, otherwise: Vec3) -> Vec3 {
+    facing_or(patch_tangents(surface, net, u, v), otherwise)
+}
+
+/// A unit normal in 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3). Off by
+/// less than 0.004 degrees.
+pub fn pack_normal(normal: Vec3) -> u32 {
+    let flat = normal / (normal.x.abs() + normal.y.abs() + normal.z.abs());
+    let folded = (Vec2::ONE - vec2(flat.y.abs(), flat.x.abs())) * vec2(toward(flat.x), toward(flat.y));
+    let [x, y] = if flat.z < 0.0 { folded } else { flat.truncate() }.to_array();
+    let bits = |x: f32| u32::from((0.5 + 32767.0 * x.clamp(-1.0, 1.0)).floor() as i16 as u16);
+    bits(x) | bits(y) << 16
+}
+
+/// The normal that was packed.
+pub fn unpack_normal(bits: u32) -> Vec3 {
+    let number = |bits: u32| (f32::from(bits as u16 as i16) / 32767.0).max(-1.0);
+    let at = vec2(number(bits), number(bits >> 16));
+    let z = 1.0 - at.x.abs() - at.y.abs();
+    let back = (-z).max(0.0);
+    vec3(at.x - toward(at.x) * back, at.y - toward(at.y) * back, z).normalize()
+}
+
+/// 1 for 0 and above, else -1.
+fn toward(x: f32) -> f32 {
+    if x >= 0.0 { 1.0 } else { -1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::tessellate::{center_control_point, side_control_points};
+
+    const CORNERS: [Vec3; 3] = [vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.5), vec3(0.5, 1.5, 0.0)];
+
+    fn normals() -> [Vec3; 3] {
+        [vec3(-0.3, -0.3, 1.0), vec3(0.4, 0.0, 1.0), vec3(0.0, 0.5, 1.0)].map(Vec3::normalize)
+    }
+
+    fn net() -> ControlNet {
+        let side = |k: usize| {
+            let (a, b) = (k, (k + 1) % 3);
+            side_control_points(Surface::Pn, 0.0, CORNERS[a], CORNERS[b], normals()[a], normals()[b])
+        };
+        let edges = [side(0), side(1), side(2)].as_flattened().try_into().expect("six");
+        ControlNet { corners: CORNERS, edges, center: center_control_point(CORNERS, edges) }
+    }
+
+    #[test]
+    fn quadratic_normals_are_those_of_the_paper() {
+        // Vlachos et al. 2001, section 3.3, in f64: v12 = 2 (P2 - P1) . (N1 + N2) / (P2 - P1) . (P2 - P1),
+        // h110 = N1 + N2 - v12 (P2 - P1), n110 = h110 / |h110|, and so on; n = sum of n_ijk u^i v^j w^k.
+        let (p, n) = (CORNERS.map(Vec3::as_dvec3), normals().map(Vec3::as_dvec3));
+        let middle = |i: usize, j: usize| {
+            let (d, sum): (DVec3, DVec3) = (p[j] - p[i], n[i] + n[j]);
+            (sum - d * (2.0 * d.dot(sum) / d.dot(d))).normalize()
+        };
+        for (u, v) in [(20000_u32, 30000_u32), (5000, 1000), (21845, 21845)] {
+            let [x, y, z] = [u, v, FIXED_ONE - u - v].map(|x| f64::from(x) / 65536.0);
+            let corners = n[0] * (x * x) + n[1] * (y * y) + n[2] * (z * z);
+            let expected = corners + middle(0, 1) * (x * y) + middle(1, 2) * (y * z) + middle(2, 0) * (z * x);
+            let own = quadratic_normal(CORNERS, normals(), u, v).as_dvec3();
+            assert!(own.distance(expected.normalize()) < 1e-6, "{own}");
+        }
+    }
+
+    #[test]
+    fn quadratic_normals_see_an_edge_that_bends_back() {
+        // Normals that lean the same way along a level edge: in the middle it falls, and its normal leans the other way. The
+        // quadratic ones follow part of the way, as their products count once; the linear ones never notice.
+        let leaning = vec3(-0.6, 0.0, 0.8);
+        let own = quadratic_edge_normal(Vec3::ZERO, Vec3::X, leaning, leaning, FIXED_ONE / 2);
+        assert!(own.distance(vec3(-0.15, 0.0, 0.6).normalize()) < 1e-6, "{own}");
+        assert_eq!(edge_normal(leaning, leaning, FIXED_ONE / 2), leaning);
+        let mirrored = middle_normal(Vec3::ZERO, Vec3::X, leaning, leaning);
+        assert!(mirrored.distance(vec3(0.6, 0.0, 0.8)) < 1e-6);
+    }
+
+    #[test]
+    fn the_size_of_an_edge_makes_no_difference_to_its_normals() {
+        let [a, b, _] = CORNERS;
+        let [at_a, at_b, _] = normals();
+        let expected = middle_normal(a, b, at_a, at_b);
+        for size in [1e-30_f32, 1e-7, 1e7, 1e30] {
+            assert!(middle_normal(a * size, b * size, at_a, at_b).distance(expected) < 1e-6, "{size}");
+            let tangents = [(b - a) * size, Vec3::Y * size];
+            assert!(facing_or(tangents, Vec3::X).distance((b - a).cross(Vec3::Y).normalize()) < 1e-6, "{size}");
+        }
+        assert_eq!(facing_or([Vec3::X, Vec3::X * 2.0], Vec3::Y), Vec3::Y, "parallel tangents");
+        assert_eq!(facing_or([Vec3::ZERO, Vec3::X], Vec3::Y), Vec3::Y, "no tangent");
+    }
+
+    #[test]
+    fn at_corners_all_normals_are_the_corners_own() {
+        for (k, (u, v)) in [(FIXED_ONE, 0), (0, FIXED_ONE), (0, 0)].into_iter().enumerate() {
+            let own = normals()[k];
+            assert!(linear_normal(normals(), u, v).distance(own) < 1e-6);
+            assert!(quadratic_normal(CORNERS, normals(), u, v).distance(own) < 1e-6);
+            // A PN triangle's tangents lie in the corner's tangent plane.
+            assert!(surface_normal(Surface::Pn, &net(), u, v, Vec3::ZERO).distance(own) < 1e-5);
+        }
+        let flat = surface_normal(Surface::Flat, &net(), 20000, 20000, Vec3::ZERO);
+        assert!(flat.distance((CORNERS[1] - CORNERS[0]).cross(CORNERS[2] - CORNERS[0]).normalize()) < 1e-6);
+    }
+
+    proptest! {
+        #[test]
+        fn normals_inside_meet_those_on_the_rim(t in 0u32..=FIXED_ONE) {
+            let n = normals();
+            let inside = [(FIXED_ONE - t, t), (0, FIXED_ONE - t), (t, 0)];
+            for (k, (u, v)) in inside.into_iter().enumerate() {
+                let (a, b) = (k, (k + 1) % 3);
+                let rim = quadratic_edge_normal(CORNERS[a], CORNERS[b], n[a], n[b], t);
+                prop_assert!(rim.distance(quadratic_normal(CORNERS, n, u, v)) < 1e-6);
+                prop_assert!(edge_normal(n[a], n[b], t).distance(linear_normal(n, u, v)) < 1e-6);
+            }
+        }
+
+        #[test]
+        fn a_packed_normal_is_nearly_itself(x in -1f32..1.0, y in -1f32..1.0, z in -1f32..1.0) {
+            let Some(normal) = vec3(x, y, z).try_normalize() else { return Ok(()) };
+            let sine = normal.cross(unpack_normal(pack_normal(normal))).length();
+            prop_assert!(sine.asin().to_degrees() < 0.004, "{}", sine);
+        }
+    }
+
+    #[test]
+    fn axes_are_packed_exactly() {
+        for axis in Vec3::AXES {
+            assert_eq!(unpack_normal(pack_normal(axis)), axis);
+            assert_eq!(unpack_normal(pack_normal(-axis)), -axis);
+        }
+    }
+}
