@@ -27,22 +27,43 @@ fn patch_is_clipped(view: LodView, net: ControlNet) -> bool {
 
 // Bits: left, right, below, above, beyond far, nearer than near. Linear also behind the eye.
 fn planes_outside(clip: vec4<f32>) -> u32 {
-    return u32(clip.x < -clip.w)
-        | u32(clip.x > clip.w) << 1u
-        | u32(clip.y < -clip.w) << 2u
-        | u32(clip.y > clip.w) << 3u
-        | u32(clip.z < 0.0) << 4u
-        | u32(clip.z > clip.w) << 5u;
+    return far_outside(array<f32, 6>(0.0, 0.0, 0.0, 0.0, 0.0, 0.0), clip);
+}
+
+fn far_outside(margins: array<f32, 6>, clip: vec4<f32>) -> u32 {
+    return u32(clip.x + margins[0] < -clip.w)
+        | u32(clip.x - margins[1] > clip.w) << 1u
+        | u32(clip.y + margins[2] < -clip.w) << 2u
+        | u32(clip.y - margins[3] > clip.w) << 3u
+        | u32(clip.z + margins[4] < 0.0) << 4u
+        | u32(clip.z - margins[5] > clip.w) << 5u;
+}
+
+// How far towards the inside of each plane displacement may move a point.
+fn reach_margins(view: LodView) -> array<f32, 6> {
+    let x = clip_row(view, 0u);
+    let y = clip_row(view, 1u);
+    let z = clip_row(view, 2u);
+    let w = clip_row(view, 3u);
+    return array<f32, 6>(
+        length(x + w) * view.reach,
+        length(x - w) * view.reach,
+        length(y + w) * view.reach,
+        length(y - w) * view.reach,
+        length(z) * view.reach,
+        length(z - w) * view.reach,
+    );
 }
 
 fn patch_is_outside(view: LodView, net: ControlNet) -> bool {
     let m = view.clip_from_object;
-    var shared_planes = planes_outside(m * vec4<f32>(net.center, 1.0));
+    let margins = reach_margins(view);
+    var shared_planes = far_outside(margins, m * vec4<f32>(net.center, 1.0));
     for (var i = 0u; i < 3u; i++) {
-        shared_planes &= planes_outside(m * vec4<f32>(net.corners[i], 1.0));
+        shared_planes &= far_outside(margins, m * vec4<f32>(net.corners[i], 1.0));
     }
     for (var i = 0u; i < 6u; i++) {
-        shared_planes &= planes_outside(m * vec4<f32>(net.edges[i], 1.0));
+        shared_planes &= far_outside(margins, m * vec4<f32>(net.edges[i], 1.0));
     }
     return shared_planes != 0u;
 }

@@ -19,13 +19,19 @@ fn no_sight() -> Sight {
 fn widen(view: LodView, sight: Sight, p: vec3<f32>) -> Sight {
     let clip = view.clip_from_object * vec4<f32>(p, 1.0);
     let depth = max(clip.w, clip.z);
-    let beyond = beyond_near(clip);
     let place = clip.xy / depth;
+    // Displacement moves it towards the eye, away and across.
+    let deep = length(clip_row(view, 3u)) * view.reach;
+    let past_near = length(clip_row(view, 3u) - clip_row(view, 2u)) * view.reach;
+    let across = vec2<f32>(length(clip_row(view, 0u)), length(clip_row(view, 1u))) * view.reach;
+    let beyond = clip.z + past_near <= clip.w;
+    let nearest = max(clip.w - deep, clip.z);
+    let spread = (across + abs(place) * deep) / nearest;
     return Sight(
-        min(sight.nearest, depth),
-        max(sight.farthest, depth),
-        min(sight.least, select(vec2<f32>(-1.0), place, beyond)),
-        max(sight.greatest, select(vec2<f32>(1.0), place, beyond)),
+        min(sight.nearest, nearest),
+        max(sight.farthest, depth + deep),
+        min(sight.least, select(vec2<f32>(-1.0), place - spread, beyond)),
+        max(sight.greatest, select(vec2<f32>(1.0), place + spread, beyond)),
         sight.is_cut || !beyond,
     );
 }
@@ -69,6 +75,13 @@ fn seen_length(view: LodView, sight: Sight, difference: vec3<f32>) -> f32 {
     let b = abs(across - sight.greatest * deep);
     // Divided first: squares of tiny lengths are none.
     return length(max(a, b) / sight.nearest * view.half_viewport);
+}
+
+fn seen_radius(view: LodView, sight: Sight, radius: f32) -> f32 {
+    let across = vec2<f32>(length(clip_row(view, 0u)), length(clip_row(view, 1u)));
+    let deep = length(clip_row(view, 3u));
+    let most = max(abs(sight.least), abs(sight.greatest));
+    return length((across + most * deep) * (radius / sight.nearest) * view.half_viewport);
 }
 
 // Levels are factors whose rows of points nest, so that the triangles between two rows reach no farther along them than a
@@ -132,6 +145,31 @@ fn edge_error_factor(
     let near_a = seen_length(view, sight, a - ab * 2.0 + ba);
     let near_b = seen_length(view, sight, ab - ba * 2.0 + b);
     return at_least_one(sqrt(0.75 * max(near_a, near_b) / tolerance));
+}
+
+const SURFACE_SHARE: f32 = 0.5;
+const DETAIL_SHARE: f32 = 0.3;
+const TURN_SHARE: f32 = 0.2;
+
+// As fine as the coarsest level of the height images whose loss is within the tolerance, and as the turn asks for.
+fn relief_factor(
+    view: LodView,
+    sight: Sight,
+    tolerance: f32,
+    texels: f32,
+    turn: f32,
+    detail: array<vec4<f32>, 4>,
+) -> f32 {
+    let bend = seen_radius(view, sight, view.reach * 0.28125 * turn * turn);
+    var segments = texels;
+    var losses = detail;
+    for (var level = 1u; level < 16u; level++) {
+        if seen_radius(view, sight, losses[level / 4u][level % 4u]) > DETAIL_SHARE * tolerance {
+            break;
+        }
+        segments *= 0.5;
+    }
+    return at_least_one(max(segments, sqrt(bend / (TURN_SHARE * tolerance))));
 }
 
 // The control point with these three indices, in any order: (0, 0, 1) is b210.

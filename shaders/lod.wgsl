@@ -9,6 +9,8 @@ const LOD_DISTANCE: u32 = 4u;
 struct LodView {
     clip_from_object: mat4x4<f32>,
     half_viewport: vec2<f32>,
+    // How far what is emitted may be from the surface: it is displaced.
+    reach: f32,
     eye: vec3<f32>,
     radius: f32,
 }
@@ -65,7 +67,7 @@ fn near_edge_factor(
     b: vec3<f32>,
 ) -> f32 {
     let center = (a + b) * 0.5;
-    let radius = max(max(distance(a, center), distance(ab, center)), distance(ba, center));
+    let radius = max(max(distance(a, center), distance(ab, center)), distance(ba, center)) + view.reach;
     let clip = view.clip_from_object * vec4<f32>(center, 1.0);
     let depth = clip_row(view, 3u);
     let past_near = depth - clip_row(view, 2u);

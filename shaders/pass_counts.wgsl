@@ -41,7 +41,10 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     }
     var inside = max(max(sides.x, sides.y), sides.z);
     if params.lod == LOD_ERROR && params.surface != SURFACE_FLAT {
-        inside = inside_error_factor(params.view, params.tolerance, params.partitioning, net, sides.yzx);
+        let tolerance = params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
+        let own = inside_error_factor(params.view, tolerance, params.partitioning, net, sides.yzx);
+        // Heights are as fine inside as on the edges.
+        inside = select(own, max(own, inside), params.displacement != 0u);
     }
     return vec4<f32>(
         sides[factor_side(params.convention, 0u)],

@@ -8,6 +8,8 @@
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<f32>;
+// Of what is displaced.
+@group(0) @binding(6) var<storage, read> shares: array<Share>;
 
 fn curve_factor(index: u32) -> f32 {
     let curve = curves[index];
@@ -24,9 +26,22 @@ fn curve_factor(index: u32) -> f32 {
         if params.surface == SURFACE_FLAT {
             return 1.0;
         }
-        return edge_error_factor(params.view, EDGE_SHARE * params.tolerance, a, net.ab, net.ba, b);
+        let tolerance = params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
+        return edge_error_factor(params.view, EDGE_SHARE * tolerance, a, net.ab, net.ba, b);
     }
     return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+}
+
+// What the heights over a curve ask for.
+fn relief_of(index: u32, curve_index: u32) -> f32 {
+    let curve = curves[curve_index];
+    let a = points[curve.points[0]].xyz;
+    let b = points[curve.points[1]].xyz;
+    let net = curve_nets[curve_index];
+    let sight = edge_sight(params.view, a, net.ab, net.ba, b);
+    let turn = distance(shares[curve.points[0]].direction, shares[curve.points[1]].direction);
+    let texels = shares[params.point_count + index].texels;
+    return relief_factor(params.view, sight, params.tolerance, texels, turn, params.detail);
 }
 
 @compute @workgroup_size(256)
@@ -44,6 +59,9 @@ fn edge_factors_main(
         factor = 1.0;
         for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
             factor = max(factor, curve_factor(curve));
+            if params.lod == LOD_ERROR && params.displacement != 0u {
+                factor = max(factor, relief_of(index, curve));
+            }
         }
     }
     if params.lod == LOD_ERROR {

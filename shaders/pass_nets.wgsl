@@ -2,7 +2,7 @@
 
 // Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
 @group(0) @binding(0) var<storage, read> params: Params;
-// Points, then every patch's centre.
+// Points, then every patch's centre, with its height map as w.
 @group(0) @binding(1) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> curves: array<Curve>;
@@ -57,5 +57,7 @@ fn centers_main(
         return;
     }
     let net = load_net(index);
-    points[params.point_count + index] = vec4<f32>(center_control_point(net.corners, net.edges), 0.0);
+    // What is beside it, the patch's height map, stays.
+    let center = center_control_point(net.corners, net.edges);
+    points[params.point_count + index] = vec4<f32>(center, points[params.point_count + index].w);
 }

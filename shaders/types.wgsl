@@ -23,6 +23,12 @@ struct Params {
     // How strong Phong tessellation is, 0 to 1.
     alpha: f32,
     normals: u32,
+    displacement: u32,
+    // Object units.
+    height_scale: f32,
+    midlevel: f32,
+    // How far level l of any height map is from level 0 at most, in object units: four levels an element.
+    detail: array<vec4<f32>, 4>,
 }
 
 // In place of a LOD: factors are given patch by patch.
@@ -64,6 +70,24 @@ struct Curve {
 struct CurveNet {
     ab: vec3<f32>,
     ba: vec3<f32>,
+}
+
+// What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
+// corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, and its dominant
+// side likewise, and its length.
+struct Share {
+    direction: vec3<f32>,
+    level: f32,
+    dominant: u32,
+    // How long the edge is at most in its sides' height images, in px of level 0.
+    texels: f32,
+}
+
+// One of the height images: width and height of level 0 in px, and where it starts among all heights.
+struct HeightMap {
+    size: vec2<u32>,
+    levels: u32,
+    start: u32,
 }
 
 // A vertex as it is drawn: position, patch and domain coordinates packed in 64 bits, normal packed in 32, uv.

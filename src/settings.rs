@@ -1,9 +1,13 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use crate::tessellate::{Clip, Convention, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface};
 
 /// The smallest and largest tessellation factor.
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
+/// The least and most height of displacement, in bounding radii.
+pub const HEIGHT_RANGE: std::ops::RangeInclusive<f32> = -1.0..=1.0;
+/// The least and most midlevel.
+pub const MIDLEVEL_RANGE: std::ops::RangeInclusive<f32> = 0.0..=1.0;
 /// The least and most strength of Phong tessellation.
 pub const ALPHA_RANGE: std::ops::RangeInclusive<f32> = 0.0..=1.0;
 /// The smallest and largest length of a segment that adaptive LOD is asked for, in px.
@@ -39,6 +43,11 @@ pub struct Settings {
     /// Whether patches that show their backs only are left out, of meshes that are closed and single-sided.
     pub cull_back_faces: bool,
     pub convention: Convention,
+    pub displacement: Displacement,
+    /// How far the greatest height is above the least, in bounding radii.
+    pub height_scale: f32,
+    /// The height that stays where it is, 0 to 1.
+    pub midlevel: f32,
     pub overlays: Overlays,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
     pub split: Option<f32>,
@@ -63,6 +72,9 @@ impl Default for Settings {
             clip: Clip::Off,
             cull_back_faces: false,
             convention: Convention::D3d11,
+            displacement: Displacement::Off,
+            height_scale: 0.05,
+            midlevel: 0.5,
             overlays: Overlays::default(),
             split: None,
             background: [0x2b, 0x2e, 0x33],
@@ -225,7 +237,7 @@ impl Settings {
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
         let Self { surface, alpha, normals, edges, factor, partitioning, lod, pixels, tolerance, .. } = *self;
-        let Self { near, far, clip, cull_back_faces, convention, .. } = *self;
+        let Self { near, far, clip, cull_back_faces, convention, displacement, height_scale, midlevel, .. } = *self;
         Inputs {
             surface,
             alpha,
@@ -241,6 +253,9 @@ impl Settings {
             clip,
             cull_back_faces,
             convention,
+            displacement,
+            height_scale: height_scale * view.radius,
+            midlevel,
             view,
         }
     }

@@ -4,12 +4,13 @@ use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 
 use super::layout::{Corner, Curve, CurveNet, Patch};
+use super::relief::{ReliefBuffers, patch_maps, shares};
 use super::{Gpu, GpuError};
-use crate::mesh::{Curves, Mesh, Sharing, Topology};
+use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
 
 /// What a mesh is on the device: its topology, and room for its control nets.
 pub struct MeshBuffers {
-    /// Points, then room for every patch's centre.
+    /// Points, then room for every patch's centre, with its height map as w: see [`patch_maps`].
     pub points: wgpu::Buffer,
     pub corners: wgpu::Buffer,
     pub patches: wgpu::Buffer,
@@ -19,6 +20,10 @@ pub struct MeshBuffers {
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
     pub edge_factors: wgpu::Buffer,
+    /// What displacement shares, of points, then of factors; empty without heights.
+    pub shares: wgpu::Buffer,
+    /// Of a mesh with heights.
+    pub relief: Option<ReliefBuffers>,
     pub sharing: Sharing,
     pub point_count: u32,
     pub patch_count: u32,
@@ -35,8 +40,11 @@ impl MeshBuffers {
     pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Result<Self, GpuError> {
         let grouped = Curves::build(mesh, topology, sharing);
         let mut points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
-        points.resize(points.len() + topology.patches.len(), [0.0; 4]);
+        points.extend(patch_maps(mesh.heights.as_deref(), topology).into_iter().map(|map| [0.0, 0.0, 0.0, map]));
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
+        let dominance = mesh.heights.is_some().then(|| Dominance::new(topology, &grouped));
+        let relief = dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, dominance)).transpose()?;
+        let shares = dominance.map(|dominance| shares(mesh, topology, &dominance)).unwrap_or_default();
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,
@@ -48,6 +56,8 @@ impl MeshBuffers {
             material_patches: filled(gpu, "materials", &material_patches)?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
             edge_factors: empty::<f32>(gpu, "edge factors", grouped.factor_count() as usize)?,
+            shares: filled(gpu, "shares", &shares)?,
+            relief,
             sharing,
             point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
@@ -69,10 +79,12 @@ impl MeshBuffers {
             &self.material_patches,
             &self.curve_nets,
             &self.edge_factors,
+            &self.shares,
         ]
         .iter()
         .map(|buffer| buffer.size())
-        .sum()
+        .sum::<u64>()
+            + self.relief.as_ref().map_or(0, ReliefBuffers::bytes)
     }
 }
 

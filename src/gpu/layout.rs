@@ -11,7 +11,9 @@ pub use crate::tessellate::{PatchFactors, Vertex};
 pub struct LodView {
     pub clip_from_object: [[f32; 4]; 4],
     pub half_viewport: [f32; 2],
-    pub _pad: [f32; 2],
+    /// How far what is emitted may be from the surface, in object units: it is displaced.
+    pub reach: f32,
+    pub _pad: f32,
     pub eye: [f32; 3],
     pub radius: f32,
 }
@@ -46,7 +48,13 @@ pub struct Params {
     /// How strong Phong tessellation is, 0 to 1.
     pub alpha: f32,
     pub normals: u32,
-    pub _pad: [u32; 2],
+    pub displacement: u32,
+    /// Object units.
+    pub height_scale: f32,
+    pub midlevel: f32,
+    pub _pad: [u32; 3],
+    /// How far level l of any height map is from level 0 at most, in object units.
+    pub detail: [[f32; 4]; 4],
 }
 
 /// The run of patches that one scan covers, and what the arena holds.
@@ -101,6 +109,29 @@ pub struct CurveNet {
     pub _pad: f32,
     pub ba: [f32; 3],
     pub _pad2: f32,
+}
+
+/// What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
+/// corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, its dominant
+/// side likewise, and its length.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Share {
+    pub direction: [f32; 3],
+    pub level: f32,
+    pub dominant: u32,
+    /// How long the edge is at most in its sides' height images, in px of level 0.
+    pub texels: f32,
+    pub _pad: [u32; 2],
+}
+
+/// One of the height images: width and height of level 0 in px, and where it starts among all heights.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct HeightMap {
+    pub size: [u32; 2],
+    pub levels: u32,
+    pub start: u32,
 }
 
 /// Patches that go through the arena together. `first_vertex` and `first_triangle` count from the slab's start.

@@ -14,6 +14,7 @@ pub mod layout;
 mod params;
 mod pipelines;
 mod recorder;
+mod relief;
 mod slab;
 mod tessellator;
 

@@ -2,11 +2,12 @@
 
 use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
-use crate::tessellate::{Clip, Inputs, Lod};
+use crate::mesh::Mesh;
+use crate::tessellate::{self, Clip, Inputs, Lod};
 
 /// What the device is told. Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes
 /// nothing. `is_given`: factors are, in place of LOD's. `culls_back`: patches that face away are left out.
-pub fn params_of(inputs: &Inputs, buffers: &MeshBuffers, is_given: bool, culls_back: bool) -> Params {
+pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: bool, culls_back: bool) -> Params {
     let lod = if is_given { None } else { Some(inputs.lod) };
     let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
     let by_distance = lod == Some(Lod::Distance);
@@ -15,10 +16,13 @@ pub fn params_of(inputs: &Inputs, buffers: &MeshBuffers, is_given: bool, culls_b
     let view = LodView {
         clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
         half_viewport: inputs.view.half_viewport.to_array(),
-        _pad: [0.0; 2],
+        reach: tessellate::reach(mesh, inputs),
+        _pad: 0.0,
         eye: inputs.view.eye.to_array(),
         radius: inputs.view.radius,
     };
+    let heights = tessellate::displacing(mesh, inputs);
+    let detail = heights.filter(|_| by_error).map_or([0.0; 16], |heights| tessellate::detail(heights, inputs));
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
         factor: if by_distance || lod == Some(Lod::Uniform) { inputs.factor } else { 0.0 },
@@ -39,6 +43,10 @@ pub fn params_of(inputs: &Inputs, buffers: &MeshBuffers, is_given: bool, culls_b
         convention: inputs.convention as u32,
         alpha: if inputs.surface.is_phong() { inputs.alpha } else { 0.0 },
         normals: inputs.normals as u32,
-        _pad: [0; 2],
+        displacement: heights.map_or(0, |_| inputs.displacement as u32),
+        height_scale: heights.map_or(0.0, |_| inputs.height_scale),
+        midlevel: heights.map_or(0.0, |_| inputs.midlevel),
+        _pad: [0; 3],
+        detail: detail.as_chunks().0.try_into().unwrap_or_default(),
     }
 }

@@ -13,19 +13,23 @@ const CULL: &str = include_str!("../../shaders/cull.wgsl");
 const CONVENTION: &str = include_str!("../../shaders/convention.wgsl");
 const TYPES: &str = include_str!("../../shaders/types.wgsl");
 const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
+const DISPLACE: &str = include_str!("../../shaders/displace.wgsl");
+const RELIEF: &str = include_str!("../../shaders/relief.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
 const ROOMS: [&str; 10] = [DOMAIN[0], DOMAIN[1], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
-pub const SHADERS: [(&str, &[&str]); 11] = [
+pub const SHADERS: [(&str, &[&str]); 13] = [
     ("nets", &[LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
     ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
     ("scan", &[include_str!("../../shaders/pass_scan.wgsl")]),
     ("chunks", &[include_str!("../../shaders/pass_chunks.wgsl")]),
     ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
+    ("levels", &[DISPLACE, RELIEF, include_str!("../../shaders/pass_levels.wgsl")]),
+    ("displace", &[LOAD_NET, DISPLACE, RELIEF, include_str!("../../shaders/pass_displace.wgsl")]),
     ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
     ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
     ("leaks", &[include_str!("../../shaders/draw_leaks.wgsl")]),
@@ -59,11 +63,16 @@ pub struct ComputePipelines {
     pub chunks: wgpu::ComputePipeline,
     pub emit_vertices: wgpu::ComputePipeline,
     pub emit_triangles: wgpu::ComputePipeline,
+    pub directions: wgpu::ComputePipeline,
+    pub factor_levels: wgpu::ComputePipeline,
+    pub point_levels: wgpu::ComputePipeline,
+    pub displace: wgpu::ComputePipeline,
 }
 
 impl ComputePipelines {
     pub fn new(gpu: &Gpu) -> Self {
         let (nets, scan, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "scan"), shader_module(gpu, "emit"));
+        let levels = shader_module(gpu, "levels");
         Self {
             curve_nets: compute_pipeline(gpu, &nets, "curve_nets_main"),
             centers: compute_pipeline(gpu, &nets, "centers_main"),
@@ -75,6 +84,10 @@ impl ComputePipelines {
             chunks: compute_pipeline(gpu, &shader_module(gpu, "chunks"), "chunks_main"),
             emit_vertices: compute_pipeline(gpu, &emit, "emit_vertices_main"),
             emit_triangles: compute_pipeline(gpu, &emit, "emit_triangles_main"),
+            directions: compute_pipeline(gpu, &levels, "directions_main"),
+            factor_levels: compute_pipeline(gpu, &levels, "factor_levels_main"),
+            point_levels: compute_pipeline(gpu, &levels, "point_levels_main"),
+            displace: compute_pipeline(gpu, &shader_module(gpu, "displace"), "displace_main"),
         }
     }
 }

@@ -111,6 +111,7 @@ impl SlabPasses {
                     (3, &b.curve_nets),
                     (4, &b.factor_curves),
                     (5, &b.edge_factors),
+                    (6, &b.shares),
                 ],
             ),
             counts: group(

@@ -11,10 +11,11 @@ use super::layout::{Chunk, DrawArgs, EmitArgs, Params};
 use super::params::params_of;
 use super::pipelines::bind_group;
 use super::recorder::{Recorder, staging_buffer, wait};
+use super::relief::{HeightImages, ReliefPasses};
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Solid, sharing};
+use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -36,6 +37,9 @@ pub struct Tessellator {
     arena: Arena,
     slabs: Vec<SlabPasses>,
     nets: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
+    /// Of a mesh that can be displaced.
+    images: Option<HeightImages>,
+    relief: Option<ReliefPasses>,
     /// For which surface, and how strong it is.
     nets_done: Option<(u32, f32)>,
     counts_done: bool,
@@ -79,6 +83,7 @@ impl Tessellator {
             let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);
             slabs.push(SlabPasses::new(gpu, &buffers, &arena, first_patch, patch_count)?);
         }
+        let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let params: Params = bytemuck::Zeroable::zeroed();
         let params_buffer = uniform_buffer(gpu, "params", bytemuck::bytes_of(&params));
         Ok(Self {
@@ -97,6 +102,8 @@ impl Tessellator {
             arena,
             slabs,
             nets: None,
+            images,
+            relief: None,
             nets_done: None,
             counts_done: false,
             pending: None,
@@ -115,13 +122,14 @@ impl Tessellator {
         if sharing != self.buffers.sharing {
             self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
             self.nets = None;
+            self.relief = None;
             self.nets_done = None;
             self.slabs.iter_mut().for_each(|slab| slab.groups = None);
         }
         self.inputs = Some(*inputs);
         self.convention = inputs.convention;
         let culls_back = inputs.cull_back_faces && self.hides_backs(inputs);
-        let params = params_of(inputs, &self.buffers, self.given.is_some(), culls_back);
+        let params = params_of(inputs, &self.mesh, &self.buffers, self.given.is_some(), culls_back);
         if params != self.params || self.nets_done.is_none() {
             self.params = params;
             self.gpu.queue.write_buffer(&self.params_buffer, 0, bytemuck::bytes_of(&params));
@@ -141,6 +149,7 @@ impl Tessellator {
     pub fn give(&mut self, given: Option<Vec<HullFactors>>) -> Result<(), GpuError> {
         self.given_buffer = filled(&self.gpu, "given factors", given.as_deref().unwrap_or_default())?;
         self.given = given;
+        self.relief = None;
         self.slabs.iter_mut().for_each(|slab| slab.groups = None);
         self.forget();
         Ok(())
@@ -168,6 +177,11 @@ impl Tessellator {
     /// Given factors may tear any edge.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
         self.given.is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
+    }
+
+    /// Whether vertices are moved after they were emitted.
+    fn is_displaced(&self) -> bool {
+        self.params.displacement != Displacement::Off as u32
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -210,6 +224,9 @@ impl Tessellator {
             dispatch(pass, &self.pipelines.curve_nets, curve_nets, grid(self.buffers.curve_count));
             dispatch(pass, &self.pipelines.centers, centers, grid(self.buffers.patch_count));
         });
+        if let Some(relief) = &self.relief {
+            relief.record_directions(recorder, &self.pipelines, &self.buffers);
+        }
     }
 
     fn record_counts(&self, recorder: &mut Recorder, slab: &SlabPasses) {
@@ -220,6 +237,11 @@ impl Tessellator {
             recorder.compute("factors", |pass| {
                 dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.factor_count));
             });
+        }
+        if slab.slab.first_patch == 0
+            && let Some(relief) = self.relief.as_ref().filter(|_| self.is_displaced())
+        {
+            relief.record_levels(recorder, pipelines, &self.buffers);
         }
         recorder.compute("counts", |pass| {
             dispatch(pass, &pipelines.counts, &groups.counts, grid(slab.slab.patch_count + 1));
@@ -303,14 +325,19 @@ impl Tessellator {
             (&self.pipelines.emit_vertices, &groups.emit_vertices, args),
             (&self.pipelines.emit_triangles, &groups.emit_triangles, args + 12),
         ];
+        let run = |pass: &mut wgpu::ComputePass, pipeline, group, args| {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.set_bind_group(1, &self.chunk_group(slab, pipeline, chunk_index), &[]);
+            pass.dispatch_workgroups_indirect(&slab.emit_args, args);
+        };
         recorder.compute("emit", |pass| {
-            for (pipeline, group, args) in halves {
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.set_bind_group(1, &self.chunk_group(slab, pipeline, chunk_index), &[]);
-                pass.dispatch_workgroups_indirect(&slab.emit_args, args);
-            }
+            halves.into_iter().for_each(|(pipeline, group, args)| run(pass, pipeline, group, args));
         });
+        if let Some(relief) = self.relief.as_ref().filter(|_| self.is_displaced()) {
+            let group = relief.displace(slab_index);
+            recorder.compute("displace", |pass| run(pass, &self.pipelines.displace, group, args));
+        }
         self.emitted = Some((slab_index, chunk_index));
     }
 
@@ -399,9 +426,10 @@ impl Tessellator {
         self.arena.vertices.size() + self.arena.indices.size()
     }
 
-    /// Bytes of counts, scans and indirect arguments.
+    /// Bytes of height images, counts, scans and indirect arguments.
     pub fn work_bytes(&self) -> u64 {
-        self.slabs.iter().map(SlabPasses::bytes).sum()
+        let images = self.images.as_ref().map_or(0, HeightImages::bytes);
+        images + self.slabs.iter().map(SlabPasses::bytes).sum::<u64>()
     }
 
     fn bind(&mut self) {
@@ -416,6 +444,12 @@ impl Tessellator {
                 bind_group(&self.gpu, "nets.centers", &nets.centers.get_bind_group_layout(0), &centers),
             )
         });
+        if let (None, Some(relief), Some(images)) = (&self.relief, &b.relief, &self.images) {
+            let (vertices, pipelines) = (&self.arena.vertices, &self.pipelines);
+            let passes =
+                ReliefPasses::new(&self.gpu, pipelines, b, relief, images, params, given, vertices, &self.slabs);
+            self.relief = Some(passes);
+        }
         for slab in &mut self.slabs {
             if slab.groups.is_none() {
                 slab.groups = Some(slab.bind(&self.gpu, &self.pipelines, &self.buffers, params, given, &self.arena));

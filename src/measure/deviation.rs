@@ -95,7 +95,7 @@ impl<'a> Deviation<'a> {
                 let weights = [i, j, steps - i - j].map(|x| f64::from(x) / f64::from(steps));
                 let [u, v] = [0, 1].map(|k| (0..3).map(|c| weights[c] * domains[c][k]).sum());
                 let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
-                let limit = self.limit.position(net, u, v);
+                let limit = self.limit.position(patch, net, u, v);
                 let px = self.distance_px(emitted, limit);
                 worst = worst.into_iter().chain(px.map(|px| Deviant { px, patch, emitted, limit })).reduce(worse);
             }

@@ -3,8 +3,10 @@
 pub mod adjacency;
 pub mod bounds;
 pub mod curves;
+mod dominance;
 mod gltf;
 mod grid;
+mod heights;
 pub mod info;
 pub mod joins;
 pub mod load;
@@ -22,12 +24,15 @@ mod tree;
 pub mod weld;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
 pub use curves::{Curve, Curves, Sharing};
+pub use dominance::Dominance;
 pub use gltf::Problem as GltfProblem;
+pub use heights::{HeightError, HeightMap, Heights, MAX_LEVELS, MAX_MAPS};
 pub use info::Info;
 pub use joins::{Joins, joins};
 pub use load::{LoadError, load};
@@ -59,6 +64,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Each owns one contiguous range of `triangles`; the ranges follow one another and cover all of them.
     pub materials: Vec<Material>,
+    /// What it can be displaced by.
+    pub heights: Option<Arc<Heights>>,
     /// What had to be mended, in numbers.
     pub repairs: Repairs,
     /// What was left out or repaired, one sentence each.
@@ -72,7 +79,7 @@ pub struct Material {
     /// Linear RGBA, 0 to 1.
     pub base_color: [f32; 4],
     /// Index into no list: the pixels themselves, shared between materials that use one image.
-    pub texture: Option<std::sync::Arc<Texture>>,
+    pub texture: Option<Arc<Texture>>,
     /// Whether its triangles are meant to be seen from behind too.
     pub double_sided: bool,
     /// The triangles of the mesh that wear it.

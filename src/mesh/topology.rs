@@ -207,6 +207,11 @@ impl Topology {
         corners.map(|corner| self.points[self.corner_points[corner as usize] as usize])
     }
 
+    /// The material (an index into [`Mesh::materials`]) of a patch.
+    pub fn material_of(&self, patch: u32) -> usize {
+        self.material_patches.partition_point(|patches| patches.end <= patch)
+    }
+
     /// The direction that an edge's patches face together: the sum of their facings, by area; zero where they cancel.
     pub fn edge_facing(&self, edge: &Edge) -> Vec3 {
         let facing = |side: &Side| {

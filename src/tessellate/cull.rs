@@ -40,17 +40,33 @@ pub fn patch_is_clipped(view: &LodView, net: &ControlNet) -> bool {
 /// The planes of the view volume that a clip-space position lies outside of, as bits: left, right, below, above, beyond
 /// the far plane, nearer than the near plane (depth is reversed). No division: the planes are linear also behind the eye.
 pub fn planes_outside(clip: Vec4) -> u32 {
-    u32::from(clip.x < -clip.w)
-        | u32::from(clip.x > clip.w) << 1
-        | u32::from(clip.y < -clip.w) << 2
-        | u32::from(clip.y > clip.w) << 3
-        | u32::from(clip.z < 0.0) << 4
-        | u32::from(clip.z > clip.w) << 5
+    far_outside([0.0; 6], clip)
 }
 
-/// Whether a patch lies outside one plane as a whole.
+/// The same planes, of those that the position lies outside of by more than this.
+pub fn far_outside(margins: [f32; 6], clip: Vec4) -> u32 {
+    u32::from(clip.x + margins[0] < -clip.w)
+        | u32::from(clip.x - margins[1] > clip.w) << 1
+        | u32::from(clip.y + margins[2] < -clip.w) << 2
+        | u32::from(clip.y - margins[3] > clip.w) << 3
+        | u32::from(clip.z + margins[4] < 0.0) << 4
+        | u32::from(clip.z - margins[5] > clip.w) << 5
+}
+
+/// How far towards the inside of each plane displacement may move a point, in clip space.
+pub fn reach_margins(view: &LodView) -> [f32; 6] {
+    let x = clip_row(view, 0);
+    let y = clip_row(view, 1);
+    let z = clip_row(view, 2);
+    let w = clip_row(view, 3);
+    let inward = [x + w, x - w, y + w, y - w, z, z - w];
+    inward.map(|inward| inward.length() * view.reach)
+}
+
+/// Whether a patch lies outside one plane as a whole, wherever it is displaced to.
 pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
-    let planes = |p: &Vec3| planes_outside(view.clip_from_object * p.extend(1.0));
+    let margins = reach_margins(view);
+    let planes = |p: &Vec3| far_outside(margins, view.clip_from_object * p.extend(1.0));
     let mut shared = planes(&net.center);
     for p in &net.corners {
         shared &= planes(p);

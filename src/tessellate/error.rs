@@ -11,7 +11,7 @@
 use glam::{Vec2, Vec3};
 
 use super::factors::{Partitioning, round_pow2};
-use super::lod::{LodView, at_least_one, beyond_near, clip_row};
+use super::lod::{LodView, at_least_one, clip_row};
 use super::surface::ControlNet;
 
 /// How large differences between control points can look.
@@ -40,13 +40,19 @@ fn no_sight() -> Sight {
 pub fn widen(view: &LodView, sight: Sight, p: Vec3) -> Sight {
     let clip = view.clip_from_object * p.extend(1.0);
     let depth = clip.w.max(clip.z);
-    let beyond = beyond_near(clip);
     let place = Vec2::new(clip.x, clip.y) / depth;
+    // Displacement moves it towards the eye, away and across.
+    let deep = clip_row(view, 3).length() * view.reach;
+    let past_near = (clip_row(view, 3) - clip_row(view, 2)).length() * view.reach;
+    let across = Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length()) * view.reach;
+    let beyond = clip.z + past_near <= clip.w;
+    let nearest = (clip.w - deep).max(clip.z);
+    let spread = (across + place.abs() * deep) / nearest;
     Sight {
-        nearest: sight.nearest.min(depth),
-        farthest: sight.farthest.max(depth),
-        least: sight.least.min(if beyond { place } else { Vec2::NEG_ONE }),
-        greatest: sight.greatest.max(if beyond { place } else { Vec2::ONE }),
+        nearest: sight.nearest.min(nearest),
+        farthest: sight.farthest.max(depth + deep),
+        least: sight.least.min(if beyond { place - spread } else { Vec2::NEG_ONE }),
+        greatest: sight.greatest.max(if beyond { place + spread } else { Vec2::ONE }),
         is_cut: sight.is_cut || !beyond,
     }
 }
@@ -93,6 +99,14 @@ pub fn seen_length(view: &LodView, sight: Sight, difference: Vec3) -> f32 {
     let b = (across - sight.greatest * deep).abs();
     // Divided first: squares of tiny lengths are none.
     (a.max(b) / sight.nearest * view.half_viewport).length()
+}
+
+/// The most that a vector of this length in object units can look, in px.
+pub fn seen_radius(view: &LodView, sight: Sight, radius: f32) -> f32 {
+    let across = Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length());
+    let deep = clip_row(view, 3).length();
+    let most = sight.least.abs().max(sight.greatest.abs());
+    ((across + most * deep) * (radius / sight.nearest) * view.half_viewport).length()
 }
 
 /// The least level, `least` or more: a factor whose rows of points nest with those of all other levels. Levels are 1 to 5,
@@ -156,6 +170,28 @@ pub fn edge_error_factor(view: &LodView, tolerance: f32, control_points: [Vec3; 
     let near_a = seen_length(view, sight, a - ab * 2.0 + ba);
     let near_b = seen_length(view, sight, ab - ba * 2.0 + b);
     at_least_one((0.75 * near_a.max(near_b) / tolerance).sqrt())
+}
+
+/// Of the tolerance, where a surface is displaced: for the surface below, for what its heights lose between segments, and
+/// for the turn of the direction in which they stand.
+pub const SURFACE_SHARE: f32 = 0.5;
+pub const DETAIL_SHARE: f32 = 0.3;
+pub const TURN_SHARE: f32 = 0.2;
+
+/// The fewest segments that show an edge's heights: as fine as the coarsest level of the height images whose loss
+/// (`detail`, in object units) is within its share of the tolerance, and as the turn of the directions at its ends (the
+/// distance between them) asks for. An estimate: between its px an image may rise by more than its levels tell.
+pub fn relief_factor(view: &LodView, sight: Sight, tolerance: f32, texels: f32, turn: f32, detail: [f32; 16]) -> f32 {
+    // An arc's rise over its chord is an eighth of the angle's square, of which the distance is at least 2/3.
+    let bend = seen_radius(view, sight, view.reach * 0.28125 * turn * turn);
+    let mut segments = texels;
+    for lost in &detail[1..] {
+        if seen_radius(view, sight, *lost) > DETAIL_SHARE * tolerance {
+            break;
+        }
+        segments *= 0.5;
+    }
+    at_least_one(segments.max((bend / (TURN_SHARE * tolerance)).sqrt()))
 }
 
 /// The control point with these three indices, in any order: (0, 0, 1) is b210.

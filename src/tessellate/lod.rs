@@ -30,6 +30,8 @@ pub struct LodView {
     pub clip_from_object: Mat4,
     /// Half the viewport's width and height, in px.
     pub half_viewport: Vec2,
+    /// How far what is emitted may be from the surface, in object units: it is displaced.
+    pub reach: f32,
     /// Object units.
     pub eye: Vec3,
     /// The mesh's bounding radius in object units: distances to the eye are measured in it.
@@ -39,7 +41,7 @@ pub struct LodView {
 impl LodView {
     /// Of a mesh of radius 1 around an eye at the origin.
     pub const fn new(clip_from_object: Mat4, half_viewport: Vec2) -> Self {
-        Self { clip_from_object, half_viewport, eye: Vec3::ZERO, radius: 1.0 }
+        Self { clip_from_object, half_viewport, reach: 0.0, eye: Vec3::ZERO, radius: 1.0 }
     }
 }
 
@@ -82,7 +84,7 @@ pub fn pixels_per_unit(view: &LodView) -> f32 {
 /// the nearest depth of the sphere around its control points; 1 if that sphere is all nearer than the near plane.
 pub fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]: [Vec3; 4]) -> f32 {
     let center = (a + b) * 0.5;
-    let radius = a.distance(center).max(ab.distance(center)).max(ba.distance(center));
+    let radius = a.distance(center).max(ab.distance(center)).max(ba.distance(center)) + view.reach;
     let clip = view.clip_from_object * center.extend(1.0);
     let depth = clip_row(view, 3);
     let past_near = depth - clip_row(view, 2);

@@ -4,13 +4,14 @@ use bytemuck::{Pod, Zeroable};
 use clap::ValueEnum;
 use glam::{DVec3, Vec2, Vec3};
 
+use super::relief::{Relief, displacing, reach};
 use super::{
-    Clip, ControlNet, Convention, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Meeting, Normals, Partitioning,
-    PatchFactors, SEEN, Solid, Surface, center_control_point, corner_weights, crease_control_point, distance_factor,
-    domain_point, domain_triangle, edge_error_factor, edge_length_factor, edge_normal, edge_position, edge_uv,
-    inside_error_factor, level, linear_normal, linear_uv, meet, pack_normal, paper_edge_factor, patch_position,
-    point_count, quadratic_edge_normal, quadratic_normal, round_pow2, side_control_points, surface_normal,
-    triangle_count, unseen,
+    Clip, ControlNet, Convention, Displacement, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Meeting, Normals,
+    Partitioning, PatchFactors, SEEN, SURFACE_SHARE, Solid, Surface, center_control_point, corner_weights,
+    crease_control_point, distance_factor, domain_point, domain_triangle, edge_error_factor, edge_length_factor,
+    edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, meet, pack_normal,
+    paper_edge_factor, patch_position, point_count, quadratic_edge_normal, quadratic_normal, round_pow2,
+    side_control_points, surface_normal, triangle_count, unseen,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -48,6 +49,11 @@ pub struct Inputs {
     /// Whether patches that show their backs only are left out, where [`Solid`] allows it.
     pub cull_back_faces: bool,
     pub convention: Convention,
+    pub displacement: Displacement,
+    /// How far the greatest height is above the least, in object units.
+    pub height_scale: f32,
+    /// The height that stays where it is, 0 to 1.
+    pub midlevel: f32,
     pub view: LodView,
 }
 
@@ -107,11 +113,20 @@ pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
 /// Tessellates the mesh. With `factors`, those are used in place of the ones that LOD gives: one for each edge, or as
 /// published one for each curve (see [`Curves::factor`]).
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
+    let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs), <[f32]>::to_vec);
+    let relief = Relief::new(&nets, inputs);
+    let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs, relief.as_ref()), <[f32]>::to_vec);
     let culls_back = culls_back(mesh, topology, inputs);
-    let out = nets.emit(inputs, culls_back, |patch, net| nets.hull_factors(inputs, &edge_factors, patch, net));
+    let relief = relief.map(|relief| relief.with_levels(&edge_factors));
+    let out = nets
+        .emit(inputs, relief.as_ref(), culls_back, |patch, net| nets.hull_factors(inputs, &edge_factors, patch, net));
     Tessellated { edge_factors, ..out }
+}
+
+/// The same inputs, with a view that knows how far the mesh is displaced.
+fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
+    Inputs { view: LodView { reach: reach(mesh, inputs), ..inputs.view }, ..*inputs }
 }
 
 /// Whether patches that face away are left out.
@@ -122,14 +137,21 @@ fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
 /// Tessellates the mesh with what a hull shader wrote, one for each patch, in place of what LOD gives. Backs stay: given
 /// factors may tear any edge.
 pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given: &[HullFactors]) -> Tessellated {
-    let given = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.partitioning);
-    Nets::new(mesh, topology, inputs).emit(inputs, false, given)
+    let inputs = &seen_with_reach(mesh, inputs);
+    let nets = Nets::new(mesh, topology, inputs);
+    let relief = Relief::new(&nets, inputs).map(|relief| {
+        let factors = relief.given_factors(inputs.convention, given);
+        relief.with_levels(&factors)
+    });
+    let written = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.partitioning);
+    nets.emit(inputs, relief.as_ref(), false, written)
 }
 
 /// What the hull shader writes under LOD, one for each patch; zeros for those that are left out.
 pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
+    let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs);
+    let edge_factors = nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref());
     let culls_back = culls_back(mesh, topology, inputs);
     let written = |patch| {
         let net = nets.patch(patch);
@@ -143,8 +165,9 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
 
 /// Vertices and triangles that [`tessellate`] would emit, clipping aside.
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
+    let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs);
+    let edge_factors = nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref());
     let patches = 0..topology.patches.len() as u32;
     let written = patches.map(|patch| nets.hull_factors(inputs, &edge_factors, patch, &nets.patch(patch)));
     sums(written.map(|written| written.process(inputs.partitioning)))
@@ -162,27 +185,39 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 
 /// The factors that LOD gives: one for each edge, or as published one for each curve.
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
-    Nets::new(mesh, topology, inputs).edge_factors(inputs)
+    let inputs = &seen_with_reach(mesh, inputs);
+    let nets = Nets::new(mesh, topology, inputs);
+    nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref())
 }
 
 /// The surface that a tessellation stands for, at any place and in double precision.
-pub struct Limit<'a>(Nets<'a>);
+pub struct Limit<'a> {
+    nets: Nets<'a>,
+    relief: Option<Relief<'a>>,
+}
 
 impl<'a> Limit<'a> {
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        Self(Nets::new(mesh, topology, inputs))
+        let nets = Nets::new(mesh, topology, inputs);
+        Self { relief: Relief::new(&nets, inputs), nets }
     }
 
     /// A patch's control net, for [`Self::position`].
     pub fn net(&self, patch: u32) -> ControlNet {
-        self.0.patch(patch)
+        self.nets.patch(patch)
     }
 
-    /// The point at weights `u` and `v` of a patch; w is the rest. Object units.
-    pub fn position(&self, net: &ControlNet, u: f64, v: f64) -> DVec3 {
+    /// The point at weights `u` and `v` of a patch, whose net this is; w is the rest. Displaced by its own heights at full
+    /// detail: at a seam whose sides disagree, they are not the edge's. Object units.
+    pub fn position(&self, patch: u32, net: &ControlNet, u: f64, v: f64) -> DVec3 {
+        let moved = self.relief.as_ref().map(|relief| relief.displacement(patch, [u, v, 1.0 - u - v]));
+        self.surface(net, u, v) + moved.unwrap_or_default()
+    }
+
+    fn surface(&self, net: &ControlNet, u: f64, v: f64) -> DVec3 {
         let weights = [u, v, 1.0 - u - v];
         let [a, b, c] = net.corners.map(Vec3::as_dvec3);
-        if self.0.surface == Surface::Flat {
+        if self.nets.surface == Surface::Flat {
             return a * weights[0] + b * weights[1] + c * weights[2];
         }
         let [x, y, z] = weights;
@@ -196,13 +231,13 @@ impl<'a> Limit<'a> {
 }
 
 /// Control nets of a mesh: two control points a curve, one a patch.
-struct Nets<'a> {
-    mesh: &'a Mesh,
-    topology: &'a Topology,
-    surface: Surface,
+pub(super) struct Nets<'a> {
+    pub(super) mesh: &'a Mesh,
+    pub(super) topology: &'a Topology,
+    pub(super) surface: Surface,
     normals: Normals,
     edges: Edges,
-    curves: Curves,
+    pub(super) curves: Curves,
     curve_nets: Vec<[Vec3; 2]>,
 }
 
@@ -235,16 +270,26 @@ impl<'a> Nets<'a> {
     }
 
     /// The largest factor that any of an edge's curves asks for; as published, what each curve asks for.
-    fn edge_factors(&self, inputs: &Inputs) -> Vec<f32> {
-        let asked = |form: fn(&Inputs, [Vec3; 4]) -> f32, curve: u32| {
+    fn edge_factors(&self, inputs: &Inputs, relief: Option<&Relief>) -> Vec<f32> {
+        let asked = |form: &dyn Fn(&Inputs, [Vec3; 4]) -> f32, curve: u32| {
             let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
             let [ab, ba] = self.curve_nets[curve as usize];
             form(inputs, [a, ab, ba, b])
         };
         let largest = |form: fn(&Inputs, [Vec3; 4]) -> f32, curves: &[u32]| {
-            (curves[0]..curves[1]).map(|c| asked(form, c)).fold(1.0, f32::max)
+            (curves[0]..curves[1]).map(|c| asked(&form, c)).fold(1.0, f32::max)
         };
-        let edge = |curves: &[u32]| {
+        let share = if relief.is_some() { SURFACE_SHARE } else { 1.0 };
+        let heights = |factor: u32, curves: &[u32]| {
+            let asked = |relief: &Relief, curve: u32| {
+                let points = self.curves.curves[curve as usize].points;
+                let [a, b] = points.map(|p| self.topology.points[p as usize]);
+                let [ab, ba] = self.curve_nets[curve as usize];
+                relief.edge_factor(inputs, factor, points, [a, ab, ba, b])
+            };
+            relief.map_or(1.0, |relief| (curves[0]..curves[1]).map(|curve| asked(relief, curve)).fold(1.0, f32::max))
+        };
+        let edge = |(index, curves): (u32, &[u32])| {
             let factor = match inputs.lod {
                 Lod::Uniform => inputs.factor,
                 Lod::Paper => largest(|inputs, net| paper_edge_factor(&inputs.view, inputs.pixels, net), curves),
@@ -253,9 +298,11 @@ impl<'a> Nets<'a> {
                     |Inputs { view, factor, near, far, .. }, net| distance_factor(view, *factor, *near, *far, net),
                     curves,
                 ),
-                Lod::Error if inputs.surface == Surface::Flat => 1.0,
+                Lod::Error if inputs.surface == Surface::Flat => heights(index, curves),
                 Lod::Error => {
-                    largest(|inputs, net| edge_error_factor(&inputs.view, EDGE_SHARE * inputs.tolerance, net), curves)
+                    let tolerance = EDGE_SHARE * (inputs.tolerance * share);
+                    let asked = |curve| asked(&|inputs, net| edge_error_factor(&inputs.view, tolerance, net), curve);
+                    (curves[0]..curves[1]).map(asked).fold(heights(index, curves), f32::max)
                 }
             };
             match (inputs.lod, inputs.partitioning) {
@@ -264,7 +311,7 @@ impl<'a> Nets<'a> {
                 _ => factor,
             }
         };
-        self.curves.factor_curves.windows(2).map(edge).collect()
+        (0..).zip(self.curves.factor_curves.windows(2)).map(edge).collect()
     }
 
     /// The sides' factors in the order of the convention. Inside: the largest of the three, or what the error asks for,
@@ -274,7 +321,11 @@ impl<'a> Nets<'a> {
         let sides = self.topology.patches[patch as usize].sides;
         let sides = sides.map(|side| edge_factors[self.curves.factor(self.topology, side) as usize]);
         let inside = if inputs.lod == Lod::Error && inputs.surface != Surface::Flat {
-            inside_error_factor(view, *tolerance, *partitioning, net, [sides[1], sides[2], sides[0]])
+            let is_displaced = displacing(self.mesh, inputs).is_some();
+            let tolerance = tolerance * if is_displaced { SURFACE_SHARE } else { 1.0 };
+            let own = inside_error_factor(view, tolerance, *partitioning, net, [sides[1], sides[2], sides[0]]);
+            // Heights are as fine inside as on the edges.
+            if is_displaced { own.max(sides[0]).max(sides[1]).max(sides[2]) } else { own }
         } else {
             sides[0].max(sides[1]).max(sides[2])
         };
@@ -285,6 +336,7 @@ impl<'a> Nets<'a> {
     fn emit(
         &self,
         inputs: &Inputs,
+        relief: Option<&Relief>,
         culls_back: bool,
         written: impl Fn(u32, &ControlNet) -> HullFactors,
     ) -> Tessellated {
@@ -295,7 +347,11 @@ impl<'a> Nets<'a> {
                 SEEN => written(patch, &net).process(inputs.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
-            let vertex = |i| self.vertex(patch, &net, corner_weights(inputs.convention, domain_point(factors, i)));
+            let vertex = |i| {
+                let uv = corner_weights(inputs.convention, domain_point(factors, i));
+                let own = self.vertex(patch, &net, uv);
+                relief.map_or(own, |relief| relief.displaced(self, factors, own))
+            };
             let base = out.vertices.len() as u32;
             out.vertices.extend((0..point_count(factors)).map(vertex));
             out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
@@ -315,7 +371,7 @@ impl<'a> Nets<'a> {
         self.topology.points[self.topology.corner_points[corner as usize] as usize]
     }
 
-    fn patch(&self, patch: u32) -> ControlNet {
+    pub(super) fn patch(&self, patch: u32) -> ControlNet {
         let corners = [0, 1, 2].map(|k| self.corner(patch, k));
         let [[b210, b120], [b021, b012], [b102, b201]] = [0, 1, 2].map(|k| {
             let (curve, reversed) = self.curve(patch, k);

@@ -5,6 +5,7 @@ mod budget;
 mod control_points;
 mod convention;
 mod cull;
+mod displace;
 pub mod domain;
 mod error;
 pub mod factors;
@@ -12,6 +13,7 @@ mod hull;
 mod lod;
 mod mesh;
 mod normal;
+mod relief;
 mod solid;
 mod surface;
 
@@ -24,8 +26,12 @@ pub use convention::{Convention, corner_weights, domain_side, factor_side, weigh
 pub use cull::{
     Clip, FACING_AWAY, OUT_OF_VIEW, SEEN, faces_away, is_clipped, patch_is_outside, planes_outside, unseen,
 };
+pub use displace::{
+    Displacement, bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level,
+    texel_length,
+};
 pub use domain::{domain_point, domain_triangle};
-pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
+pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
     FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
     point_count, process, round_pow2, segments, triangle_count,
@@ -43,5 +49,6 @@ pub use normal::{
     Normals, edge_normal, linear_normal, middle_normal, pack_normal, quadratic_edge_normal, quadratic_normal,
     surface_normal, unpack_normal,
 };
+pub use relief::{detail, displacing, reach, texel_lengths};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents};

@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use super::{Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
+use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{EdgeKind, Mesh, Topology};
 
 /// A mesh that is closed, that is wound outward in all its parts, and whose materials are single-sided: a line of sight
@@ -34,7 +34,9 @@ impl Solid {
     /// Whether nothing that faces away can be seen under these inputs: nothing tears, and the near plane cuts nothing open.
     pub fn hides_backs(&self, inputs: &Inputs) -> bool {
         let tears = inputs.surface.tears() && self.has_split_normals;
-        let holds = inputs.edges == Edges::PerEdge && inputs.convention.is_consistent() && !tears;
+        // What is displaced may show its back anywhere.
+        let whole = inputs.displacement == Displacement::Off && !tears;
+        let holds = inputs.edges == Edges::PerEdge && inputs.convention.is_consistent() && whole;
         holds && is_beyond_near(inputs.view.clip_from_object, self.extent_of(inputs.surface))
     }
 

@@ -263,6 +263,7 @@ fn twins_have_the_same_functions_in_the_same_order() {
         (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
         (include_str!("../../src/tessellate/control_points.rs"), include_str!("../../shaders/control_points.wgsl")),
         (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),
+        (include_str!("../../src/tessellate/displace.rs"), include_str!("../../shaders/displace.wgsl")),
         (include_str!("../../src/tessellate/normal.rs"), include_str!("../../shaders/normal.wgsl")),
         (include_str!("../../src/tessellate/lod.rs"), include_str!("../../shaders/lod.wgsl")),
         (include_str!("../../src/tessellate/error.rs"), include_str!("../../shaders/error.wgsl")),

@@ -4,7 +4,8 @@
 use std::mem::{offset_of, size_of};
 
 use pnaen::gpu::layout::{
-    Chunk, Corner, Curve, CurveNet, DrawArgs, EmitArgs, LodView, Params, Patch, PatchFactors, Slab, Vertex,
+    Chunk, Corner, Curve, CurveNet, DrawArgs, EmitArgs, HeightMap, LodView, Params, Patch, PatchFactors, Share, Slab,
+    Vertex,
 };
 use pnaen::gpu::{DomainParams, SHADERS, shader_source};
 use pnaen::render::layout::{Frame, Material, Pick};
@@ -53,7 +54,7 @@ macro_rules! same {
 
 #[test]
 fn shared_structs_have_one_layout() {
-    same!(LodView { clip_from_object, half_viewport, eye, radius });
+    same!(LodView { clip_from_object, half_viewport, reach, eye, radius });
     same!(Params {
         view,
         factor,
@@ -74,7 +75,13 @@ fn shared_structs_have_one_layout() {
         convention,
         alpha,
         normals,
+        displacement,
+        height_scale,
+        midlevel,
+        detail,
     });
+    same!(Share { direction, level, dominant, texels });
+    same!(HeightMap { size, levels, start });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
     same!(Curve { points, first_side, side_count });

@@ -4,6 +4,7 @@
 
 mod conventions;
 mod culling;
+mod displacement;
 mod domain;
 mod error;
 mod layout;

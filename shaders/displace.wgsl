@@ -1,0 +1,109 @@
+// Displacement: how high a surface stands at a texture coordinate, and how it is shaded there. Twin:
+// src/tessellate/displace.rs.
+
+const DISPLACEMENT_OFF: u32 = 0u;
+const DISPLACEMENT_ON: u32 = 1u;
+const DISPLACEMENT_AS_PUBLISHED: u32 = 2u;
+const DISPLACEMENT_PER_PATCH: u32 = 3u;
+
+// All maps' heights in one row, broken into rows of this many.
+const HEIGHTS_ACROSS: u32 = 4096u;
+
+@group(0) @binding(20) var heights: texture_2d<f32>;
+@group(0) @binding(21) var<uniform> maps: array<HeightMap, 256>;
+
+fn wrapped(x: f32) -> f32 {
+    return x - floor(x);
+}
+
+fn level_start(map: HeightMap, level: u32) -> u32 {
+    var start = 0u;
+    for (var l = 0u; l < level; l++) {
+        start += max(map.size.x >> l, 1u) * max(map.size.y >> l, 1u);
+    }
+    return start;
+}
+
+fn fetch_height(map: HeightMap, index: u32) -> f32 {
+    let i = map.start + index;
+    return textureLoad(heights, vec2<u32>(i % HEIGHTS_ACROSS, i / HEIGHTS_ACROSS), 0).r;
+}
+
+fn bilinear_height(map: HeightMap, level: u32, uv: vec2<f32>) -> f32 {
+    let width = max(map.size.x >> level, 1u);
+    let height = max(map.size.y >> level, 1u);
+    let x = wrapped(uv.x) * f32(width) + f32(width) - 0.5;
+    let y = wrapped(uv.y) * f32(height) + f32(height) - 0.5;
+    let left = u32(x) % width;
+    let right = (left + 1u) % width;
+    let upper = u32(y) % height;
+    let lower = (upper + 1u) % height;
+    let start = level_start(map, level);
+    let a = fetch_height(map, start + upper * width + left);
+    let b = fetch_height(map, start + upper * width + right);
+    let c = fetch_height(map, start + lower * width + left);
+    let d = fetch_height(map, start + lower * width + right);
+    let across = x - floor(x);
+    let down = y - floor(y);
+    let above = a + (b - a) * across;
+    let below = c + (d - c) * across;
+    return above + (below - above) * down;
+}
+
+fn height_at(map: HeightMap, level: f32, uv: vec2<f32>) -> f32 {
+    let least = u32(level);
+    let part = level - f32(least);
+    let fine = bilinear_height(map, least, uv);
+    if part <= 0.0 {
+        return fine;
+    }
+    return fine + (bilinear_height(map, least + 1u, uv) - fine) * part;
+}
+
+fn height_slopes(map: HeightMap, level: f32, uv: vec2<f32>) -> vec2<f32> {
+    let px = exp2(level) / vec2<f32>(map.size);
+    let across = vec2<f32>(0.5 * px.x, 0.0);
+    let down = vec2<f32>(0.0, 0.5 * px.y);
+    let along_x = height_at(map, level, uv + across) - height_at(map, level, uv - across);
+    let along_y = height_at(map, level, uv + down) - height_at(map, level, uv - down);
+    return vec2<f32>(along_x / px.x, along_y / px.y);
+}
+
+fn segment_level(map: HeightMap, texels: f32, segments: f32) -> f32 {
+    let level = log2(max(texels, 1e-6) / segments);
+    return clamp(level, 0.0, f32(map.levels - 1u));
+}
+
+fn texel_length(map: HeightMap, a: vec2<f32>, b: vec2<f32>) -> f32 {
+    return length((b - a) * vec2<f32>(map.size));
+}
+
+fn direction_slopes(directions: array<vec3<f32>, 3>, direction: vec3<f32>, length: f32) -> array<vec3<f32>, 2> {
+    let along_u = directions[0] - directions[2];
+    let along_v = directions[1] - directions[2];
+    if length <= 1e-6 {
+        return array<vec3<f32>, 2>(vec3<f32>(0.0), vec3<f32>(0.0));
+    }
+    let flat_u = along_u - direction * dot(direction, along_u);
+    let flat_v = along_v - direction * dot(direction, along_v);
+    return array<vec3<f32>, 2>(flat_u * (1.0 / length), flat_v * (1.0 / length));
+}
+
+// Mikkelsen 2008, the surface gradient.
+fn raised_normal(tangents: array<vec3<f32>, 2>, slopes: vec2<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let largest = max(abs(tangents[0]), abs(tangents[1]));
+    let size = max(max(largest.x, largest.y), largest.z);
+    if size == 0.0 {
+        return normal;
+    }
+    let along_u = tangents[0] * (1.0 / size);
+    let along_v = tangents[1] * (1.0 / size);
+    let rises = slopes * (1.0 / size);
+    let area = dot(cross(along_u, along_v), normal);
+    let back = cross(along_u, normal) * rises.y + cross(normal, along_v) * rises.x;
+    if area < 0.0 {
+        // Shaded from the other side.
+        return unit_or(normal * -area - back, normal);
+    }
+    return unit_or(normal * area + back, normal);
+}

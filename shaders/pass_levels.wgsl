@@ -1,0 +1,89 @@
+// What points and edges share where a mesh is displaced. Once a mesh (or pose): the direction of every point. Then, with the
+// factors: the level of the height image that fits the segments of every edge, and for a point the finest of its edges'.
+
+// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> corners: array<Corner>;
+@group(0) @binding(3) var<storage, read> patches: array<Patch>;
+@group(0) @binding(4) var<storage, read> edge_factors: array<f32>;
+@group(0) @binding(5) var<storage, read> given_factors: array<vec4<u32>>;
+@group(0) @binding(6) var<storage, read_write> shares: array<Share>;
+// Where each point's run of what follows starts, and where the last ends.
+@group(0) @binding(7) var<storage, read> starts: array<u32>;
+// A corner and the bits of its part.
+@group(0) @binding(8) var<storage, read> parts: array<vec2<u32>>;
+@group(0) @binding(9) var<storage, read> point_factors: array<u32>;
+
+@compute @workgroup_size(256)
+fn directions_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let point = grid_index(workgroup, workgroups, local);
+    if point >= params.point_count {
+        return;
+    }
+    var sum = vec3<f32>(0.0);
+    for (var i = starts[point]; i < starts[point + 1u]; i++) {
+        sum += corners[parts[i].x].normal * bitcast<f32>(parts[i].y);
+    }
+    var dominant = vec3<f32>(0.0, 0.0, 1.0);
+    if starts[point] < starts[point + 1u] {
+        dominant = corners[parts[starts[point]].x].normal;
+    }
+    shares[point].direction = unit_or(sum, dominant);
+}
+
+// An edge's factor; of given ones, that of its dominant side.
+fn segments_of(index: u32, dominant: u32) -> f32 {
+    if params.lod != LOD_GIVEN {
+        return edge_factors[index];
+    }
+    for (var i = 0u; i < 3u; i++) {
+        if factor_side(params.convention, i) == dominant % 4u {
+            return bitcast<f32>(given_factors[dominant / 4u][i]);
+        }
+    }
+    return 1.0;
+}
+
+@compute @workgroup_size(256)
+fn factor_levels_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index >= params.factor_count {
+        return;
+    }
+    let dominant = share_of_factor(index).dominant;
+    let map = map_of(dominant / 4u);
+    var level = 0.0;
+    if map > 0u {
+        let uvs = patch_uvs(dominant / 4u);
+        let side = dominant % 4u;
+        let texels = texel_length(maps[map - 1u], uvs[side], uvs[(side + 1u) % 3u]);
+        level = segment_level(maps[map - 1u], texels, clamp(segments_of(index, dominant), 1.0, 64.0));
+    }
+    shares[params.point_count + index].level = level;
+}
+
+@compute @workgroup_size(256)
+fn point_levels_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let point = grid_index(workgroup, workgroups, local);
+    if point >= params.point_count {
+        return;
+    }
+    var finest = 3.4e38;
+    for (var i = starts[point]; i < starts[point + 1u]; i++) {
+        finest = min(finest, shares[params.point_count + point_factors[i]].level);
+    }
+    shares[point].level = finest;
+}

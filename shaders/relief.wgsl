@@ -1,0 +1,16 @@
+// What displacement makes patches agree on, from the buffers of the module that includes this: params, points, patches,
+// corners, shares.
+
+fn share_of_factor(index: u32) -> Share {
+    return shares[params.point_count + index];
+}
+
+// A patch's map, as behind its centre: none is 0.
+fn map_of(patch_index: u32) -> u32 {
+    return u32(points[params.point_count + patch_index].w);
+}
+
+fn patch_uvs(patch_index: u32) -> array<vec2<f32>, 3> {
+    let at = patches[patch_index].corners;
+    return array<vec2<f32>, 3>(corners[at[0]].uv, corners[at[1]].uv, corners[at[2]].uv);
+}

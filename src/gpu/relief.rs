@@ -1,0 +1,200 @@
+//! Displacement on the device: height images, what patches share where they meet, and the passes that use them.
+
+use super::buffers::filled;
+use super::layout::{HeightMap, Share};
+use super::pipelines::bind_group;
+use super::recorder::Recorder;
+use super::slab::{SlabPasses, uniform_buffer};
+use super::tessellator::{dispatch, grid};
+use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
+use crate::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
+use crate::tessellate::texel_lengths;
+
+/// Twin of `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
+const HEIGHTS_ACROSS: u32 = 4096;
+
+/// A mesh's height images: uploaded once.
+pub struct HeightImages {
+    view: wgpu::TextureView,
+    maps: wgpu::Buffer,
+    bytes: u64,
+}
+
+impl HeightImages {
+    /// # Errors
+    /// They are larger than the adapter's textures.
+    pub fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
+        let mut table = [HeightMap { size: [1, 1], levels: 1, start: 0 }; MAX_MAPS];
+        let mut all: Vec<f32> = Vec::new();
+        for (entry, map) in table.iter_mut().zip(&heights.maps) {
+            *entry = HeightMap { size: map.size, levels: map.levels, start: all.len() as u32 };
+            all.extend_from_slice(&map.heights);
+        }
+        let rows = (all.len() as u32).div_ceil(HEIGHTS_ACROSS).max(1);
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if rows > limit {
+            let bytes = 4 * all.len() as u64;
+            return Err(GpuError::TooLarge {
+                what: "height images",
+                bytes,
+                limit: 4 * u64::from(limit * HEIGHTS_ACROSS),
+            });
+        }
+        all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
+        Ok(Self {
+            view: upload(gpu, &all, rows),
+            maps: uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table)),
+            bytes: 4 * all.len() as u64,
+        })
+    }
+
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+fn upload(gpu: &Gpu, heights: &[f32], rows: u32) -> wgpu::TextureView {
+    use wgpu::util::DeviceExt;
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("heights"),
+        size: wgpu::Extent3d { width: HEIGHTS_ACROSS, height: rows, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    };
+    let (order, bytes) = (wgpu::util::TextureDataOrder::LayerMajor, bytemuck::cast_slice(heights));
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, bytes);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// What patches share where they meet, of a mesh whose sides are grouped into curves in some way.
+pub struct ReliefBuffers {
+    part_starts: wgpu::Buffer,
+    parts: wgpu::Buffer,
+    factor_starts: wgpu::Buffer,
+    factors: wgpu::Buffer,
+}
+
+impl ReliefBuffers {
+    /// # Errors
+    /// A buffer would be larger than the adapter binds.
+    pub fn new(gpu: &Gpu, dominance: &Dominance) -> Result<Self, GpuError> {
+        let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
+        Ok(Self {
+            part_starts: filled(gpu, "part starts", &dominance.part_starts)?,
+            parts: filled(gpu, "parts", &parts)?,
+            factor_starts: filled(gpu, "factor starts", &dominance.factor_starts)?,
+            factors: filled(gpu, "point factors", &dominance.factors)?,
+        })
+    }
+
+    pub fn bytes(&self) -> u64 {
+        [&self.part_starts, &self.parts, &self.factor_starts, &self.factors].iter().map(|buffer| buffer.size()).sum()
+    }
+}
+
+/// What points and then factors share, as far as it never changes.
+pub fn shares(mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Vec<Share> {
+    let lengths = mesh.heights.as_deref().map(|heights| texel_lengths(heights, mesh, topology, dominance));
+    let lengths = lengths.unwrap_or_default();
+    let share = |dominant, texels| Share { dominant, texels, ..bytemuck::Zeroable::zeroed() };
+    let points = dominance.corners.iter().map(|&dominant| share(dominant, 0.0));
+    points.chain(dominance.sides.iter().zip(lengths).map(|(&dominant, texels)| share(dominant, texels))).collect()
+}
+
+/// A patch's height map, as it stands behind its centre among the points: 1 for the first, 0 for none.
+pub fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
+    let mut maps = vec![0.0; topology.patches.len()];
+    for (material, patches) in topology.material_patches.iter().enumerate() {
+        let map = heights.and_then(|heights| heights.of_material.get(material).copied().flatten());
+        maps[patches.start as usize..patches.end as usize].fill(map.map_or(0.0, |map| map as f32 + 1.0));
+    }
+    maps
+}
+
+/// The passes that displace a mesh, bound to its buffers.
+pub struct ReliefPasses {
+    directions: wgpu::BindGroup,
+    factor_levels: wgpu::BindGroup,
+    point_levels: wgpu::BindGroup,
+    displace: Vec<wgpu::BindGroup>,
+}
+
+impl ReliefPasses {
+    /// One bind group for every slab, in their order.
+    pub fn new(
+        gpu: &Gpu,
+        pipelines: &ComputePipelines,
+        b: &MeshBuffers,
+        relief: &ReliefBuffers,
+        images: &HeightImages,
+        params: &wgpu::Buffer,
+        given: &wgpu::Buffer,
+        vertices: &wgpu::Buffer,
+        slabs: &[SlabPasses],
+    ) -> Self {
+        let own = [(0, params), (6, &b.shares)];
+        let directions = [&own[..], &[(2, &b.corners), (7, &relief.part_starts), (8, &relief.parts)]].concat();
+        let mesh = [(1, &b.points), (2, &b.corners), (3, &b.patches), (4, &b.edge_factors), (5, given)];
+        let factor_levels = [&own[..], &mesh[..], &[(21, &images.maps)]].concat();
+        let point_levels = [&own[..], &[(7, &relief.factor_starts), (9, &relief.factors)]].concat();
+        let group = |label: &str, pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
+            bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers)
+        };
+        let displace = slabs.iter().map(|slab| {
+            let buffers = [
+                (0, params),
+                (1, &slab.slab_buffer),
+                (2, &slab.chunks),
+                (4, &slab.patch_factors),
+                (5, &b.points),
+                (6, &b.patches),
+                (7, &b.curve_nets),
+                (8, &b.corners),
+                (9, vertices),
+                (11, &b.shares),
+                (21, &images.maps),
+            ];
+            let mut entries: Vec<_> = buffers
+                .iter()
+                .map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+                .collect();
+            let view = wgpu::BindingResource::TextureView(&images.view);
+            entries.push(wgpu::BindGroupEntry { binding: 20, resource: view });
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("displace"),
+                layout: &pipelines.displace.get_bind_group_layout(0),
+                entries: &entries,
+            })
+        });
+        Self {
+            directions: group("directions", &pipelines.directions, &directions),
+            factor_levels: group("levels.factors", &pipelines.factor_levels, &factor_levels),
+            point_levels: group("levels.points", &pipelines.point_levels, &point_levels),
+            displace: displace.collect(),
+        }
+    }
+
+    /// Once a mesh, as its nets are: the direction of every point.
+    pub fn record_directions(&self, recorder: &mut Recorder, pipelines: &ComputePipelines, b: &MeshBuffers) {
+        recorder.compute("directions", |pass| {
+            dispatch(pass, &pipelines.directions, &self.directions, grid(b.point_count));
+        });
+    }
+
+    /// After the factors: the levels of edges and points.
+    pub fn record_levels(&self, recorder: &mut Recorder, pipelines: &ComputePipelines, b: &MeshBuffers) {
+        recorder.compute("levels", |pass| {
+            dispatch(pass, &pipelines.factor_levels, &self.factor_levels, grid(b.factor_count));
+            dispatch(pass, &pipelines.point_levels, &self.point_levels, grid(b.point_count));
+        });
+    }
+
+    /// What [`ComputePipelines::displace`] is bound to for a slab.
+    pub fn displace(&self, slab: usize) -> &wgpu::BindGroup {
+        &self.displace[slab]
+    }
+}

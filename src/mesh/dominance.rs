@@ -1,0 +1,143 @@
+//! Dominance: which side speaks for an edge, and which corner for a point, where those that meet there disagree on texture
+//! coordinates (McDonald 2011, *Tessellation on Any Budget*: dominant edges and dominant vertices). And in what parts
+//! corners have a say in the one direction that a point is displaced in.
+
+use glam::Vec3;
+
+use super::{Curves, Topology};
+
+/// Who speaks for edges and points. What is asked for anew with every factor is asked in lists, point by point.
+#[derive(Clone, Debug, Default)]
+pub struct Dominance {
+    /// For each factor of [`Curves`], its edge's dominant side: the patch times 4, plus which of its sides.
+    pub sides: Vec<u32>,
+    /// For each point, its dominant corner: a patch that has it times 4, plus which of its corners.
+    pub corners: Vec<u32>,
+    /// Point p's corners and their parts: `parts[part_starts[p]..part_starts[p + 1]]`. A part is the sum of the angles, in
+    /// radians, that patches have at that corner: however a face is triangulated, it has the same say.
+    pub part_starts: Vec<u32>,
+    pub parts: Vec<(u32, f32)>,
+    /// The factors of point p's edges: `factors[factor_starts[p]..factor_starts[p + 1]]`.
+    pub factor_starts: Vec<u32>,
+    pub factors: Vec<u32>,
+    /// For each patch, the factors of its sides 0, 1 and 2.
+    pub patch_factors: Vec<[u32; 3]>,
+}
+
+impl Dominance {
+    /// Linear in patches, but for points with many corners.
+    pub fn new(topology: &Topology, curves: &Curves) -> Self {
+        let mut dominance = Self { sides: sides(topology, curves), ..Self::default() };
+        let of_sides = |patch: &super::Patch| patch.sides.map(|side| curves.factor(topology, side));
+        dominance.patch_factors = topology.patches.iter().map(of_sides).collect();
+        let mut corners = vec![u32::MAX; topology.points.len()];
+        let mut parts: Vec<(u32, u32, f32)> = Vec::with_capacity(3 * topology.patches.len());
+        let mut factors: Vec<(u32, u32)> = Vec::with_capacity(6 * topology.patches.len());
+        for (index, patch) in (0..).zip(&topology.patches) {
+            for k in 0..3 {
+                let corner = patch.corners[k];
+                let point = topology.corner_points[corner as usize];
+                let known = &mut corners[point as usize];
+                *known = (*known).min(index * 4 + k as u32);
+                parts.push((point, corner, angle(topology, index, k)));
+                let own = dominance.patch_factors[index as usize];
+                factors.extend([(point, own[k]), (point, own[(k + 2) % 3])]);
+            }
+        }
+        // Points that only degenerate triangles have are asked for by nobody.
+        dominance.corners = corners.into_iter().map(|corner| if corner == u32::MAX { 0 } else { corner }).collect();
+        parts.sort_by_key(|&(point, corner, _)| (point, corner));
+        for run in parts.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            dominance.parts.push((run[0].1, run.iter().map(|part| part.2).sum()));
+        }
+        parts.dedup_by_key(|part| (part.0, part.1));
+        dominance.part_starts = starts(topology.points.len(), parts.iter().map(|part| part.0));
+        factors.sort_unstable();
+        factors.dedup();
+        dominance.factor_starts = starts(topology.points.len(), factors.iter().map(|factor| factor.0));
+        dominance.factors = factors.into_iter().map(|(_, factor)| factor).collect();
+        dominance
+    }
+}
+
+/// An edge's first side, as the topology has them, speaks for all.
+fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
+    let mut sides = vec![0; curves.factor_count() as usize];
+    for (index, side) in (0..).zip(&topology.sides) {
+        let first = &topology.sides[topology.edges[side.edge as usize].sides.start as usize];
+        sides[curves.factor(topology, index) as usize] = first.patch * 4 + u32::from(first.index);
+    }
+    sides
+}
+
+/// Where each point's run starts, and where the last ends, of a list sorted by point.
+fn starts(points: usize, sorted: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut starts = vec![0; points + 1];
+    for point in sorted {
+        starts[point as usize + 1] += 1;
+    }
+    for point in 0..points {
+        starts[point + 1] += starts[point];
+    }
+    starts
+}
+
+/// A patch's angle at its corner `k`, in radians; never 0, so that everybody has a say.
+fn angle(topology: &Topology, patch: u32, k: usize) -> f32 {
+    let corners = topology.patch_positions(patch).map(Vec3::as_dvec3);
+    let [a, b] = [1, 2].map(|step| (corners[(k + step) % 3] - corners[k]).normalize_or_zero());
+    (a.cross(b).length().atan2(a.dot(b)) as f32).max(1e-6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Progress, Shape, Sharing};
+
+    fn dominance(shape: Shape, sharing: Sharing) -> (Topology, Curves, Dominance) {
+        let mesh = shape.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let curves = Curves::build(&mesh, &topology, sharing);
+        let dominance = Dominance::new(&topology, &curves);
+        (topology, curves, dominance)
+    }
+
+    #[test]
+    fn one_side_speaks_for_an_edge_and_one_corner_for_a_point() {
+        for shape in Shape::ALL {
+            for sharing in [Sharing::AllSides, Sharing::EqualNormals, Sharing::None] {
+                let (topology, curves, dominance) = dominance(shape, sharing);
+                for (index, side) in (0..).zip(&topology.sides) {
+                    let dominant = dominance.sides[curves.factor(&topology, index) as usize];
+                    let other = topology.patches[dominant as usize / 4].sides[dominant as usize % 4];
+                    assert_eq!(topology.sides[other as usize].edge, side.edge, "{shape:?} {sharing:?}");
+                }
+                for (point, &dominant) in (0..).zip(&dominance.corners) {
+                    let corner = topology.patches[dominant as usize / 4].corners[dominant as usize % 4];
+                    assert_eq!(topology.corner_points[corner as usize], point, "{shape:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_point_knows_its_corners_angles_and_its_edges() {
+        let (topology, curves, dominance) = dominance(Shape::CubeSplit, Sharing::AllSides);
+        for (point, ends) in (0..).zip(dominance.part_starts.windows(2)) {
+            let parts = &dominance.parts[ends[0] as usize..ends[1] as usize];
+            assert_eq!(parts.len(), 3, "a cube's corner has three normals");
+            for (corner, angle) in parts {
+                assert_eq!(topology.corner_points[*corner as usize], point);
+                assert!((angle - std::f32::consts::FRAC_PI_2).abs() < 1e-6, "of one triangle or two: {angle}");
+            }
+        }
+        assert_eq!(dominance.factor_starts.len(), topology.points.len() + 1);
+        for (point, ends) in (0..).zip(dominance.factor_starts.windows(2)) {
+            let own = &dominance.factors[ends[0] as usize..ends[1] as usize];
+            let expected = topology.edges.iter().filter(|edge| edge.points.contains(&point)).count();
+            assert_eq!(own.len(), expected);
+            assert!(own.iter().all(|&factor| topology.edges[factor as usize].points.contains(&point)));
+        }
+        assert_eq!(curves.factor_count() as usize, topology.edges.len());
+    }
+}

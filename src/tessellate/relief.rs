@@ -1,0 +1,312 @@
+//! A mesh's displacement on the CPU: what `shaders/pass_levels.wgsl` and `shaders/pass_displace.wgsl` do.
+
+use glam::{DVec2, DVec3, Vec2, Vec3};
+
+use super::displace::{
+    Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length,
+};
+use super::error::{edge_sight, relief_factor};
+use super::mesh::{Inputs, Nets, Vertex};
+use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
+use super::surface::{UNIT, linear_uv, patch_tangents};
+use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
+use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
+
+/// Of a factor's word, what it is in 16.16 fixed point: at most 64.
+const FACTOR_BITS: u32 = 0x7f_ffff;
+
+/// What displaces a mesh under these inputs, if anything does.
+pub fn displacing<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
+    mesh.heights.as_deref().filter(|_| inputs.displacement != Displacement::Off)
+}
+
+/// How far any point is moved at most, in object units.
+pub fn reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
+    displacing(mesh, inputs).map_or(0.0, |heights| inputs.height_scale.abs() * heights.reach(inputs.midlevel))
+}
+
+/// Heights over a mesh, and what its patches agree on.
+pub struct Relief<'a> {
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    heights: &'a Heights,
+    mode: Displacement,
+    normals: Normals,
+    /// Object units.
+    scale: f32,
+    midlevel: f32,
+    dominance: Dominance,
+    /// One for each point.
+    directions: Vec<Vec3>,
+    /// How long each factor's edge is at most in its sides' maps, in px of level 0.
+    texels: Vec<f32>,
+    /// One for each factor, and for each point the finest of its edges'.
+    factor_levels: Vec<f32>,
+    point_levels: Vec<f32>,
+}
+
+/// Where heights are looked up for a point: a patch, weights in it, and a level.
+#[derive(Clone, Copy)]
+struct Lookup {
+    patch: u32,
+    u: u32,
+    v: u32,
+    level: f32,
+}
+
+/// Where a point lies on its patch.
+enum Place {
+    Corner(usize),
+    /// A side, and the weight of its far end.
+    Side(usize, u32),
+    Inside,
+}
+
+fn place(u: u32, v: u32) -> Place {
+    let w = FIXED_ONE - u - v;
+    match [u, v, w].iter().position(|&weight| weight == FIXED_ONE) {
+        Some(corner) => Place::Corner(corner),
+        None if w == 0 => Place::Side(0, v),
+        None if u == 0 => Place::Side(1, w),
+        None if v == 0 => Place::Side(2, u),
+        None => Place::Inside,
+    }
+}
+
+/// Weights of the point at `t` along a side.
+fn side_weights(side: usize, t: u32) -> [u32; 2] {
+    match side {
+        0 => [FIXED_ONE - t, t],
+        1 => [0, FIXED_ONE - t],
+        _ => [t, 0],
+    }
+}
+
+impl<'a> Relief<'a> {
+    /// What the mesh is displaced by under these inputs, if anything. It has no levels before [`Self::set_levels`].
+    pub(super) fn new(nets: &Nets<'a>, inputs: &Inputs) -> Option<Self> {
+        let (mesh, topology) = (nets.mesh, nets.topology);
+        let heights = displacing(mesh, inputs)?;
+        let dominance = Dominance::new(topology, &nets.curves);
+        Some(Self {
+            mesh,
+            topology,
+            heights,
+            mode: inputs.displacement,
+            normals: inputs.normals,
+            scale: inputs.height_scale,
+            midlevel: inputs.midlevel,
+            directions: directions(mesh, &dominance),
+            texels: texel_lengths(heights, mesh, topology, &dominance),
+            factor_levels: vec![0.0; dominance.sides.len()],
+            point_levels: vec![0.0; dominance.corners.len()],
+            dominance,
+        })
+    }
+
+    /// The same with the levels that these factors ask for: LOD's, one for each of the curves'.
+    pub(super) fn with_levels(mut self, factors: &[f32]) -> Self {
+        self.factor_levels = (0..factors.len()).map(|factor| self.factor_level(factor, factors[factor])).collect();
+        let starts = self.dominance.factor_starts.windows(2);
+        let finest = |ends: &[u32]| {
+            let own = &self.dominance.factors[ends[0] as usize..ends[1] as usize];
+            own.iter().map(|&factor| self.factor_levels[factor as usize]).fold(f32::INFINITY, f32::min)
+        };
+        self.point_levels = starts.map(finest).collect();
+        self
+    }
+
+    /// What a hull shader wrote for edges: their dominant sides' factors.
+    pub(super) fn given_factors(&self, convention: Convention, given: &[HullFactors]) -> Vec<f32> {
+        let of = |&dominant: &u32| {
+            let own = given[dominant as usize / 4].edges;
+            let index = (0..3).find(|&i| factor_side(convention, i) == dominant % 4);
+            index.map_or(1.0, |i| own[i as usize])
+        };
+        self.dominance.sides.iter().map(of).collect()
+    }
+
+    /// The fewest segments that show the heights over a factor's curve, within the tolerance of `inputs`.
+    pub(super) fn edge_factor(&self, inputs: &Inputs, factor: u32, points: [u32; 2], curve: [Vec3; 4]) -> f32 {
+        let [a, b] = points.map(|point| self.directions[point as usize]);
+        let texels = self.texels[factor as usize];
+        let sight = edge_sight(&inputs.view, curve);
+        let lost = detail(self.heights, inputs);
+        relief_factor(&inputs.view, sight, inputs.tolerance, texels, a.distance(b), lost)
+    }
+
+    /// How far and which way a place of a patch moves in the end, at full detail and in double precision, as the patch has it
+    /// by itself. Object units.
+    pub(super) fn displacement(&self, patch: u32, weights: [f64; 3]) -> DVec3 {
+        let Some(map) = self.map(patch) else { return DVec3::ZERO };
+        let uv = (0..3).map(|k| self.uvs(patch)[k].as_dvec2() * weights[k]).sum::<DVec2>();
+        let directions = self.corner_directions(patch);
+        let direction = (0..3).map(|k| directions[k].as_dvec3() * weights[k]).sum::<DVec3>().normalize_or_zero();
+        direction * f64::from(self.scale * (height_at(map, 0.0, uv.as_vec2()) - self.midlevel))
+    }
+
+    /// The level of an edge, from its dominant side's texture coordinates.
+    fn factor_level(&self, factor: usize, segments: f32) -> f32 {
+        let dominant = self.dominance.sides[factor];
+        let (patch, side) = (dominant / 4, dominant as usize % 4);
+        let uvs = self.uvs(patch);
+        let Some(map) = self.map(patch) else { return 0.0 };
+        segment_level(map, texel_length(map, uvs[side], uvs[(side + 1) % 3]), segments.clamp(1.0, 64.0))
+    }
+
+    fn map(&self, patch: u32) -> Option<&'a HeightMap> {
+        let material = self.topology.material_of(patch);
+        let map = self.heights.of_material.get(material).copied().flatten()?;
+        self.heights.maps.get(map as usize)
+    }
+
+    fn uvs(&self, patch: u32) -> [Vec2; 3] {
+        self.topology.patches[patch as usize].corners.map(|corner| self.mesh.corners[corner as usize].uv)
+    }
+
+    /// The level inside a patch that is cut into so many segments.
+    fn inside_level(&self, patch: u32, segments: f32) -> f32 {
+        let Some(map) = self.map(patch) else { return 0.0 };
+        let [a, b, c] = self.uvs(patch);
+        let longest = texel_length(map, a, b).max(texel_length(map, b, c)).max(texel_length(map, c, a));
+        segment_level(map, longest, segments)
+    }
+
+    /// A patch's vertex, moved; the patch has these factors.
+    pub(super) fn displaced(&self, nets: &Nets, factors: PatchFactors, vertex: Vertex) -> Vertex {
+        let (patch, [u, v]) = (vertex.patch(), vertex.domain());
+        let segments = (factors.inside & FACTOR_BITS) as f32 * UNIT;
+        let (position, normal) = (Vec3::from(vertex.position), unpack_normal(vertex.normal));
+        let (own, shared) = self.lookups(patch, u, v, segments);
+        let asked = if self.mode == Displacement::PerPatch { own } else { shared };
+        let direction = self.direction(patch, u, v);
+        let offset = self.offset(asked);
+        let moved = position + direction * offset;
+        let normal = if self.normals == Normals::Surface {
+            // Every patch's own, as without displacement.
+            let (slopes, tangents) = self.slopes(nets, own, offset);
+            let (along_u, along_v) = (tangents[0] + direction * slopes.x, tangents[1] + direction * slopes.y);
+            facing_or([along_u, along_v], normal)
+        } else {
+            let (slopes, tangents) = self.slopes(nets, asked, offset);
+            raised_normal(tangents, slopes, normal)
+        };
+        Vertex { position: moved.to_array(), normal: pack_normal(normal), ..vertex }
+    }
+
+    /// Where a patch would look up its point's height by itself, and where it does if patches agree.
+    fn lookups(&self, patch: u32, u: u32, v: u32, segments: f32) -> (Lookup, Lookup) {
+        match place(u, v) {
+            Place::Inside => {
+                let own = Lookup { patch, u, v, level: self.inside_level(patch, segments) };
+                (own, own)
+            }
+            Place::Corner(k) => {
+                let point = self.point(patch, k);
+                let level = self.point_levels[point as usize];
+                let dominant = self.dominance.corners[point as usize];
+                let weight = |corner: u32| if dominant % 4 == corner { FIXED_ONE } else { 0 };
+                let shared = Lookup { patch: dominant / 4, u: weight(0), v: weight(1), level };
+                (Lookup { patch, u, v, level }, shared)
+            }
+            Place::Side(side, t) => {
+                let factor = self.factor(patch, side);
+                let level = self.factor_levels[factor as usize];
+                let dominant = self.dominance.sides[factor as usize];
+                let (other, start) = (dominant / 4, dominant as usize % 4);
+                let same_way = self.point(patch, side) == self.point(other, start);
+                let [x, y] = side_weights(start, if same_way { t } else { FIXED_ONE - t });
+                (Lookup { patch, u, v, level }, Lookup { patch: other, u: x, v: y, level })
+            }
+        }
+    }
+
+    fn point(&self, patch: u32, k: usize) -> u32 {
+        self.topology.corner_points[self.topology.patches[patch as usize].corners[k] as usize]
+    }
+
+    fn factor(&self, patch: u32, side: usize) -> u32 {
+        self.dominance.patch_factors[patch as usize][side]
+    }
+
+    /// The direction in which a patch's point moves. On a side it is computed in the
+    /// dominant side's direction, so that all sides compute the same.
+    fn direction(&self, patch: u32, u: u32, v: u32) -> Vec3 {
+        let corners = self.corner_directions(patch);
+        match place(u, v) {
+            Place::Corner(k) => corners[k],
+            Place::Side(side, t) => {
+                let dominant = self.dominance.sides[self.factor(patch, side) as usize];
+                let same_way = self.point(patch, side) == self.point(dominant / 4, dominant as usize % 4);
+                let (a, b) = (corners[side], corners[(side + 1) % 3]);
+                let (a, b, t) = if same_way { (a, b, t) } else { (b, a, FIXED_ONE - t) };
+                edge_normal(a, b, t)
+            }
+            Place::Inside => linear_normal(corners, u, v),
+        }
+    }
+
+    /// What a patch's corners move along: their points' own directions, or as published their own normals.
+    fn corner_directions(&self, patch: u32) -> [Vec3; 3] {
+        if self.mode == Displacement::On {
+            return [0, 1, 2].map(|k| self.directions[self.point(patch, k) as usize]);
+        }
+        self.topology.patches[patch as usize].corners.map(|corner| self.mesh.corners[corner as usize].normal)
+    }
+
+    /// How far a point moves, in object units.
+    fn offset(&self, at: Lookup) -> f32 {
+        let Some(map) = self.map(at.patch) else { return 0.0 };
+        let level = at.level.min((map.levels - 1) as f32);
+        self.scale * (height_at(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) - self.midlevel)
+    }
+
+    /// How a patch's height changes with u and with v, and its tangents, moved by `offset` as a whole. Object units.
+    fn slopes(&self, nets: &Nets, at: Lookup, offset: f32) -> (Vec2, [Vec3; 2]) {
+        let uvs = self.uvs(at.patch);
+        let net = nets.patch(at.patch);
+        let [along_u, along_v] = patch_tangents(nets.surface, &net, at.u, at.v);
+        let corners = self.corner_directions(at.patch);
+        let [x, y, z] = [at.u, at.v, FIXED_ONE - at.u - at.v].map(|weight| weight as f32 * UNIT);
+        let sum = corners[0] * x + corners[1] * y + corners[2] * z;
+        let direction = unit_or(sum, linear_normal(corners, at.u, at.v));
+        let [turn_u, turn_v] = direction_slopes(corners, direction, sum.length());
+        let tangents = [along_u + turn_u * offset, along_v + turn_v * offset];
+        let Some(map) = self.map(at.patch) else { return (Vec2::ZERO, tangents) };
+        let level = at.level.min((map.levels - 1) as f32);
+        let rises = height_slopes(map, level, linear_uv(uvs, at.u, at.v)) * self.scale;
+        (Vec2::new(rises.dot(uvs[0] - uvs[2]), rises.dot(uvs[1] - uvs[2])), tangents)
+    }
+}
+
+/// The mean of all normals at each point, by the angles that they stand for; its dominant corner's where they cancel.
+fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
+    let of = |ends: &[u32]| {
+        let parts = &dominance.parts[ends[0] as usize..ends[1] as usize];
+        let normal = |corner: u32| mesh.corners[corner as usize].normal;
+        let sum = parts.iter().fold(Vec3::ZERO, |sum, &(corner, part)| sum + normal(corner) * part);
+        unit_or(sum, parts.first().map_or(Vec3::Z, |&(corner, _)| normal(corner)))
+    };
+    dominance.part_starts.windows(2).map(of).collect()
+}
+
+/// How far level l of any map is from level 0 at most, in object units; more than anything beyond the last level.
+pub fn detail(heights: &Heights, inputs: &Inputs) -> [f32; 16] {
+    let own = heights.detail.map(|lost| lost * inputs.height_scale.abs());
+    std::array::from_fn(|level| own.get(level).copied().unwrap_or(f32::MAX))
+}
+
+/// How long the edge of each factor is at most in its sides' maps, in px of level 0.
+pub fn texel_lengths(heights: &Heights, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Vec<f32> {
+    let mut lengths = vec![0.0_f32; dominance.sides.len()];
+    for (index, patch) in (0..).zip(&topology.patches) {
+        let map = heights.of_material.get(topology.material_of(index)).copied().flatten();
+        let Some(map) = map.and_then(|map| heights.maps.get(map as usize)) else { continue };
+        let uvs = patch.corners.map(|corner| mesh.corners[corner as usize].uv);
+        for (side, factor) in dominance.patch_factors[index as usize].into_iter().enumerate() {
+            let longest = &mut lengths[factor as usize];
+            *longest = longest.max(texel_length(map, uvs[side], uvs[(side + 1) % 3]));
+        }
+    }
+    lengths
+}

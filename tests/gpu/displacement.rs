@@ -1,0 +1,194 @@
+//! Displacement on the device: held against the CPU, watertight where it says so, torn where it says so, and in view.
+
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+use pnaen::engine::Loaded;
+use pnaen::gpu::Timing;
+use pnaen::measure::{Measured, ulp};
+use pnaen::mesh::{Corner, HeightMap, Heights, Mesh, Progress, Shape, Source, Topology};
+use pnaen::render::{Scene, Target};
+use pnaen::settings::{ARENA_BYTES, Settings};
+use pnaen::tessellate::{Clip, Displacement, Edges, Lod, Normals, Partitioning, Surface, tessellate, unpack_normal};
+
+use crate::engine;
+use crate::passes::{inputs, on_gpu};
+
+/// Waves that repeat with the image; two crests of either length across it.
+pub fn waves(size: u32) -> HeightMap {
+    let height = |i: u32| {
+        let at = [i % size, i / size].map(|x| TAU * (x as f32 + 0.5) / size as f32);
+        0.5 + 0.25 * (2.0 * at[0]).sin() * (3.0 * at[1]).cos() + 0.2 * (at[0] + 2.0 * at[1]).cos()
+    };
+    HeightMap::new([size, size], (0..size * size).map(height).collect())
+}
+
+/// A shape under waves, on the device too.
+pub fn wavy(shape: Shape) -> (Loaded, Scene) {
+    under_waves(shape, shape.build())
+}
+
+/// A torus with smooth normals, whose second half has its texture elsewhere: seams with nothing in common.
+fn shifted_torus() -> Mesh {
+    let mut mesh = Shape::Torus.build();
+    let (half, count) = (mesh.triangles.len() / 2, mesh.corners.len() as u32);
+    let shifted = mesh.corners.clone().into_iter().map(|c| Corner { uv: c.uv + glam::vec2(0.37, 0.21), ..c });
+    mesh.corners.extend(shifted);
+    mesh.triangles[half..].iter_mut().for_each(|triangle| *triangle = triangle.map(|corner| corner + count));
+    mesh
+}
+
+fn under_waves(shape: Shape, mut mesh: Mesh) -> (Loaded, Scene) {
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves(64))));
+    let (mesh, source) = (Arc::new(mesh), Source::Shape(shape));
+    let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
+    let scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
+    (Loaded { source, weld: 0.0, mesh, topology, load_ms: 0.0, topology_ms: 0.0 }, scene)
+}
+
+const MODES: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];
+
+fn measured(scene: &mut Scene, loaded: &Loaded, settings: &Settings) -> Measured {
+    engine().count(scene, &inputs(loaded, settings), &mut Timing::Off).expect("counts");
+    engine().measure(scene).expect("a readback")
+}
+
+#[test]
+fn the_device_displaces_as_the_cpu_does() {
+    for shape in [Shape::CubeSplit, Shape::Torus, Shape::Cone, Shape::Saddle] {
+        let (loaded, mut scene) = wavy(shape);
+        let size = loaded.mesh.bounds().radius();
+        for (index, displacement) in MODES.into_iter().enumerate() {
+            for (turn, surface) in Surface::ALL.into_iter().enumerate() {
+                let normals = [Normals::Linear, Normals::Quadratic, Normals::Surface][(index + turn) % 3];
+                let edges = if turn % 4 == 3 { Edges::AsPublished } else { Edges::PerEdge };
+                let partitioning = Partitioning::ALL[turn % 4];
+                let own = Settings { surface, normals, edges, partitioning, displacement, ..Settings::default() };
+                let inputs = inputs(&loaded, &Settings { factor: 5.3, height_scale: 0.2, ..own });
+                let gpu = on_gpu(&mut scene, &inputs);
+                let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+                let what = format!("{shape:?} {displacement:?} {surface:?} {normals:?} {edges:?} {partitioning}");
+                assert_eq!(gpu.vertices.len(), cpu.vertices.len(), "{what}");
+                for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
+                    // Levels are logarithms, good to some 1e-6 of one, and a level is at most the whole height.
+                    let [p, q] = [a.position, b.position].map(glam::Vec3::from);
+                    assert!(p.distance(q) <= 1e-5 * size, "{what}: {p} {q}");
+                    let [n, m] = [a.normal, b.normal].map(unpack_normal);
+                    assert!(n.distance(m) < 2e-3, "{what}: {n} {m}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_edge_cracks_across_seams_or_split_normals() {
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = wavy(shape);
+        for surface in Surface::ALL.into_iter().filter(|surface| !surface.tears()) {
+            for partitioning in Partitioning::ALL {
+                let own = Settings { surface, partitioning, displacement: Displacement::On, ..Settings::default() };
+                let paper = Settings { lod: Lod::EdgeLength, pixels: 6.0, ..own };
+                let error = Settings { lod: Lod::Error, tolerance: 2.0, ..own };
+                for settings in [Settings { factor: 6.4, ..own }, paper, error] {
+                    let measured = measured(&mut scene, &loaded, &Settings { height_scale: 0.3, ..settings });
+                    let what = format!("{shape:?} {surface:?} {partitioning} {:?}", settings.lod);
+                    let cracks = &measured.cracks;
+                    assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{what}");
+                    assert_eq!(measured.not_finite, 0, "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_published_tears_where_it_is_said_to() {
+    let bits = |(loaded, mut scene): (Loaded, Scene), displacement| {
+        let settings = Settings { displacement, factor: 6.0, ..Settings::default() };
+        let cracks = measured(&mut scene, &loaded, &settings).cracks;
+        (cracks.different_bits, cracks.max_gap() / ulp(&loaded.topology))
+    };
+    let seams = || under_waves(Shape::Torus, shifted_torus());
+    // Dominance closes seams, and leaves what has normals of its own.
+    let (points, gap) = bits(wavy(Shape::CubeSplit), Displacement::AsPublished);
+    assert!(points > 60 && gap > 1e4, "{points} points, {gap} ULP");
+    assert_eq!(bits(seams(), Displacement::AsPublished).0, 0, "seams alone");
+    for torn in [wavy(Shape::CubeSplit), seams()] {
+        let (points, gap) = bits(torn, Displacement::PerPatch);
+        assert!(points > 60 && gap > 1e4, "{points} points, {gap} ULP");
+    }
+    assert_eq!(bits(seams(), Displacement::On).0, 0);
+}
+
+#[test]
+fn heights_move_points_along_the_shared_direction_by_scale_and_midlevel() {
+    // One height everywhere: the torus grows by it.
+    let (mut loaded, _) = wavy(Shape::Torus);
+    let mut mesh = (*loaded.mesh).clone();
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, HeightMap::new([4, 4], vec![0.75; 16]))));
+    loaded.mesh = Arc::new(mesh);
+    let mut scene = engine().scene_of(loaded.mesh.clone(), loaded.topology.clone(), ARENA_BYTES).expect("a small mesh");
+    let own = Settings { factor: 3.0, height_scale: 0.1, midlevel: 0.25, ..Settings::default() };
+    let [flat, moved] = [Displacement::Off, Displacement::On]
+        .map(|displacement| on_gpu(&mut scene, &inputs(&loaded, &Settings { displacement, ..own })));
+    let expected = 0.5 * 0.1 * loaded.mesh.bounds().radius();
+    for (a, b) in flat.vertices.iter().zip(&moved.vertices) {
+        let along = glam::Vec3::from(b.position) - glam::Vec3::from(a.position);
+        assert!((along.length() - expected).abs() < 1e-5, "{along}");
+        // What is level stays shaded as it was.
+        assert!(unpack_normal(a.normal).distance(unpack_normal(b.normal)) < 1e-3);
+    }
+}
+
+#[test]
+fn culling_takes_the_amplitude_into_account() {
+    let size = [160, 120];
+    let mut culled = 0;
+    for shape in [Shape::Torus, Shape::CubeSplit] {
+        let (_, mut scene) = wavy(shape);
+        let target = Target::new(&engine().gpu, size).expect("a small picture");
+        for index in 0..24 {
+            let camera = pnaen::stability::random_camera(&scene.bounds, index);
+            let whole = Settings {
+                displacement: Displacement::On,
+                height_scale: 0.5,
+                factor: 8.0,
+                cull_back_faces: true,
+                ..Settings::default()
+            };
+            let mut picture = |settings: &Settings| {
+                engine().draw(&mut scene, &target, &camera, settings, &mut Timing::Off).expect("a picture");
+                (target.read(&engine().gpu).expect("a picture"), scene.tessellator.totals().1)
+            };
+            let (all, triangles) = picture(&whole);
+            let (clipped, fewer) = picture(&Settings { clip: Clip::Frustum, ..whole });
+            assert!(all == clipped, "{shape:?}, camera {index}: clipping shows");
+            culled += triangles - fewer;
+        }
+    }
+    assert!(culled > 10_000, "{culled} triangles left out");
+}
+
+#[test]
+fn lod_by_error_holds_with_gentle_heights() {
+    for shape in [Shape::Torus, Shape::Icosphere, Shape::Saddle] {
+        let (loaded, mut scene) = wavy(shape);
+        let settings = Settings {
+            displacement: Displacement::On,
+            height_scale: 0.05,
+            lod: Lod::Error,
+            tolerance: 1.0,
+            partitioning: Partitioning::Integer,
+            ..Settings::default()
+        };
+        let inputs = inputs(&loaded, &settings);
+        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+        let worst = engine().deviation(&mut scene, &inputs).expect("a readback").expect("it is in view");
+        assert!(worst.px <= 1.0, "{shape:?}: {} px", worst.px);
+        let without = Settings { displacement: Displacement::Off, ..settings };
+        let plain = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &without)).triangles.len() as u64;
+        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+        assert!(scene.tessellator.totals().1 > plain || shape == Shape::Icosphere, "{shape:?}: heights cost triangles");
+    }
+}
