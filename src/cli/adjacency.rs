@@ -20,8 +20,8 @@ pub struct Args {
     /// Indices a patch
     #[arg(long, value_enum, default_value_t = Layout::Nine)]
     pub indices: Layout,
-    /// File to write (- for standard output)
-    #[arg(short, long, value_name = "OUT.json|OUT.bin", required_unless_present = "against")]
+    /// File to write (- for standard output); may be left out with --against
+    #[arg(short, long, value_name = "OUT.json|OUT.bin")]
     pub output: Option<PathBuf>,
     /// What to write; by default bin if the output's name ends in .bin, and otherwise json
     #[arg(long, value_enum, requires = "output")]
@@ -36,6 +36,9 @@ pub struct Args {
 const SAID: usize = 10;
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    if args.output.is_none() && args.against.is_none() {
+        return Err(CliError::Usage("give -o to write a file, --against to hold one against the mesh, or both"));
+    }
     let given = args.against.as_deref().map(|path| read_against(args, path)).transpose()?;
     let loaded = load(&args.file, args.weld)?;
     let computed = args.indices.indices(&loaded.topology);

@@ -227,6 +227,12 @@ fn degenerate_triangles_are_what_too_many_patches_may_be() {
 }
 
 #[test]
+fn without_a_file_to_write_or_to_hold_there_is_nothing_to_do() {
+    let said = failure(&["adjacency", "shape:torus"], 2);
+    assert!(said.contains("-o") && said.contains("--against"), "{said}");
+}
+
+#[test]
 fn a_file_comes_from_standard_input_too() {
     let bin = run(&["adjacency", "shape:torus", "-o", "-", "--format", "bin"]).stdout;
     let json = output(&["adjacency", "shape:torus", "-o", "-"]).into_bytes();

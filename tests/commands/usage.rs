@@ -50,7 +50,6 @@ fn wrong_usage_exits_with_2() {
         &["domain", "--partitioning", "integer"],
         &["domain", "--partitioning", "thirds", "--factors", "1,1,1,1"],
         &["domain", "--partitioning", "integer", "--factors", "1,1,1"],
-        &["adjacency", "shape:torus"],
         &["adjacency", "shape:torus", "--indices", "10", "-o", "-"],
         &["adjacency", "shape:torus", "--format", "csv", "-o", "-"],
         &["adjacency", "shape:torus", "--format", "bin", "--against", "-"],
