@@ -5,6 +5,7 @@
 //! [`measure`] looks at what came out, [`export`] writes it to files, [`engine`] puts them together. [`app`] (the
 //! window) and [`cli`] (the commands) are two thin faces of all that, and hold no mathematics.
 
+pub mod adjacency_file;
 pub mod app;
 pub mod cli;
 pub mod engine;

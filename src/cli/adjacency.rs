@@ -1,11 +1,14 @@
-//! `pnaen adjacency`: PN-AEN's index buffer.
+//! `pnaen adjacency`: PN-AEN's index buffer, written or held against a file.
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
-use super::{CliError, WeldOption, load, write_text};
-use crate::mesh::{Source, adjacency};
+use super::{CliError, WeldOption, file_error, load, read_bytes, write_bytes};
+use crate::adjacency_file::{Format, read, to_bin, to_json};
+use crate::engine::Loaded;
+use crate::measure::{IndexDifference, Meaning, index_differences};
+use crate::mesh::Source;
+use crate::mesh::adjacency::{Layout, Part};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -14,36 +17,144 @@ pub struct Args {
     pub file: Source,
     #[command(flatten)]
     pub weld: WeldOption,
-    /// Indices a patch: 9 (corners and the neighbours' corners), or 12 (and dominant corners)
-    #[arg(long, default_value_t = 9, value_parser = indices)]
-    pub indices: u32,
-    /// File to write, JSON (- for standard output)
-    #[arg(short, long, value_name = "OUT.json")]
-    pub output: PathBuf,
+    /// Indices a patch
+    #[arg(long, value_enum, default_value_t = Layout::Nine)]
+    pub indices: Layout,
+    /// File to write (- for standard output); may be left out with --against
+    #[arg(short, long, value_name = "OUT.json|OUT.bin")]
+    pub output: Option<PathBuf>,
+    /// What to write; by default bin if the output's name ends in .bin, and otherwise json
+    #[arg(long, value_enum, requires = "output")]
+    pub format: Option<Format>,
+    /// Hold this file against what is computed (- for standard input): JSON as this command writes it, or bare indices as in
+    /// a .bin file. Says on standard error which patches differ and what that means, and fails if there are any
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
 }
 
-fn indices(text: &str) -> Result<u32, String> {
-    text.parse().ok().filter(|n| [9, 12].contains(n)).ok_or_else(|| "expected 9 or 12".into())
-}
-
-#[derive(Serialize)]
-struct Adjacency {
-    indices_per_patch: u32,
-    positions: Vec<[f32; 3]>,
-    normals: Vec<[f32; 3]>,
-    patches: Vec<Vec<u32>>,
-}
+/// Differences that are said one by one.
+const SAID: usize = 10;
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    if args.output.is_none() && args.against.is_none() {
+        return Err(CliError::Usage("give -o to write a file, --against to hold one against the mesh, or both"));
+    }
+    let given = args.against.as_deref().map(|path| read_against(args, path)).transpose()?;
     let loaded = load(&args.file, args.weld)?;
-    let (corners, topology) = (&loaded.mesh.corners, &loaded.topology);
-    let flat = if args.indices == 12 { adjacency::twelve_all(topology) } else { adjacency::nine_all(topology) };
-    let adjacency = Adjacency {
-        indices_per_patch: args.indices,
-        positions: corners.iter().map(|c| c.position.to_array()).collect(),
-        normals: corners.iter().map(|c| c.normal.to_array()).collect(),
-        patches: flat.chunks(args.indices as usize).map(<[u32]>::to_vec).collect(),
+    let computed = args.indices.indices(&loaded.topology);
+    if let Some(path) = &args.output {
+        write(args, path, &loaded, &computed)?;
+    }
+    match args.against.as_deref().zip(given) {
+        Some((path, bytes)) => hold_against(args.indices, path, &bytes, &loaded, &computed),
+        None => Ok(()),
+    }
+}
+
+/// Reads the file before anything is written.
+fn read_against(args: &Args, path: &Path) -> Result<Vec<u8>, CliError> {
+    let bytes = read_bytes(path)?;
+    let is_output = |output: &PathBuf| {
+        // Neither path resolves if there is no such file, and `-` is none.
+        let real = std::fs::canonicalize(path).ok();
+        real.is_some() && real == std::fs::canonicalize(output).ok()
     };
-    let text = serde_json::to_string(&adjacency).map_err(|error| CliError::Output(error.into()))?;
-    write_text(&args.output, &(text + "\n"))
+    if args.output.as_ref().is_some_and(is_output) {
+        return Err(file_error(path, "kept", &"the output would replace it: write the output elsewhere"));
+    }
+    Ok(bytes)
+}
+
+fn write(args: &Args, path: &Path, loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
+    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+    match args.format.unwrap_or(Format::of_name(path)) {
+        Format::Json => {
+            let text = to_json(mesh, topology, args.indices, computed);
+            write_bytes(path, text.map_err(|error| CliError::Output(error.into()))?.as_bytes())
+        }
+        Format::Bin => {
+            write_bytes(path, &to_bin(computed))?;
+            if topology.degenerate > 0 {
+                let (left_out, all) = (topology.degenerate, mesh.triangles.len());
+                say(&format!(
+                    "{left_out} of {all} triangles are degenerate and have no patch; the JSON's patch_triangles has the \
+                     triangle of each patch"
+                ));
+            }
+            Ok(())
+        }
+    }
+}
+
+/// Says where a file's indices differ from those of the mesh.
+///
+/// # Errors
+/// They do, or they aren't indices of this mesh.
+fn hold_against(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
+    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+    let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() };
+    let given =
+        read(path, bytes, mesh, topology, layout).map_err(|fault| CliError::Indices { path: name.clone(), fault })?;
+    let differences = index_differences(mesh, topology, layout, &given, computed);
+    let patches = topology.patches.len();
+    if differences.is_empty() {
+        say(&format!("{name}: 0 of {patches} patches differ"));
+        return Ok(());
+    }
+    if differences.len() > SAID {
+        say(&format!("the first {SAID} of {} differences:", differences.len()));
+    }
+    for difference in differences.iter().take(SAID) {
+        say(&difference_said(loaded, difference, &given, computed));
+    }
+    let worst: Vec<_> = differences
+        .chunk_by(|a, b| a.patch == b.patch)
+        .filter_map(|patch| patch.iter().map(|difference| difference.meaning).max())
+        .collect();
+    let differ = if worst.len() == 1 { "differs" } else { "differ" };
+    Err(CliError::OtherIndices { path: name, different: worst.len(), patches, differ, meanings: counted(worst) })
+}
+
+fn say(line: &str) {
+    // Standard error may be closed; then there is nobody to tell.
+    let _ = writeln!(std::io::stderr(), "pnaen: {line}");
+}
+
+fn difference_said(loaded: &Loaded, difference: &IndexDifference, given: &[u32], computed: &[u32]) -> String {
+    let IndexDifference { patch, part, places, meaning } = difference;
+    let own = loaded.topology.patches[*patch as usize];
+    let corners = |indices: &[u32]| {
+        let indices = &indices[places.clone()];
+        let list = indices.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
+        let is_own = |k: u32| indices == [k, (k + 1) % 3].map(|k| own.corners[k as usize]);
+        if matches!(part, Part::Side(k) if is_own(*k)) { format!("{list} (the patch's own)") } else { list }
+    };
+    // They count alike up to the first degenerate triangle.
+    let triangle = if own.triangle == *patch { String::new() } else { format!(" (triangle {})", own.triangle) };
+    let part = match part {
+        Part::Corners => "corners".to_owned(),
+        Part::Side(k) => format!("side {k}-{}", (k + 1) % 3),
+        Part::Dominant => "dominant corners".to_owned(),
+    };
+    let (given, computed) = (corners(given), corners(computed));
+    format!("patch {patch}{triangle}, {part}: the file has {given}, computed are {computed}: {}", words(*meaning))
+}
+
+/// How many there are of each meaning, the least harm first.
+fn counted(mut meanings: Vec<Meaning>) -> String {
+    meanings.sort_unstable();
+    let runs = meanings.chunk_by(|a, b| a == b).map(|run| format!("{} ({})", run.len(), words(run[0])));
+    runs.collect::<Vec<_>>().join(", ")
+}
+
+fn words(meaning: Meaning) -> &'static str {
+    match meaning {
+        Meaning::Turned => "the same patch, begun at another corner",
+        Meaning::OtherDominant => "another dominant corner, the same for all patches around it",
+        Meaning::SameNormals => "other corners, same points and normals",
+        Meaning::OtherNormals => "other corners, same points, other normals",
+        Meaning::MixedDominant => "not the same dominant corner for all patches around it",
+        Meaning::Exchanged => "the side's two corners exchanged",
+        Meaning::OtherPoints => "other points",
+    }
 }

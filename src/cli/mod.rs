@@ -47,7 +47,10 @@ pub enum Command {
     Domain(domain::Args),
     /// Write the factors that the hull shader gives every patch, before the tessellator clamps and rounds them
     Factors(factors::Args),
-    /// Write the index buffer of PN-AEN patches
+    /// Write the index buffer of PN-AEN patches, or hold one against the mesh
+    ///
+    /// Indices count the mesh's distinct corners: one for every position, normal and uv that occur together, which the JSON
+    /// lists. Patches are the triangles in their order, without degenerate ones; the JSON has the triangle of each.
     Adjacency(adjacency::Args),
     /// Try what breaks tessellators, and say what holds and what fails
     ///
@@ -90,6 +93,10 @@ pub enum CliError {
     NoTriangle { file: String, last: usize, triangle: u32 },
     #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
     NoPatch { file: String, triangle: u32 },
+    #[error("{path}: {fault}")]
+    Indices { path: String, fault: crate::adjacency_file::Fault },
+    #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
+    OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }
@@ -129,25 +136,35 @@ pub fn preview(source: Option<Source>, path: &Path) -> Result<(), CliError> {
     render::run(&render::Args::preview(source, path))
 }
 
-/// The whole of a file, or of standard input if the path is `-`.
+/// The whole of a text file, or of standard input if the path is `-`.
 fn read_text(path: &Path) -> Result<String, CliError> {
-    let mut text = String::new();
+    String::from_utf8(read_bytes(path)?).map_err(|error| file_error(path, "read", &error))
+}
+
+/// The whole of a file, or of standard input if the path is `-`.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
+    let mut bytes = Vec::new();
     let read = if path.as_os_str() == "-" {
-        std::io::stdin().read_to_string(&mut text)
+        std::io::stdin().read_to_end(&mut bytes)
     } else {
-        std::fs::File::open(path).and_then(|mut file| file.read_to_string(&mut text))
+        std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut bytes))
     };
     read.map_err(|error| file_error(path, "read", &error))?;
-    Ok(text)
+    Ok(bytes)
 }
 
 /// Writes a whole text, to standard output if the path is `-`.
 fn write_text(path: &Path, text: &str) -> Result<(), CliError> {
+    write_bytes(path, text.as_bytes())
+}
+
+/// Writes a whole file, to standard output if the path is `-`.
+fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     if path.as_os_str() == "-" {
         let mut out = std::io::stdout().lock();
-        return out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(CliError::Output);
+        return out.write_all(bytes).and_then(|()| out.flush()).map_err(CliError::Output);
     }
-    crate::export::write_whole(path, text.as_bytes()).map_err(|error| file_error(path, "written", &error))
+    crate::export::write_whole(path, bytes).map_err(|error| file_error(path, "written", &error))
 }
 
 /// Writes a PNG file, whatever its name ends in.

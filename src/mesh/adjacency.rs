@@ -1,25 +1,97 @@
 //! Index buffers for PN-AEN: each patch with its neighbours' corners.
 //!
 //! The nine-index patch is that of McDonald and Kilgard 2010, "Crack-Free Point-Normal Triangles using Adjacent Edge
-//! Normals"; the twelve-index one adds the dominant corners of McDonald 2011, "Tessellation on Any Budget", in the
-//! order in which meshoptimizer writes them.
+//! Normals". Its first three indices are the mesh's own index buffer; the other six can be kept in a buffer of their own,
+//! beside that one. The twelve-index patch adds the dominant corners of McDonald 2011, "Tessellation on Any Budget", in
+//! the order in which meshoptimizer writes them.
+
+use std::ops::Range;
+
+use clap::ValueEnum;
 
 use super::topology::Topology;
 
-/// A patch's corners 0, 1, 2, then the neighbours' corners across its sides 0-1, 1-2 and 2-0, each pair in the patch's
-/// own direction: entry 3 lies on the same point as corner 0, entry 4 as corner 1, entry 5 as corner 1, and so on.
-/// Where there is no single neighbour (a boundary, or three sides and more) the patch's own corners stand in.
+/// Which indices a patch has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Layout {
+    /// What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0
+    #[value(name = "6")]
+    Six,
+    /// The triangle's corners 0, 1, 2, then the six
+    #[value(name = "9")]
+    Nine,
+    /// The nine, then the dominant corners on the points of corners 0, 1, 2
+    #[value(name = "12")]
+    Twelve,
+}
+
+/// A part of a patch's indices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The triangle's corners.
+    Corners,
+    /// The neighbour's corners along side k, which runs from corner k to corner (k + 1) % 3.
+    Side(u32),
+    /// The dominant corners.
+    Dominant,
+}
+
+impl Layout {
+    pub const ALL: [Self; 3] = [Self::Six, Self::Nine, Self::Twelve];
+
+    /// The number of indices a patch.
+    pub fn per_patch(self) -> usize {
+        match self {
+            Self::Six => 6,
+            Self::Nine => 9,
+            Self::Twelve => 12,
+        }
+    }
+
+    /// The indices of every patch, in the order of the patches.
+    pub fn indices(self, topology: &Topology) -> Vec<u32> {
+        let patches = 0..topology.patches.len() as u32;
+        match self {
+            Self::Six => patches.flat_map(|patch| six(topology, patch)).collect(),
+            Self::Nine => patches.flat_map(|patch| nine(topology, patch)).collect(),
+            Self::Twelve => patches.flat_map(|patch| twelve(topology, patch)).collect(),
+        }
+    }
+
+    /// The parts of a patch, and where among its indices they are.
+    pub fn parts(self) -> impl Iterator<Item = (Part, Range<usize>)> {
+        let first = if self == Self::Six { 0 } else { 3 };
+        let corners = (self != Self::Six).then_some((Part::Corners, 0..3));
+        let sides = (0..3).map(move |k| (Part::Side(k as u32), first + 2 * k..first + 2 * k + 2));
+        let dominant = (self == Self::Twelve).then_some((Part::Dominant, 9..12));
+        corners.into_iter().chain(sides).chain(dominant)
+    }
+}
+
+/// The neighbours' corners along a patch's sides 0-1, 1-2 and 2-0, each pair in the patch's own direction: the first lies
+/// on the point of corner 0, the second on that of corner 1, the third on that of corner 1, and so on. Where there is no
+/// single neighbour (a boundary, or three sides and more) the patch's own corners stand in.
+///
+/// # Panics
+/// When `patch` isn't an index into [`Topology::patches`].
+pub fn six(topology: &Topology, patch: u32) -> [u32; 6] {
+    let own = topology.patches[patch as usize].corners;
+    let mut indices = [0; 6];
+    for k in 0..3 {
+        let across = neighbour(topology, patch, k).unwrap_or([own[k], own[(k + 1) % 3]]);
+        indices[2 * k..2 * k + 2].copy_from_slice(&across);
+    }
+    indices
+}
+
+/// A patch's corners 0, 1, 2, then the six of [`six`].
 ///
 /// # Panics
 /// When `patch` isn't an index into [`Topology::patches`].
 pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
-    let own = topology.patches[patch as usize].corners;
     let mut indices = [0; 9];
-    indices[..3].copy_from_slice(&own);
-    for k in 0..3 {
-        let across = neighbour(topology, patch, k).unwrap_or([own[k], own[(k + 1) % 3]]);
-        indices[3 + 2 * k..5 + 2 * k].copy_from_slice(&across);
-    }
+    indices[..3].copy_from_slice(&topology.patches[patch as usize].corners);
+    indices[3..].copy_from_slice(&six(topology, patch));
     indices
 }
 
@@ -36,16 +108,6 @@ pub fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
         indices[9 + k] = topology.point_corners[point as usize];
     }
     indices
-}
-
-/// [`nine`] for every patch: 9 indices each, in the order of the patches.
-pub fn nine_all(topology: &Topology) -> Vec<u32> {
-    (0..topology.patches.len() as u32).flat_map(|patch| nine(topology, patch)).collect()
-}
-
-/// [`twelve`] for every patch: 12 indices each, in the order of the patches.
-pub fn twelve_all(topology: &Topology) -> Vec<u32> {
-    (0..topology.patches.len() as u32).flat_map(|patch| twelve(topology, patch)).collect()
 }
 
 /// The corners that the one other patch has along side k, in this patch's own direction.
@@ -86,6 +148,7 @@ mod tests {
         let topology = topology(&square());
         assert_eq!(nine(&topology, 0), [0, 1, 2, 0, 1, 1, 2, 4, 3]);
         assert_eq!(nine(&topology, 1), [3, 4, 5, 0, 2, 4, 5, 5, 3]);
+        assert_eq!(six(&topology, 1), [0, 2, 4, 5, 5, 3], "without the corners");
         assert_eq!(twelve(&topology, 1)[9..], [0, 2, 5]);
     }
 
@@ -109,12 +172,27 @@ mod tests {
         for shape in Shape::ALL {
             let topology = topology(&shape.build());
             let point = |corner: u32| topology.corner_points[corner as usize];
-            for indices in nine_all(&topology).chunks(9) {
+            for indices in Layout::Nine.indices(&topology).chunks(9) {
                 for k in 0..3 {
                     assert_eq!(point(indices[3 + 2 * k]), point(indices[k]));
                     assert_eq!(point(indices[4 + 2 * k]), point(indices[(k + 1) % 3]));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn parts_are_all_there_is_and_six_nine_and_twelve_contain_each_other() {
+        let topology = topology(&Shape::Cylinder.build());
+        let of = |layout: Layout| layout.indices(&topology).chunks(layout.per_patch()).map(<[u32]>::to_vec).collect();
+        let [six, nine, twelve]: [Vec<Vec<u32>>; 3] = Layout::ALL.map(of);
+        for (patch, six) in six.iter().enumerate() {
+            assert_eq!([&topology.patches[patch].corners[..], six].concat(), nine[patch]);
+            assert_eq!(nine[patch], twelve[patch][..9]);
+        }
+        for layout in Layout::ALL {
+            let places: Vec<_> = layout.parts().flat_map(|(_, range)| range).collect();
+            assert_eq!(places, (0..layout.per_patch()).collect::<Vec<_>>(), "{layout:?}");
         }
     }
 
@@ -128,7 +206,7 @@ mod tests {
             let bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_ne_bytes()).collect();
             let vertices = meshopt::VertexDataAdapter::new(&bytes, 12, 0).unwrap();
             let theirs = meshopt::generate_tessellation_indices(mesh.triangles.as_flattened(), &vertices);
-            assert_eq!(twelve_all(&topology(&mesh)), theirs, "{}", shape.name());
+            assert_eq!(Layout::Twelve.indices(&topology(&mesh)), theirs, "{}", shape.name());
         }
     }
 }

@@ -1,22 +1,8 @@
-//! `pnaen info` and `pnaen adjacency`: what a mesh is, and what a weld tolerance makes of it.
+//! `pnaen info`: what a mesh is, and what a weld tolerance makes of it.
 
 use serde_json::Value;
 
 use crate::{Folder, output, stats, write_seam, write_triangles};
-
-#[test]
-fn adjacency_has_nine_or_twelve_indices_a_patch() {
-    for (indices, name) in [(9, "9"), (12, "12")] {
-        let text = output(&["adjacency", "shape:cube-split", "--indices", name, "-o", "-"]);
-        let adjacency: Value = serde_json::from_str(&text).expect("JSON");
-        assert_eq!(adjacency["indices_per_patch"], indices);
-        let patches = adjacency["patches"].as_array().expect("an array");
-        assert_eq!(patches.len(), 12);
-        assert!(patches.iter().all(|patch| patch.as_array().map(Vec::len) == Some(indices)));
-        let counts = ["positions", "normals"].map(|list| adjacency[list].as_array().map(Vec::len));
-        assert_eq!(counts, [Some(24), Some(24)]);
-    }
-}
 
 #[test]
 fn info_is_for_people_and_for_programs() {

@@ -1,5 +1,6 @@
 //! The commands as a person or a pipeline meets them: the program itself, its output, its pictures, its exit codes.
 
+mod adjacency;
 mod domain;
 mod factors;
 mod info;

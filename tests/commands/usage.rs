@@ -51,6 +51,8 @@ fn wrong_usage_exits_with_2() {
         &["domain", "--partitioning", "thirds", "--factors", "1,1,1,1"],
         &["domain", "--partitioning", "integer", "--factors", "1,1,1"],
         &["adjacency", "shape:torus", "--indices", "10", "-o", "-"],
+        &["adjacency", "shape:torus", "--format", "csv", "-o", "-"],
+        &["adjacency", "shape:torus", "--format", "bin", "--against", "-"],
         &["info", "shape:torus", "--weld", "0.2"],
         &["info", "shape:torus", "--weld", "-1"],
         &["info", "shape:torus", "--weld=-0.001"],

@@ -1,0 +1,234 @@
+//! PN-AEN indices that were given, against those of the mesh: which patches differ, where, and what that means.
+
+use std::ops::Range;
+
+use crate::mesh::adjacency::{Layout, Part};
+use crate::mesh::{Mesh, Topology};
+
+/// What a difference means, the least harm first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Meaning {
+    /// The same patch, begun at another of its corners.
+    Turned,
+    /// Another corner of the point is the dominant one, for every patch around it.
+    OtherDominant,
+    /// Other corners on the same points with the same normals: the same surface.
+    SameNormals,
+    /// Corners on the same points with other normals.
+    OtherNormals,
+    /// Dominant corners of the same points, but patches around a point name different ones.
+    MixedDominant,
+    /// A side's two corners in the other direction.
+    Exchanged,
+    /// Corners that lie on other points.
+    OtherPoints,
+}
+
+/// A part of a patch that differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct IndexDifference {
+    pub patch: u32,
+    pub part: Part,
+    /// Where it is among all indices.
+    pub places: Range<usize>,
+    pub meaning: Meaning,
+}
+
+/// Every part of every patch in which `given` differs from `computed`, the mesh's own indices in the same layout; in the
+/// order of the patches. A patch that is only turned differs in its corners.
+///
+/// # Panics
+/// When there are fewer indices given than computed, or one is no corner of the mesh.
+pub fn index_differences(
+    mesh: &Mesh,
+    topology: &Topology,
+    layout: Layout,
+    given: &[u32],
+    computed: &[u32],
+) -> Vec<IndexDifference> {
+    let count = layout.per_patch();
+    let dominants = if layout == Layout::Twelve { Dominants::of(topology, given) } else { Dominants::default() };
+    let mut differences = Vec::new();
+    for (patch, computed) in computed.chunks(count).enumerate() {
+        let first = patch * count;
+        let given = &given[first..first + count];
+        if given == computed {
+            continue;
+        }
+        let at = |part, range: Range<usize>, meaning| {
+            let places = first + range.start..first + range.end;
+            IndexDifference { patch: patch as u32, part, places, meaning }
+        };
+        if is_turned(layout, given, computed) {
+            differences.push(at(Part::Corners, 0..3, Meaning::Turned));
+            continue;
+        }
+        for (part, range) in layout.parts().filter(|(_, range)| given[range.clone()] != computed[range.clone()]) {
+            let (given, computed) = (&given[range.clone()], &computed[range.clone()]);
+            let meaning = match (part, same_corners(mesh, topology, given, computed)) {
+                (Part::Dominant, Meaning::SameNormals | Meaning::OtherNormals) => dominants.meaning(topology, given),
+                (_, meaning) => meaning,
+            };
+            differences.push(at(part, range, meaning));
+        }
+    }
+    differences
+}
+
+/// Whether a patch is the computed one begun at another corner. Six indices without the corners that they are for can't be.
+fn is_turned(layout: Layout, given: &[u32], computed: &[u32]) -> bool {
+    if layout == Layout::Six {
+        return false;
+    }
+    let turned = |by: usize| {
+        let mut patch = computed.to_vec();
+        patch[..3].rotate_left(by);
+        patch[3..9].rotate_left(2 * by);
+        patch[9..].rotate_left(if layout == Layout::Twelve { by } else { 0 });
+        patch
+    };
+    turned(1) == given || turned(2) == given
+}
+
+/// What it means that a part has these corners and not those.
+fn same_corners(mesh: &Mesh, topology: &Topology, given: &[u32], computed: &[u32]) -> Meaning {
+    let point = |&corner: &u32| topology.corner_points[corner as usize];
+    let normal = |&corner: &u32| mesh.corners[corner as usize].normal;
+    if given.iter().map(point).eq(computed.iter().map(point)) {
+        let same = given.iter().map(normal).eq(computed.iter().map(normal));
+        if same { Meaning::SameNormals } else { Meaning::OtherNormals }
+    } else if given.len() == 2 && given.iter().rev().map(point).eq(computed.iter().map(point)) {
+        Meaning::Exchanged
+    } else {
+        Meaning::OtherPoints
+    }
+}
+
+/// For each point, the lowest and the highest corner on it that is given as a dominant one.
+#[derive(Default)]
+struct Dominants(Vec<[u32; 2]>);
+
+impl Dominants {
+    fn of(topology: &Topology, given: &[u32]) -> Self {
+        let mut named = vec![[u32::MAX, 0]; topology.points.len()];
+        for &corner in given.chunks(12).flat_map(|patch| &patch[9..]) {
+            let [lowest, highest] = &mut named[topology.corner_points[corner as usize] as usize];
+            *lowest = corner.min(*lowest);
+            *highest = corner.max(*highest);
+        }
+        Self(named)
+    }
+
+    /// Of dominant corners on the right points.
+    fn meaning(&self, topology: &Topology, given: &[u32]) -> Meaning {
+        let is_one = |&corner: &u32| {
+            let [lowest, highest] = self.0[topology.corner_points[corner as usize] as usize];
+            lowest == highest
+        };
+        if given.iter().all(is_one) { Meaning::OtherDominant } else { Meaning::MixedDominant }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Progress, Shape};
+
+    fn cylinder() -> (Mesh, Topology) {
+        let mesh = Shape::Cylinder.build();
+        let topology = Topology::build(&mesh, &Progress::new()).unwrap();
+        (mesh, topology)
+    }
+
+    /// What is found after a change to the computed indices.
+    fn found(layout: Layout, change: impl FnOnce(&Mesh, &Topology, &mut [u32])) -> Vec<(u32, Part, Meaning)> {
+        let (mesh, topology) = cylinder();
+        let computed = layout.indices(&topology);
+        let mut given = computed.clone();
+        change(&mesh, &topology, &mut given);
+        let differences = index_differences(&mesh, &topology, layout, &given, &computed);
+        for IndexDifference { places, .. } in &differences {
+            assert_ne!(given[places.clone()], computed[places.clone()]);
+        }
+        differences.into_iter().map(|found| (found.patch, found.part, found.meaning)).collect()
+    }
+
+    /// Another corner on the same point, whose normal is the same or isn't.
+    fn other(mesh: &Mesh, topology: &Topology, corner: u32, same_normal: bool) -> Option<u32> {
+        let point = |corner: u32| topology.corner_points[corner as usize];
+        let normal = |corner: u32| mesh.corners[corner as usize].normal;
+        let fits = |&c: &u32| c != corner && point(c) == point(corner) && (normal(c) == normal(corner)) == same_normal;
+        (0..mesh.corners.len() as u32).find(fits)
+    }
+
+    #[test]
+    fn what_is_computed_does_not_differ() {
+        for layout in Layout::ALL {
+            assert_eq!(found(layout, |_, _, _| ()), []);
+        }
+    }
+
+    #[test]
+    fn a_turned_patch_is_the_same_patch_unless_it_has_no_corners() {
+        let turn = |count: usize, by: usize| {
+            move |_: &Mesh, _: &Topology, given: &mut [u32]| {
+                let patch = &mut given[count..2 * count];
+                let corners = if count == 6 { 0 } else { 3 };
+                patch[..corners].rotate_left(by % 3 * usize::from(corners > 0));
+                patch[corners..corners + 6].rotate_left(2 * by);
+                patch[corners + 6..].rotate_left(if count == 12 { by } else { 0 });
+            }
+        };
+        for by in [1, 2] {
+            for (layout, count) in [(Layout::Nine, 9), (Layout::Twelve, 12)] {
+                assert_eq!(found(layout, turn(count, by)), [(1, Part::Corners, Meaning::Turned)]);
+            }
+            let sides = [0, 1, 2].map(|side| (1, Part::Side(side), Meaning::OtherPoints));
+            assert_eq!(found(Layout::Six, turn(6, by)), sides);
+        }
+    }
+
+    #[test]
+    fn sides_differ_in_direction_points_normals_or_nothing_that_shows() {
+        let exchanged = found(Layout::Six, |_, _, given| given.swap(2, 3));
+        assert_eq!(exchanged, [(0, Part::Side(1), Meaning::Exchanged)]);
+        let elsewhere = found(Layout::Nine, |_, _, given| given[9 + 7] = given[9 + 1]);
+        assert_eq!(elsewhere, [(1, Part::Side(2), Meaning::OtherPoints)]);
+        for (same_normal, meaning) in [(true, Meaning::SameNormals), (false, Meaning::OtherNormals)] {
+            let mut place = 0;
+            let differences = found(Layout::Nine, |mesh, topology, given| {
+                let sides = (0..given.len()).filter(|place| place % 9 >= 3);
+                let (at, corner) = sides
+                    .filter_map(|at| Some((at, other(mesh, topology, given[at], same_normal)?)))
+                    .next()
+                    .expect("a uv seam and a crease");
+                (place, given[at]) = (at, corner);
+            });
+            let part = Part::Side((place % 9 - 3) as u32 / 2);
+            assert_eq!(differences, [((place / 9) as u32, part, meaning)]);
+        }
+    }
+
+    #[test]
+    fn dominant_corners_are_a_choice_that_all_patches_make_alike() {
+        let places = |given: &[u32]| (0..given.len()).filter(|place| place % 12 >= 9).collect::<Vec<_>>();
+        let first = |mesh: &Mesh, topology: &Topology, given: &[u32]| {
+            let choice = |&at: &usize| Some((given[at], other(mesh, topology, given[at], false)?));
+            places(given).iter().find_map(choice).expect("a crease")
+        };
+        let all = found(Layout::Twelve, |mesh, topology, given| {
+            let (old, new) = first(mesh, topology, given);
+            places(given).into_iter().for_each(|at| given[at] = if given[at] == old { new } else { given[at] });
+        });
+        assert!(all.len() > 2, "{all:?}");
+        assert!(all.iter().all(|&(_, part, meaning)| (part, meaning) == (Part::Dominant, Meaning::OtherDominant)));
+        let one = found(Layout::Twelve, |mesh, topology, given| {
+            let (old, new) = first(mesh, topology, given);
+            let at = places(given).into_iter().find(|&at| given[at] == old).expect("it is there");
+            given[at] = new;
+        });
+        assert_eq!(one.iter().map(|found| found.2).collect::<Vec<_>>(), [Meaning::MixedDominant]);
+        let elsewhere = found(Layout::Twelve, |_, _, given| given.swap(9, 10));
+        assert_eq!(elsewhere, [(0, Part::Dominant, Meaning::OtherPoints)]);
+    }
+}
