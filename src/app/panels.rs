@@ -2,7 +2,7 @@
 
 use super::App;
 use super::text::short;
-use super::widgets::{chooser, heading};
+use super::widgets::{chooser, fixed, heading};
 use crate::settings::{
     Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
 };
@@ -23,7 +23,7 @@ const SURFACES: [(Surface, &str, &str); 3] = [
          their control points, so nothing cracks.",
     ),
 ];
-const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
+const PARTITIONINGS: [(Partitioning, &str, &str); 5] = [
     (Partitioning::Integer, "Integer", "Factors are rounded up: every segment is as long, and the pattern pops."),
     (
         Partitioning::Pow2,
@@ -39,6 +39,12 @@ const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
         Partitioning::FractionalEven,
         "Fractional even",
         "An even number of segments, two of which grow from nothing; at least 2.",
+    ),
+    (
+        Partitioning::Subtriangulation,
+        "Subtriangulation",
+        "The factor is rounded up to n, and every patch becomes n x n equal triangles: level of detail n - 1 of Vlachos et \
+         al. 2001, figure 4. Not Direct3D's; one factor for all, so LOD is uniform.",
     ),
 ];
 const EDGES: [(Edges, &str, &str); 2] = [
@@ -82,6 +88,8 @@ const LODS: [(Lod, &str, &str); 5] = [
          (McDonald and Kilgard 2010).",
     ),
 ];
+const LOD_FIXED: &str = "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD \
+                         that was chosen.";
 const CLIPS: [(Clip, &str, &str); 3] = [
     (Clip::Off, "Off", "Every patch is drawn."),
     (
@@ -198,6 +206,7 @@ impl App {
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
+        let takes_factor = matches!(settings.used_lod(), Lod::Uniform | Lod::Distance);
         chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
         let hover = "Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -). Under LOD by distance, the \
                      largest.";
@@ -206,7 +215,7 @@ impl App {
             .max_decimals(3)
             .logarithmic(true)
             .update_while_editing(false);
-        ui.add_enabled(matches!(settings.lod, Lod::Uniform | Lod::Distance), slider)
+        ui.add_enabled(takes_factor, slider)
             .labelled_by(label.id)
             .on_hover_text(hover)
             .on_disabled_hover_text("Adaptive LOD computes a factor for every edge.");
@@ -220,7 +229,11 @@ impl App {
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
         egui::Grid::new("lod").num_columns(2).min_col_width(84.0).show(ui, |ui| {
-            chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
+            if settings.partitioning == Partitioning::Subtriangulation {
+                fixed(ui, "LOD", "Uniform", LOD_FIXED);
+            } else {
+                chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
+            }
             lod_row(ui, settings);
             ui.end_row();
             chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
@@ -309,6 +322,9 @@ impl App {
     }
 
     pub(super) fn toggle_lod(&mut self) {
+        if self.settings.partitioning == Partitioning::Subtriangulation {
+            return;
+        }
         let adaptive = if self.settings.edges == Edges::AsPublished { Lod::Paper } else { Lod::Error };
         self.settings.lod = if self.settings.lod == Lod::Uniform { adaptive } else { Lod::Uniform };
     }
@@ -327,11 +343,12 @@ impl App {
 
 /// What the chosen LOD takes.
 fn lod_row(ui: &mut egui::Ui, settings: &mut Settings) {
-    if settings.lod == Lod::Distance {
+    let lod = settings.used_lod();
+    if lod == Lod::Distance {
         distances_row(ui, settings);
         return;
     }
-    let (name, hover, value, range, decimals) = if settings.lod == Lod::Error {
+    let (name, hover, value, range, decimals) = if lod == Lod::Error {
         let hover = "How far what is emitted may be from the surface on screen, in px.";
         ("Tolerance", hover, &mut settings.tolerance, TOLERANCE_RANGE, 2)
     } else {
@@ -343,7 +360,7 @@ fn lod_row(ui: &mut egui::Ui, settings: &mut Settings) {
         .max_decimals(decimals)
         .suffix(" px")
         .update_while_editing(false);
-    ui.add_enabled(settings.lod != Lod::Uniform, slider)
+    ui.add_enabled(lod != Lod::Uniform, slider)
         .labelled_by(label.id)
         .on_hover_text(hover)
         .on_disabled_hover_text("Only adaptive LOD measures on screen.");

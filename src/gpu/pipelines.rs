@@ -3,7 +3,11 @@
 use super::Gpu;
 
 /// Rooms of the tessellator itself, part of every module that tessellates.
-const DOMAIN: [&str; 2] = [include_str!("../../shaders/factors.wgsl"), include_str!("../../shaders/domain.wgsl")];
+const DOMAIN: [&str; 3] = [
+    include_str!("../../shaders/factors.wgsl"),
+    include_str!("../../shaders/domain.wgsl"),
+    include_str!("../../shaders/subtriangulation.wgsl"),
+];
 const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
 const LOD: &str = include_str!("../../shaders/lod.wgsl");
 const ERROR: &str = include_str!("../../shaders/error.wgsl");
@@ -14,7 +18,7 @@ const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
-const ROOMS: [&str; 8] = [DOMAIN[0], DOMAIN[1], SURFACE, LOD, ERROR, CULL, CONVENTION, TYPES];
+const ROOMS: [&str; 9] = [DOMAIN[0], DOMAIN[1], DOMAIN[2], SURFACE, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 11] = [

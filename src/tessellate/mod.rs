@@ -11,6 +11,7 @@ mod hull;
 mod lod;
 mod mesh;
 mod solid;
+mod subtriangulation;
 mod surface;
 
 pub use budget::fit_budget;
@@ -21,8 +22,8 @@ pub use cull::{
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
-    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
-    point_count, process, round_pow2, segments, triangle_count,
+    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled,
+    patch_is_low, point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull::HullFactors;
 pub use lod::{
