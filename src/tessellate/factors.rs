@@ -45,8 +45,8 @@ pub enum Partitioning {
     FractionalOdd = 2,
     /// Always an even number of segments, two of which grow from nothing.
     FractionalEven = 3,
-    /// Not Direct3D's: rounded up to n, the patch is cut into n x n equal triangles, without rings that differ and so
-    /// without transitions (Vlachos et al. 2001, section 2, whose level of detail is n - 1). One factor for all its edges.
+    /// Not Direct3D's: rounded up to n, and the patch cut into n x n equal triangles (Vlachos et al. 2001, section 2, whose
+    /// level of detail is n - 1). One number for all edges, since nothing joins rows of different ones.
     Subtriangulation = 4,
 }
 
