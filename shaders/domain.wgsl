@@ -1,5 +1,5 @@
 // Domain points and triangles of a patch, each one in closed form from its number.
-// Twin of src/tessellate/domain.rs, which says what each function means. Goes with factors.wgsl.
+// Twin of src/tessellate/domain.rs, which says what each function means. Goes with factors.wgsl and subtriangulation.wgsl.
 
 const FIXED_TWO_THIRDS: u32 = 0xaaaau;
 
@@ -60,6 +60,9 @@ fn rings_before(m: u32, area: u32) -> u32 {
 }
 
 fn domain_point(factors: PatchFactors, i: u32) -> vec2<u32> {
+    if patch_is_subtriangulated(factors) {
+        return subtriangulation_point(segments(factors.inside), i);
+    }
     let outer = outer_count(factors);
     if i < outer {
         return outer_point(factors, i);
@@ -105,6 +108,9 @@ fn ring_point(start: u32, length: u32, p: u32) -> u32 {
 fn domain_triangle(factors: PatchFactors, t: u32) -> vec3<u32> {
     if patch_is_minimal(factors) {
         return vec3<u32>(0u, 1u, 2u);
+    }
+    if patch_is_subtriangulated(factors) {
+        return subtriangulation_triangle(segments(factors.inside), t);
     }
     let outer = outer_count(factors);
     let n = inside_segments(factors.inside);

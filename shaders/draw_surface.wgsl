@@ -89,7 +89,7 @@ fn vertex_domain(index: u32) -> vec2<u32> {
 }
 
 fn factor_value(word: u32) -> f32 {
-    return f32(word & ~FACTOR_ODD) * UNIT;
+    return f32(word & FACTOR_VALUE) * UNIT;
 }
 
 fn with_factors(varyings: Varyings, patch_index: u32) -> Varyings {

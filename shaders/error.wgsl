@@ -289,7 +289,7 @@ fn rim_error(view: LodView, rim: Rim, sight: Sight, seen: vec4<f32>, factor: f32
 }
 
 fn whole(partitioning: u32, least: f32) -> f32 {
-    if partitioning == PARTITIONING_INTEGER {
+    if partitioning == PARTITIONING_INTEGER || partitioning == PARTITIONING_SUBTRIANGULATION {
         return ceil(least);
     }
     if partitioning == PARTITIONING_POW2 {

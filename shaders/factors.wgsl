@@ -8,10 +8,13 @@ const PARTITIONING_INTEGER: u32 = 0u;
 const PARTITIONING_POW2: u32 = 1u;
 const PARTITIONING_FRACTIONAL_ODD: u32 = 2u;
 const PARTITIONING_FRACTIONAL_EVEN: u32 = 3u;
+const PARTITIONING_SUBTRIANGULATION: u32 = 4u;
 
 const FIXED_ONE: u32 = 0x10000u;
 const FIXED_HALF: u32 = 0x8000u;
 const FACTOR_ODD: u32 = 0x80000000u;
+const FACTOR_VALUE: u32 = 0x7fffffu;
+const SUBTRIANGULATED: u32 = 0x40000000u;
 
 const BITS_ONE: u32 = 0x3f800000u;
 const BITS_TWO: u32 = 0x40000000u;
@@ -42,7 +45,7 @@ fn factor_upper_bound(partitioning: u32) -> u32 {
 fn factor_word(partitioning: u32, bits: u32) -> u32 {
     let exponent = (bits >> 23u) - 127u;
     let mantissa = (bits & 0x7fffffu) | 0x800000u;
-    if partitioning == PARTITIONING_INTEGER || partitioning == PARTITIONING_POW2 {
+    if partitioning != PARTITIONING_FRACTIONAL_ODD && partitioning != PARTITIONING_FRACTIONAL_EVEN {
         let shift = 23u - exponent;
         let whole = (mantissa + (1u << shift) - 1u) >> shift;
         return (whole << 16u) | (whole << 31u);
@@ -68,8 +71,12 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
     let high = factor_upper_bound(partitioning);
     let clamped = clamp(bits, vec3<u32>(low), vec3<u32>(high));
 
-    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
     let largest = max(max(clamped.x, clamped.y), clamped.z);
+    if partitioning == PARTITIONING_SUBTRIANGULATION {
+        let word = factor_word(partitioning, largest);
+        return PatchFactors(vec3<u32>(word), word | SUBTRIANGULATED);
+    }
+    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
     let splits = partitioning == PARTITIONING_FRACTIONAL_ODD && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = select(low, BITS_ONE_AND_STEP, splits);
     let inside_bits = select(0u, bitcast<u32>(inside), positive_bits(bitcast<u32>(inside)));
@@ -97,14 +104,18 @@ fn patch_is_culled(factors: PatchFactors) -> bool {
     return factors.outside.x == 0u;
 }
 
+fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
+    return !patch_is_culled(factors) && (factors.inside & SUBTRIANGULATED) != 0u;
+}
+
 fn patch_is_minimal(factors: PatchFactors) -> bool {
     let edges_are_one = all(factors.outside == vec3<u32>(FACTOR_ODD | FIXED_ONE));
-    return edges_are_one && (factors.inside & ~FACTOR_ODD) == FIXED_ONE;
+    return edges_are_one && (factors.inside & FACTOR_VALUE) == FIXED_ONE;
 }
 
 fn patch_is_low(factors: PatchFactors) -> bool {
-    let edges_are_low = all((factors.outside & vec3<u32>(~FACTOR_ODD)) < vec3<u32>(2u * FIXED_ONE));
-    return !patch_is_culled(factors) && edges_are_low && (factors.inside & ~FACTOR_ODD) < 2u * FIXED_ONE;
+    let edges_are_low = all((factors.outside & vec3<u32>(FACTOR_VALUE)) < vec3<u32>(2u * FIXED_ONE));
+    return !patch_is_culled(factors) && edges_are_low && (factors.inside & FACTOR_VALUE) < 2u * FIXED_ONE;
 }
 
 fn odd_parity(word: u32) -> u32 {
@@ -112,7 +123,7 @@ fn odd_parity(word: u32) -> u32 {
 }
 
 fn half_factor(word: u32) -> u32 {
-    let half = ((word & ~FACTOR_ODD) + 1u) >> 1u;
+    let half = ((word & FACTOR_VALUE) + 1u) >> 1u;
     let rounds_up = odd_parity(word) == 1u || half == FIXED_HALF;
     return select(half, half + FIXED_HALF, rounds_up);
 }
@@ -140,6 +151,10 @@ fn point_count(factors: PatchFactors) -> u32 {
     if patch_is_minimal(factors) {
         return 3u;
     }
+    if patch_is_subtriangulated(factors) {
+        let n = segments(factors.inside);
+        return ((n + 1u) * (n + 2u)) >> 1u;
+    }
     // The rings inside hold 3 R^2 points (odd) or 3 R (R + 1) + 1 (even, with the centre), R = (n - 1) / 2.
     let n = inside_segments(factors.inside);
     return outer_count(factors) + ((3u * (n - 1u) * (n - 1u) + 1u) >> 2u);
@@ -151,6 +166,10 @@ fn triangle_count(factors: PatchFactors) -> u32 {
     }
     if patch_is_minimal(factors) {
         return 1u;
+    }
+    if patch_is_subtriangulated(factors) {
+        let n = segments(factors.inside);
+        return n * n;
     }
     let inner = inside_segments(factors.inside) - 2u;
     return outer_count(factors) + 3u * inner + ((3u * inner * inner) >> 1u);

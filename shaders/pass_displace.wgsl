@@ -13,9 +13,6 @@
 @group(0) @binding(11) var<storage, read> shares: array<Share>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
 
-// Of a factor's word, what it is in 16.16 fixed point: at most 64.
-const FACTOR_BITS: u32 = 0x7fffffu;
-
 // Where heights are looked up for a point: a patch, weights in it, and a level.
 struct Lookup {
     patch_index: u32,
@@ -198,7 +195,7 @@ fn displace_main(
     let key = vec2<u32>(vertex.key0, vertex.key1);
     let patch_index = key_patch(key);
     let uv = key_uv(key);
-    let segments = f32(patch_factors[patch_index - slab.first_patch].inside & FACTOR_BITS) * UNIT;
+    let segments = f32(patch_factors[patch_index - slab.first_patch].inside & FACTOR_VALUE) * UNIT;
     let at = spot(uv.x, uv.y);
     let own = own_lookup(patch_index, uv.x, uv.y, at, segments);
     var asked = own;

@@ -30,6 +30,7 @@ pub struct Settings {
     /// Tessellation factor under uniform LOD, 1 to 64.
     pub factor: f32,
     pub partitioning: Partitioning,
+    /// What is chosen; see [`Self::used_lod`].
     pub lod: Lod,
     /// Under adaptive LOD: length of a segment on screen, in px.
     pub pixels: f32,
@@ -234,9 +235,15 @@ impl Settings {
         };
     }
 
+    /// Where factors come from. Subtriangulation has one number of segments everywhere, so that it is uniform whatever is
+    /// chosen; what is chosen is kept for other partitionings.
+    pub fn used_lod(&self) -> Lod {
+        if self.partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { self.lod }
+    }
+
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        let Self { surface, alpha, normals, edges, factor, partitioning, lod, pixels, tolerance, .. } = *self;
+        let Self { surface, alpha, normals, edges, factor, partitioning, pixels, tolerance, .. } = *self;
         let Self { near, far, clip, cull_back_faces, convention, displacement, height_scale, midlevel, .. } = *self;
         Inputs {
             surface,
@@ -245,7 +252,7 @@ impl Settings {
             edges,
             factor,
             partitioning,
-            lod,
+            lod: self.used_lod(),
             pixels,
             tolerance,
             near,
@@ -280,6 +287,18 @@ mod tests {
         let factors = Overlays { colors: Colors::Factors, wireframe: true, ..Overlays::default() };
         assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Wireframe, Overlay::Factors]), Some(factors));
         assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Barycentric]), None);
+    }
+
+    #[test]
+    fn subtriangulation_is_uniform_and_forgets_no_lod() {
+        let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
+        for partitioning in Partitioning::ALL {
+            for lod in [Lod::Uniform, Lod::Paper, Lod::EdgeLength, Lod::Error, Lod::Distance] {
+                let settings = Settings { partitioning, lod, ..Settings::opening() };
+                let used = if partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { lod };
+                assert_eq!((settings.used_lod(), settings.inputs(view).lod), (used, used), "{partitioning} {lod:?}");
+            }
+        }
     }
 
     #[test]

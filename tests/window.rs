@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
 use pnaen::settings::Colors;
@@ -142,6 +142,30 @@ fn every_switch_does_what_it_says() {
     choose(&mut harness, "Edges", "As published");
     let settings = *harness.state().settings();
     assert_eq!((settings.edges, settings.lod, settings.clip), (Edges::AsPublished, Lod::Paper, Clip::Paper));
+}
+
+#[test]
+fn subtriangulation_is_uniform_and_gives_the_lod_back() {
+    let mut harness = window(None);
+    let opening = *harness.state().settings();
+    assert_eq!(opening.used_lod(), Lod::Error);
+    choose(&mut harness, "Partitioning", "Subtriangulation");
+    let settings = *harness.state().settings();
+    assert_eq!((settings.partitioning, settings.used_lod()), (Partitioning::Subtriangulation, Lod::Uniform));
+    // Half of the cube shows its back; the factor is 8.
+    assert_eq!(harness.state().totals(), Some((6 * 45, 6 * 64)));
+    let lod = harness.get_by_role_and_label(Role::ComboBox, "LOD");
+    assert!(lod.accesskit_node().is_disabled(), "nothing to choose");
+    assert_eq!(lod.value().as_deref(), Some("Uniform"));
+    press(&mut harness, egui::Key::L);
+    assert_eq!(*harness.state().settings(), settings, "L changes nothing either");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(4.5);
+    settle(&mut harness);
+    assert_eq!(harness.state().totals(), Some((6 * 21, 6 * 25)));
+    assert_eq!(harness.state().cracks().map(|cracks| cracks.different_bits), Some(0));
+    choose(&mut harness, "Partitioning", "Integer");
+    assert_eq!((harness.state().settings().used_lod(), harness.state().settings().factor), (opening.lod, 4.5));
+    assert!(!harness.get_by_role_and_label(Role::ComboBox, "LOD").accesskit_node().is_disabled());
 }
 
 #[test]

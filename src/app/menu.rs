@@ -207,7 +207,7 @@ impl App {
         self.overlay_keys(context);
         self.camera_keys(context);
         let steps = presses(context, Key::Plus) + presses(context, Key::Equals) - presses(context, Key::Minus);
-        if steps != 0.0 && matches!(self.settings.lod, Lod::Uniform | Lod::Distance) {
+        if steps != 0.0 && matches!(self.settings.used_lod(), Lod::Uniform | Lod::Distance) {
             let factor = self.settings.factor + steps;
             self.settings.factor = factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
         }

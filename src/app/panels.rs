@@ -2,7 +2,7 @@
 
 use super::App;
 use super::text::short;
-use super::widgets::{chooser, heading, value_chooser};
+use super::widgets::{chooser, fixed, heading, value_chooser};
 use crate::settings::{
     ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
 };
@@ -41,7 +41,7 @@ const CONVENTIONS: [(Convention, &str); 5] = [
     (Convention::Mirrored, "Mirrored, a mistake"),
 ];
 /// Name and explanation of each partitioning, meaning of colours and overlay.
-const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
+const PARTITIONINGS: [(Partitioning, &str, &str); 5] = [
     (Partitioning::Integer, "Integer", "Factors are rounded up: every segment is as long, and the pattern pops."),
     (
         Partitioning::Pow2,
@@ -58,7 +58,15 @@ const PARTITIONINGS: [(Partitioning, &str, &str); 4] = [
         "Fractional even",
         "An even number of segments, two of which grow from nothing; at least 2.",
     ),
+    (
+        Partitioning::Subtriangulation,
+        "Subtriangulation",
+        "The factor is rounded up to n, and every patch becomes n x n equal triangles: level of detail n - 1 of Vlachos et \
+         al. 2001, figure 4. Not Direct3D's; one factor for all, so LOD is uniform.",
+    ),
 ];
+const LOD_FIXED: &str = "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD \
+                         that was chosen.";
 const COLORS: [(Colors, &str, &str); 5] = [
     (Colors::Material, "Material", "The mesh's own."),
     (
@@ -131,6 +139,7 @@ impl App {
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
+        let takes_factor = matches!(settings.used_lod(), Lod::Uniform | Lod::Distance);
         value_chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
         let hover = "How strong Phong tessellation is, from 0, flat, to 1; its authors use 0.75.";
         let label = ui.label("Alpha").on_hover_text(hover);
@@ -148,7 +157,7 @@ impl App {
             .max_decimals(3)
             .logarithmic(true)
             .update_while_editing(false);
-        ui.add_enabled(matches!(settings.lod, Lod::Uniform | Lod::Distance), slider)
+        ui.add_enabled(takes_factor, slider)
             .labelled_by(label.id)
             .on_hover_text(hover)
             .on_disabled_hover_text("Adaptive LOD computes a factor for every edge.");
@@ -162,7 +171,11 @@ impl App {
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
         egui::Grid::new("lod").num_columns(2).min_col_width(84.0).show(ui, |ui| {
-            value_chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
+            if settings.partitioning == Partitioning::Subtriangulation {
+                fixed(ui, "LOD", "Uniform", LOD_FIXED);
+            } else {
+                value_chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
+            }
             lod_row(ui, settings);
             ui.end_row();
             value_chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
@@ -251,6 +264,9 @@ impl App {
     }
 
     pub(super) fn toggle_lod(&mut self) {
+        if self.settings.partitioning == Partitioning::Subtriangulation {
+            return;
+        }
         let adaptive = if self.settings.edges == Edges::AsPublished { Lod::Paper } else { Lod::Error };
         self.settings.lod = if self.settings.lod == Lod::Uniform { adaptive } else { Lod::Uniform };
     }
@@ -269,11 +285,12 @@ impl App {
 
 /// What the chosen LOD takes.
 fn lod_row(ui: &mut egui::Ui, settings: &mut Settings) {
-    if settings.lod == Lod::Distance {
+    let lod = settings.used_lod();
+    if lod == Lod::Distance {
         distances_row(ui, settings);
         return;
     }
-    let (name, hover, value, range, decimals) = if settings.lod == Lod::Error {
+    let (name, hover, value, range, decimals) = if lod == Lod::Error {
         let hover = "How far what is emitted may be from the surface on screen, in px.";
         ("Tolerance", hover, &mut settings.tolerance, TOLERANCE_RANGE, 2)
     } else {
@@ -285,7 +302,7 @@ fn lod_row(ui: &mut egui::Ui, settings: &mut Settings) {
         .max_decimals(decimals)
         .suffix(" px")
         .update_while_editing(false);
-    ui.add_enabled(settings.lod != Lod::Uniform, slider)
+    ui.add_enabled(lod != Lod::Uniform, slider)
         .labelled_by(label.id)
         .on_hover_text(hover)
         .on_disabled_hover_text("Only adaptive LOD measures on screen.");

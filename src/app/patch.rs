@@ -15,7 +15,7 @@ use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
 use crate::tessellate::{
-    Convention, FACING_AWAY, FACTOR_ODD, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_side,
+    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_side,
     domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
 };
 
@@ -58,7 +58,7 @@ impl App {
                     triangle,
                     patch,
                     convention: self.convention(),
-                    lod: self.settings.lod,
+                    lod: self.settings.used_lod(),
                     selected_edge: self.selected_edge,
                     factors: found.map(|found| found.rims.factors(patch)),
                     sides: found.and_then(|found| found.rims.patch(topology, patch)),
@@ -309,7 +309,7 @@ const LISTED_NEIGHBOURS: usize = 16;
 
 /// The factor in a word: see [`PatchFactors`].
 fn used(word: u32) -> f64 {
-    f64::from(word & !FACTOR_ODD) / f64::from(FIXED_ONE)
+    f64::from(word & FACTOR_VALUE) / f64::from(FIXED_ONE)
 }
 
 /// A line of the factors' table, and the colour of the edge.

@@ -47,6 +47,15 @@ pub fn value_chooser<T: ValueEnum + PartialEq + Copy>(
     chooser(ui, name, hover, value, &all);
 }
 
+/// The same where there is nothing to choose, and why.
+pub fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
+    let label = ui.label(name).on_hover_text(why);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown);
+    let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
+    response.labelled_by(label.id).on_disabled_hover_text(why);
+    ui.end_row();
+}
+
 /// A row with a name and a right-aligned number.
 pub fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
     ui.label(name).on_hover_text(hover);

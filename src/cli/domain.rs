@@ -6,11 +6,14 @@ use std::path::{Path, PathBuf};
 use super::tessellate::Device;
 use super::{CliError, read_text};
 use crate::gpu::{DomainPass, DomainPattern, Gpu};
-use crate::tessellate::{Partitioning, domain_point, domain_triangle, point_count, process, triangle_count};
+use crate::tessellate::{
+    HullFactors, Partitioning, domain_point, domain_triangle, point_count, process, triangle_count,
+};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// How factors become segments: integer, pow2, fractional-odd or fractional-even
+    /// How factors become segments: integer, pow2, fractional-odd or fractional-even; or subtriangulation, which takes four
+    /// equal factors F for ceil(F) x ceil(F) equal triangles, a level of detail of ceil(F) - 1
     #[arg(long, value_name = "P")]
     pub partitioning: Partitioning,
     /// Factors of the edges where u, v and w are 0, and inside; also nan, inf, 0 and negatives
@@ -39,7 +42,8 @@ const BATCH: usize = 256;
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     let (sets, numbered) = match (&args.input, args.factors) {
-        (Some(path), _) => (read_sets(path)?, true),
+        (Some(path), _) => (read_sets(path, args.partitioning)?, true),
+        (None, Some(set)) if !is_taken(args.partitioning, set) => return Err(CliError::Usage(NOT_EQUAL)),
         (None, set) => (set.into_iter().collect(), false),
     };
     let mut out = BufWriter::new(std::io::stdout().lock());
@@ -60,6 +64,14 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         }
     }
     out.flush().map_err(CliError::Output)
+}
+
+/// Why a set is refused.
+const NOT_EQUAL: &str = "subtriangulation has one number of segments for all: expected four equal factors";
+
+/// Whether a partitioning takes a set: subtriangulation has one number of segments for all edges.
+fn is_taken(partitioning: Partitioning, [e0, e1, e2, inside]: FactorSet) -> bool {
+    partitioning != Partitioning::Subtriangulation || HullFactors { edges: [e0, e1, e2], inside }.is_uniform()
 }
 
 fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &FactorSet) -> DomainPattern {
@@ -89,16 +101,16 @@ fn factor_set<'a>(numbers: impl Iterator<Item = &'a str>) -> Option<FactorSet> {
     numbers?.try_into().ok()
 }
 
-/// The sets of a file, one a line; empty lines are passed over.
-fn read_sets(path: &Path) -> Result<Vec<FactorSet>, CliError> {
+/// The sets of a file, one a line, that a partitioning takes; empty lines are passed over.
+fn read_sets(path: &Path, partitioning: Partitioning) -> Result<Vec<FactorSet>, CliError> {
     let text = read_text(path)?;
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let set = |(index, line): (usize, &str)| {
-        factor_set(line.split_whitespace()).ok_or_else(|| CliError::Line {
-            path: path.display().to_string(),
-            line: index + 1,
-            reason: "expected four numbers separated by spaces, such as 3 2.5 inf 4".into(),
-        })
+        let at_line =
+            |reason: &str| CliError::Line { path: path.display().to_string(), line: index + 1, reason: reason.into() };
+        let set = factor_set(line.split_whitespace())
+            .ok_or_else(|| at_line("expected four numbers separated by spaces, such as 3 2.5 inf 4"))?;
+        if is_taken(partitioning, set) { Ok(set) } else { Err(at_line(NOT_EQUAL)) }
     };
     lines.map(set).collect()
 }

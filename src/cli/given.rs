@@ -10,7 +10,7 @@ use super::{CliError, read_text};
 use crate::factors_file::from_csv;
 use crate::measure::{Agreement, Disagreement, Order};
 use crate::mesh::{Mesh, Topology};
-use crate::tessellate::{Convention, HullFactors};
+use crate::tessellate::{Convention, HullFactors, Partitioning};
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct GivenOption {
@@ -41,8 +41,14 @@ impl GivenOption {
     /// Reads the file, if there is one, and says what it found.
     ///
     /// # Errors
-    /// The file can't be read, or isn't one of this mesh.
-    pub fn read(&self, mesh: &Mesh, topology: &Topology, convention: Convention) -> Result<Option<Given>, CliError> {
+    /// The file can't be read, or isn't one of this mesh, or has factors that the partitioning doesn't take.
+    pub fn read(
+        &self,
+        mesh: &Mesh,
+        topology: &Topology,
+        convention: Convention,
+        partitioning: Partitioning,
+    ) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.given else { return Ok(None) };
         let text = read_text(path)?;
         let factors = from_csv(&text, topology, mesh.triangles.len()).map_err(|error| CliError::Line {
@@ -50,6 +56,12 @@ impl GivenOption {
             line: error.line,
             reason: error.fault.to_string(),
         })?;
+        if partitioning == Partitioning::Subtriangulation {
+            let uneven = topology.patches.iter().zip(&factors).find(|(_, factors)| !factors.is_uniform());
+            if let Some((patch, _)) = uneven {
+                return Err(CliError::Uneven { path: path.display().to_string(), triangle: patch.triangle });
+            }
+        }
         let agreement = Agreement::of(topology, &factors, convention);
         for line in said(topology, &agreement, convention) {
             let _ = writeln!(std::io::stderr(), "pnaen: {line}");

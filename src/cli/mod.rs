@@ -78,6 +78,11 @@ pub enum CliError {
     Different { picture: String, reference: String, difference: f64, threshold: f64, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
+    #[error(
+        "{path}: the factors of patch {triangle} are not all equal, and subtriangulation has one number of segments for all: \
+         choose another --partitioning"
+    )]
+    Uneven { path: String, triangle: u32 },
     #[error(transparent)]
     Picture(#[from] crate::stability::PictureError),
     #[error("{count} of the table's lines break a promise, the first: {method} on {case}")]

@@ -34,7 +34,8 @@ pub struct SurfaceOptions {
     /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64
     #[arg(long, value_name = "F", default_value_t = Settings::default().factor, value_parser = factor)]
     pub factor: f32,
-    /// How factors become segments: integer, pow2, fractional-odd or fractional-even
+    /// How factors become segments: integer, pow2, fractional-odd or fractional-even; or subtriangulation, under which
+    /// factor F cuts every patch into ceil(F) x ceil(F) equal triangles, a level of detail of ceil(F) - 1
     #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning)]
     pub partitioning: Partitioning,
     /// Where factors come from: the same everywhere; the white paper's projected length of an edge's control polygon;
@@ -95,8 +96,13 @@ impl SurfaceOptions {
     /// What parsing can't see: options that need one another.
     ///
     /// # Errors
-    /// A budget without a tolerance to raise.
+    /// A budget without a tolerance to raise, or factors that differ under a partitioning that has one for all.
     pub fn check(&self) -> Result<(), CliError> {
+        if self.partitioning == Partitioning::Subtriangulation && self.lod != Lod::Uniform {
+            return Err(CliError::Usage(
+                "--partitioning subtriangulation has one number of segments for all edges: it needs --lod uniform",
+            ));
+        }
         if self.max_triangles.is_some() && self.lod != Lod::Error {
             return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
         }

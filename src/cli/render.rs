@@ -89,7 +89,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let overlays = args.overlays()?;
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
     let loaded = load(&args.file, args.surface.weld)?;
-    let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention)?;
+    let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
@@ -135,7 +135,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         let leaks = engine.leaks(&mut scene, &measured, target.size, &camera)?;
         let max_error_px = deviation.map(|worst| worst.px);
         let mut factors_capped = engine.asked_factors(&scene)?.beyond(settings.partitioning);
-        if settings.lod == Lod::Error {
+        if settings.used_lod() == Lod::Error {
             let written = scene.tessellator.hull_factors()?;
             factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
         }

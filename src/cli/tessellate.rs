@@ -41,7 +41,8 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     Exported::check(&args.output, 0, 0)?;
     let loaded = load(&args.file, args.surface.weld)?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
-    let given = args.given.read(mesh, topology, args.surface.convention)?.map(|given| given.factors);
+    let given =
+        args.given.read(mesh, topology, args.surface.convention, args.surface.partitioning)?.map(|given| given.factors);
     let bounds = mesh.bounds();
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {

@@ -3,7 +3,11 @@
 use super::Gpu;
 
 /// Rooms of the tessellator itself, part of every module that tessellates.
-const DOMAIN: [&str; 2] = [include_str!("../../shaders/factors.wgsl"), include_str!("../../shaders/domain.wgsl")];
+const DOMAIN: [&str; 3] = [
+    include_str!("../../shaders/factors.wgsl"),
+    include_str!("../../shaders/domain.wgsl"),
+    include_str!("../../shaders/subtriangulation.wgsl"),
+];
 const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
 const CONTROL_POINTS: &str = include_str!("../../shaders/control_points.wgsl");
 const NORMAL: &str = include_str!("../../shaders/normal.wgsl");
@@ -18,7 +22,8 @@ const RELIEF: &str = include_str!("../../shaders/relief.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
-const ROOMS: [&str; 10] = [DOMAIN[0], DOMAIN[1], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
+const ROOMS: [&str; 11] =
+    [DOMAIN[0], DOMAIN[1], DOMAIN[2], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 13] = [

@@ -183,6 +183,8 @@ enum Shape {
     Discs,
     /// Stems with diagonal crosses.
     Crosses,
+    /// Stems with filled triangles.
+    Triangles,
     Line,
     Dashes,
 }
@@ -194,6 +196,7 @@ impl Look {
             Partitioning::Pow2 => (RGBColor(0, 114, 178), Shape::Crosses),
             Partitioning::FractionalOdd => (RGBColor(0, 158, 115), Shape::Line),
             Partitioning::FractionalEven => (RGBColor(0, 0, 0), Shape::Dashes),
+            Partitioning::Subtriangulation => (RGBColor(204, 121, 167), Shape::Triangles),
         };
         Self { color, shape }
     }
@@ -202,7 +205,7 @@ impl Look {
     fn draw<'a, 'b: 'a>(self, chart: &mut Chart<'a, 'b>, points: &[(f64, f64)], bottom: f64, label: String) -> Drawn {
         let elements: Vec<Element<'b, _>> = match self.shape {
             Shape::Line | Shape::Dashes => vec![self.path(highest_of_columns(chart, points))],
-            Shape::Discs | Shape::Crosses => {
+            Shape::Discs | Shape::Crosses | Shape::Triangles => {
                 let pops = points.iter().filter(|(_, part)| *part > bottom);
                 pops.flat_map(|&(factor, part)| {
                     [self.path(vec![(factor, bottom), (factor, part)]), self.marker((factor, part))]
@@ -220,7 +223,7 @@ impl Look {
         match self.shape {
             Shape::Line => PathElement::new(points, thick).into_dyn(),
             Shape::Dashes => DashedPathElement::new(points, px(7), px(4), thick).into_dyn(),
-            Shape::Discs | Shape::Crosses => {
+            Shape::Discs | Shape::Crosses | Shape::Triangles => {
                 PathElement::new(points, self.color.mix(0.4).stroke_width(DENSITY)).into_dyn()
             }
         }
@@ -230,6 +233,7 @@ impl Look {
     fn marker<'b, C: Clone + 'static>(self, at: C) -> Element<'b, C> {
         match self.shape {
             Shape::Crosses => Cross::new(at, px(4), self.color.stroke_width(DENSITY * 2)).into_dyn(),
+            Shape::Triangles => TriangleMarker::new(at, px(4), self.color.filled()).into_dyn(),
             _ => Circle::new(at, px(3), self.color.filled()).into_dyn(),
         }
     }
@@ -238,7 +242,7 @@ impl Look {
     fn sample<'b>(self, (x, y): (i32, i32)) -> Element<'b, (i32, i32)> {
         match self.shape {
             Shape::Line | Shape::Dashes => self.path(vec![(x, y), (x + px(32), y)]),
-            Shape::Discs | Shape::Crosses => self.marker((x + px(16), y)),
+            Shape::Discs | Shape::Crosses | Shape::Triangles => self.marker((x + px(16), y)),
         }
     }
 }

@@ -243,7 +243,7 @@ mod tests {
     use crate::mesh::Shape;
     use crate::settings::Settings;
     use crate::tessellate::{LodView, Surface, domain_point, domain_triangle, point_count, triangle_count};
-    use Partitioning::{FractionalEven, FractionalOdd, Integer, Pow2};
+    use Partitioning::{FractionalEven, FractionalOdd, Integer, Pow2, Subtriangulation};
 
     /// Sweeps the first face of the cube with split normals: two patches, and the diagonal between them.
     fn swept(surface: Surface, partitioning: Partitioning, factors: RangeInclusive<f32>, step: f32) -> Sweep {
@@ -283,6 +283,8 @@ mod tests {
         let pops = moves(&integer);
         assert!(pops.iter().map(|step| step.factor).eq((1..9).map(|n| n as f32 + 0.25)));
         assert!(pops.is_sorted_by(|a, b| a.jump > b.jump), "the first is the largest: {pops:?}");
+        let equal = moves(&swept(Surface::PnAen, Subtriangulation, 1.0..=9.0, 0.25));
+        assert!(equal.iter().map(|step| step.factor).eq(pops.iter().map(|step| step.factor)));
         let pow2 = moves(&swept(Surface::PnAen, Pow2, 1.0..=9.0, 0.25));
         assert!(pow2.iter().map(|step| step.factor).eq([1.25, 2.25, 4.25, 8.25]));
         // Half the step, the same pops.
@@ -297,7 +299,7 @@ mod tests {
         // 1.36) and (0.36, 0.36, 1.36), each over its length, only the part along z stays.
         let length_squared = 2.0 * 0.36 * 0.36 + 1.36 * 1.36;
         let expected = 2.0 * (0.36 * 2.4) * 1.36 / length_squared / 8.0;
-        for partitioning in [Integer, Pow2] {
+        for partitioning in [Integer, Pow2, Subtriangulation] {
             let pop = largest(partitioning, 1.0..=9.0, 0.25);
             assert!((pop.jump - expected).abs() < 1e-6, "{pop:?} and {expected}");
             assert_eq!((pop.factor, pop.place), (1.25, [FIXED_ONE / 2, 0]));

@@ -253,7 +253,7 @@ pub const CASES: [Case; 31] = [
     Case {
         name: "sweep",
         about: "The factor grows from 1 to 64 in steps of 1/64. Under fractional partitioning every surface point moves \
-                a little; under integer and pow2 new points appear in the middle of edges, and the surface pops.",
+                a little; under the others new points appear in the middle of edges, and the surface pops.",
         mesh: meshes::roof,
         probe: Probe::Sweep,
         ..CASE

@@ -103,13 +103,14 @@ impl Method {
         Settings { surface: self.surface(), edges, partitioning, factor, ..Settings::default() }
     }
 
-    /// The same with adaptive LOD and clipping: the paper's own for what is as published.
+    /// The same with adaptive LOD and clipping: the paper's own for what is as published. Under subtriangulation, which is
+    /// uniform, clipping at one factor.
     pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
         let (lod, clip) = match self {
             Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
             _ => (Lod::EdgeLength, Clip::Frustum),
         };
-        Settings { lod, clip, pixels, ..self.settings(partitioning, 1.0) }
+        Settings { lod, clip, pixels, ..self.settings(partitioning, 5.0) }
     }
 }
 
@@ -140,7 +141,7 @@ pub enum Quantity {
     /// The largest step of any surface point as the factor grows by 1/64, as a part of the mesh's diagonal, under
     /// fractional partitioning.
     Jump,
-    /// The same under integer and pow2 partitioning.
+    /// The same under integer, pow2 and subtriangulation.
     Pop,
 }
 
@@ -168,7 +169,7 @@ impl Quantity {
         match self {
             // Segments are equal along the curve, not on screen: perspective makes the near ones longer.
             Self::Segment => 4.0,
-            // Several times what fractional modes were measured at, and far below what integer and pow2 were.
+            // Several times what fractional modes were measured at, and far below what the others were.
             Self::Jump | Self::Pop => 0.004,
             _ => 0.0,
         }

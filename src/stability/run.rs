@@ -16,7 +16,7 @@ use crate::measure::{AskedFactors, Measured, SWEEP_STEP, sweep};
 use crate::mesh::{Bounds, Mesh, Progress, Topology, t_junctions};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Clip, FACTOR_ODD, FIXED_ONE, Lod, LodView, Partitioning, tessellate};
+use crate::tessellate::{Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, tessellate};
 
 /// How much is tried, and where.
 #[derive(Clone, Debug)]
@@ -194,7 +194,7 @@ impl<'a> Running<'a> {
                 }
             }
             self.take(&mut worst, &measured, &settings, &view);
-            if self.case.probe == Probe::View && settings.clip != Clip::Off && settings.lod != Lod::Uniform {
+            if self.case.probe == Probe::View && settings.clip != Clip::Off {
                 let missing = self.missing(&settings, &camera)?;
                 worst.take(Quantity::Missing, missing as f64);
             }
@@ -209,7 +209,7 @@ impl<'a> Running<'a> {
         match self.case.probe {
             Probe::Folds => worst.take(Quantity::Folds, measured.folds as f64),
             // What is left out has no segments to measure, and a random view may be anywhere.
-            Probe::View if settings.lod != Lod::Uniform && settings.clip == Clip::Off && is_look => {
+            Probe::View if settings.used_lod() != Lod::Uniform && settings.clip == Clip::Off && is_look => {
                 worst.take(Quantity::Segment, longest_segment(&self.topology, measured, view) / f64::from(PIXELS));
             }
             _ => {}
@@ -297,10 +297,10 @@ fn promised(method: Method, quantity: Quantity) -> bool {
 /// The longest piece of an edge on screen, in px, over edges that the tessellator could have cut finer.
 fn longest_segment(topology: &Topology, measured: &Measured, view: &LodView) -> f64 {
     // Fractional odd ends at 63 segments, the others at 64.
-    let most = (63 * FIXED_ONE) & !FACTOR_ODD;
+    let most = 63 * FIXED_ONE;
     let mut longest = 0.0_f64;
     for edge in 0..topology.edges.len() as u32 {
-        for side in measured.rims.edge(topology, edge).iter().filter(|side| side.word & !FACTOR_ODD < most) {
+        for side in measured.rims.edge(topology, edge).iter().filter(|side| side.word & FACTOR_VALUE < most) {
             let clip: Vec<Vec4> = side.positions().map(|p| view.clip_from_object * p.extend(1.0)).collect();
             longest = clip.windows(2).map(|ends| visible_length(ends[0], ends[1], view)).fold(longest, f64::max);
         }

@@ -3,14 +3,16 @@
 //!
 //! The patch is an outline of three edge rows, and inside it rings of three equal sides, numbered from 1 inwards, all cut
 //! from one inside row. A ring's side `k` ends on the first point of the next side. With an even number of inside
-//! segments the last ring is a single point, the centre; with an odd one it is a triangle.
+//! segments the last ring is a single point, the centre; with an odd one it is a triangle. The exception is the pattern of
+//! `subtriangulation.rs`.
 //!
 //! Source: D3D11.3 Functional Specification, sections 11.7.5 to 11.7.14. Coordinates are 16.16 fixed point.
 
 use super::factors::{
     FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity, outer_count,
-    patch_is_minimal, segments,
+    patch_is_minimal, patch_is_subtriangulated, segments,
 };
+use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
 /// Two thirds in 16.16 fixed point, rounded down as the tessellator has it.
 pub const FIXED_TWO_THIRDS: u32 = 0xaaaa;
@@ -88,6 +90,9 @@ fn rings_before(m: u32, area: u32) -> u32 {
 
 /// (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
 pub fn domain_point(factors: PatchFactors, i: u32) -> [u32; 2] {
+    if patch_is_subtriangulated(factors) {
+        return subtriangulation_point(segments(factors.inside), i);
+    }
     let outer = outer_count(factors);
     if i < outer { outer_point(factors, i) } else { inner_point(factors.inside, i - outer) }
 }
@@ -143,6 +148,9 @@ fn ring_point(start: u32, length: u32, p: u32) -> u32 {
 pub fn domain_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
     if patch_is_minimal(factors) {
         return [0, 1, 2];
+    }
+    if patch_is_subtriangulated(factors) {
+        return subtriangulation_triangle(segments(factors.inside), t);
     }
     let outer = outer_count(factors);
     let n = inside_segments(factors.inside);

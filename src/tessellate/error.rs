@@ -318,7 +318,7 @@ pub fn rim_error(view: &LodView, rim: Rim, sight: Sight, seen: [f32; 4], factor:
 /// or odd ones.
 pub fn whole(partitioning: Partitioning, least: f32) -> f32 {
     match partitioning {
-        Partitioning::Integer => least.ceil(),
+        Partitioning::Integer | Partitioning::Subtriangulation => least.ceil(),
         Partitioning::Pow2 => round_pow2(least),
         Partitioning::FractionalOdd => 2.0 * (0.5 * (least - 1.0)).ceil() + 1.0,
         Partitioning::FractionalEven => 2.0 * (0.5 * least).ceil(),
@@ -439,7 +439,7 @@ mod tests {
     fn what_no_number_of_segments_suffices_for_can_be_told() {
         let net = raised(CORNERS, 0.0);
         let twisted = ControlNet { center: net.center + Vec3::X * 0.2, ..net };
-        for partitioning in Partitioning::ALL {
+        for partitioning in Partitioning::DIRECT3D {
             let inside = |tolerance| inside_error_factor(&VIEW, tolerance, partitioning, &twisted, [1.0; 3]);
             assert!(inside(1e-4) > 64.0 && inside(1e-9) > 64.0, "{partitioning}");
             let enough = inside(5.0);
@@ -479,7 +479,7 @@ mod tests {
         assert_eq!(of(Partitioning::Pow2, &asked), [1.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
         assert_eq!(of(Partitioning::FractionalEven, &asked), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
         assert_eq!(of(Partitioning::FractionalOdd, &asked), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
-        for partitioning in Partitioning::ALL {
+        for partitioning in Partitioning::DIRECT3D {
             assert!(
                 level(partitioning, 64.1) > 64.0 && level(partitioning, 1e9) > 64.0,
                 "{partitioning}: one can tell"
@@ -535,7 +535,7 @@ mod tests {
     #[test]
     fn rows_of_levels_nest_and_others_reach_far() {
         // Whatever the levels of its edges, a patch finds numbers that nest with all of them.
-        for partitioning in Partitioning::ALL {
+        for partitioning in Partitioning::DIRECT3D {
             let mut levels: Vec<f32> = (1..=33).map(|least| level(partitioning, least as f32)).collect();
             levels.dedup();
             for (&factor, &inside) in levels.iter().flat_map(|a| levels.iter().map(move |b| (a, b))) {

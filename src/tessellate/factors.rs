@@ -16,6 +16,11 @@ pub const FIXED_HALF: u32 = 0x8000;
 /// The bit of a factor's word that says "odd": a row with an even number of points.
 pub const FACTOR_ODD: u32 = 0x8000_0000;
 
+/// The bits of a factor's word that are the factor.
+pub const FACTOR_VALUE: u32 = 0x7f_ffff;
+/// The bit of an inside factor's word that says that the patch is subtriangulated: see `subtriangulation.rs`.
+pub const SUBTRIANGULATED: u32 = 0x4000_0000;
+
 /// `f32` bit patterns. Those of positive numbers are ordered as the numbers are; NaN and negatives lie above them all.
 const BITS_ONE: u32 = 0x3f80_0000;
 const BITS_TWO: u32 = 0x4000_0000;
@@ -40,10 +45,16 @@ pub enum Partitioning {
     FractionalOdd = 2,
     /// Always an even number of segments, two of which grow from nothing.
     FractionalEven = 3,
+    /// Not Direct3D's: rounded up to n, and the patch cut into n x n equal triangles (Vlachos et al. 2001, section 2, whose
+    /// level of detail is n - 1). One number for all edges, since nothing joins rows of different ones.
+    Subtriangulation = 4,
 }
 
 impl Partitioning {
-    pub const ALL: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
+    pub const ALL: [Self; 5] =
+        [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven, Self::Subtriangulation];
+    /// Those that Direct3D 11's tessellator has, which give every edge a factor of its own.
+    pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 
     /// The name in settings, commands and files.
     pub const fn name(self) -> &'static str {
@@ -52,6 +63,7 @@ impl Partitioning {
             Self::Pow2 => "pow2",
             Self::FractionalOdd => "fractional-odd",
             Self::FractionalEven => "fractional-even",
+            Self::Subtriangulation => "subtriangulation",
         }
     }
 }
@@ -64,7 +76,7 @@ impl fmt::Display for Partitioning {
 
 /// A name that is none of [`Partitioning::ALL`].
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown partitioning \"{0}\": expected integer, pow2, fractional-odd or fractional-even")]
+#[error("unknown partitioning \"{0}\": expected integer, pow2, fractional-odd, fractional-even or subtriangulation")]
 pub struct UnknownPartitioning(pub String);
 
 impl FromStr for Partitioning {
@@ -80,7 +92,8 @@ impl FromStr for Partitioning {
 
 /// A patch's factors as the tessellator uses them. Each word is a factor of 1..=64 in 16.16 fixed point, clamped and
 /// rounded, with [`FACTOR_ODD`] set where its parity is odd. Of a culled patch the edges' are zeros, and the inside's says
-/// why (see `cull.rs`): 0 where its own factors cull it.
+/// why (see `cull.rs`): 0 where its own factors cull it. Of a subtriangulated patch all four are one number, and the
+/// inside's has [`SUBTRIANGULATED`] set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchFactors {
@@ -109,7 +122,7 @@ fn factor_upper_bound(partitioning: Partitioning) -> u32 {
 fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
     let exponent = (bits >> 23) - 127;
     let mantissa = (bits & 0x7f_ffff) | 0x80_0000;
-    if partitioning == Partitioning::Integer || partitioning == Partitioning::Pow2 {
+    if partitioning != Partitioning::FractionalOdd && partitioning != Partitioning::FractionalEven {
         let shift = 23 - exponent;
         let whole = (mantissa + (1 << shift) - 1) >> shift;
         return (whole << 16) | (whole << 31);
@@ -129,7 +142,8 @@ fn inside_word(partitioning: Partitioning, bits: u32) -> u32 {
 
 /// What the tessellator makes of a patch's factors (11.7.3 to 11.7.10): culls the patch if an edge's factor is not
 /// greater than zero, clamps to what the partitioning allows, and rounds to fixed point. `edges` are U == 0, V == 0 and
-/// W == 0. The inside factor never culls: NaN and anything too small act as the smallest.
+/// W == 0. The inside factor never culls: NaN and anything too small act as the smallest. Under subtriangulation the
+/// largest edge factor counts for all, and the inside's for nothing.
 pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> PatchFactors {
     let bits = edges.map(f32::to_bits);
     if !(positive_bits(bits[0]) && positive_bits(bits[1]) && positive_bits(bits[2])) {
@@ -139,8 +153,12 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
     let high = factor_upper_bound(partitioning);
     let clamped = bits.map(|b| b.clamp(low, high));
 
-    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
     let largest = clamped[0].max(clamped[1]).max(clamped[2]);
+    if partitioning == Partitioning::Subtriangulation {
+        let word = factor_word(partitioning, largest);
+        return PatchFactors { outside: [word; 3], inside: word | SUBTRIANGULATED };
+    }
+    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
     let splits = partitioning == Partitioning::FractionalOdd && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = if splits { BITS_ONE_AND_STEP } else { low };
     let inside_bits = if positive_bits(inside.to_bits()) { inside.to_bits() } else { 0 };
@@ -167,15 +185,20 @@ pub fn patch_is_culled(factors: PatchFactors) -> bool {
     factors.outside[0] == 0
 }
 
+/// Whether the patch is cut by uniform subtriangulation, and not by Direct3D's tessellator.
+pub fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
+    !patch_is_culled(factors) && factors.inside & SUBTRIANGULATED != 0
+}
+
 /// Whether the patch is its own three corners and nothing more: all factors 1.
 pub fn patch_is_minimal(factors: PatchFactors) -> bool {
     let edges_are_one = factors.outside == [FACTOR_ODD | FIXED_ONE; 3];
-    edges_are_one && (factors.inside & !FACTOR_ODD) == FIXED_ONE
+    edges_are_one && (factors.inside & FACTOR_VALUE) == FIXED_ONE
 }
 
 /// Whether the patch is drawn with factors that are all below 2, so that drawing it untessellated would hardly show.
 pub fn patch_is_low(factors: PatchFactors) -> bool {
-    let low = |word: u32| word & !FACTOR_ODD < 2 * FIXED_ONE;
+    let low = |word: u32| word & FACTOR_VALUE < 2 * FIXED_ONE;
     !patch_is_culled(factors) && factors.outside.into_iter().all(low) && low(factors.inside)
 }
 
@@ -187,7 +210,7 @@ pub fn odd_parity(word: u32) -> u32 {
 /// The number of segments from an end of a row to its middle, in 16.16 fixed point: the fraction is how far the newest
 /// one has grown. An odd row's middle segment counts as whole.
 pub fn half_factor(word: u32) -> u32 {
-    let half = ((word & !FACTOR_ODD) + 1) >> 1;
+    let half = ((word & FACTOR_VALUE) + 1) >> 1;
     let rounds_up = odd_parity(word) == 1 || half == FIXED_HALF;
     if rounds_up { half + FIXED_HALF } else { half }
 }
@@ -220,6 +243,10 @@ pub fn point_count(factors: PatchFactors) -> u32 {
     if patch_is_minimal(factors) {
         return 3;
     }
+    if patch_is_subtriangulated(factors) {
+        let n = segments(factors.inside);
+        return ((n + 1) * (n + 2)) >> 1;
+    }
     // The rings inside hold 3 R^2 points (odd) or 3 R (R + 1) + 1 (even, with the centre), R = (n - 1) / 2.
     let n = inside_segments(factors.inside);
     outer_count(factors) + ((3 * (n - 1) * (n - 1) + 1) >> 2)
@@ -232,6 +259,10 @@ pub fn triangle_count(factors: PatchFactors) -> u32 {
     }
     if patch_is_minimal(factors) {
         return 1;
+    }
+    if patch_is_subtriangulated(factors) {
+        let n = segments(factors.inside);
+        return n * n;
     }
     let inner = inside_segments(factors.inside) - 2;
     outer_count(factors) + 3 * inner + ((3 * inner * inner) >> 1)

@@ -33,6 +33,11 @@ impl HullFactors {
         process(partitioning, self.edges, self.inside)
     }
 
+    /// Whether all four are equal, as subtriangulation needs them; or leave the patch out, whatever the others are.
+    pub fn is_uniform(self) -> bool {
+        self.culls() || self.edges.into_iter().all(|factor| factor == self.inside)
+    }
+
     /// Whether the tessellator leaves the patch out: an edge's factor is not greater than zero.
     pub fn culls(self) -> bool {
         patch_is_culled(self.process(Partitioning::Integer))
@@ -51,6 +56,14 @@ mod tests {
         assert_eq!(edges(Convention::EdgeOrder), [10.0, 11.0, 12.0]);
         assert_eq!(edges(Convention::Rotated), [10.0, 11.0, 12.0]);
         assert_eq!(edges(Convention::Mirrored), [12.0, 11.0, 10.0]);
+    }
+
+    #[test]
+    fn factors_are_uniform_where_all_are_equal_or_nothing_is_drawn() {
+        let is_uniform = |edges, inside| HullFactors { edges, inside }.is_uniform();
+        assert!(is_uniform([3.5; 3], 3.5) && is_uniform([f32::INFINITY; 3], f32::INFINITY));
+        assert!(is_uniform([f32::NAN; 3], 2.0) && is_uniform([1.0, 0.0, 7.0], f32::NAN));
+        assert!(!is_uniform([3.5, 3.5, 3.0], 3.5) && !is_uniform([2.0; 3], 3.0) && !is_uniform([2.0; 3], f32::NAN));
     }
 
     #[test]

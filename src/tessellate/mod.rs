@@ -15,6 +15,7 @@ mod mesh;
 mod normal;
 mod relief;
 mod solid;
+mod subtriangulation;
 mod surface;
 
 pub use budget::fit_budget;
@@ -33,8 +34,8 @@ pub use displace::{
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
-    FACTOR_ODD, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled, patch_is_low,
-    point_count, process, round_pow2, segments, triangle_count,
+    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled,
+    patch_is_low, point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull::HullFactors;
 pub use lod::{

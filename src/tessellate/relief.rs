@@ -9,11 +9,8 @@ use super::error::{edge_sight, relief_factor};
 use super::mesh::{Inputs, Nets, Vertex};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
 use super::surface::{UNIT, linear_uv, patch_tangents};
-use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
+use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, factor_side};
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
-
-/// Of a factor's word, what it is in 16.16 fixed point: at most 64.
-const FACTOR_BITS: u32 = 0x7f_ffff;
 
 /// What displaces a mesh under these inputs, if anything does.
 pub fn displacing<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
@@ -175,7 +172,7 @@ impl<'a> Relief<'a> {
     /// A patch's vertex, moved; the patch has these factors.
     pub(super) fn displaced(&self, nets: &Nets, factors: PatchFactors, vertex: Vertex) -> Vertex {
         let (patch, [u, v]) = (vertex.patch(), vertex.domain());
-        let segments = (factors.inside & FACTOR_BITS) as f32 * UNIT;
+        let segments = (factors.inside & FACTOR_VALUE) as f32 * UNIT;
         let (position, normal) = (Vec3::from(vertex.position), unpack_normal(vertex.normal));
         let (own, shared) = self.lookups(patch, u, v, segments);
         let asked = if self.mode == Displacement::PerPatch { own } else { shared };

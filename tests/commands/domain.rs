@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io::Write;
 use std::process::Stdio;
 
-use crate::{Folder, command, output};
+use crate::{Folder, command, failure, output, sentence};
 
 #[test]
 fn both_devices_print_the_same_domain() {
@@ -28,6 +28,30 @@ fn a_domain_is_printed_point_by_point() {
                     triangle,3,0,1\ntriangle,3,1,2\ntriangle,3,2,0\n";
     assert_eq!(text, expected);
     assert_eq!(output(&["domain", "--partitioning", "fractional_odd", "--factors", "-3,1,nan,2"]), "");
+}
+
+#[test]
+fn subtriangulation_takes_one_factor_for_all() {
+    let folder = Folder::new("subtriangulation");
+    let sets = folder.path("sets.txt");
+    let text = "1 1 1 1\n1.5 1.5 1.5 1.5\n0 1 2 3\nnan nan nan nan\ninf inf inf inf\n";
+    std::fs::write(&sets, text).expect("a writable folder");
+    let pattern = ["domain", "--partitioning", "subtriangulation"];
+    let domain = |device| output(&[&pattern[..], &["--input", &sets, "--device", device]].concat());
+    let (gpu, cpu) = (domain("gpu"), domain("cpu"));
+    assert!(gpu == cpu, "the devices differ");
+    let of = |prefix: &str| cpu.lines().filter(|line| line.starts_with(prefix)).count();
+    let counts = [0, 1, 2, 3, 4].map(|set| [of(&format!("{set},point,")), of(&format!("{set},triangle,"))]);
+    assert_eq!(counts, [[3, 1], [6, 4], [0, 0], [0, 0], [2145, 4096]]);
+
+    let one = output(&[&pattern[..], &["--factors", "2,2,2,2", "--device", "cpu"]].concat());
+    let expected = "point,0,0,65536\npoint,1,0,32768\npoint,2,0,0\npoint,3,32768,0\npoint,4,65536,0\n\
+                    point,5,32768,32768\ntriangle,0,1,5\ntriangle,2,3,1\ntriangle,4,5,3\ntriangle,1,3,5\n";
+    assert_eq!(one, expected);
+    let said = failure(&[&pattern[..], &["--factors", "2,2,2,3"]].concat(), 2);
+    assert!(said.contains("four equal factors"), "{said}");
+    std::fs::write(&sets, "1 1 1 1\n\n2 2 3 2\n").expect("a writable folder");
+    sentence(&[&pattern[..], &["--input", &sets]].concat(), &["sets.txt, line 3", "four equal factors"]);
 }
 
 #[test]

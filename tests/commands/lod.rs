@@ -34,6 +34,32 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 }
 
 #[test]
+fn subtriangulation_is_for_uniform_factors() {
+    let folder = Folder::new("uniform");
+    let [picture, mesh, factors] = ["out.png", "out.obj", "out.csv"].map(|name| folder.path(name));
+    let pattern = ["shape:torus", "--partitioning", "subtriangulation"];
+    for lod in ["paper", "edge-length", "error", "distance"] {
+        for (command, out) in [("render", &picture), ("tessellate", &mesh), ("factors", &factors)] {
+            let said = failure(&[&[command, "-o", out], &pattern[..], &["--lod", lod]].concat(), 2);
+            assert!(said.contains("subtriangulation") && said.contains("--lod uniform"), "{said}");
+            assert!(!std::path::Path::new(out).exists(), "before anything is written");
+        }
+    }
+    let stats = stats(&[&pattern[..], &["--factor", "6.2", "--lod", "uniform"]].concat());
+    assert_eq!((number(&stats, "/triangles_out"), number(&stats, "/cracks/different_bits")), (256.0 * 49.0, 0.0));
+    // Its own file of factors gives the same mesh; one that differs is refused.
+    output(&[&["factors", "-o", &factors, "--factor", "6.2"], &pattern[..]].concat());
+    output(&[&["tessellate", "-o", &mesh, "--factor", "6.2", "--device", "cpu"], &pattern[..]].concat());
+    let again = folder.path("again.obj");
+    output(&[&["tessellate", "-o", &again, "--factors", &factors, "--device", "cpu"], &pattern[..]].concat());
+    assert_eq!(std::fs::read(&again).expect("a file"), std::fs::read(&mesh).expect("a file"));
+    let uneven = std::fs::read_to_string(&factors).expect("a file").replace("\n7,6.2,", "\n7,6.1,");
+    std::fs::write(&factors, uneven).expect("a writable folder");
+    let given = ["tessellate", "-o", &again, "--factors", &factors];
+    sentence(&[&given[..], &pattern].concat(), &["out.csv", "patch 7", "not all equal", "--partitioning"]);
+}
+
+#[test]
 fn a_budget_of_triangles_raises_the_tolerance_and_says_so() {
     let folder = Folder::new("budget");
     let [picture, mesh] = ["out.png", "out.obj"].map(|name| folder.path(name));

@@ -85,7 +85,7 @@ fn mistakes_crack_as_soon_as_factors_differ() {
     for shape in [Shape::Torus, Shape::Moebius, Shape::Icosphere] {
         let (loaded, mut scene) = scene(shape);
         for convention in MISTAKES {
-            for partitioning in Partitioning::ALL {
+            for partitioning in Partitioning::DIRECT3D {
                 for lod in [Lod::Paper, Lod::EdgeLength, Lod::Error] {
                     let settings =
                         Settings { convention, partitioning, lod, pixels: 5.0, tolerance: 0.05, ..adaptive()[0] };
@@ -96,6 +96,8 @@ fn mistakes_crack_as_soon_as_factors_differ() {
                         assert!(cracks.max_gap() > 1e-4, "{shape:?} {settings:?}");
                     }
                 }
+            }
+            for partitioning in Partitioning::ALL {
                 let uniform = Settings { convention, partitioning, factor: 6.4, ..Settings::default() };
                 let inputs = inputs(&loaded, &uniform);
                 for measured in [on_device(&mut scene, &inputs).1, on_cpu(&loaded, &inputs).1] {

@@ -119,8 +119,13 @@ fn read(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
 /// Runs the shader over all cases; gives the bytes of its results, points and triangles.
 fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
-    let source =
-        [include_str!("../../shaders/factors.wgsl"), include_str!("../../shaders/domain.wgsl"), ENTRY].concat();
+    let source = [
+        include_str!("../../shaders/factors.wgsl"),
+        include_str!("../../shaders/domain.wgsl"),
+        include_str!("../../shaders/subtriangulation.wgsl"),
+        ENTRY,
+    ]
+    .concat();
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("domain parity"),
         source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -262,6 +267,7 @@ fn twins_have_the_same_functions_in_the_same_order() {
         (include_str!("../../src/tessellate/factors.rs"), include_str!("../../shaders/factors.wgsl")),
         (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
         (include_str!("../../src/tessellate/control_points.rs"), include_str!("../../shaders/control_points.wgsl")),
+        (include_str!("../../src/tessellate/subtriangulation.rs"), include_str!("../../shaders/subtriangulation.wgsl")),
         (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),
         (include_str!("../../src/tessellate/displace.rs"), include_str!("../../shaders/displace.wgsl")),
         (include_str!("../../src/tessellate/normal.rs"), include_str!("../../shaders/normal.wgsl")),

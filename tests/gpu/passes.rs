@@ -96,7 +96,7 @@ fn adaptive_factors_agree_with_the_cpu() {
     for (shape, settings) in tried {
         let (loaded, mut scene) = scene(shape);
         for surface in SURFACES {
-            for partitioning in Partitioning::ALL {
+            for partitioning in Partitioning::DIRECT3D {
                 let settings = Settings { surface, partitioning, ..settings };
                 let inputs = inputs(&loaded, &settings);
                 let gpu = on_gpu(&mut scene, &inputs);
@@ -178,7 +178,7 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
             let low = match partitioning {
                 Partitioning::FractionalOdd => factor < 2.0,
                 Partitioning::FractionalEven => false,
-                Partitioning::Integer | Partitioning::Pow2 => factor == 1.0,
+                Partitioning::Integer | Partitioning::Pow2 | Partitioning::Subtriangulation => factor == 1.0,
             };
             assert_eq!(on_gpu.patches_low, if low { 256 } else { 0 }, "{what}");
             let mut sizes = Sizes::new(view);
@@ -207,6 +207,28 @@ fn every_shared_point_has_the_same_bits_from_all_sides() {
                     assert!(cracks.edge_points >= 2 * inner as u64, "both ends of every inner edge");
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn subtriangulation_is_watertight_at_every_factor() {
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = scene(shape);
+        for n in 1..=64 {
+            let settings =
+                Settings { partitioning: Partitioning::Subtriangulation, factor: n as f32, ..Settings::default() };
+            engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
+            let patches = loaded.topology.patches.len() as u64;
+            assert_eq!(
+                scene.tessellator.totals(),
+                (patches * ((n + 1) * (n + 2) / 2), patches * n * n),
+                "{shape:?} {n}"
+            );
+            let cracks = engine().measure(&mut scene).expect("a readback").cracks;
+            assert_eq!(cracks.different_bits + cracks.different_factors, 0, "{shape:?} {n}");
+            let inner = loaded.topology.edges.iter().filter(|edge| edge.sides.len() > 1).count() as u64;
+            assert!(cracks.edge_points >= inner * (n + 1), "{shape:?} {n}: every point of every inner edge");
         }
     }
 }

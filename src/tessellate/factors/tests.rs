@@ -145,9 +145,9 @@ proptest! {
         };
         let clamped = f64::from(x).clamp(low, high);
         let expected = match p {
-            Partitioning::Integer | Partitioning::Pow2 => clamped.ceil() * 65536.0,
-            _ => (clamped * 65536.0).round_ties_even(),
+            Partitioning::FractionalOdd | Partitioning::FractionalEven => (clamped * 65536.0).round_ties_even(),
+            _ => clamped.ceil() * 65536.0,
         };
-        prop_assert_eq!(f64::from(f.outside[1] & !FACTOR_ODD), expected);
+        prop_assert_eq!(f64::from(f.outside[1] & FACTOR_VALUE), expected);
     }
 }
