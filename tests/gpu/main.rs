@@ -33,7 +33,7 @@ pub fn engine() -> &'static Engine {
 }
 
 pub fn loaded(shape: Shape) -> Loaded {
-    load(&Source::Shape(shape), 0.0, &Progress::default()).expect("shapes always load")
+    load(&Source::Shape(shape), 0.0, 0.0, &Progress::default()).expect("shapes always load")
 }
 
 pub fn scene(shape: Shape) -> (Loaded, Scene) {
