@@ -37,10 +37,9 @@ pub fn load(source: &Source, weld: f32, rim: f32, progress: &Progress) -> Result
     let mut topology = Topology::build_within(&read, weld, progress)?;
     let (mut mesh, mut made) = (read.clone(), Rim::default());
     if rim > 0.0 {
-        let (with_rim, rim) = with_rim(&read, &topology, rim, progress)?;
-        (mesh, made) = (Arc::new(with_rim), rim);
-        // It is welded already; a tolerance could weld the rim's own points.
-        topology = Topology::build(&mesh, progress)?;
+        let with_rim = with_rim(&read, &topology, rim, progress)?;
+        mesh = Arc::new(with_rim.0);
+        (topology, made) = (with_rim.1, with_rim.2);
     }
     Ok(Loaded {
         source: source.clone(),

@@ -13,6 +13,7 @@ mod patch;
 mod pattern;
 mod pick;
 mod picture;
+mod rim;
 mod status;
 mod text;
 mod viewport;
@@ -150,8 +151,7 @@ impl App {
     /// view, its weld tolerance and its rim.
     pub fn open(&mut self, context: &egui::Context, source: Source) {
         let same = self.document.as_ref().filter(|document| document.loaded.source == source);
-        let (weld, rim) =
-            same.map_or((0.0, 0.0), |document| (document.loaded.weld, document.loaded.rim.width));
+        let (weld, rim) = same.map_or((0.0, 0.0), |document| (document.loaded.weld, document.loaded.rim.width));
         let keep_view = same.is_some();
         self.load = Some(Load::start(&self.engine, context, source, weld, rim, keep_view));
     }

@@ -22,7 +22,7 @@ use pieces::Cutter;
 
 use super::merge::{LooseCorner, MeshBuilder};
 use super::progress::{Cancelled, Progress};
-use super::{Mesh, Topology};
+use super::{Corner, Mesh, Topology};
 
 /// The widest rim that can be asked for, relative to the bounding diagonal.
 pub const WIDEST: f32 = 0.1;
@@ -60,9 +60,8 @@ impl Rim {
 /// Corners lie on the topology's points: what was welded within a tolerance is equal from here on, and no further weld
 /// should follow. A mesh without creases stays as it is but for that. Triangles without a patch stay degenerate.
 ///
-/// Afterwards no edge of two sides is split. What was closed stays so, and boundaries are only subdivided. Two triangles on
-/// the same three points are cut alike, so that edges inside them have four sides. Linear in triangles, but for a sort of
-/// corners.
+/// Afterwards all sides of an edge have the same normals, however many there are. What was closed stays so, and boundaries
+/// are only subdivided. Linear in triangles, but for sorts. Returns the mesh with its exact topology.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
@@ -71,29 +70,64 @@ pub fn with_rim(
     topology: &Topology,
     width: f32,
     progress: &Progress,
-) -> Result<(Mesh, Rim), Cancelled> {
+) -> Result<(Mesh, Topology, Rim), Cancelled> {
     let fans = Fans::of(mesh, topology);
     progress.check()?;
     let units = width_in_units(mesh, topology, width);
     let cuts = Cuts::of(mesh, topology, &fans, units);
     progress.check()?;
     let mut cutter = Cutter::new(mesh, topology, &fans, &cuts, units);
+    let cut = rebuilt(mesh, topology, progress, |patch, add| cutter.pieces(patch, add))?;
+    let rim = Rim { width, creases: cuts.creases(), narrowed: cuts.narrowed + cutter.narrowed };
+    let (mut made, topology) = agreed(cut, progress)?;
+    made.warnings.extend(rim.warnings());
+    Ok((made, topology, rim))
+}
+
+/// Where parts of a mesh lie on each other, cuts of one may fall onto those of another, and make edges that neither had:
+/// there too all sides get one normal.
+fn agreed(cut: Mesh, progress: &Progress) -> Result<(Mesh, Topology), Cancelled> {
+    let topology = Topology::build(&cut, progress)?;
+    let fans = Fans::of(&cut, &topology);
+    if !fans.any_split() {
+        return Ok((cut, topology));
+    }
+    let agreed = rebuilt(&cut, &topology, progress, |patch, add| {
+        let corners = topology.patches[patch as usize].corners.map(|corner| cut.corners[corner as usize]);
+        add([0, 1, 2].map(|k| Corner { normal: fans.normal(patch, k).unwrap_or(corners[k].normal), ..corners[k] }));
+    })?;
+    let topology = Topology::build(&agreed, progress)?;
+    Ok((agreed, topology))
+}
+
+/// A mesh with other triangles in place of each patch: those that `pieces` hands on. Triangles without a patch stay, on
+/// their points.
+fn rebuilt(
+    mesh: &Mesh,
+    topology: &Topology,
+    progress: &Progress,
+    mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
+) -> Result<Mesh, Cancelled> {
     let mut builder = MeshBuilder::new();
     for material in &mesh.materials {
         progress.check()?;
         let index = builder.material(material.clone());
         for triangle in material.triangles.clone() {
-            let mut add = |corners: [LooseCorner; 3]| builder.triangle(index, corners);
+            let mut add = |corners: [Corner; 3]| builder.triangle(index, corners.map(LooseCorner::from));
             match topology.patch_of(triangle) {
-                Some(patch) => cutter.pieces(patch, |piece| add(piece.map(LooseCorner::from))),
-                None => add(mesh.triangles[triangle as usize].map(|corner| cutter.corner(corner).into())),
+                Some(patch) => pieces(patch, &mut add),
+                None => add(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),
             }
         }
     }
-    let rim = Rim { width, creases: cuts.creases(), narrowed: cuts.narrowed + cutter.narrowed };
-    let warnings = mesh.warnings.iter().cloned().chain(rim.warnings()).collect();
     let made = builder.finish(mesh.name.clone(), progress)?;
-    Ok((Mesh { repairs: mesh.repairs, warnings, ..made }, rim))
+    Ok(Mesh { repairs: mesh.repairs, warnings: mesh.warnings.clone(), ..made })
+}
+
+/// A corner of the mesh, on its point.
+fn on_point(mesh: &Mesh, topology: &Topology, corner: u32) -> Corner {
+    let point = topology.corner_points[corner as usize];
+    Corner { position: topology.points[point as usize], ..mesh.corners[corner as usize] }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ mod layout;
 mod passes;
 mod picking;
 mod pictures;
+mod rim;
 mod stability;
 
 use std::sync::OnceLock;

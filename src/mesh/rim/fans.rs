@@ -42,6 +42,11 @@ impl Fans {
         Self { fan_of, normals }
     }
 
+    /// Whether there is a fan whose normals differ.
+    pub fn any_split(&self) -> bool {
+        self.normals.iter().any(Option::is_some)
+    }
+
     /// What corner `k` of a patch shares with its fan; none if nothing is split there.
     pub fn normal(&self, patch: u32, k: usize) -> Option<Vec3> {
         self.normals[self.fan_of[slot(patch, k) as usize] as usize]

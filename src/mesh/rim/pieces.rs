@@ -1,13 +1,20 @@
 //! What one triangle is cut into.
 
+use std::collections::HashMap;
+
 use glam::{DVec3, Vec2, Vec3};
 
 use super::cuts::{Cuts, EdgeCuts};
 use super::fans::{Fans, blend};
-use crate::mesh::{Corner, Mesh, Topology};
+use super::on_point;
+use crate::mesh::{Corner, Mesh, Patch, Topology};
 
 /// The largest part of the way from a corner to the middle of the incircle.
 const LARGEST_PART: f64 = 0.5;
+
+/// How much narrower, as a part of the width, the rim inside each further triangle on the same three points is: front and
+/// back of a leaf then keep edges and normals of their own.
+const TWIN_STEP: f64 = 0.125;
 
 /// Cuts patches into pieces.
 pub struct Cutter<'a> {
@@ -17,6 +24,7 @@ pub struct Cutter<'a> {
     cuts: &'a Cuts,
     /// Object units.
     width: f64,
+    twins: HashMap<u32, u32>,
     /// Triangles that were too small for the width.
     pub narrowed: u32,
 }
@@ -50,19 +58,13 @@ struct Whole {
 impl<'a> Cutter<'a> {
     /// `width` is in object units.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, fans: &'a Fans, cuts: &'a Cuts, width: f64) -> Self {
-        Self { mesh, topology, fans, cuts, width, narrowed: 0 }
-    }
-
-    /// A corner of the mesh, on its point.
-    pub fn corner(&self, corner: u32) -> Corner {
-        let point = self.topology.corner_points[corner as usize];
-        Corner { position: self.topology.points[point as usize], ..self.mesh.corners[corner as usize] }
+        Self { mesh, topology, fans, cuts, width, twins: twins(topology), narrowed: 0 }
     }
 
     /// Calls `add` with each of a patch's pieces: what is left of it, then the strips along creased sides.
-    pub fn pieces(&mut self, patch: u32, mut add: impl FnMut([Corner; 3])) {
+    pub fn pieces(&mut self, patch: u32, add: &mut dyn FnMut([Corner; 3])) {
         let whole = self.whole(patch);
-        let part = self.inside_part(&whole);
+        let part = self.inside_part(patch, &whole);
         let insets = [0, 1, 2].map(|k| whole.inset(k, part));
         let mut rest = Vec::with_capacity(6);
         for (k, inset) in insets.iter().enumerate() {
@@ -81,14 +83,14 @@ impl<'a> Cutter<'a> {
                 add([whole.shared[k], after, before]);
             }
             if whole.is_creased[k] {
-                whole.strip(k, &insets, &mut add);
+                whole.strip(k, &insets, add);
             }
         }
     }
 
     fn whole(&self, patch: u32) -> Whole {
-        let Self { topology, fans, cuts, .. } = self;
-        let own = topology.patches[patch as usize].corners.map(|corner| self.corner(corner));
+        let Self { mesh, topology, fans, cuts, .. } = self;
+        let own = topology.patches[patch as usize].corners.map(|corner| on_point(mesh, topology, corner));
         let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize]);
         let edges: [&EdgeCuts; 3] = sides.map(|side| &cuts.edges[side.edge as usize]);
         let cut = |k: usize, end: usize| {
@@ -107,7 +109,7 @@ impl<'a> Cutter<'a> {
     }
 
     /// The part of the way from a corner to the middle of the incircle that keeps a point so far from both sides.
-    fn inside_part(&mut self, whole: &Whole) -> f64 {
+    fn inside_part(&mut self, patch: u32, whole: &Whole) -> f64 {
         if (0..3).all(|k| !whole.has_inside(k)) {
             return 0.0;
         }
@@ -115,8 +117,22 @@ impl<'a> Cutter<'a> {
         let perimeter = a.distance(b) + b.distance(c) + c.distance(a);
         let radius = (b - a).cross(c - a).length() / perimeter;
         self.narrowed += u32::from(self.width > LARGEST_PART * radius);
-        if self.width < LARGEST_PART * radius { self.width / radius } else { LARGEST_PART }
+        let part = if self.width < LARGEST_PART * radius { self.width / radius } else { LARGEST_PART };
+        part / (1.0 + TWIN_STEP * f64::from(self.twins.get(&patch).copied().unwrap_or(0)))
     }
+}
+
+/// Which of the patches on the same three points a patch is, where it isn't the first.
+fn twins(topology: &Topology) -> HashMap<u32, u32> {
+    let points = |(patch, index): (&Patch, u32)| {
+        let mut points = patch.corners.map(|corner| topology.corner_points[corner as usize]);
+        points.sort_unstable();
+        (points, index)
+    };
+    let mut patches: Vec<_> = topology.patches.iter().zip(0..).map(points).collect();
+    patches.sort_unstable();
+    let groups = patches.chunk_by(|a, b| a.0 == b.0);
+    groups.flat_map(|group| group.iter().zip(0..).skip(1)).map(|(&(_, patch), rank)| (patch, rank)).collect()
 }
 
 impl Whole {
@@ -162,7 +178,7 @@ impl Whole {
     }
 
     /// The triangles between creased side `k` and the cut that runs along it.
-    fn strip(&self, k: usize, insets: &[Inset; 3], add: &mut impl FnMut([Corner; 3])) {
+    fn strip(&self, k: usize, insets: &[Inset; 3], add: &mut dyn FnMut([Corner; 3])) {
         let next = (k + 1) % 3;
         let inner = |k: usize| match insets[k] {
             Inset::Inside(corner) | Inset::On(corner) => Some(corner),

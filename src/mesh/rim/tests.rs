@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{Corner, EdgeCounts, EdgeKind, Material, Shape, weld};
+use crate::mesh::{EdgeCounts, EdgeKind, Material, Shape, Side, weld};
 use crate::stability::{CASES, soup};
 
 fn topology(mesh: &Mesh) -> Topology {
@@ -15,8 +15,13 @@ fn topology(mesh: &Mesh) -> Topology {
 fn rimmed_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, Rim) {
     let progress = Progress::new();
     let before = Topology::build_within(mesh, weld, &progress).unwrap();
-    let (made, rim) = with_rim(mesh, &before, width, &progress).unwrap();
-    let after = topology(&made);
+    let (made, after, rim) = with_rim(mesh, &before, width, &progress).unwrap();
+    assert_eq!(after.edges, topology(&made).edges);
+    for edge in &after.edges {
+        let normals = |side: &Side| side.corners.map(|corner| made.corners[corner as usize].normal);
+        let sides = after.edge_sides(edge);
+        assert!(sides.iter().all(|side| normals(side) == normals(&sides[0])), "{} {width}: {edge:?}", mesh.name);
+    }
     (made, after, rim)
 }
 
@@ -218,6 +223,35 @@ fn parts_that_meet_in_a_point_have_nothing_to_tear() {
 }
 
 #[test]
+fn front_and_back_of_a_leaf_stay_two() {
+    let corner = |x: f32, y: f32, normal| Corner { position: Vec3::new(x, y, 0.0), normal, uv: Vec2::ZERO };
+    let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| move |normal| corner(x, y, normal));
+    let [front, back] = [Vec3::Z, Vec3::NEG_Z];
+    let (mesh, topology, rim) = rimmed(&mesh_of([[a(front), b(front), c(front)], [b(back), a(back), c(back)]]), 0.02);
+    assert!(topology.is_closed_and_oriented());
+    assert_eq!((rim.creases, mesh.triangles.len(), topology.points.len()), (3, 2 * 7, 3 + 2 * 3));
+    for (point, normal) in mesh.corners.iter().map(|corner| (corner.position, corner.normal)) {
+        let on_rim = point.x == 0.0 || point.y == 0.0 || point.x + point.y > 0.999;
+        assert!(on_rim || normal == front || normal == back);
+    }
+    let inside = |normal| mesh.corners.iter().filter(|c| c.normal == normal && c.position.min_element() >= 0.0).count();
+    assert!(inside(front) >= 3 && inside(back) >= 3);
+}
+
+#[test]
+fn parts_that_lie_on_each_other_agree_where_their_cuts_meet() {
+    let large = roof([Vec3::X; 2], [Vec3::Z; 2]);
+    let small = mesh_of(
+        triangles(&roof([Vec3::Y; 2], [Vec3::NEG_X; 2]))
+            .map(|triangle| triangle.map(|corner| Corner { position: corner.position * 0.5, ..corner })),
+    );
+    let points = |mesh: &Mesh| rimmed(mesh, 0.02 / mesh.bounds().diagonal()).1.points.len();
+    let both = mesh_of(triangles(&large).chain(triangles(&small)));
+    // They share the origin and, on both open edges from there, the cuts near it.
+    assert_eq!(points(&both), points(&large) + points(&small) - 3);
+}
+
+#[test]
 fn materials_keep_their_triangles_together() {
     let cube = Shape::CubeSplit.build();
     let mut builder = MeshBuilder::new();
@@ -256,7 +290,9 @@ fn every_case_loses_its_splits_and_stays_whole() {
             assert_eq!(new.edge_counts().split, 0, "{name}");
             assert_eq!(new.is_closed_and_oriented(), old.is_closed_and_oriented(), "{name}");
             assert!((boundary_length(&new) - boundary_length(&old)).abs() <= 1e-5 * boundary_length(&old), "{name}");
-            assert!(rim.creases > 0 || (old.edge_counts().split == 0 && mesh.triangles.len() == before.triangles.len()));
+            assert!(
+                rim.creases > 0 || (old.edge_counts().split == 0 && mesh.triangles.len() == before.triangles.len())
+            );
             if old.is_closed_and_oriented() {
                 assert_eq!(euler(&new), euler(&old), "{name}");
             }
