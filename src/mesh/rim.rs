@@ -3,12 +3,15 @@
 //!
 //! A *creased* edge is one whose sides' normals differ at an end. Along it every triangle is cut back by the rim's width;
 //! the strip between cut and crease becomes thin triangles. On the crease all sides share one normal, the mean of theirs;
-//! on the cut each keeps its own, and so the crease is rounded off within the width and nothing changes beyond. Around a
-//! point, the corners that hang together by edges ([`Fans`]) share one normal too if theirs differ; then edges from there
-//! that aren't creased are cut as well, also those of triangles that touch the crease with that point only.
+//! on the cut each keeps its own, and so the crease is rounded off within the width. Around a point, the corners that hang
+//! together by edges (`fans`) share one normal too if theirs differ; then edges from there that aren't creased are cut as
+//! well, also those of triangles that touch the crease with that point only.
+//!
+//! Between its ends a crease still follows its normals as any edge of PN triangles does. Where it rises by more than the
+//! rim is wide, triangles of the rim fold over: that is the method's limit, and PN-AEN has none of it.
 //!
 //! What several triangles must agree on belongs to the edge: where it is cut, and with which normal, is computed once
-//! ([`cuts`]). What lies inside a triangle is its own affair ([`pieces`]).
+//! (`cuts`). What lies inside a triangle is its own affair (`pieces`).
 
 mod cuts;
 mod fans;
