@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
 use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
-use crate::mesh::{LoadError, Mesh, Progress, Source, Topology};
+use crate::mesh::{LoadError, Mesh, Progress, Rim, Source, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex, is_beyond_near};
@@ -16,25 +16,37 @@ pub struct Loaded {
     pub source: Source,
     /// Within which part of the bounding diagonal points were welded; 0 where they are exactly equal.
     pub weld: f32,
+    pub rim: Rim,
+    /// As it was read: `mesh` itself unless that has a rim.
+    pub read: Arc<Mesh>,
     pub mesh: Arc<Mesh>,
     pub topology: Arc<Topology>,
     pub load_ms: f64,
     pub topology_ms: f64,
 }
 
-/// Reads a mesh and builds its topology, its points welded within `weld` of the bounding diagonal. Needs no device.
+/// Reads a mesh and builds its topology, its points welded within `weld` of the bounding diagonal. If `rim` is above 0,
+/// the mesh gets a rim of that width along its creases, a part of the diagonal too. Needs no device.
 ///
 /// # Errors
 /// What the file holds can't be shown, or `progress` was cancelled.
-pub fn load(source: &Source, weld: f32, progress: &Progress) -> Result<Loaded, LoadError> {
+pub fn load(source: &Source, weld: f32, rim: f32, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
-    let mesh = source.load(progress)?;
+    let read = Arc::new(source.load(progress)?);
     let loaded = Instant::now();
-    let topology = Topology::build_within(&mesh, weld, progress)?;
+    let mut topology = Topology::build_within(&read, weld, progress)?;
+    let (mut mesh, mut made) = (read.clone(), Rim::default());
+    if rim > 0.0 {
+        let with_rim = with_rim(&read, &topology, rim, progress)?;
+        mesh = Arc::new(with_rim.0);
+        (topology, made) = (with_rim.1, with_rim.2);
+    }
     Ok(Loaded {
         source: source.clone(),
         weld,
-        mesh: Arc::new(mesh),
+        rim: made,
+        read,
+        mesh,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,

@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
     let mut harness = Harness::builder()
-        .with_size([1200.0, 800.0])
+        .with_size([1200.0, 860.0])
         .wgpu()
         .build_eframe(move |context| App::new(context, source).expect("these tests need a graphics adapter"));
     settle(&mut harness);

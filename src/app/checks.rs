@@ -2,7 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use crate::mesh::{Joins, Mesh, NormalFaults, Progress, TJunction, Topology, joins, t_junctions};
+use crate::engine::Loaded;
+use crate::mesh::{Joins, NormalFaults, Progress, TJunction, joins, t_junctions};
 
 /// Checks under way or done; dropping them stops them.
 #[derive(Default)]
@@ -20,8 +21,9 @@ struct Found {
 
 impl Checks {
     /// Starts them on a thread of their own; each result repaints the window.
-    pub fn start(context: &egui::Context, mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
+    pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
         let checks = Self::default();
+        let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
         let (found, wanted, context) = (checks.found.clone(), checks.wanted.clone(), context.clone());
         std::thread::spawn(move || {
             let _ = found.normal_faults.set(NormalFaults::of(&mesh, &topology));
@@ -29,7 +31,7 @@ impl Checks {
                 let _ = found.t_junctions.set(all);
             }
             context.request_repaint();
-            if let Ok(all) = joins(&mesh, &wanted) {
+            if let Ok(all) = joins(&read, &wanted) {
                 let _ = found.joins.set(all);
             }
             context.request_repaint();

@@ -21,6 +21,8 @@ pub struct Document {
 /// A load under way; dropping it cancels it.
 pub struct Load {
     pub source: Source,
+    /// The width of the rim that the mesh will have, a part of the bounding diagonal.
+    pub rim: f32,
     /// Whether the camera stays where it is: the same mesh is loaded again.
     pub keep_view: bool,
     pub progress: Progress,
@@ -28,8 +30,15 @@ pub struct Load {
 }
 
 impl Load {
-    /// Loads on a thread of its own, points welded within `weld` of the bounding diagonal.
-    pub fn start(engine: &Engine, context: &egui::Context, source: Source, weld: f32, keep_view: bool) -> Self {
+    /// Loads on a thread of its own, points welded within `weld` of the bounding diagonal, with a rim of that width too.
+    pub fn start(
+        engine: &Engine,
+        context: &egui::Context,
+        source: Source,
+        weld: f32,
+        rim: f32,
+        keep_view: bool,
+    ) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let (sender, done) = channel();
@@ -37,12 +46,12 @@ impl Load {
         let (engine, context) = (engine.clone(), context.clone());
         let (wanted, own_progress) = (source.clone(), progress.clone());
         std::thread::spawn(move || {
-            let result = load(&engine, &context, &wanted, weld, &own_progress, generation);
+            let result = load(&engine, &context, &wanted, weld, rim, &own_progress, generation);
             // Nobody is waiting any more if the load was replaced.
             let _ = sender.send(result);
             context.request_repaint();
         });
-        Self { source, keep_view, progress, done }
+        Self { source, rim, keep_view, progress, done }
     }
 
     /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
@@ -69,10 +78,11 @@ fn load(
     context: &egui::Context,
     source: &Source,
     weld: f32,
+    rim: f32,
     progress: &Progress,
     generation: u64,
 ) -> Result<Document, Option<String>> {
-    let loaded = match engine::load(source, weld, progress) {
+    let loaded = match engine::load(source, weld, rim, progress) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => return Err(Some(error.to_string())),
@@ -81,6 +91,6 @@ fn load(
     let arena = if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES };
     let scene = engine.scene(&loaded, arena).map_err(|error| Some(error.to_string()))?;
     let edges = loaded.topology.edge_counts();
-    let checks = Checks::start(context, loaded.mesh.clone(), loaded.topology.clone());
+    let checks = Checks::start(context, &loaded);
     Ok(Document { loaded, scene, edges, checks, generation })
 }

@@ -13,6 +13,7 @@ mod patch;
 mod pattern;
 mod pick;
 mod picture;
+mod rim;
 mod status;
 mod text;
 mod viewport;
@@ -23,7 +24,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::engine::Engine;
+use crate::engine::{Engine, Loaded};
 use crate::gpu::{Gpu, GpuError, device_descriptor};
 use crate::measure::{Cracks, Sizes};
 use crate::mesh::Source;
@@ -98,6 +99,8 @@ pub struct App {
     document: Option<Document>,
     load: Option<Load>,
     dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
+    /// The width of a rim that is being dragged.
+    dragged_rim: Option<f32>,
     viewport: Viewport,
     measuring: Measuring,
     /// What lines are over the mesh.
@@ -131,6 +134,7 @@ impl App {
             document: None,
             load: None,
             dialog: None,
+            dragged_rim: None,
             measuring: Measuring::default(),
             marked: None,
             selected_edge: None,
@@ -144,17 +148,25 @@ impl App {
     }
 
     /// Starts to load a mesh beside the window; a load that is under way is cancelled. The mesh that is open keeps its
-    /// view and its weld tolerance.
+    /// view, its weld tolerance and its rim.
     pub fn open(&mut self, context: &egui::Context, source: Source) {
         let same = self.document.as_ref().filter(|document| document.loaded.source == source);
-        let (keep_view, weld) = (same.is_some(), same.map_or(0.0, |document| document.loaded.weld));
-        self.load = Some(Load::start(&self.engine, context, source, weld, keep_view));
+        let (weld, rim) = same.map_or((0.0, 0.0), |document| (document.loaded.weld, document.loaded.rim.width));
+        let keep_view = same.is_some();
+        self.load = Some(Load::start(&self.engine, context, source, weld, rim, keep_view));
     }
 
     /// Loads the same mesh again with another weld tolerance, a part of its bounding diagonal.
     pub fn weld(&mut self, context: &egui::Context, weld: f32) {
-        if let Some(source) = self.document.as_ref().map(|document| document.loaded.source.clone()) {
-            self.load = Some(Load::start(&self.engine, context, source, weld, true));
+        if let Some(Loaded { source, rim, .. }) = self.document.as_ref().map(|document| &document.loaded) {
+            self.load = Some(Load::start(&self.engine, context, source.clone(), weld, rim.width, true));
+        }
+    }
+
+    /// Loads the same mesh again with a rim of another width, a part of its bounding diagonal.
+    pub fn rim(&mut self, context: &egui::Context, rim: f32) {
+        if let Some(Loaded { source, weld, .. }) = self.document.as_ref().map(|document| &document.loaded) {
+            self.load = Some(Load::start(&self.engine, context, source.clone(), *weld, rim, true));
         }
     }
 
@@ -190,7 +202,7 @@ impl App {
     }
 
     /// What is shown, as loaded.
-    pub fn loaded(&self) -> Option<&crate::engine::Loaded> {
+    pub fn loaded(&self) -> Option<&Loaded> {
         self.document.as_ref().map(|document| &document.loaded)
     }
 

@@ -121,7 +121,10 @@ impl App {
             heading(ui, "Level of detail");
             self.lod_rows(ui);
             heading(ui, "Mesh");
-            egui::Grid::new("weld").num_columns(2).min_col_width(84.0).show(ui, |ui| self.weld_row(ui));
+            egui::Grid::new("weld").num_columns(2).min_col_width(84.0).show(ui, |ui| {
+                self.weld_row(ui);
+                self.rim_row(ui);
+            });
             heading(ui, "Overlays");
             let overlays = &mut self.settings.overlays;
             egui::Grid::new("colors").num_columns(2).min_col_width(84.0).show(ui, |ui| {

@@ -2,7 +2,8 @@
 
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
-use crate::mesh::{Info, LoadError, Progress, Source, Topology};
+use crate::engine;
+use crate::mesh::{Info, LoadError, Progress, Source, joins};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -17,15 +18,19 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    let info = info(&args.file, args.weld.weld)?;
+    let info = info(&args.file, args.weld)?;
     let text = if args.json { to_json(&info)? } else { info.to_string() };
     write_text("-".as_ref(), &text)
 }
 
 /// Its warnings are among what is said.
-fn info(source: &Source, weld: f32) -> Result<Info, LoadError> {
+fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
-    let mesh = source.load(&progress)?;
-    let topology = Topology::build_within(&mesh, weld, &progress)?;
-    Ok(Info::of(&mesh, &topology, weld, &progress)?)
+    let loaded = engine::load(source, options.weld, options.rim, &progress)?;
+    let info = Info::of(&loaded.mesh, &loaded.topology, loaded.weld, &progress)?;
+    if loaded.rim.width == 0.0 {
+        return Ok(info);
+    }
+    // A tolerance would weld what was read, not what the rim made of it.
+    Ok(Info { rim: loaded.rim, joins: joins(&loaded.read, &progress)?, ..info })
 }

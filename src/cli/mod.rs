@@ -192,16 +192,9 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
 fn load(source: &Source, weld: WeldOption) -> Result<crate::engine::Loaded, CliError> {
-    let loaded = crate::engine::load(source, weld.weld, &Progress::default())?;
+    let loaded = crate::engine::load(source, weld.weld, weld.rim, &Progress::default())?;
     warn(&loaded.mesh);
     Ok(loaded)
-}
-
-/// The same, without edges.
-fn load_mesh(source: &Source) -> Result<Mesh, CliError> {
-    let mesh = source.load(&Progress::default())?;
-    warn(&mesh);
-    Ok(mesh)
 }
 
 fn warn(mesh: &Mesh) {

@@ -9,6 +9,7 @@ use clap::{Args, Parser};
 use glam::Vec2;
 
 use super::CliError;
+use crate::mesh::rim::WIDEST;
 use crate::mesh::{Bounds, Source};
 use crate::render::Camera;
 use crate::settings::{
@@ -195,12 +196,17 @@ pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// Which points are one.
+/// What is made of a mesh before anything else: which points are one, and what becomes of creases.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
     pub weld: f32,
+    /// Cut triangles back from creases, edges with split normals, by this width, and fill it with a rim of small triangles
+    /// with one normal on the crease, so that PN triangles don't tear there (Vlachos et al. 2001). Relative to the bounding
+    /// diagonal; 0 is no rim. No wider than a third of an edge, or than half-way to the middle of a triangle's incircle
+    #[arg(long, value_name = "WIDTH", default_value_t = 0.0, value_parser = rim)]
+    pub rim: f32,
 }
 
 /// Width and height in px.
@@ -291,6 +297,11 @@ pub fn fraction(text: &str) -> Result<f32, String> {
 /// A weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
 pub fn weld(text: &str) -> Result<f32, String> {
     within(text, 0.0..=0.1)
+}
+
+/// The width of a rim, relative to the bounding diagonal.
+fn rim(text: &str) -> Result<f32, String> {
+    within(text, 0.0..=WIDEST)
 }
 
 fn factor(text: &str) -> Result<f32, String> {

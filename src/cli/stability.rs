@@ -1,6 +1,7 @@
 //! `pnaen stability`: cases that break tessellators, and whether what this program promises holds on them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::builder::PossibleValuesParser;
 
@@ -48,9 +49,11 @@ impl Args {
     fn subjects(&self) -> Result<Vec<Subject>, CliError> {
         let mut subjects: Vec<_> = self.cases().collect();
         for source in &self.files {
-            let mesh = super::load_mesh(source)?;
+            let loaded = super::load(source, self.weld)?;
             let name = free_name(&source.title(), &subjects);
-            subjects.push(Subject::new(name, mesh, self.weld.weld));
+            // With a rim it is welded already.
+            let weld = if loaded.rim.width > 0.0 { 0.0 } else { loaded.weld };
+            subjects.push(Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld));
         }
         Ok(subjects)
     }

@@ -8,7 +8,7 @@ use super::joins::{Joins, joins};
 use super::progress::{Cancelled, Progress};
 use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
-use super::{Mesh, NormalFaults, Repairs};
+use super::{Mesh, NormalFaults, Repairs, Rim};
 
 /// T-junctions that are printed for people.
 const SHOWN: usize = 10;
@@ -20,6 +20,8 @@ pub struct Info {
     pub triangles: u32,
     /// Within what points were welded, relative to the bounding diagonal; 0 is exactly.
     pub weld: f32,
+    /// The rim that the mesh has along its creases; all other numbers are those of the mesh with it.
+    pub rim: Rim,
     /// Triangles left out because two corners lie on one point.
     pub degenerate: u32,
     pub corners: u32,
@@ -72,7 +74,7 @@ pub struct BoundsInfo {
 }
 
 impl Info {
-    /// Gathers the numbers of a mesh and of the topology built from it; `weld` is the tolerance of
+    /// Gathers the numbers of a mesh without a rim and of the topology built from it; `weld` is the tolerance of
     /// [`Topology::build_within`].
     ///
     /// # Errors
@@ -85,6 +87,7 @@ impl Info {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
             weld,
+            rim: Rim::default(),
             degenerate: topology.degenerate,
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
@@ -141,7 +144,12 @@ impl Info {
         writeln!(f, "  boundary      {boundary}")?;
         writeln!(f, "  non-manifold  {non_manifold}")?;
         let closed = if self.closed { "closed" } else { "open" };
-        writeln!(f, "surface       {closed}, Euler characteristic {}", self.euler_characteristic)
+        writeln!(f, "surface       {closed}, Euler characteristic {}", self.euler_characteristic)?;
+        let Rim { width, creases, .. } = self.rim;
+        if width > 0.0 {
+            writeln!(f, "rim           {width} of the bounding diagonal wide, along {creases} creases")?;
+        }
+        Ok(())
     }
 
     /// What is odd about it.

@@ -195,3 +195,17 @@ fn stability_looks_into_a_file_that_a_tolerance_closes() {
     assert_eq!(leaks(&[]), [0.0; 0], "open");
     assert_eq!(leaks(&["--weld", "1e-3"]), [0.0; 20], "four methods in five partitionings");
 }
+
+#[test]
+fn with_a_rim_nothing_of_a_file_tears_under_pn() {
+    let differing = |options: &[&str]| {
+        let arguments = ["stability", "shape:cube-split", "--json", "--cameras", "0", "--device", "cpu"];
+        let text = output(&[&arguments, options].concat());
+        let rows: Vec<Value> = serde_json::from_str(&text).expect("a JSON array");
+        let points = |row: &&Value| word(row, "method") == "PN" && word(row, "unit") == "edge points that differ";
+        let all = rows.iter().filter(points).map(|row| number(row, "/measured"));
+        all.collect::<Vec<_>>()
+    };
+    assert!(differing(&[]).iter().all(|points| *points > 0.0));
+    assert_eq!(differing(&["--rim", "0.02"]), [0.0; 4], "in four partitionings");
+}

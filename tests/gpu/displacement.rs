@@ -6,6 +6,7 @@ use std::sync::Arc;
 use pnaen::engine::Loaded;
 use pnaen::gpu::Timing;
 use pnaen::measure::{Measured, ulp};
+use pnaen::mesh::rim::Rim;
 use pnaen::mesh::{Corner, HeightMap, Heights, Mesh, Progress, Shape, Source, Topology};
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
@@ -43,7 +44,19 @@ fn under_waves(shape: Shape, mut mesh: Mesh) -> (Loaded, Scene) {
     let (mesh, source) = (Arc::new(mesh), Source::Shape(shape));
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
     let scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
-    (Loaded { source, weld: 0.0, mesh, topology, load_ms: 0.0, topology_ms: 0.0 }, scene)
+    (
+        Loaded {
+            source,
+            read: mesh.clone(),
+            weld: 0.0,
+            rim: Rim::default(),
+            mesh,
+            topology,
+            load_ms: 0.0,
+            topology_ms: 0.0,
+        },
+        scene,
+    )
 }
 
 const MODES: [Displacement; 3] = [Displacement::On, Displacement::AsPublished, Displacement::PerPatch];

@@ -11,6 +11,7 @@ mod layout;
 mod passes;
 mod picking;
 mod pictures;
+mod rim;
 mod stability;
 
 use std::sync::OnceLock;
@@ -34,7 +35,7 @@ pub fn engine() -> &'static Engine {
 }
 
 pub fn loaded(shape: Shape) -> Loaded {
-    load(&Source::Shape(shape), 0.0, &Progress::default()).expect("shapes always load")
+    load(&Source::Shape(shape), 0.0, 0.0, &Progress::default()).expect("shapes always load")
 }
 
 pub fn scene(shape: Shape) -> (Loaded, Scene) {

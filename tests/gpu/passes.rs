@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pnaen::engine::Loaded;
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
-use pnaen::mesh::{Corner, Material, Mesh, Progress, Shape, Source, Topology};
+use pnaen::mesh::{Corner, Material, Mesh, Progress, Rim, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
@@ -282,7 +282,8 @@ pub fn sheet(columns: u32, rows: u32) -> Loaded {
     let mesh = Mesh { corners, triangles, materials: vec![material], ..Mesh::default() };
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
-    Loaded { source: Source::default(), weld: 0.0, mesh, topology, load_ms: 0.0, topology_ms: 0.0 }
+    let (read, rim) = (mesh.clone(), Rim::default());
+    Loaded { source: Source::default(), weld: 0.0, rim, read, mesh, topology, load_ms: 0.0, topology_ms: 0.0 }
 }
 
 #[test]

@@ -47,7 +47,7 @@ pub fn case(name: &str) -> (Scene, Camera) {
     (scene, camera)
 }
 
-fn measured(scene: &mut Scene, settings: &Settings, camera: &Camera) -> Measured {
+pub fn measured(scene: &mut Scene, settings: &Settings, camera: &Camera) -> Measured {
     let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
     engine().count(scene, &inputs, &mut Timing::Off).expect("counts");
     engine().measure(scene).expect("a readback")

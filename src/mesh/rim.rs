@@ -1,0 +1,137 @@
+//! The older remedy for creases: a rim of small triangles along them, so that PN triangles have no split normals to tear
+//! at. Source: Vlachos, Peters, Boyd and Mitchell 2001, "Curved PN Triangles", on sharp edges.
+//!
+//! A *creased* edge is one whose sides' normals differ at an end. Along it every triangle is cut back by the rim's width;
+//! the strip between cut and crease becomes thin triangles. On the crease all sides share one normal, the mean of theirs;
+//! on the cut each keeps its own, and so the crease is rounded off within the width. Around a point, the corners that hang
+//! together by edges (`fans`) share one normal too if theirs differ; then edges from there that aren't creased are cut as
+//! well, also those of triangles that touch the crease with that point only.
+//!
+//! Between its ends a crease still follows its normals as any edge of PN triangles does. Where it rises by more than the
+//! rim is wide, triangles of the rim fold over: that is the method's limit, and PN-AEN has none of it.
+//!
+//! What several triangles must agree on belongs to the edge: where it is cut, and with which normal, is computed once
+//! (`cuts`). What lies inside a triangle is its own affair (`pieces`).
+
+mod cuts;
+mod fans;
+mod pieces;
+
+use serde::Serialize;
+
+use cuts::{Cuts, width_in_units};
+use fans::Fans;
+use pieces::Cutter;
+
+use super::merge::{LooseCorner, MeshBuilder};
+use super::progress::{Cancelled, Progress};
+use super::{Corner, Mesh, Topology};
+
+/// The widest rim that can be asked for, relative to the bounding diagonal.
+pub const WIDEST: f32 = 0.1;
+
+/// A rim and what came of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Rim {
+    /// As asked for, relative to the bounding diagonal; 0 is no rim.
+    pub width: f32,
+    /// Edges that had split normals.
+    pub creases: u32,
+    /// Edges and triangles that are too small for all of the width.
+    pub narrowed: u32,
+}
+
+impl Rim {
+    /// What people should know of, one sentence each.
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.creases == 0 {
+            warnings.push("no edge has split normals, so there is no crease for a rim.".to_owned());
+        }
+        if self.narrowed > 0 {
+            warnings.push(format!("edges and triangles too small for all of the rim's width: {}.", self.narrowed));
+        }
+        warnings
+    }
+}
+
+/// The mesh with a rim of a width relative to its bounding diagonal along every creased edge of `topology`, in the
+/// triangles' order. The rim is narrower where there is no room: an edge is cut at no more than a third of its length
+/// from an end, and a triangle at no more than half-way from its corner to the middle of its incircle, so that nothing
+/// turns over. It is never narrower than eight units of the last place of the largest coordinate where there is room.
+///
+/// Corners lie on the topology's points: what was welded within a tolerance is equal from here on, and no further weld
+/// should follow. A mesh without creases stays as it is but for that. Triangles without a patch stay degenerate.
+///
+/// Afterwards all sides of an edge have the same normals, however many there are. What was closed stays so, and boundaries
+/// are only subdivided. Linear in triangles, but for sorts. Returns the mesh with its exact topology.
+///
+/// # Errors
+/// [`Cancelled`] when `progress` says so.
+pub fn with_rim(
+    mesh: &Mesh,
+    topology: &Topology,
+    width: f32,
+    progress: &Progress,
+) -> Result<(Mesh, Topology, Rim), Cancelled> {
+    let fans = Fans::of(mesh, topology);
+    progress.check()?;
+    let units = width_in_units(mesh, topology, width);
+    let cuts = Cuts::of(mesh, topology, &fans, units);
+    progress.check()?;
+    let mut cutter = Cutter::new(mesh, topology, &fans, &cuts, units);
+    let cut = rebuilt(mesh, topology, progress, |patch, add| cutter.pieces(patch, add))?;
+    let rim = Rim { width, creases: cuts.creases(), narrowed: cuts.narrowed + cutter.narrowed };
+    let (mut made, topology) = agreed(cut, progress)?;
+    made.warnings.extend(rim.warnings());
+    Ok((made, topology, rim))
+}
+
+/// Where parts of a mesh lie on each other, cuts of one may fall onto those of another, and make edges that neither had:
+/// there too all sides get one normal.
+fn agreed(cut: Mesh, progress: &Progress) -> Result<(Mesh, Topology), Cancelled> {
+    let topology = Topology::build(&cut, progress)?;
+    let fans = Fans::of(&cut, &topology);
+    if !fans.any_split() {
+        return Ok((cut, topology));
+    }
+    let agreed = rebuilt(&cut, &topology, progress, |patch, add| {
+        let corners = topology.patches[patch as usize].corners.map(|corner| cut.corners[corner as usize]);
+        add([0, 1, 2].map(|k| Corner { normal: fans.normal(patch, k).unwrap_or(corners[k].normal), ..corners[k] }));
+    })?;
+    let topology = Topology::build(&agreed, progress)?;
+    Ok((agreed, topology))
+}
+
+/// A mesh with other triangles in place of each patch: those that `pieces` hands on. Triangles without a patch stay, on
+/// their points.
+fn rebuilt(
+    mesh: &Mesh,
+    topology: &Topology,
+    progress: &Progress,
+    mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
+) -> Result<Mesh, Cancelled> {
+    let mut builder = MeshBuilder::new();
+    for material in &mesh.materials {
+        progress.check()?;
+        let index = builder.material(material.clone());
+        for triangle in material.triangles.clone() {
+            let mut add = |corners: [Corner; 3]| builder.triangle(index, corners.map(LooseCorner::from));
+            match topology.patch_of(triangle) {
+                Some(patch) => pieces(patch, &mut add),
+                None => add(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),
+            }
+        }
+    }
+    let made = builder.finish(mesh.name.clone(), progress)?;
+    Ok(Mesh { repairs: mesh.repairs, warnings: mesh.warnings.clone(), ..made })
+}
+
+/// A corner of the mesh, on its point.
+fn on_point(mesh: &Mesh, topology: &Topology, corner: u32) -> Corner {
+    let point = topology.corner_points[corner as usize];
+    Corner { position: topology.points[point as usize], ..mesh.corners[corner as usize] }
+}
+
+#[cfg(test)]
+mod tests;

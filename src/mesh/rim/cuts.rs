@@ -1,0 +1,122 @@
+//! Where edges are cut, once for all their sides.
+
+use glam::{DVec3, Vec3};
+
+use super::fans::{Fans, blend, corner_at, shared};
+use crate::mesh::{Edge, Mesh, Side, Topology};
+
+/// The largest part of an edge between an end and its cut.
+const LARGEST_PART: f64 = 1.0 / 3.0;
+/// The least width, in units of the last place of the largest coordinate.
+const LEAST_ULP: f64 = 8.0;
+/// Beside a crease that an edge meets at an acute angle, its cut is farther along it, so that the rim is as wide there: up
+/// to twice as far, which is enough for 30 degrees.
+const LEAST_SINE: f64 = 0.5;
+
+/// A point on an edge, and the normal of all its sides there.
+#[derive(Clone, Copy, Debug)]
+pub struct Cut {
+    /// How far from the end that it is near, as a part of the edge.
+    pub part: f32,
+    pub position: Vec3,
+    pub normal: Vec3,
+}
+
+/// An edge's cuts near its ends, in its own direction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EdgeCuts {
+    pub is_creased: bool,
+    pub ends: [Option<Cut>; 2],
+}
+
+/// All edges' cuts.
+pub struct Cuts {
+    /// For each of the topology's edges.
+    pub edges: Vec<EdgeCuts>,
+    /// Edges that are too short for the width.
+    pub narrowed: u32,
+}
+
+/// A width relative to the bounding diagonal, in object units.
+pub fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f64 {
+    let largest = topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
+    let least = LEAST_ULP * f64::from(largest) * f64::from(f32::EPSILON);
+    mesh.bounds().part(width.into()).max(least)
+}
+
+impl Cuts {
+    /// `width` is in object units.
+    pub fn of(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
+        let is_creased = |edge: &Edge| {
+            let sides = topology.edge_sides(edge);
+            (0..2).any(|end| sides.iter().any(|side| normal(mesh, side, end) != normal(mesh, &sides[0], end)))
+        };
+        let edges = topology.edges.iter().map(|edge| EdgeCuts { is_creased: is_creased(edge), ..EdgeCuts::default() });
+        let mut cuts = Self { edges: edges.collect(), narrowed: 0 };
+        for (index, edge) in topology.edges.iter().enumerate() {
+            let reach = [0, 1].map(|end| cuts.reach(mesh, topology, fans, edge, end).map(|reach| width * reach));
+            let [a, b] = edge.points.map(|point| topology.points[point as usize].as_dvec3());
+            let most = LARGEST_PART * a.distance(b);
+            cuts.narrowed += u32::from(reach.iter().flatten().any(|reach| *reach > most));
+            let sides = topology.edge_sides(edge);
+            cuts.edges[index].ends = [0, 1].map(|end| {
+                let part = reach[end]?.min(most) / a.distance(b);
+                let (from, to) = if end == 0 { (a, b) } else { (b, a) };
+                let position = from.lerp(to, part).as_vec3();
+                let at = |side: &Side| along(mesh, side, end, part);
+                // Where f32 has no room for a cut, it is the point itself.
+                let is_apart = position.as_dvec3() != from;
+                let normal = fans.normal_at(&sides[0], end).filter(|_| !is_apart);
+                let normal = normal.unwrap_or_else(|| shared(sides.iter().map(at)));
+                Some(Cut { part: part as f32, position, normal })
+            });
+        }
+        cuts
+    }
+
+    /// Edges that had split normals.
+    pub fn creases(&self) -> u32 {
+        self.edges.iter().filter(|edge| edge.is_creased).count() as u32
+    }
+
+    /// How far from an end an edge is cut, in widths; none if it isn't.
+    fn reach(&self, mesh: &Mesh, topology: &Topology, fans: &Fans, edge: &Edge, end: usize) -> Option<f64> {
+        let sides = topology.edge_sides(edge);
+        let normal_there = fans.normal_at(&sides[0], end)?;
+        if !self.edges[sides[0].edge as usize].is_creased {
+            return Some(sides.iter().map(|side| self.slant(topology, side, end)).fold(1.0, f64::max));
+        }
+        // Where more meets than its own sides the crease is cut too: what the point's normal bends stays near the point.
+        let own = shared(sides.iter().map(|side| normal(mesh, side, end)));
+        (own != normal_there).then_some(1.0)
+    }
+
+    /// How far along a side its edge must be cut for the rim of the crease beside it, at an end, in widths; 1 if that is
+    /// none.
+    fn slant(&self, topology: &Topology, side: &Side, end: usize) -> f64 {
+        let k = corner_at(side, end);
+        let other = if k == usize::from(side.index) { (k + 2) % 3 } else { k };
+        let patch = &topology.patches[side.patch as usize];
+        let other = topology.sides[patch.sides[other] as usize].edge;
+        if !self.edges[other as usize].is_creased {
+            return 1.0;
+        }
+        let p = topology.patch_positions(side.patch).map(Vec3::as_dvec3);
+        1.0 / sine(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]).max(LEAST_SINE)
+    }
+}
+
+/// The sine of the angle between two vectors.
+fn sine(a: DVec3, b: DVec3) -> f64 {
+    a.normalize().cross(b.normalize()).length()
+}
+
+/// A side's normal at an end of its edge.
+fn normal(mesh: &Mesh, side: &Side, end: usize) -> Vec3 {
+    mesh.corners[side.corners[end] as usize].normal
+}
+
+/// A side's normal at a part of its edge from an end.
+fn along(mesh: &Mesh, side: &Side, end: usize, part: f64) -> Vec3 {
+    blend([(1.0 - part, normal(mesh, side, end)), (part, normal(mesh, side, 1 - end))])
+}

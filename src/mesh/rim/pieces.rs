@@ -1,0 +1,212 @@
+//! What one triangle is cut into.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Vec2, Vec3};
+
+use super::cuts::{Cuts, EdgeCuts};
+use super::fans::{Fans, blend};
+use super::on_point;
+use crate::mesh::{Corner, Mesh, Patch, Topology};
+
+/// The largest part of the way from a corner to the middle of the incircle.
+const LARGEST_PART: f64 = 0.5;
+
+/// How much narrower, as a part of the width, the rim inside each further triangle on the same three points is: front and
+/// back of a leaf then keep edges and normals of their own.
+const TWIN_STEP: f64 = 0.125;
+
+/// Cuts patches into pieces.
+pub struct Cutter<'a> {
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    fans: &'a Fans,
+    cuts: &'a Cuts,
+    /// Object units.
+    width: f64,
+    twins: HashMap<u32, u32>,
+    /// Triangles that were too small for the width.
+    pub narrowed: u32,
+}
+
+/// Where a triangle is cut back to at a corner.
+#[derive(Clone, Copy)]
+enum Inset {
+    /// It isn't.
+    None,
+    /// A point inside, off two creased sides.
+    Inside(Corner),
+    /// A point on the side that isn't creased.
+    On(Corner),
+    /// The corner is cut off: points on the side that comes in and on the one that goes out.
+    Off([Corner; 2]),
+}
+
+/// A patch with all that is known of it.
+struct Whole {
+    /// Its corners on the topology's points, with their own normals.
+    own: [Corner; 3],
+    /// The same with the normals that they share with their fans.
+    shared: [Corner; 3],
+    /// Whether a fan's normals were split at the corner.
+    is_split: [bool; 3],
+    is_creased: [bool; 3],
+    /// On side k, near its start and near its end.
+    cuts: [[Option<Corner>; 2]; 3],
+}
+
+impl<'a> Cutter<'a> {
+    /// `width` is in object units.
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, fans: &'a Fans, cuts: &'a Cuts, width: f64) -> Self {
+        Self { mesh, topology, fans, cuts, width, twins: twins(topology), narrowed: 0 }
+    }
+
+    /// Calls `add` with each of a patch's pieces: what is left of it, then the strips along creased sides.
+    pub fn pieces(&mut self, patch: u32, add: &mut dyn FnMut([Corner; 3])) {
+        let whole = self.whole(patch);
+        let part = self.inside_part(patch, &whole);
+        let insets = [0, 1, 2].map(|k| whole.inset(k, part));
+        let mut rest = Vec::with_capacity(6);
+        for (k, inset) in insets.iter().enumerate() {
+            match *inset {
+                Inset::None => rest.push(whole.shared[k]),
+                Inset::Inside(corner) | Inset::On(corner) => rest.push(corner),
+                Inset::Off(both) => rest.extend(both),
+            }
+        }
+        // Convex, with no three corners in a line: at most two lie on any side.
+        for pair in rest[1..].windows(2) {
+            add([rest[0], pair[0], pair[1]]);
+        }
+        for (k, inset) in insets.iter().enumerate() {
+            if let Inset::Off([before, after]) = *inset {
+                add([whole.shared[k], after, before]);
+            }
+            if whole.is_creased[k] {
+                whole.strip(k, &insets, add);
+            }
+        }
+    }
+
+    fn whole(&self, patch: u32) -> Whole {
+        let Self { mesh, topology, fans, cuts, .. } = self;
+        let own = topology.patches[patch as usize].corners.map(|corner| on_point(mesh, topology, corner));
+        let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize]);
+        let edges: [&EdgeCuts; 3] = sides.map(|side| &cuts.edges[side.edge as usize]);
+        let cut = |k: usize, end: usize| {
+            let cut = edges[k].ends[if sides[k].reversed { 1 - end } else { end }]?;
+            let (from, to) = (own[(k + end) % 3], own[(k + 1 - end) % 3]);
+            Some(Corner { position: cut.position, normal: cut.normal, uv: from.uv.lerp(to.uv, cut.part) })
+        };
+        let normals = [0, 1, 2].map(|k| fans.normal(patch, k));
+        Whole {
+            own,
+            shared: [0, 1, 2].map(|k| Corner { normal: normals[k].unwrap_or(own[k].normal), ..own[k] }),
+            is_split: normals.map(|normal| normal.is_some()),
+            is_creased: edges.map(|edge| edge.is_creased),
+            cuts: [0, 1, 2].map(|k| [cut(k, 0), cut(k, 1)]),
+        }
+    }
+
+    /// The part of the way from a corner to the middle of the incircle that keeps a point so far from both sides.
+    fn inside_part(&mut self, patch: u32, whole: &Whole) -> f64 {
+        if (0..3).all(|k| !whole.has_inside(k)) {
+            return 0.0;
+        }
+        let [a, b, c] = whole.own.map(|corner| corner.position.as_dvec3());
+        let perimeter = a.distance(b) + b.distance(c) + c.distance(a);
+        let radius = (b - a).cross(c - a).length() / perimeter;
+        self.narrowed += u32::from(self.width > LARGEST_PART * radius);
+        let part = if self.width < LARGEST_PART * radius { self.width / radius } else { LARGEST_PART };
+        part / (1.0 + TWIN_STEP * f64::from(self.twins.get(&patch).copied().unwrap_or(0)))
+    }
+}
+
+/// Which of the patches on the same three points a patch is, where it isn't the first.
+fn twins(topology: &Topology) -> HashMap<u32, u32> {
+    let points = |(patch, index): (&Patch, u32)| {
+        let mut points = patch.corners.map(|corner| topology.corner_points[corner as usize]);
+        points.sort_unstable();
+        (points, index)
+    };
+    let mut patches: Vec<_> = topology.patches.iter().zip(0..).map(points).collect();
+    patches.sort_unstable();
+    let groups = patches.chunk_by(|a, b| a.0 == b.0);
+    groups.flat_map(|group| group.iter().zip(0..).skip(1)).map(|(&(_, patch), rank)| (patch, rank)).collect()
+}
+
+impl Whole {
+    /// Whether corner `k` is cut back from two creased sides.
+    fn has_inside(&self, k: usize) -> bool {
+        self.is_split[k] && self.is_creased[k] && self.is_creased[(k + 2) % 3]
+    }
+
+    fn inset(&self, k: usize, part: f64) -> Inset {
+        let before = (k + 2) % 3;
+        let (cut_before, cut_after) = (self.cuts[before][1], self.cuts[k][0]);
+        if self.has_inside(k) {
+            return Inset::Inside(self.inside(k, part));
+        }
+        // An edge that isn't creased is cut where its end is split, for all its sides.
+        match (self.is_creased[before], self.is_creased[k], cut_before, cut_after) {
+            (false, true, Some(cut), _) | (true, false, _, Some(cut)) => Inset::On(cut),
+            (false, false, Some(before), Some(after)) => Inset::Off([before, after]),
+            _ => Inset::None,
+        }
+    }
+
+    /// A part of the way from corner `k` to the middle of the incircle, whose weight by corner is the length of the side
+    /// opposite it.
+    fn inside(&self, k: usize, part: f64) -> Corner {
+        let p = self.own.map(|corner| corner.position.as_dvec3());
+        let opposite = [0, 1, 2].map(|i| p[(i + 1) % 3].distance(p[(i + 2) % 3]));
+        let perimeter: f64 = opposite.iter().sum();
+        let weight = |i: usize| part * opposite[i] / perimeter;
+        let offset = |i: usize| weight(i) * (p[i] - p[k]);
+        let uv_offset = |i: usize| weight(i) as f32 * (self.own[i].uv - self.own[k].uv);
+        let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+        let position: DVec3 = p[k] + offset(next) + offset(last);
+        let position: Vec3 = position.as_vec3();
+        if position == self.own[k].position {
+            // f32 has no room for it.
+            return self.shared[k];
+        }
+        let weights = [(k, 1.0 - weight(next) - weight(last)), (next, weight(next)), (last, weight(last))];
+        let normal = blend(weights.map(|(i, weight)| (weight, self.own[i].normal)));
+        let uv: Vec2 = self.own[k].uv + uv_offset(next) + uv_offset(last);
+        Corner { position, normal, uv }
+    }
+
+    /// The triangles between creased side `k` and the cut that runs along it.
+    fn strip(&self, k: usize, insets: &[Inset; 3], add: &mut dyn FnMut([Corner; 3])) {
+        let next = (k + 1) % 3;
+        let inner = |k: usize| match insets[k] {
+            Inset::Inside(corner) | Inset::On(corner) => Some(corner),
+            Inset::None | Inset::Off(_) => None,
+        };
+        let (mut from, mut to) = (self.shared[k], self.shared[next]);
+        let (inner_from, inner_to) = (inner(k), inner(next));
+        if let (Some(cut), Some(inner)) = (self.cuts[k][0], inner_from) {
+            add([from, cut, inner]);
+            from = cut;
+        }
+        if let (Some(cut), Some(inner)) = (self.cuts[k][1], inner_to) {
+            add([cut, to, inner]);
+            to = cut;
+        }
+        match (inner_from, inner_to) {
+            (Some(inner_from), Some(inner_to)) => {
+                // The diagonal that can't leave the strip, however wide it is at either end.
+                if matches!((insets[k], insets[next]), (Inset::Inside(_), Inset::On(_))) {
+                    add([from, to, inner_from]);
+                    add([to, inner_to, inner_from]);
+                } else {
+                    add([from, to, inner_to]);
+                    add([from, inner_to, inner_from]);
+                }
+            }
+            (Some(inner), None) | (None, Some(inner)) => add([from, to, inner]),
+            (None, None) => {}
+        }
+    }
+}
