@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
 use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
-use crate::mesh::{LoadError, Mesh, Progress, Rim, Source, Topology, with_rim};
+use crate::mesh::{HeightSource, LoadError, Mesh, Progress, Rim, Source, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex, is_beyond_near};
@@ -14,8 +14,8 @@ use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex, is_beyond_nea
 #[derive(Clone, Debug)]
 pub struct Loaded {
     pub source: Source,
-    /// Within which part of the bounding diagonal points were welded; 0 where they are exactly equal.
-    pub weld: f32,
+    /// What was asked for; a rim as wide as there is.
+    pub preparation: Preparation,
     pub rim: Rim,
     /// As it was read: `mesh` itself unless that has a rim.
     pub read: Arc<Mesh>,
@@ -25,25 +25,39 @@ pub struct Loaded {
     pub topology_ms: f64,
 }
 
-/// Reads a mesh and builds its topology, its points welded within `weld` of the bounding diagonal. If `rim` is above 0,
-/// the mesh gets a rim of that width along its creases, a part of the diagonal too. Needs no device.
+/// What becomes of a mesh after it was read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Preparation {
+    /// Within which part of the bounding diagonal points are welded.
+    pub weld: f32,
+    /// The width of a rim along its creases, a part of the diagonal too; 0 for none.
+    pub rim: f32,
+    /// What it can be displaced by.
+    pub heights: Option<HeightSource>,
+}
+
+/// Reads a mesh, prepares it, and builds its topology. Needs no device.
 ///
 /// # Errors
-/// What the file holds can't be shown, or `progress` was cancelled.
-pub fn load(source: &Source, weld: f32, rim: f32, progress: &Progress) -> Result<Loaded, LoadError> {
+/// What the file holds can't be shown, there is no such height image, or `progress` was cancelled.
+pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     let read = Arc::new(source.load(progress)?);
     let loaded = Instant::now();
-    let mut topology = Topology::build_within(&read, weld, progress)?;
+    let mut topology = Topology::build_within(&read, preparation.weld, progress)?;
     let (mut mesh, mut made) = (read.clone(), Rim::default());
-    if rim > 0.0 {
-        let with_rim = with_rim(&read, &topology, rim, progress)?;
+    if preparation.rim > 0.0 {
+        let with_rim = with_rim(&read, &topology, preparation.rim, progress)?;
         mesh = Arc::new(with_rim.0);
         (topology, made) = (with_rim.1, with_rim.2);
     }
+    if let Some(heights) = &preparation.heights {
+        let heights = Arc::new(heights.load(&mesh)?);
+        Arc::make_mut(&mut mesh).heights = Some(heights);
+    }
     Ok(Loaded {
         source: source.clone(),
-        weld,
+        preparation: preparation.clone(),
         rim: made,
         read,
         mesh,

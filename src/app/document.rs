@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::checks::Checks;
-use crate::engine::{self, Engine, Loaded};
+use crate::engine::{self, Engine, Loaded, Preparation};
 use crate::mesh::{EdgeCounts, LoadError, Progress, Source};
 use crate::render::Scene;
 use crate::settings::ARENA_BYTES;
@@ -21,8 +21,8 @@ pub struct Document {
 /// A load under way; dropping it cancels it.
 pub struct Load {
     pub source: Source,
-    /// The width of the rim that the mesh will have, a part of the bounding diagonal.
-    pub rim: f32,
+    /// What the mesh will have become.
+    pub preparation: Preparation,
     /// Whether the camera stays where it is: the same mesh is loaded again.
     pub keep_view: bool,
     pub progress: Progress,
@@ -30,13 +30,12 @@ pub struct Load {
 }
 
 impl Load {
-    /// Loads on a thread of its own, points welded within `weld` of the bounding diagonal, with a rim of that width too.
+    /// Loads on a thread of its own.
     pub fn start(
         engine: &Engine,
         context: &egui::Context,
         source: Source,
-        weld: f32,
-        rim: f32,
+        preparation: Preparation,
         keep_view: bool,
     ) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
@@ -44,14 +43,14 @@ impl Load {
         let (sender, done) = channel();
         let progress = Progress::default();
         let (engine, context) = (engine.clone(), context.clone());
-        let (wanted, own_progress) = (source.clone(), progress.clone());
+        let (wanted, prepared, own_progress) = (source.clone(), preparation.clone(), progress.clone());
         std::thread::spawn(move || {
-            let result = load(&engine, &context, &wanted, weld, rim, &own_progress, generation);
+            let result = load(&engine, &context, &wanted, &prepared, &own_progress, generation);
             // Nobody is waiting any more if the load was replaced.
             let _ = sender.send(result);
             context.request_repaint();
         });
-        Self { source, rim, keep_view, progress, done }
+        Self { source, preparation, keep_view, progress, done }
     }
 
     /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
@@ -77,12 +76,11 @@ fn load(
     engine: &Engine,
     context: &egui::Context,
     source: &Source,
-    weld: f32,
-    rim: f32,
+    preparation: &Preparation,
     progress: &Progress,
     generation: u64,
 ) -> Result<Document, Option<String>> {
-    let loaded = match engine::load(source, weld, rim, progress) {
+    let loaded = match engine::load(source, preparation, progress) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => return Err(Some(error.to_string())),

@@ -13,7 +13,7 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 30] = [
+pub const KEYS: [(&str, &str); 31] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -38,6 +38,7 @@ pub const KEYS: [(&str, &str); 30] = [
     ("S", "split view"),
     ("E", "edges as published, or computed once"),
     ("L", "adaptive LOD"),
+    ("D", "displacement, where there are heights"),
     ("Z", "freeze the LOD camera"),
     ("R", "reload the file"),
     ("Ctrl+O", "open a file"),
@@ -162,15 +163,25 @@ impl App {
         self.typed_path.get_or_insert(path);
     }
 
-    /// The desktop's file dialog, on a thread of its own.
     fn open_dialog(&mut self, context: &egui::Context) {
+        self.dialog("Open a mesh", "glTF", &["gltf", "glb"], context);
+    }
+
+    /// The desktop's file dialog, on a thread of its own.
+    pub(super) fn dialog(
+        &mut self,
+        title: &'static str,
+        kind: &'static str,
+        extensions: &'static [&str],
+        context: &egui::Context,
+    ) {
         if self.dialog.is_some() {
             return;
         }
         let (sender, receiver) = std::sync::mpsc::channel();
         let context = context.clone();
         std::thread::spawn(move || {
-            let dialog = rfd::FileDialog::new().set_title("Open a mesh").add_filter("glTF", &["gltf", "glb"]);
+            let dialog = rfd::FileDialog::new().set_title(title).add_filter(kind, extensions);
             let _ = sender.send(dialog.pick_file());
             context.request_repaint();
         });
@@ -216,6 +227,9 @@ impl App {
         }
         if pressed(context, Key::L) {
             self.toggle_lod();
+        }
+        if pressed(context, Key::D) {
+            self.toggle_displacement();
         }
         if pressed(context, Key::Z) {
             self.toggle_frozen();
@@ -289,7 +303,7 @@ impl App {
         let (mut accepted, mut cancelled) = (false, false);
         let window = egui::Window::new("Open path").resizable(false).collapsible(false);
         window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(context, |ui| {
-            let label = ui.label("A .gltf or .glb file, or shape:NAME");
+            let label = ui.label("A .gltf or .glb file, shape:NAME, or a height image (.png, .jpg)");
             let edit = egui::TextEdit::singleline(path).desired_width(420.0).hint_text("model.glb");
             let response = ui.add(edit).labelled_by(label.id);
             if !response.has_focus() && !response.lost_focus() {
@@ -306,7 +320,10 @@ impl App {
             match path.trim().parse::<Source>() {
                 Ok(source) => {
                     self.typed_path = None;
-                    self.open(context, source);
+                    match source {
+                        Source::File(path) => self.open_path(context, path),
+                        Source::Shape(_) => self.open(context, source),
+                    }
                 }
                 Err(error) => self.error = Some(error.to_string()),
             }

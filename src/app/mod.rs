@@ -3,6 +3,7 @@
 mod checks;
 mod document;
 mod facts;
+mod heights;
 mod labels;
 mod legend;
 mod measuring;
@@ -24,7 +25,7 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use crate::engine::{Engine, Loaded};
+use crate::engine::{Engine, Loaded, Preparation};
 use crate::gpu::{Gpu, GpuError, device_descriptor};
 use crate::measure::{Cracks, Sizes};
 use crate::mesh::Source;
@@ -148,26 +149,27 @@ impl App {
     }
 
     /// Starts to load a mesh beside the window; a load that is under way is cancelled. The mesh that is open keeps its
-    /// view, its weld tolerance and its rim.
+    /// view, and what was made of it.
     pub fn open(&mut self, context: &egui::Context, source: Source) {
         let same = self.document.as_ref().filter(|document| document.loaded.source == source);
-        let (weld, rim) = same.map_or((0.0, 0.0), |document| (document.loaded.weld, document.loaded.rim.width));
-        let keep_view = same.is_some();
-        self.load = Some(Load::start(&self.engine, context, source, weld, rim, keep_view));
+        let preparation = same.map(|document| document.loaded.preparation.clone());
+        let keep_view = preparation.is_some();
+        self.load = Some(Load::start(&self.engine, context, source, preparation.unwrap_or_default(), keep_view));
     }
 
-    /// Loads the same mesh again with another weld tolerance, a part of its bounding diagonal.
-    pub fn weld(&mut self, context: &egui::Context, weld: f32) {
-        if let Some(Loaded { source, rim, .. }) = self.document.as_ref().map(|document| &document.loaded) {
-            self.load = Some(Load::start(&self.engine, context, source.clone(), weld, rim.width, true));
-        }
+    /// Loads the same mesh again with something else made of it: `change` changes what is, or is on its way.
+    pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
+        let Some(Loaded { source, .. }) = self.document.as_ref().map(|document| &document.loaded) else { return };
+        let mut preparation = self.preparation();
+        change(&mut preparation);
+        self.load = Some(Load::start(&self.engine, context, source.clone(), preparation, true));
     }
 
-    /// Loads the same mesh again with a rim of another width, a part of its bounding diagonal.
-    pub fn rim(&mut self, context: &egui::Context, rim: f32) {
-        if let Some(Loaded { source, weld, .. }) = self.document.as_ref().map(|document| &document.loaded) {
-            self.load = Some(Load::start(&self.engine, context, source.clone(), *weld, rim, true));
-        }
+    /// What is made of the mesh, or will be once it is loaded again.
+    fn preparation(&self) -> Preparation {
+        let again = self.load.as_ref().filter(|load| load.keep_view).map(|load| &load.preparation);
+        let shown = self.document.as_ref().map(|document| &document.loaded.preparation);
+        again.or(shown).cloned().unwrap_or_default()
     }
 
     /// Loads the same mesh again; settings and camera stay.
@@ -268,7 +270,7 @@ impl App {
                 Err(std::sync::mpsc::TryRecvError::Empty) => {}
                 Ok(Some(path)) => {
                     self.dialog = None;
-                    self.open(context, Source::File(path));
+                    self.open_path(context, path);
                 }
                 Ok(None) | Err(_) => self.dialog = None,
             }
@@ -289,7 +291,7 @@ impl eframe::App for App {
         self.take_device_problem();
         let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());
         if let Some(path) = dropped {
-            self.open(context, Source::File(path));
+            self.open_path(context, path);
         }
         self.shortcuts(context);
     }

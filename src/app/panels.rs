@@ -124,6 +124,7 @@ impl App {
             egui::Grid::new("weld").num_columns(2).min_col_width(84.0).show(ui, |ui| {
                 self.weld_row(ui);
                 self.rim_row(ui);
+                self.height_rows(ui);
             });
             heading(ui, "Overlays");
             let overlays = &mut self.settings.overlays;
@@ -211,7 +212,7 @@ impl App {
     /// The tolerances, each with what it would join; another one loads the mesh again.
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        let weld = document.loaded.weld;
+        let weld = document.loaded.preparation.weld;
         let label = ui.label("Weld");
         let mut chosen = weld;
         let combo = egui::ComboBox::from_id_salt("Weld").selected_text(tolerance(weld)).show_ui(ui, |ui| {
@@ -235,7 +236,7 @@ impl App {
         );
         ui.end_row();
         if chosen != weld {
-            self.weld(ui.ctx(), chosen);
+            self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
         }
     }
 

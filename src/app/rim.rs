@@ -8,7 +8,7 @@ impl App {
     /// The rim's width in percent; another one loads the mesh again, once it is no longer dragged.
     pub(super) fn rim_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        let rim = self.load.as_ref().filter(|load| load.keep_view).map_or(document.loaded.rim.width, |load| load.rim);
+        let rim = self.preparation().rim;
         let mut percent = 100.0 * self.dragged_rim.unwrap_or(rim);
         let wide = short(f64::from(percent / 100.0 * document.scene.bounds.diagonal()));
         let hover = format!(
@@ -31,7 +31,7 @@ impl App {
         if let Some(wanted) = self.dragged_rim.filter(|_| !response.dragged()) {
             self.dragged_rim = None;
             if wanted != rim {
-                self.rim(ui.ctx(), wanted);
+                self.prepare(ui.ctx(), |preparation| preparation.rim = wanted);
             }
         }
     }

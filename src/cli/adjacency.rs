@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         return Err(CliError::Usage("give -o to write a file, --against to hold one against the mesh, or both"));
     }
     let given = args.against.as_deref().map(|path| read_against(args, path)).transpose()?;
-    let loaded = load(&args.file, args.weld)?;
+    let loaded = load(&args.file, &args.weld.preparation())?;
     let computed = args.indices.indices(&loaded.topology);
     if let Some(path) = &args.output {
         write(args, path, &loaded, &computed)?;

@@ -28,7 +28,7 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
-    let loaded = load(&args.file, args.surface.weld)?;
+    let loaded = load(&args.file, &args.surface.preparation())?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let bounds = mesh.bounds();
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);

@@ -26,8 +26,8 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 /// Its warnings are among what is said.
 fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
-    let loaded = engine::load(source, options.weld, options.rim, &progress)?;
-    let info = Info::of(&loaded.mesh, &loaded.topology, loaded.weld, &progress)?;
+    let loaded = engine::load(source, &options.preparation(), &progress)?;
+    let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &progress)?;
     if loaded.rim.width == 0.0 {
         return Ok(info);
     }

@@ -21,6 +21,7 @@ use thiserror::Error;
 pub use given::GivenOption;
 pub use options::{SurfaceOptions, WeldOption};
 
+use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
 use crate::gpu::GpuError;
 use crate::measure::CompareError;
@@ -191,8 +192,8 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 }
 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
-fn load(source: &Source, weld: WeldOption) -> Result<crate::engine::Loaded, CliError> {
-    let loaded = crate::engine::load(source, weld.weld, weld.rim, &Progress::default())?;
+fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
+    let loaded = crate::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.mesh);
     Ok(loaded)
 }

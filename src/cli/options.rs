@@ -9,13 +9,14 @@ use clap::{Args, Parser};
 use glam::Vec2;
 
 use super::CliError;
+use crate::engine::Preparation;
 use crate::mesh::rim::WIDEST;
-use crate::mesh::{Bounds, Source};
+use crate::mesh::{Bounds, HeightSource, Source};
 use crate::render::Camera;
 use crate::settings::{
-    ALPHA_RANGE, ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+    ALPHA_RANGE, ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
 };
-use crate::tessellate::{Clip, Convention, Edges, Lod, Normals, Partitioning, Surface, fit_budget};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, fit_budget};
 
 /// What is tessellated how, and seen from where.
 #[derive(Clone, Debug, Args)]
@@ -67,6 +68,20 @@ pub struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: Option<u64>,
+    /// What the surface is displaced by: a PNG or JPEG image over all materials, its brightness as stored from 0 (black) to 1
+    /// (white); or `material`, the brightness of each material's base colour image
+    #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
+    pub height: Option<HeightSource>,
+    /// Whether the surface is displaced, and what its patches agree on where they meet; by default on with --height, else
+    /// off
+    #[arg(long, value_enum)]
+    pub displacement: Option<Displacement>,
+    /// How far white is above black, in bounding radii, -1 to 1
+    #[arg(long, value_name = "S", default_value_t = Settings::default().height_scale, value_parser = height_scale, allow_hyphen_values = true)]
+    pub height_scale: f32,
+    /// The height that stays where it is, 0 to 1
+    #[arg(long, value_name = "H", default_value_t = Settings::default().midlevel, value_parser = fraction)]
+    pub midlevel: f32,
     /// Memory for output on the device, in MiB, 1 to 65536; what doesn't fit goes through it in chunks
     #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = clap::value_parser!(u64).range(1..=65536))]
     pub arena: u64,
@@ -110,10 +125,21 @@ impl SurfaceOptions {
         Ok(())
     }
 
+    /// What becomes of the mesh after it was read. Displacement without an image is by the materials'.
+    pub fn preparation(&self) -> Preparation {
+        let wanted = (self.displacement() != Displacement::Off).then_some(HeightSource::Materials);
+        Preparation { heights: self.height.clone().or(wanted), ..self.weld.preparation() }
+    }
+
+    fn displacement(&self) -> Displacement {
+        let default = if self.height.is_some() { Displacement::On } else { Displacement::Off };
+        self.displacement.unwrap_or(default)
+    }
+
     /// Settings with these options, and nothing over the surface.
     pub fn settings(&self) -> Settings {
         let Self { surface, alpha, normals, edges, factor, partitioning, lod, pixels, .. } = *self;
-        let Self { tolerance, clip, cull_back_faces, convention, .. } = *self;
+        let Self { tolerance, clip, cull_back_faces, convention, height_scale, midlevel, .. } = *self;
         let Distances { near, far } = self.distances;
         Settings {
             surface,
@@ -130,6 +156,9 @@ impl SurfaceOptions {
             clip,
             cull_back_faces,
             convention,
+            displacement: self.displacement(),
+            height_scale,
+            midlevel,
             ..Settings::default()
         }
     }
@@ -207,6 +236,12 @@ pub struct WeldOption {
     /// diagonal; 0 is no rim. No wider than a third of an edge, or than half-way to the middle of a triangle's incircle
     #[arg(long, value_name = "WIDTH", default_value_t = 0.0, value_parser = rim)]
     pub rim: f32,
+}
+
+impl WeldOption {
+    pub fn preparation(&self) -> Preparation {
+        Preparation { weld: self.weld, rim: self.rim, heights: None }
+    }
 }
 
 /// Width and height in px.
@@ -310,6 +345,10 @@ fn factor(text: &str) -> Result<f32, String> {
 
 fn alpha(text: &str) -> Result<f32, String> {
     within(text, ALPHA_RANGE)
+}
+
+fn height_scale(text: &str) -> Result<f32, String> {
+    within(text, HEIGHT_RANGE)
 }
 
 fn pixels(text: &str) -> Result<f32, String> {

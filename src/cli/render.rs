@@ -88,7 +88,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     let overlays = args.overlays()?;
     let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
-    let loaded = load(&args.file, args.surface.weld)?;
+    let loaded = load(&args.file, &args.surface.preparation())?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let engine = Engine::headless()?;

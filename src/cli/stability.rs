@@ -49,10 +49,10 @@ impl Args {
     fn subjects(&self) -> Result<Vec<Subject>, CliError> {
         let mut subjects: Vec<_> = self.cases().collect();
         for source in &self.files {
-            let loaded = super::load(source, self.weld)?;
+            let loaded = super::load(source, &self.weld.preparation())?;
             let name = free_name(&source.title(), &subjects);
             // With a rim it is welded already.
-            let weld = if loaded.rim.width > 0.0 { 0.0 } else { loaded.weld };
+            let weld = if loaded.rim.width > 0.0 { 0.0 } else { self.weld.weld };
             subjects.push(Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld));
         }
         Ok(subjects)

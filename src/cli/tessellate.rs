@@ -39,7 +39,7 @@ pub enum Device {
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     Exported::check(&args.output, 0, 0)?;
-    let loaded = load(&args.file, args.surface.weld)?;
+    let loaded = load(&args.file, &args.surface.preparation())?;
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let given =
         args.given.read(mesh, topology, args.surface.convention, args.surface.partitioning)?.map(|given| given.factors);

@@ -1,5 +1,6 @@
 //! Height images, for displacement: each a pyramid of ever smaller ones, so that what is sampled fits what is drawn.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use glam::Vec2;
@@ -29,6 +30,42 @@ pub enum HeightError {
     NoImage { name: String },
     #[error("{name} has {count} images to displace by, and at most {MAX_MAPS} are taken; name one height image")]
     TooMany { name: String, count: usize },
+}
+
+/// Where height images come from. As text: `material`, or a path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HeightSource {
+    /// The brightness of each material's base colour image.
+    Materials,
+    /// One image over all materials.
+    File(PathBuf),
+}
+
+impl HeightSource {
+    /// Reads heights for a mesh.
+    ///
+    /// # Errors
+    /// [`HeightError`].
+    pub fn load(&self, mesh: &Mesh) -> Result<Heights, HeightError> {
+        match self {
+            Self::Materials => Heights::of_materials(mesh),
+            Self::File(path) => Heights::read(path, mesh),
+        }
+    }
+
+    /// A name for the window: the file's without its folder.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Materials => "Material".to_owned(),
+            Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+        }
+    }
+}
+
+impl From<OsString> for HeightSource {
+    fn from(text: OsString) -> Self {
+        if text == "material" { Self::Materials } else { Self::File(text.into()) }
+    }
 }
 
 /// One image's heights, 0 (black) to 1 (white), level after level; each level half as wide and high as the one before, down

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::Mesh;
 use super::gltf::{self, Problem};
+use super::heights::HeightError;
 use super::progress::{Cancelled, Progress};
 
 /// Why a file became no mesh.
@@ -20,6 +21,8 @@ pub enum LoadError {
     Io { path: PathBuf, source: io::Error },
     #[error("{}: {problem}", path.display())]
     Gltf { path: PathBuf, problem: Box<Problem> },
+    #[error(transparent)]
+    Heights(#[from] HeightError),
     #[error("{} has no triangles to show: {holds}", path.display())]
     Empty { path: PathBuf, holds: String },
 }

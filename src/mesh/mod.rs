@@ -33,7 +33,7 @@ pub use bounds::Bounds;
 pub use curves::{Curve, Curves, Sharing};
 pub use dominance::Dominance;
 pub use gltf::Problem as GltfProblem;
-pub use heights::{HeightError, HeightMap, Heights, MAX_LEVELS, MAX_MAPS};
+pub use heights::{HeightError, HeightMap, HeightSource, Heights, MAX_LEVELS, MAX_MAPS};
 pub use info::Info;
 pub use joins::{Joins, joins};
 pub use load::{LoadError, load};

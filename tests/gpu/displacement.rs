@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use pnaen::engine::Loaded;
+use pnaen::engine::{Loaded, Preparation};
 use pnaen::gpu::Timing;
 use pnaen::measure::{Measured, ulp};
 use pnaen::mesh::rim::Rim;
@@ -48,7 +48,7 @@ fn under_waves(shape: Shape, mut mesh: Mesh) -> (Loaded, Scene) {
         Loaded {
             source,
             read: mesh.clone(),
-            weld: 0.0,
+            preparation: Preparation::default(),
             rim: Rim::default(),
             mesh,
             topology,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::Loaded;
+use pnaen::engine::{Loaded, Preparation};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
 use pnaen::mesh::{Corner, Material, Mesh, Progress, Rim, Shape, Source, Topology};
@@ -283,7 +283,16 @@ pub fn sheet(columns: u32, rows: u32) -> Loaded {
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
     let (read, rim) = (mesh.clone(), Rim::default());
-    Loaded { source: Source::default(), weld: 0.0, rim, read, mesh, topology, load_ms: 0.0, topology_ms: 0.0 }
+    Loaded {
+        source: Source::default(),
+        preparation: Preparation::default(),
+        rim,
+        read,
+        mesh,
+        topology,
+        load_ms: 0.0,
+        topology_ms: 0.0,
+    }
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
     let camera = *harness.state().camera();
     choose(&mut harness, "Weld", "1e-5: joins nothing");
     let app = harness.state();
-    assert_eq!(app.loaded().map(|loaded| loaded.weld), Some(1e-5));
+    assert_eq!(app.loaded().map(|loaded| loaded.preparation.weld), Some(1e-5));
     assert_eq!(*app.camera(), camera, "the view stays");
 }
 

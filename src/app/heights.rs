@@ -1,0 +1,101 @@
+//! Displacement: the image that loads the mesh again, and what is done with it.
+
+use std::path::{Path, PathBuf};
+
+use super::App;
+use super::text::short;
+use super::widgets::value_chooser;
+use crate::mesh::{HeightSource, Source};
+use crate::settings::{HEIGHT_RANGE, MIDLEVEL_RANGE};
+use crate::tessellate::Displacement;
+
+const DISPLACEMENTS: [(Displacement, &str); 4] = [
+    (Displacement::Off, "Off"),
+    (Displacement::On, "On"),
+    (Displacement::AsPublished, "As published"),
+    (Displacement::PerPatch, "Per patch"),
+];
+
+/// Whether a path names an image rather than a mesh.
+fn is_image(path: &Path) -> bool {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg"))
+}
+
+impl App {
+    /// Opens a mesh, or displaces the one that is open by an image.
+    pub fn open_path(&mut self, context: &egui::Context, path: PathBuf) {
+        if is_image(&path) && self.document.is_some() {
+            self.displace(context, Some(HeightSource::File(path)));
+        } else {
+            self.open(context, Source::File(path));
+        }
+    }
+
+    /// Loads the same mesh again with other heights, and displaces it.
+    pub fn displace(&mut self, context: &egui::Context, heights: Option<HeightSource>) {
+        if heights.is_some() && self.settings.displacement == Displacement::Off {
+            self.settings.displacement = Displacement::On;
+        }
+        self.prepare(context, |preparation| preparation.heights = heights);
+    }
+
+    /// The image's row; and while there is one, what is done with it.
+    pub(super) fn height_rows(&mut self, ui: &mut egui::Ui) {
+        let heights = self.preparation().heights;
+        let label = ui.label("Heights");
+        let shown = heights.as_ref().map_or("None".to_owned(), HeightSource::title);
+        let mut chosen = None;
+        let combo = egui::ComboBox::from_id_salt("Heights").selected_text(shown).width(120.0).truncate();
+        let combo = combo.show_ui(ui, |ui| {
+            let mut entry = |text: &str, is_shown: bool, hover: &str| {
+                ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
+            };
+            if entry("None", heights.is_none(), "The surface isn't displaced.") {
+                chosen = Some(None);
+            }
+            let is_material = heights == Some(HeightSource::Materials);
+            if entry("Material", is_material, "The brightness of each material's base colour image.") {
+                chosen = Some(Some(HeightSource::Materials));
+            }
+            let is_file = matches!(heights, Some(HeightSource::File(_)));
+            if entry("Image file…", is_file, "A PNG or JPEG image over all materials, its brightness as stored.") {
+                self.dialog("Open a height image", "Images", &["png", "jpg", "jpeg"], ui.ctx());
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text(
+            "What the surface is displaced by: black is 0 and white is 1. An image that is dropped on the window is taken too.",
+        );
+        ui.end_row();
+        if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
+            self.displace(ui.ctx(), chosen);
+        }
+        if self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some()) {
+            self.displacement_rows(ui);
+        }
+    }
+
+    pub(super) fn toggle_displacement(&mut self) {
+        let is_off = self.settings.displacement == Displacement::Off;
+        self.settings.displacement = if is_off { Displacement::On } else { Displacement::Off };
+    }
+
+    fn displacement_rows(&mut self, ui: &mut egui::Ui) {
+        let radius = self.document.as_ref().map_or(0.0, |document| document.scene.bounds.radius());
+        let settings = &mut self.settings;
+        let hover = "Whether the surface is displaced, and what its patches agree on where they meet (D).";
+        value_chooser(ui, "Displace", hover, &mut settings.displacement, &DISPLACEMENTS);
+        let is_on = settings.displacement != Displacement::Off;
+        let units = short(f64::from(settings.height_scale * radius));
+        let hover = format!("How far white is above black, in bounding radii (r): {units} units here.");
+        let label = ui.label("Scale").on_hover_text(&hover);
+        let slider = egui::Slider::new(&mut settings.height_scale, HEIGHT_RANGE).max_decimals(3).suffix(" r");
+        ui.add_enabled(is_on, slider.update_while_editing(false)).labelled_by(label.id).on_hover_text(&hover);
+        ui.end_row();
+        let hover = "The height that stays where it is, from 0, black, to 1, white.";
+        let label = ui.label("Midlevel").on_hover_text(hover);
+        let slider = egui::Slider::new(&mut settings.midlevel, MIDLEVEL_RANGE).max_decimals(2);
+        ui.add_enabled(is_on, slider.update_while_editing(false)).labelled_by(label.id).on_hover_text(hover);
+        ui.end_row();
+    }
+}
