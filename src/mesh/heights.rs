@@ -225,12 +225,16 @@ impl Heights {
     }
 }
 
-/// The largest difference between px of level 0 and level `level` interpolated there.
+/// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over the
+/// image's border it says nothing: most images don't repeat, and most texture coordinates don't ask them to.
 fn lost_detail(map: &HeightMap, level: u32) -> f32 {
     let [width, height] = map.size;
+    let [margin_x, margin_y] = map.level_size(level).map(|side| 0.5 / side as f32);
     let at = |i: u32| {
         let uv = Vec2::new((i % width) as f32 + 0.5, (i / width) as f32 + 0.5) / Vec2::new(width as f32, height as f32);
-        (map.heights[i as usize] - crate::tessellate::bilinear_height(map, level, uv)).abs()
+        let inside = (margin_x..=1.0 - margin_x).contains(&uv.x) && (margin_y..=1.0 - margin_y).contains(&uv.y);
+        let lost = || (map.heights[i as usize] - crate::tessellate::bilinear_height(map, level, uv)).abs();
+        if inside { lost() } else { 0.0 }
     };
     (0..width * height).map(at).fold(0.0, f32::max)
 }

@@ -16,7 +16,7 @@ mod stability;
 
 use std::sync::OnceLock;
 
-use pnaen::engine::{Engine, Loaded, load};
+use pnaen::engine::{Engine, Loaded, Preparation, load};
 use pnaen::gpu::Timing;
 use pnaen::mesh::{Progress, Shape, Source};
 use pnaen::render::{Camera, Scene, Target};
@@ -35,7 +35,7 @@ pub fn engine() -> &'static Engine {
 }
 
 pub fn loaded(shape: Shape) -> Loaded {
-    load(&Source::Shape(shape), 0.0, 0.0, &Progress::default()).expect("shapes always load")
+    load(&Source::Shape(shape), &Preparation::default(), &Progress::default()).expect("shapes always load")
 }
 
 pub fn scene(shape: Shape) -> (Loaded, Scene) {

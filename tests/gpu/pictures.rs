@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use image::RgbaImage;
-use pnaen::engine::load;
+use pnaen::engine::{Preparation, load};
 use pnaen::measure::compare;
 use pnaen::mesh::{EdgeKind, Progress, Shape, Source, t_junctions};
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
@@ -74,7 +74,9 @@ fn normals_look_as_they_did() {
 #[test]
 fn a_rim_looks_as_it_did() {
     // Beside surface-pn and surface-pn-aen: closed as the one is not, round where the other has its crease.
-    let loaded = load(&Source::Shape(Shape::CubeSplit), 0.0, 0.04, &Progress::new()).expect("shapes always load");
+    let loaded =
+        load(&Source::Shape(Shape::CubeSplit), &Preparation { rim: 0.04, ..Preparation::default() }, &Progress::new())
+            .expect("shapes always load");
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("shapes are small");
     let settings = Settings { surface: Surface::Pn, factor: 12.0, ..Settings::default() };
     let picture = picture(&mut scene, &settings, SIZE);

@@ -1,6 +1,6 @@
 //! A rim along creases, under PN triangles: nothing is left to tear.
 
-use pnaen::engine::load;
+use pnaen::engine::{Preparation, load};
 use pnaen::measure::Measured;
 use pnaen::mesh::{Progress, Shape, Source, Topology, with_rim};
 use pnaen::render::{Camera, Scene};
@@ -14,7 +14,8 @@ use crate::stability::{measured, scene_of};
 const SIZE: [u32; 2] = [320, 240];
 
 fn rimmed(shape: Shape, rim: f32) -> Scene {
-    let loaded = load(&Source::Shape(shape), 0.0, rim, &Progress::default()).expect("shapes always load");
+    let loaded = load(&Source::Shape(shape), &Preparation { rim, ..Preparation::default() }, &Progress::default())
+        .expect("shapes always load");
     engine().scene(&loaded, ARENA_BYTES).expect("shapes are small")
 }
 
