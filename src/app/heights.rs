@@ -46,7 +46,7 @@ impl App {
         let label = ui.label("Heights");
         let shown = heights.as_ref().map_or("None".to_owned(), HeightSource::title);
         let mut chosen = None;
-        let combo = egui::ComboBox::from_id_salt("Heights").selected_text(shown).width(120.0).truncate();
+        let combo = egui::ComboBox::from_id_salt("Heights").selected_text(shown).truncate();
         let combo = combo.show_ui(ui, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()

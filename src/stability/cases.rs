@@ -62,7 +62,7 @@ pub const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, tar
 const CASE: Case = Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
 
 /// Every case, in the order of the documentation.
-pub const CASES: [Case; 31] = [
+pub const CASES: [Case; 33] = [
     Case {
         name: "split-normals",
         about: "A cube whose faces have normals of their own. Under PN each face follows its own normals, and all twelve \
@@ -248,6 +248,24 @@ pub const CASES: [Case; 31] = [
                 share where there are two of them, and as PN does where there is one.",
         mesh: meshes::dart,
         look: Look { azimuth: 60.0, elevation: 35.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "height-seams",
+        about: "A torus displaced by waves, every other quarter of which has its texture elsewhere, so that heights on both \
+                sides of a seam have nothing in common. A dominant side speaks for an edge, and a dominant corner for a \
+                point: all sides move by the same height, to the bit.",
+        mesh: meshes::height_seams,
+        look: Look { elevation: 50.0, factor: 12.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "height-splits",
+        about: "A cube displaced by waves, whose faces have normals and textures of their own. With dominance alone, as \
+                published, each face moves along its own normals, and the cube bursts; moved along one direction a point, it \
+                holds.",
+        mesh: meshes::height_splits,
+        look: Look { factor: 12.0, ..LOOK },
         ..CASE
     },
     Case {

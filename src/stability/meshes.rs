@@ -1,9 +1,11 @@
 //! The meshes of the cases, all made in code: small, and each with one thing wrong with it.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3, vec3};
 
 use crate::mesh::merge::{LooseCorner, MeshBuilder};
-use crate::mesh::{Corner, Material, Mesh, Progress, Shape};
+use crate::mesh::{Corner, HeightMap, Heights, Material, Mesh, Progress, Shape};
 
 /// A mesh of loose triangles, made as a file's would be: normals repaired, equal corners merged.
 fn mesh(triangles: impl IntoIterator<Item = [LooseCorner; 3]>) -> Mesh {
@@ -253,6 +255,36 @@ pub fn dart() -> Mesh {
         let [a, b, c, d] = [(x, z + 1), (x + 1, z + 1), (x + 1, z), (x, z)].map(|(x, z)| at(x, z, side));
         [[a, b, c], [a, c, d]]
     }))
+}
+
+/// A height image of waves that repeat with it, 32 px wide and high.
+fn waves() -> HeightMap {
+    let height = |i: u32| {
+        let [x, y] = [i % 32, i / 32].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / 32.0);
+        0.5 + 0.25 * (2.0 * x).sin() * y.cos() + 0.2 * (x + 2.0 * y).cos()
+    };
+    HeightMap::new([32, 32], (0..1024).map(height).collect())
+}
+
+fn displaced(mut mesh: Mesh) -> Mesh {
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves())));
+    mesh
+}
+
+/// A torus under waves, every other quarter of which has its texture elsewhere: seams with nothing in common.
+pub fn height_seams() -> Mesh {
+    let quarter = |c: &Corner| (c.uv.x * 4.0 - 0.01).floor() as i32;
+    let triangles = triangles(Shape::Torus).into_iter().map(|(_, corners)| {
+        let shift =
+            if corners.iter().map(quarter).max().unwrap_or(0) % 2 == 0 { Vec2::ZERO } else { Vec2::new(0.37, 0.21) };
+        corners.map(|c| LooseCorner { uv: c.uv + shift, ..LooseCorner::from(c) })
+    });
+    displaced(mesh(triangles))
+}
+
+/// A cube with split normals under waves.
+pub fn height_splits() -> Mesh {
+    displaced(Shape::CubeSplit.build())
 }
 
 /// A ground of two large triangles that rises towards its corners.

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use crate::mesh::Mesh;
 use crate::settings::Settings;
-use crate::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use crate::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface};
 
 /// What is run: a case, or any other mesh.
 #[derive(Clone, Debug)]
@@ -101,6 +101,16 @@ impl Method {
     pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
         let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
         Settings { surface: self.surface(), edges, partitioning, factor, ..Settings::default() }
+    }
+
+    /// The same for a mesh that can be displaced: without cracks, or as published by dominance alone.
+    pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
+        let displacement = match self {
+            _ if mesh.heights.is_none() => Displacement::Off,
+            Self::PnAenAsPublished => Displacement::AsPublished,
+            _ => Displacement::On,
+        };
+        Settings { displacement, height_scale: 0.15, ..settings }
     }
 
     /// The same with adaptive LOD and clipping: the paper's own for what is as published. Under subtriangulation, which is

@@ -69,7 +69,7 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
         } else {
             method.settings(Partitioning::FractionalOdd, case.look.factor)
         };
-        let settings = Settings { overlays, ..settings };
+        let settings = Settings { overlays, ..method.displacing(&case.mesh, settings) };
         let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
         engine.count(&mut scene, &inputs, &mut Timing::Off)?;
         let mut lines: Vec<LineSegment> = engine.measure(&mut scene)?.crack_lines(&topology);

@@ -146,12 +146,12 @@ impl<'a> Running<'a> {
         let look = views::look(&self.bounds, &self.case.look, views::viewport());
         let random = |index| views::random(&self.bounds, index);
         let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| Trial {
-            settings: method.settings(partitioning, factor),
+            settings: method.displacing(&self.mesh, method.settings(partitioning, factor)),
             camera: look,
             // The factors share the cameras out between them.
             also_from: (turn as u32..effort.cameras).step_by(effort.factors.len()).map(random).collect(),
         });
-        let adaptive = method.adaptive(partitioning, PIXELS);
+        let adaptive = method.displacing(&self.mesh, method.adaptive(partitioning, PIXELS));
         let unclipped = Settings { clip: Clip::Off, ..adaptive };
         // The paper's clip test drops whole patches, beside which nothing else would be seen: it has cases of its own.
         let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
