@@ -11,6 +11,7 @@ pub mod cli;
 pub mod engine;
 pub mod export;
 pub mod factors_file;
+pub mod gallery;
 pub mod gpu;
 pub mod measure;
 pub mod mesh;

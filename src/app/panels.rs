@@ -40,33 +40,16 @@ const CONVENTIONS: [(Convention, &str); 5] = [
     (Convention::Rotated, "Rotated, a mistake"),
     (Convention::Mirrored, "Mirrored, a mistake"),
 ];
-/// Name and explanation of each partitioning, meaning of colours and overlay.
 const PARTITIONINGS: [(Partitioning, &str, &str); 5] = [
-    (Partitioning::Integer, "Integer", "Factors are rounded up: every segment is as long, and the pattern pops."),
-    (
-        Partitioning::Pow2,
-        "Power of two",
-        "Factors are rounded up to 1, 2, 4, 8, 16, 32 or 64: the pattern only halves.",
-    ),
-    (
-        Partitioning::FractionalOdd,
-        "Fractional odd",
-        "An odd number of segments, two of which grow from nothing: no pops.",
-    ),
-    (
-        Partitioning::FractionalEven,
-        "Fractional even",
-        "An even number of segments, two of which grow from nothing; at least 2.",
-    ),
-    (
-        Partitioning::Subtriangulation,
-        "Subtriangulation",
-        "The factor is rounded up to n, and every patch becomes n x n equal triangles: level of detail n - 1 of Vlachos et \
-         al. 2001, figure 4. Not Direct3D's; one factor for all, so LOD is uniform.",
-    ),
+    (Partitioning::Integer, "Integer", Partitioning::Integer.about()),
+    (Partitioning::Pow2, "Power of two", Partitioning::Pow2.about()),
+    (Partitioning::FractionalOdd, "Fractional odd", Partitioning::FractionalOdd.about()),
+    (Partitioning::FractionalEven, "Fractional even", Partitioning::FractionalEven.about()),
+    (Partitioning::Subtriangulation, "Subtriangulation", Partitioning::Subtriangulation.about()),
 ];
 const LOD_FIXED: &str = "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD \
                          that was chosen.";
+/// Name and explanation of each meaning of colours, and overlay.
 const COLORS: [(Colors, &str, &str); 5] = [
     (Colors::Material, "Material", "The mesh's own."),
     (

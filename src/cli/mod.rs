@@ -3,6 +3,7 @@
 mod adjacency;
 mod domain;
 mod factors;
+mod gallery;
 mod given;
 mod info;
 mod options;
@@ -58,6 +59,8 @@ pub enum Command {
     /// What the published methods get wrong is printed as a failure, and is none of this command's: the exit code is 1 only
     /// if something fails that this program promises.
     Stability(stability::Args),
+    /// Draw every technique side by side, and a page that says what each is and whose
+    Gallery(gallery::Args),
     /// Say what a file holds, and what of it was left out
     Info(info::Args),
 }
@@ -86,6 +89,8 @@ pub enum CliError {
     Uneven { path: String, triangle: u32 },
     #[error(transparent)]
     Picture(#[from] crate::stability::PictureError),
+    #[error(transparent)]
+    Gallery(#[from] crate::gallery::GalleryError),
     #[error("{count} of the table's lines break a promise, the first: {method} on {case}")]
     Promise { count: usize, case: String, method: &'static str },
     #[error("{0}")]
@@ -116,6 +121,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Factors(args) => factors::run(&args),
         Command::Adjacency(args) => adjacency::run(&args),
         Command::Stability(args) => stability::run(&args),
+        Command::Gallery(args) => gallery::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {

@@ -339,7 +339,7 @@ fn rim(text: &str) -> Result<f32, String> {
     within(text, 0.0..=WIDEST)
 }
 
-fn factor(text: &str) -> Result<f32, String> {
+pub fn factor(text: &str) -> Result<f32, String> {
     within(text, FACTOR_RANGE)
 }
 

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use glam::Vec2;
-use image::{DynamicImage, RgbImage, imageops};
+use image::{DynamicImage, RgbImage};
 use thiserror::Error;
 
 use super::{Method, Probe, Subject, views};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Timing};
-use crate::measure::{ChartError, SWEEP_STEP, sweep, sweep_chart, write_text};
+use crate::measure::{ChartError, SWEEP_STEP, sheet, sweep, sweep_chart};
 use crate::mesh::{Progress, Topology, t_junctions};
 use crate::render::{LineSegment, Target, t_junction_lines};
 use crate::settings::{ARENA_BYTES, Overlays, Settings};
@@ -26,9 +26,6 @@ pub enum PictureError {
 
 /// Width and height of one method's part, in px.
 const PART: [u32; 2] = [300, 240];
-/// Between parts and around them, and room for a line of text, in px.
-const GAP: u32 = 4;
-const CAPTION: u32 = 24;
 /// Parts in a row.
 const COLUMNS: u32 = 3;
 
@@ -41,16 +38,9 @@ pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImag
     if case.probe == Probe::Sweep {
         return chart(case, sweep_to);
     }
-    let [width, height] = PART;
-    let rows = (Method::ALL.len() as u32).div_ceil(COLUMNS);
-    let (across, down) = (width + GAP, height + GAP + CAPTION);
-    let mut all = RgbImage::from_pixel(COLUMNS * across + GAP, rows * down + GAP, image::Rgb([255; 3]));
-    for (index, part) in (0..).zip(parts(case, engine)?) {
-        let (left, top) = (GAP + index % COLUMNS * across, GAP + index / COLUMNS * down);
-        imageops::replace(&mut all, &part, left.into(), (top + CAPTION).into());
-        write_text(&mut all, [left as i32 + 2, top as i32 + 2], 18, Method::ALL[index as usize].name())?;
-    }
-    Ok(all)
+    let names = Method::ALL.map(|method| method.name().to_owned());
+    let parts: Vec<_> = names.into_iter().zip(parts(case, engine)?).collect();
+    Ok(sheet(&parts, COLUMNS)?)
 }
 
 fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {

@@ -3,6 +3,7 @@
 mod adjacency;
 mod domain;
 mod factors;
+mod gallery;
 mod info;
 mod lod;
 mod render;

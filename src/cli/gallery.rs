@@ -1,0 +1,51 @@
+//! `pnaen gallery`: every technique side by side.
+
+use std::path::PathBuf;
+
+use clap::builder::{OsStringValueParser, TypedValueParser};
+
+use super::{CliError, WeldOption, file_error, options, write_picture, write_text};
+use crate::engine::{Engine, Preparation};
+use crate::gallery::{Look, PAGE, draw, exhibits, page};
+use crate::mesh::{HeightSource, Source};
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A .gltf or .glb file, or a shape made in code; without one, each exhibit has the shape that suits it
+    #[arg(value_parser = super::options::source())]
+    pub file: Option<Source>,
+    /// Folder for a picture of each exhibit, and a page that explains them, gallery.md; made if it isn't there
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub weld: WeldOption,
+    /// What the exhibit of displacement is displaced by: an image, or `material`; without it, waves made in code
+    #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
+    pub height: Option<HeightSource>,
+    /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64
+    #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::factor)]
+    pub factor: f32,
+    /// Degrees from the front to the right, and degrees upwards
+    #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,20", allow_hyphen_values = true)]
+    pub camera: options::CameraOption,
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let look = Look {
+        source: args.file.clone(),
+        preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },
+        factor: args.factor,
+        azimuth: args.camera.azimuth,
+        elevation: args.camera.elevation.clamp(-89.9, 89.9),
+    };
+    let engine = Engine::headless()?;
+    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &error))?;
+    let mut all = Vec::new();
+    for exhibit in exhibits() {
+        let (picture, shown) = draw(&exhibit, &look, &engine)?;
+        write_picture(&args.output.join(format!("{}.png", exhibit.name)), &picture.into())?;
+        all.push((exhibit, shown));
+    }
+    let subject = args.file.as_ref().map(Source::title);
+    write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))
+}

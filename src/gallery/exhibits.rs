@@ -1,0 +1,153 @@
+//! What hangs in the gallery.
+
+use clap::ValueEnum;
+
+use crate::mesh::{HeightMap, Heights, Mesh, Shape};
+use crate::settings::{Overlays, Settings};
+use crate::tessellate::{Displacement, Edges, Normals, Partitioning, Surface};
+
+/// One question, and a tile for every answer.
+#[derive(Clone, Debug)]
+pub struct Exhibit {
+    /// Of its picture's file.
+    pub name: &'static str,
+    pub title: &'static str,
+    pub about: &'static str,
+    /// What it is shown on, where no mesh is named.
+    pub shape: Shape,
+    pub overlays: Overlays,
+    pub tiles: Vec<Tile>,
+}
+
+/// One technique.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// As the command line has it.
+    pub name: String,
+    /// What it is, and whose: a sentence.
+    pub about: String,
+    pub settings: Settings,
+    /// Where not everybody's is meant.
+    pub factor: Option<f32>,
+    /// Of the bounding diagonal.
+    pub rim: f32,
+}
+
+impl Tile {
+    /// A technique that is a value of an option: its name and explanation are the option's.
+    fn of(value: impl ValueEnum, settings: Settings) -> Self {
+        let value = value.to_possible_value();
+        let name = value.as_ref().map_or_else(String::new, |value| value.get_name().to_owned());
+        let about = value.as_ref().and_then(|value| value.get_help()).map(ToString::to_string);
+        Self { name, about: about.unwrap_or_default() + ".", settings, factor: None, rim: 0.0 }
+    }
+
+    fn named(self, name: &str, about: &str) -> Self {
+        Self { name: name.to_owned(), about: about.to_owned(), ..self }
+    }
+}
+
+/// All of them, in the order in which a patch is made: surface, creases, normals, pattern, heights.
+pub fn exhibits() -> [Exhibit; 5] {
+    [surfaces(), creases(), normals(), patterns(), heights()]
+}
+
+fn settings() -> Settings {
+    Settings { partitioning: Partitioning::Integer, ..Settings::default() }
+}
+
+fn surfaces() -> Exhibit {
+    let of = |surface| Tile::of(surface, Settings { surface, ..settings() });
+    Exhibit {
+        name: "surfaces",
+        title: "Surfaces",
+        about: "What each triangle becomes, from its corners' positions and normals alone. Where normals are split, surfaces \
+                that go by each side's own tear (red); those that agree on an edge's control points don't.",
+        shape: Shape::CubeSplit,
+        overlays: Overlays { cracks: true, ..Overlays::default() },
+        tiles: Surface::ALL.map(of).to_vec(),
+    }
+}
+
+fn creases() -> Exhibit {
+    let of = |surface| Tile::of(surface, Settings { surface, ..settings() });
+    let published = Settings { edges: Edges::AsPublished, ..settings() };
+    let rim = Tile { rim: 0.02, ..of(Surface::Pn) };
+    Exhibit {
+        name: "creases",
+        title: "Creases",
+        about: "What becomes of an edge whose sides have different normals: nothing, so that it tears; the mean of both sides' \
+                control points; the line that both tangent planes share; or a rim of small triangles with one normal on the \
+                crease, made before.",
+        shape: Shape::Cylinder,
+        overlays: Overlays { cracks: true, ..Overlays::default() },
+        tiles: vec![
+            of(Surface::Pn),
+            rim.named("pn --rim 0.02", "A rim along creases, for PN triangles (Vlachos et al. 2001)."),
+            of(Surface::PnCrease),
+            of(Surface::PnAen),
+            Tile::of(Edges::AsPublished, published).named(
+                "pn-aen --edges as-published",
+                "PN-AEN as the white paper's shaders compute it: closed in real numbers, and torn in the last bits.",
+            ),
+        ],
+    }
+}
+
+fn normals() -> Exhibit {
+    let of = |normals| Tile::of(normals, Settings { normals, ..settings() });
+    Exhibit {
+        name: "normals",
+        title: "Shading normals",
+        about: "Which normals the same surface is shaded with. Its own have a step wherever patches meet at an angle, which \
+                they do almost everywhere; quadratic ones follow edges that bend back, and bulge where authors' normals \
+                don't mean a curve; linear ones say what the author said.",
+        shape: Shape::CubeSmooth,
+        overlays: Overlays::default(),
+        tiles: Normals::value_variants().iter().map(|&normals| of(normals)).collect(),
+    }
+}
+
+fn patterns() -> Exhibit {
+    let of = |partitioning: Partitioning| Tile {
+        name: format!("{partitioning}, factor 5.4"),
+        about: partitioning.about().to_owned(),
+        settings: Settings { partitioning, ..settings() },
+        factor: Some(5.4),
+        rim: 0.0,
+    };
+    Exhibit {
+        name: "patterns",
+        title: "Patterns",
+        about: "How one factor between two whole numbers becomes triangles.",
+        shape: Shape::Icosahedron,
+        overlays: Overlays { wireframe: true, patches: true, ..Overlays::default() },
+        tiles: Partitioning::ALL.map(of).to_vec(),
+    }
+}
+
+fn heights() -> Exhibit {
+    let of = |displacement| {
+        let tile = Tile::of(displacement, Settings { displacement, height_scale: 0.15, ..settings() });
+        Tile { factor: Some(24.0), ..tile }
+    };
+    Exhibit {
+        name: "displacement",
+        title: "Displacement",
+        about: "One height image over patches whose texture coordinates and normals don't agree where they meet. Dominant edges \
+                and vertices close seams, and one direction a point closes the rest.",
+        shape: Shape::CubeSplit,
+        overlays: Overlays { cracks: true, ..Overlays::default() },
+        tiles: Displacement::value_variants().iter().map(|&displacement| of(displacement)).collect(),
+    }
+}
+
+/// A height image for shapes made in code: waves that repeat with it.
+pub fn waves(mesh: &Mesh) -> Heights {
+    const SIZE: u32 = 128;
+    let height = |i: u32| {
+        let [x, y] = [i % SIZE, i / SIZE].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / SIZE as f32);
+        0.5 + 0.25 * (3.0 * x).sin() * (2.0 * y).cos() + 0.2 * (x + 2.0 * y).cos()
+    };
+    Heights::everywhere(mesh, HeightMap::new([SIZE, SIZE], (0..SIZE * SIZE).map(height).collect()))
+}
