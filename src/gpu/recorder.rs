@@ -150,7 +150,7 @@ fn summed(times: impl Iterator<Item = PassTime>) -> Vec<PassTime> {
 }
 
 /// The names that passes have; a profiler's results give them back as owned text.
-pub const PASSES: [&str; 7] = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
+pub const PASSES: [&str; 8] = ["deform", "nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
 
 fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {
     let pass = PASSES.into_iter().find(|pass| *pass == result.label)?;

@@ -11,9 +11,10 @@ use super::layout::{Chunk, DrawArgs, EmitArgs, Params};
 use super::params::params_of;
 use super::pipelines::bind_group;
 use super::recorder::{Recorder, staging_buffer, wait};
+use super::rig::RigBuffers;
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
-use crate::mesh::{Mesh, Sharing, Topology};
+use crate::mesh::{Mesh, Pose, Sharing, Topology};
 use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
@@ -27,6 +28,10 @@ pub struct Tessellator {
     topology: Arc<Topology>,
     solid: Option<Solid>,
     buffers: MeshBuffers,
+    /// Set while the mesh is posed.
+    rig: Option<RigBuffers>,
+    /// Whether points and corners are those of the pose.
+    is_deformed: bool,
     inputs: Option<Inputs>,
     params: Params,
     params_buffer: wgpu::Buffer,
@@ -87,6 +92,8 @@ impl Tessellator {
             mesh,
             topology,
             buffers,
+            rig: None,
+            is_deformed: false,
             inputs: None,
             params,
             params_buffer,
@@ -112,10 +119,7 @@ impl Tessellator {
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
         let sharing = sharing(inputs.surface, inputs.edges);
         if sharing != self.buffers.sharing {
-            self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
-            self.nets = None;
-            self.nets_done = None;
-            self.slabs.iter_mut().for_each(|slab| slab.groups = None);
+            self.upload(sharing)?;
         }
         self.inputs = Some(*inputs);
         self.convention = inputs.convention;
@@ -129,6 +133,44 @@ impl Tessellator {
             self.emitted = None;
             self.generation += 1;
         }
+        Ok(())
+    }
+
+    /// Takes a pose, or none for the mesh as it is at rest; a mesh without a rig stays so. Takes effect with the next
+    /// [`Self::set`]; the pose that it has already recomputes nothing.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub fn set_pose(&mut self, pose: Option<Arc<Pose>>) -> Result<(), GpuError> {
+        if self.pose() == pose.as_deref() {
+            return Ok(());
+        }
+        match (pose, self.mesh.rig.clone(), &mut self.rig) {
+            (Some(pose), _, Some(rig)) => rig.set_pose(&self.gpu, pose)?,
+            (Some(pose), Some(rig), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
+            (Some(_), None, None) => return Ok(()),
+            (None, ..) => {
+                self.rig = None;
+                self.upload(self.buffers.sharing)?;
+            }
+        }
+        self.is_deformed = false;
+        self.forget();
+        Ok(())
+    }
+
+    /// The pose that is shown; none at rest.
+    pub fn pose(&self) -> Option<&Pose> {
+        self.rig.as_ref().map(|rig| &**rig.pose())
+    }
+
+    /// Uploads the mesh as it is at rest.
+    fn upload(&mut self, sharing: Sharing) -> Result<(), GpuError> {
+        self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
+        self.is_deformed = false;
+        self.nets = None;
+        self.nets_done = None;
+        self.slabs.iter_mut().for_each(|slab| slab.groups = None);
         Ok(())
     }
 
@@ -147,6 +189,7 @@ impl Tessellator {
 
     /// Forgets all that was computed, so that every pass runs again: for timing.
     pub fn forget(&mut self) {
+        self.is_deformed = false;
         self.nets_done = None;
     }
 
@@ -164,9 +207,9 @@ impl Tessellator {
         (!leaves_out || inputs.view.clip_from_object == clip_from_object) && self.hides_backs(&seen)
     }
 
-    /// Given factors may tear any edge.
+    /// Given factors may tear any edge, and a pose may turn a part inside out.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
-        self.given.is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
+        self.given.is_none() && self.rig.is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -184,10 +227,14 @@ impl Tessellator {
         !self.counts_done && self.pending.is_none()
     }
 
-    /// Records the passes that decide what will be emitted: nets (where they are out of date), factors, counts, scan,
-    /// chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
+    /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
+    /// scan, chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
     pub fn count(&mut self, recorder: &mut Recorder) {
         self.bind();
+        if let Some(rig) = self.rig.as_ref().filter(|_| !self.is_deformed) {
+            recorder.compute("deform", |pass| rig.record(&self.gpu, &self.pipelines, &self.buffers, pass));
+            self.is_deformed = true;
+        }
         if self.nets_done != Some(self.params.surface) {
             self.record_nets(recorder);
             self.nets_done = Some(self.params.surface);
@@ -380,10 +427,12 @@ impl Tessellator {
         &self.buffers
     }
 
+    /// At rest.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 
+    /// At rest; in a pose, as connected.
     pub fn topology(&self) -> &Arc<Topology> {
         &self.topology
     }
@@ -397,9 +446,9 @@ impl Tessellator {
         self.arena.vertices.size() + self.arena.indices.size()
     }
 
-    /// Bytes of counts, scans and indirect arguments.
+    /// Bytes of counts, scans and indirect arguments, and of what a pose is made from.
     pub fn work_bytes(&self) -> u64 {
-        self.slabs.iter().map(SlabPasses::bytes).sum()
+        self.slabs.iter().map(SlabPasses::bytes).sum::<u64>() + self.rig.as_ref().map_or(0, RigBuffers::bytes)
     }
 
     fn bind(&mut self) {

@@ -4,12 +4,14 @@
 mod budget;
 mod convention;
 mod cull;
+mod deform;
 pub mod domain;
 mod error;
 pub mod factors;
 mod hull;
 mod lod;
 mod mesh;
+mod posed;
 mod solid;
 mod surface;
 
@@ -33,6 +35,7 @@ pub use mesh::{
     Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
     tessellate_given, totals,
 };
+pub use posed::{bounds_through, deform};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,
