@@ -1,6 +1,7 @@
 //! The commands: no window, no display. One file a command; this one reads the command line and says what went wrong.
 
 mod adjacency;
+mod animation;
 mod domain;
 mod factors;
 mod given;
@@ -18,6 +19,7 @@ use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
+pub use animation::AnimationOption;
 pub use given::GivenOption;
 pub use options::{SurfaceOptions, WeldOption};
 
@@ -90,6 +92,8 @@ pub enum CliError {
     NoTriangle { file: String, last: usize, triangle: u32 },
     #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
     NoPatch { file: String, triangle: u32 },
+    #[error("{file} has no animation \"{name}\": it has {has}")]
+    NoAnimation { file: String, name: String, has: String },
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }

@@ -10,7 +10,7 @@ use super::{CliError, GivenOption, SurfaceOptions, file_error, load, options, to
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
 use crate::measure::{Measured, ScreenView, compare, patch_edges, ulp};
-use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
+use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source, t_junctions};
 use crate::render::{Camera, Scene, Target, patch_lines, t_junction_lines};
 use crate::settings::{Overlay, Overlays, Settings};
 use crate::tessellate::Lod;
@@ -90,10 +90,13 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let loaded = load(&args.file, args.surface.weld)?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
+    let moment = args.surface.animation.moment(&loaded)?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
     scene.tessellator.give(given)?;
+    scene.frame_clip(moment.map(|moment| moment.clip));
+    scene.set_moment(moment)?;
     let target = Target::new(&engine.gpu, args.surface.size.0)?;
     let camera = args.surface.camera(&scene.bounds);
     let view = camera.lod_view(target.viewport(), &scene.bounds);
@@ -105,6 +108,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 
     let inputs = settings.inputs(view);
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+    let (at_rest, loaded) = (&loaded.topology, loaded.posed(moment));
     let measured = if settings.overlays.cracks || selected.is_some() || args.stats.is_some() {
         let measured = engine.measure(&mut scene)?;
         Some(measured)
@@ -116,7 +120,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         _ => Vec::new(),
     };
     if settings.overlays.t_junctions {
-        let junctions = t_junctions(&loaded.topology, &Progress::default()).map_err(LoadError::from)?;
+        let junctions = t_junctions(at_rest, &Progress::default()).map_err(LoadError::from)?;
         lines.extend(t_junction_lines(&loaded.topology, &junctions));
     }
     if let Some(patch) = selected {
@@ -148,6 +152,9 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             max_error_px,
             factors_capped,
             factors_file,
+            animation: args.surface.animation.animation.clone().zip(moment).map(|(name, Moment { time, .. })| {
+                AnimationStats { name, time }
+            }),
             ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes)
         };
         write_text(path, &to_json(&stats)?)?;
@@ -246,7 +253,16 @@ struct Stats {
     factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     factors_file: Option<FactorsFile>,
+    /// None at rest.
+    animation: Option<AnimationStats>,
     ms: BTreeMap<&'static str, f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct AnimationStats {
+    name: String,
+    /// s.
+    time: f64,
 }
 
 /// Memory, in bytes.
@@ -329,6 +345,7 @@ impl Stats {
             max_error_px: None,
             factors_capped: 0,
             factors_file: None,
+            animation: None,
             ms,
         }
     }

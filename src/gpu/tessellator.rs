@@ -15,7 +15,7 @@ use super::rig::RigBuffers;
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Solid, sharing};
+use crate::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, Posed, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -162,6 +162,12 @@ impl Tessellator {
     /// The pose that is shown; none at rest.
     pub fn pose(&self) -> Option<&Pose> {
         self.rig.as_ref().map(|rig| &**rig.pose())
+    }
+
+    /// What is shown, for the host.
+    pub fn posed(&self) -> Posed {
+        let pose = self.rig.as_ref().map(|rig| rig.pose().clone());
+        Posed { mesh: self.mesh.clone(), topology: self.topology.clone(), pose }
     }
 
     /// Uploads the mesh as it is at rest.

@@ -13,7 +13,7 @@ mod sweep;
 
 pub use agreement::{Agreement, Disagreement, Order};
 pub use chart::{CHART_RANGE, ChartError, sweep_chart, write_text};
-pub use cracks::{CrackedEdge, Cracks, ulp};
+pub use cracks::{CrackedEdge, Cracks, ulp, ulp_at};
 pub use deviation::{Deviant, Deviation};
 pub use picture::{CompareError, Comparison, compare};
 pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims, patch_edges};

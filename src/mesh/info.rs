@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::joins::{Joins, joins};
 use super::progress::{Cancelled, Progress};
+use super::rig::{Clip, Moved, Rig};
 use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
 use super::{Mesh, NormalFaults, Repairs};
@@ -25,6 +26,7 @@ pub struct Info {
     pub corners: u32,
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
+    pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
     pub joins: Vec<Joins>,
@@ -49,6 +51,18 @@ pub struct MaterialInfo {
     pub triangles: u32,
     /// Width and height in px, where there is a texture.
     pub texture: Option<[u32; 2]>,
+}
+
+/// An animation in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct AnimationInfo {
+    pub name: String,
+    /// s.
+    pub duration: f64,
+    /// What it moves: joints of skins, other nodes, morph targets.
+    pub joints: usize,
+    pub nodes: usize,
+    pub targets: usize,
 }
 
 /// A T-junction with positions, in object units.
@@ -89,6 +103,7 @@ impl Info {
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(material).collect(),
+            animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: joins(mesh, progress)?,
             t_junctions: t_junctions.len() as u32,
@@ -114,6 +129,14 @@ impl fmt::Display for Info {
         for material in &self.materials {
             let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
             writeln!(f, "material      {}: {} triangles{texture}", material.name, material.triangles)?;
+        }
+        for AnimationInfo { name, duration, joints, nodes, targets } in &self.animations {
+            let moved = [(joints, "joint"), (nodes, "node"), (targets, "morph target")];
+            let moved = moved.into_iter().filter(|(count, _)| **count > 0);
+            let moved = moved.map(|(count, what)| format!("{count} {what}{}", if *count == 1 { "" } else { "s" }));
+            let moved = moved.collect::<Vec<_>>().join(", ");
+            // As the file has it: in f32.
+            writeln!(f, "animation     {name}: {} s, moves {moved}", *duration as f32)?;
         }
         for warning in &self.warnings {
             writeln!(f, "warning       {warning}")?;
@@ -188,6 +211,14 @@ fn material(material: &super::Material) -> MaterialInfo {
         triangles: material.triangles.len() as u32,
         texture: material.texture.as_ref().map(|texture| texture.size),
     }
+}
+
+fn animations(rig: &Rig) -> Vec<AnimationInfo> {
+    let animation = |clip: &Clip| {
+        let Moved { joints, nodes, targets } = rig.moved(clip);
+        AnimationInfo { name: clip.name.clone(), duration: clip.duration, joints, nodes, targets }
+    };
+    rig.clips.iter().map(animation).collect()
 }
 
 /// Points in use - edges + patches: 2 for whatever is like a sphere, 0 for a torus.

@@ -1,6 +1,8 @@
 //! A whole mesh in a pose: what the deform pass does on the device, for whatever measures, exports or asks where things
 //! are.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use super::deform::{blend, deform_normal, deform_position};
@@ -12,6 +14,24 @@ use crate::mesh::{Bounds, Mesh, Moment, Pose, Rig, Topology};
 const BOUNDS_POSITIONS: usize = 1 << 19;
 /// Times at which they are taken, ends included.
 const BOUNDS_TIMES: usize = 17;
+
+/// A mesh, and the pose in which it is wanted.
+#[derive(Clone, Debug)]
+pub struct Posed {
+    pub mesh: Arc<Mesh>,
+    pub topology: Arc<Topology>,
+    /// None at rest.
+    pub pose: Option<Arc<Pose>>,
+}
+
+impl Posed {
+    /// Both in the pose. Takes a while where there is one: for a thread that nobody waits for.
+    pub fn deformed(&self) -> (Arc<Mesh>, Arc<Topology>) {
+        let Some(pose) = &self.pose else { return (self.mesh.clone(), self.topology.clone()) };
+        let (mesh, topology) = deform(&self.mesh, &self.topology, pose);
+        (Arc::new(mesh), Arc::new(topology))
+    }
+}
 
 /// The mesh and its topology in a pose; both as they are where the mesh doesn't move. What was connected stays so, also
 /// where points fall together, and edges keep their kinds. The deformed mesh moves no further.
