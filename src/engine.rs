@@ -27,7 +27,7 @@ impl Loaded {
     pub fn posed(&self, moment: Option<Moment>) -> Self {
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
         let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
-        let (mesh, topology) = Posed { mesh, topology, pose }.deformed();
+        let (mesh, topology) = Posed::new(mesh, topology, pose).deformed();
         Self { mesh, topology, ..self.clone() }
     }
 }

@@ -1,5 +1,6 @@
 //! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
 
+mod animation;
 mod checks;
 mod document;
 mod facts;
@@ -31,6 +32,7 @@ use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::LodView;
 
+use animation::Playback;
 use document::{Document, Load};
 use measuring::Measuring;
 use pick::Selection;
@@ -99,6 +101,7 @@ pub struct App {
     load: Option<Load>,
     dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
     viewport: Viewport,
+    playback: Playback,
     measuring: Measuring,
     /// What lines are over the mesh.
     marked: Option<Marked>,
@@ -131,6 +134,7 @@ impl App {
             document: None,
             load: None,
             dialog: None,
+            playback: Playback::default(),
             measuring: Measuring::default(),
             marked: None,
             selected_edge: None,
@@ -235,6 +239,7 @@ impl App {
                 if self.document.replace(document).is_some() {
                     self.error = None;
                 }
+                self.keep_playback(keep_view);
                 self.measuring = Measuring::default();
                 self.deselect();
             }
@@ -280,6 +285,7 @@ impl eframe::App for App {
             self.open(context, Source::File(path));
         }
         self.shortcuts(context);
+        self.play_on(context);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

@@ -181,6 +181,7 @@ impl App {
             self.lod_rows(ui);
             heading(ui, "Mesh");
             egui::Grid::new("weld").num_columns(2).min_col_width(84.0).show(ui, |ui| self.weld_row(ui));
+            self.animation_section(ui);
             heading(ui, "Overlays");
             let overlays = &mut self.settings.overlays;
             egui::Grid::new("colors").num_columns(2).min_col_width(84.0).show(ui, |ui| {
@@ -264,7 +265,7 @@ impl App {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));
                         ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
                             "As a part of the bounding diagonal: {} units here. Compared with the exact weld.",
-                            short(f64::from(joins.tolerance * document.scene.bounds.diagonal()))
+                            short(f64::from(joins.tolerance * document.diagonal))
                         ));
                     }
                 }

@@ -86,6 +86,7 @@ impl App {
             None => {
                 let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
                 let text = match self.measuring.fraction(chunks) {
+                    _ if self.is_playing() => "cracks when paused".into(),
                     Some(part) if chunks > 1 => format!("cracks … {:.0} %", 100.0 * part),
                     _ if self.is_busy() => "cracks …".into(),
                     _ => "cracks not measured".into(),

@@ -1,7 +1,5 @@
 //! What a mesh is deformed from, in device memory.
 
-use std::sync::Arc;
-
 use super::buffers::filled;
 use super::pipelines::bind_group;
 use super::tessellator::{dispatch, grid};
@@ -17,7 +15,6 @@ pub struct RigBuffers {
     point_corners: wgpu::Buffer,
     corner_count: u32,
     point_count: u32,
-    pose: Arc<Pose>,
 }
 
 impl RigBuffers {
@@ -25,7 +22,7 @@ impl RigBuffers {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, rig: &Rig, topology: &Topology, pose: Arc<Pose>) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, rig: &Rig, topology: &Topology, pose: &Pose) -> Result<Self, GpuError> {
         Ok(Self {
             bindings: filled(gpu, "bindings", &rig.bindings)?,
             deltas: filled(gpu, "morph targets", &rig.deltas)?,
@@ -34,22 +31,16 @@ impl RigBuffers {
             point_corners: filled(gpu, "point corners", &topology.point_corners)?,
             corner_count: rig.bindings.len() as u32,
             point_count: topology.points.len() as u32,
-            pose,
         })
-    }
-
-    pub fn pose(&self) -> &Arc<Pose> {
-        &self.pose
     }
 
     /// Takes another pose of the same rig.
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn set_pose(&mut self, gpu: &Gpu, pose: Arc<Pose>) -> Result<(), GpuError> {
+    pub fn set_pose(&mut self, gpu: &Gpu, pose: &Pose) -> Result<(), GpuError> {
         self.palette = filled(gpu, "palette", &pose.palette)?;
         self.morph_weights = filled(gpu, "morph weights", &pose.weights)?;
-        self.pose = pose;
         Ok(())
     }
 

@@ -26,9 +26,10 @@ pub struct Tessellator {
     pipelines: Arc<ComputePipelines>,
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
+    posed: Posed,
     solid: Option<Solid>,
     buffers: MeshBuffers,
-    /// Set while the mesh is posed.
+    /// What poses are made from, once there was one.
     rig: Option<RigBuffers>,
     /// Whether points and corners are those of the pose.
     is_deformed: bool,
@@ -89,6 +90,7 @@ impl Tessellator {
             gpu: gpu.clone(),
             pipelines,
             solid: Solid::find(&mesh, &topology),
+            posed: Posed::new(mesh.clone(), topology.clone(), None),
             mesh,
             topology,
             buffers,
@@ -142,32 +144,20 @@ impl Tessellator {
     /// # Errors
     /// The mesh's rig is larger than the adapter binds.
     pub fn set_pose(&mut self, pose: Option<Arc<Pose>>) -> Result<(), GpuError> {
-        if self.pose() == pose.as_deref() {
-            return Ok(());
+        let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != pose.as_deref()) else { return Ok(()) };
+        match (&pose, &mut self.rig) {
+            (Some(pose), Some(rig)) => rig.set_pose(&self.gpu, pose)?,
+            (Some(pose), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
+            (None, _) => self.upload(self.buffers.sharing)?,
         }
-        match (pose, self.mesh.rig.clone(), &mut self.rig) {
-            (Some(pose), _, Some(rig)) => rig.set_pose(&self.gpu, pose)?,
-            (Some(pose), Some(rig), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
-            (Some(_), None, None) => return Ok(()),
-            (None, ..) => {
-                self.rig = None;
-                self.upload(self.buffers.sharing)?;
-            }
-        }
-        self.is_deformed = false;
+        self.posed = Posed::new(self.mesh.clone(), self.topology.clone(), pose);
         self.forget();
         Ok(())
     }
 
-    /// The pose that is shown; none at rest.
-    pub fn pose(&self) -> Option<&Pose> {
-        self.rig.as_ref().map(|rig| &**rig.pose())
-    }
-
     /// What is shown, for the host.
-    pub fn posed(&self) -> Posed {
-        let pose = self.rig.as_ref().map(|rig| rig.pose().clone());
-        Posed { mesh: self.mesh.clone(), topology: self.topology.clone(), pose }
+    pub fn posed(&self) -> &Posed {
+        &self.posed
     }
 
     /// Uploads the mesh as it is at rest.
@@ -215,7 +205,7 @@ impl Tessellator {
 
     /// Given factors may tear any edge, and a pose may turn a part inside out.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
-        self.given.is_none() && self.rig.is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
+        self.given.is_none() && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -237,7 +227,7 @@ impl Tessellator {
     /// scan, chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
     pub fn count(&mut self, recorder: &mut Recorder) {
         self.bind();
-        if let Some(rig) = self.rig.as_ref().filter(|_| !self.is_deformed) {
+        if let Some(rig) = self.rig.as_ref().filter(|_| self.posed.pose().is_some() && !self.is_deformed) {
             recorder.compute("deform", |pass| rig.record(&self.gpu, &self.pipelines, &self.buffers, pass));
             self.is_deformed = true;
         }

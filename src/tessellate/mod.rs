@@ -35,7 +35,7 @@ pub use mesh::{
     Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
     tessellate_given, totals,
 };
-pub use posed::{Posed, bounds_through, deform};
+pub use posed::{Deformed, Posed, bounds_through, deform};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{
     ControlNet, Surface, center_control_point, edge_control_point, edge_normal, edge_position, edge_uv, linear_normal,

@@ -1,7 +1,7 @@
 //! A whole mesh in a pose: what the deform pass does on the device, for whatever measures, exports or asks where things
 //! are.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 
@@ -15,21 +15,47 @@ const BOUNDS_POSITIONS: usize = 1 << 19;
 /// Times at which they are taken, ends included.
 const BOUNDS_TIMES: usize = 17;
 
-/// A mesh, and the pose in which it is wanted.
+/// Corners of a mesh that is deformed in no time that a person notices.
+const QUICK: usize = 1 << 16;
+
+/// A mesh, and the pose in which it is wanted. Clones share what has been made of it.
 #[derive(Clone, Debug)]
 pub struct Posed {
-    pub mesh: Arc<Mesh>,
-    pub topology: Arc<Topology>,
+    mesh: Arc<Mesh>,
+    topology: Arc<Topology>,
     /// None at rest.
-    pub pose: Option<Arc<Pose>>,
+    pose: Option<Arc<Pose>>,
+    deformed: Arc<OnceLock<Deformed>>,
 }
 
+/// A mesh and its topology.
+pub type Deformed = (Arc<Mesh>, Arc<Topology>);
+
 impl Posed {
-    /// Both in the pose. Takes a while where there is one: for a thread that nobody waits for.
-    pub fn deformed(&self) -> (Arc<Mesh>, Arc<Topology>) {
-        let Some(pose) = &self.pose else { return (self.mesh.clone(), self.topology.clone()) };
-        let (mesh, topology) = deform(&self.mesh, &self.topology, pose);
-        (Arc::new(mesh), Arc::new(topology))
+    pub fn new(mesh: Arc<Mesh>, topology: Arc<Topology>, pose: Option<Arc<Pose>>) -> Self {
+        Self { mesh, topology, pose, deformed: Arc::default() }
+    }
+
+    pub fn pose(&self) -> Option<&Pose> {
+        self.pose.as_deref()
+    }
+
+    /// Both in the pose. May take a while the first time.
+    pub fn deformed(&self) -> Deformed {
+        let make = || match &self.pose {
+            None => (self.mesh.clone(), self.topology.clone()),
+            Some(pose) => {
+                let (mesh, topology) = deform(&self.mesh, &self.topology, pose);
+                (Arc::new(mesh), Arc::new(topology))
+            }
+        };
+        self.deformed.get_or_init(make).clone()
+    }
+
+    /// The same for who can't wait: none where it would take long and nobody has asked for it before.
+    pub fn deformed_soon(&self) -> Option<Deformed> {
+        let is_quick = self.pose.is_none() || self.mesh.corners.len() <= QUICK;
+        if is_quick { Some(self.deformed()) } else { self.deformed.get().cloned() }
     }
 }
 
