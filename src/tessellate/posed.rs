@@ -113,6 +113,3 @@ fn posed_matrix(pose: &Pose, bound: &Binding) -> JointMatrix {
     let [a, b, c, d] = bound.joints.map(|joint| &pose.palette[joint as usize]);
     blend(a, b, c, d, bound.weights)
 }
-
-#[cfg(test)]
-mod tests;

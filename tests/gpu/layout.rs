@@ -4,7 +4,7 @@
 use std::mem::{offset_of, size_of};
 
 use pnaen::gpu::layout::{
-    Chunk, Corner, Curve, CurveNet, DrawArgs, EmitArgs, LodView, Params, Patch, PatchFactors, Slab, Vertex,
+    Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, JointMatrix, LodView, Params, Patch, PatchFactors, Slab, Vertex,
 };
 use pnaen::gpu::{DomainParams, SHADERS, shader_source};
 use pnaen::render::layout::{Frame, Material, Pick};
@@ -53,6 +53,9 @@ macro_rules! same {
 
 #[test]
 fn shared_structs_have_one_layout() {
+    same!(Binding { position, first_delta, normal, delta_count, joints, weights });
+    same!(Delta { position, weight, normal });
+    same!(JointMatrix { x, y, z });
     same!(LodView { clip_from_object, half_viewport, eye, radius });
     same!(Params {
         view,

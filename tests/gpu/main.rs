@@ -4,9 +4,12 @@
 
 mod conventions;
 mod culling;
+mod deforming;
 mod domain;
 mod error;
 mod layout;
+#[path = "../documents/moving.rs"]
+mod moving;
 mod passes;
 mod picking;
 mod pictures;

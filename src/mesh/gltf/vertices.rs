@@ -194,14 +194,16 @@ impl Source<'_> {
     /// What each target of weight 1 adds to each vertex, of those that it moves or turns; target 0 has weight
     /// `first_weight`. Nothing, and no rig either, if that can't be read.
     fn deltas(&self, first_weight: u32, count: usize, binder: &mut NodeBinder) -> Vec<Vec<Delta>> {
+        let targets = self.primitive.morph_targets();
+        let elements = targets.clone().count().saturating_mul(count);
+        binder.binder.displaced = binder.binder.displaced.saturating_add(elements);
+        if binder.binder.displaced > MAX_DISPLACED {
+            binder.binder.give_up(format!("morph targets have more than {MAX_DISPLACED} elements"));
+            return Vec::new();
+        }
         let mut deltas = vec![Vec::new(); count];
         let mut room = MAX_DELTAS;
-        for (target, weight) in self.primitive.morph_targets().zip(first_weight..) {
-            binder.binder.displaced = binder.binder.displaced.saturating_add(count);
-            if binder.binder.displaced > MAX_DISPLACED {
-                binder.binder.give_up(format!("morph targets have more than {MAX_DISPLACED} elements"));
-                return Vec::new();
-            }
+        for (target, weight) in targets.zip(first_weight..) {
             let vectors = |accessor: Option<Accessor>, attribute: &str| {
                 accessor.map(|accessor| self.vectors(&accessor, attribute, count)).transpose()
             };
