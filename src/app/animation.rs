@@ -107,11 +107,12 @@ impl App {
         }
         heading(ui, "Animation");
         let mut chosen = self.playback.clip;
+        let hovers: Vec<_> = self.clips().iter().take(LISTED).map(|clip| format!("{:.3} s.", clip.duration)).collect();
         egui::Grid::new("animation").num_columns(2).min_col_width(84.0).show(ui, |ui| {
             let mut choices = vec![(None, "Rest pose", "The mesh as it is without any clip.")];
-            let clips = self.clips().iter().enumerate().take(LISTED);
-            choices.extend(clips.map(|(i, clip)| (Some(i), clip.name.as_str(), "Shown from its start on.")));
-            chooser(ui, "Clip", "What moves the mesh.", &mut chosen, &choices);
+            let clips = self.clips().iter().zip(&hovers).enumerate();
+            choices.extend(clips.map(|(i, (clip, hover))| (Some(i), clip.name.as_str(), hover.as_str())));
+            chooser(ui, "Clip", "What moves the mesh; shown from its start on.", &mut chosen, &choices);
             self.time_row(ui);
             self.speed_row(ui);
             ui.label("");
@@ -141,8 +142,10 @@ impl App {
     fn speed_row(&mut self, ui: &mut egui::Ui) {
         let hover = "How fast the clip plays: 1 is as it was made.";
         let label = ui.label("Speed").on_hover_text(hover);
-        let slider =
-            egui::Slider::new(&mut self.playback.speed, SPEED_RANGE).max_decimals(2).logarithmic(true).suffix(" \u{d7}");
+        let slider = egui::Slider::new(&mut self.playback.speed, SPEED_RANGE)
+            .max_decimals(2)
+            .logarithmic(true)
+            .suffix(" \u{d7}");
         ui.add(slider).labelled_by(label.id).on_hover_text(hover);
         ui.end_row();
     }

@@ -243,8 +243,8 @@ impl App {
         let check = egui::Checkbox::new(&mut self.settings.cull_back_faces, "Cull back faces");
         ui.add_enabled(is_solid, check)
             .on_hover_text(
-                "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not while \
-                 the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
+                "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not in a \
+                 clip, not while the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
             )
             .on_disabled_hover_text(
                 "Backs of this mesh can be seen: it is open, a part of it is wound inward, or a material is double-sided.",

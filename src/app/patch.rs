@@ -45,7 +45,8 @@ struct Shown<'a> {
 impl App {
     pub(super) fn patch_section(&mut self, ui: &mut Ui) {
         let Some(document) = &self.document else { return };
-        let (mesh, topology) = &document.shown();
+        let at_rest = || (document.loaded.mesh.clone(), document.loaded.topology.clone());
+        let (mesh, topology) = &self.selected_triangle().map_or_else(at_rest, |_| document.shown());
         let mut wish = chosen_triangle(ui, mesh, topology, self.selected_triangle());
         let found = self.measuring.found();
         match (self.selected_triangle(), self.selected_patch()) {

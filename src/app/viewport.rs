@@ -86,10 +86,11 @@ impl App {
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
         self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
-        let shown = self.viewport.drawn.as_ref() == Some(&wanted);
         let is_posed = document.moment == self.playback.moment();
-        self.viewport.outdated = !(shown && is_posed) && self.viewport.cancelled.is_none();
-        if shown && is_posed && !self.playback.is_playing() && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
+        let shown = is_posed && self.viewport.drawn.as_ref() == Some(&wanted);
+        self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
+        let still = shown && !self.playback.is_playing();
+        if still && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
             let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
             let follows = self.settings.overlays.colors == Colors::TriangleSize;
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
@@ -117,7 +118,8 @@ impl App {
         let overlays = self.settings.overlays;
         let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
         let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
-        let posed = if junctions.is_some() || is_selected { document.posed() } else { None };
+        let is_marked = junctions.is_some() || is_selected;
+        let posed = if is_marked { document.posed() } else { None };
         let wanted = Marked {
             document: document.generation,
             measured: if overlays.cracks || is_selected { self.measuring.generation } else { 0 },
@@ -125,7 +127,7 @@ impl App {
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge,
             outlined: self.outlined(),
-            moment: document.moment.filter(|_| junctions.is_some() || is_selected).map(|moment| (moment, posed.is_some())),
+            moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
             generation: self.marked.map_or(0, |marked| marked.generation),
         };
         if self.marked == Some(wanted) {

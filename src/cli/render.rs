@@ -10,7 +10,7 @@ use super::{CliError, GivenOption, SurfaceOptions, file_error, load, options, to
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{PassTime, Timing};
 use crate::measure::{Measured, ScreenView, compare, patch_edges, ulp};
-use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source, t_junctions};
+use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
 use crate::render::{Camera, Scene, Target, patch_lines, t_junction_lines};
 use crate::settings::{Overlay, Overlays, Settings};
 use crate::tessellate::Lod;
@@ -144,6 +144,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         }
         let viewport = target.viewport();
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
+        let name = args.surface.animation.animation.clone();
         let sizes = engine.sizes(&mut scene, ScreenView { clip_from_object, viewport })?;
         let stats = Stats {
             triangles_in_view: sizes.in_view,
@@ -152,9 +153,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             max_error_px,
             factors_capped,
             factors_file,
-            animation: args.surface.animation.animation.clone().zip(moment).map(|(name, Moment { time, .. })| {
-                AnimationStats { name, time }
-            }),
+            animation: moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time }),
             ..Stats::new(&engine, &loaded, &scene, &measured, &camera, &target, &passes)
         };
         write_text(path, &to_json(&stats)?)?;

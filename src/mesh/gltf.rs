@@ -10,11 +10,13 @@ mod animations;
 mod binder;
 mod buffers;
 mod document;
+mod hanging;
 mod materials;
 mod nodes;
 mod primitive;
 mod problem;
 mod skin;
+mod space;
 mod uri;
 mod vertices;
 

@@ -59,10 +59,9 @@ pub struct AnimationInfo {
     pub name: String,
     /// s.
     pub duration: f64,
-    /// What it moves: joints of skins, other nodes, morph targets.
-    pub joints: usize,
-    pub nodes: usize,
-    pub targets: usize,
+    /// What it moves.
+    #[serde(flatten)]
+    pub moved: Moved,
 }
 
 /// A T-junction with positions, in object units.
@@ -130,11 +129,7 @@ impl fmt::Display for Info {
             let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
             writeln!(f, "material      {}: {} triangles{texture}", material.name, material.triangles)?;
         }
-        for AnimationInfo { name, duration, joints, nodes, targets } in &self.animations {
-            let moved = [(joints, "joint"), (nodes, "node"), (targets, "morph target")];
-            let moved = moved.into_iter().filter(|(count, _)| **count > 0);
-            let moved = moved.map(|(count, what)| format!("{count} {what}{}", if *count == 1 { "" } else { "s" }));
-            let moved = moved.collect::<Vec<_>>().join(", ");
+        for AnimationInfo { name, duration, moved } in &self.animations {
             // As the file has it: in f32.
             writeln!(f, "animation     {name}: {} s, moves {moved}", *duration as f32)?;
         }
@@ -214,10 +209,8 @@ fn material(material: &super::Material) -> MaterialInfo {
 }
 
 fn animations(rig: &Rig) -> Vec<AnimationInfo> {
-    let animation = |clip: &Clip| {
-        let Moved { joints, nodes, targets } = rig.moved(clip);
-        AnimationInfo { name: clip.name.clone(), duration: clip.duration, joints, nodes, targets }
-    };
+    let animation =
+        |clip: &Clip| AnimationInfo { name: clip.name.clone(), duration: clip.duration, moved: rig.moved(clip) };
     rig.clips.iter().map(animation).collect()
 }
 

@@ -9,8 +9,11 @@
 mod clip;
 mod mover;
 
+use std::fmt;
+
 use bytemuck::{Pod, Zeroable};
 use glam::DMat4;
+use serde::Serialize;
 
 pub use clip::{Channel, Clip, Interpolation, Keys, Property};
 pub use mover::{Mover, Placement};
@@ -123,7 +126,7 @@ pub struct Moment {
 }
 
 /// What a clip moves, in numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Moved {
     /// Joints of skins.
     pub joints: usize,
@@ -131,6 +134,18 @@ pub struct Moved {
     pub nodes: usize,
     /// Morph targets.
     pub targets: usize,
+}
+
+impl fmt::Display for Moved {
+    /// In words, without what there is none of.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let counts = [(self.joints, "joint"), (self.nodes, "node"), (self.targets, "morph target")];
+        for (i, (count, what)) in counts.into_iter().filter(|(count, _)| *count > 0).enumerate() {
+            let (comma, plural) = (if i > 0 { ", " } else { "" }, if count == 1 { "" } else { "s" });
+            write!(f, "{comma}{count} {what}{plural}")?;
+        }
+        Ok(())
+    }
 }
 
 /// In object units. Control points, which are sums of several positions, stay within f32.

@@ -6,13 +6,7 @@ use super::surface::unit_or;
 use crate::mesh::rig::JointMatrix;
 
 /// The mean of four matrices by weight.
-pub fn blend(
-    a: &JointMatrix,
-    b: &JointMatrix,
-    c: &JointMatrix,
-    d: &JointMatrix,
-    weights: [f32; 4],
-) -> JointMatrix {
+pub fn blend(a: &JointMatrix, b: &JointMatrix, c: &JointMatrix, d: &JointMatrix, weights: [f32; 4]) -> JointMatrix {
     let mean = |row: fn(&JointMatrix) -> [f32; 4]| {
         let [a, b, c, d] = [a, b, c, d].map(|matrix| glam::Vec4::from(row(matrix)));
         (a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3]).to_array()

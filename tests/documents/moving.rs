@@ -154,7 +154,8 @@ fn animations(writer: &mut Writer) -> Value {
         writer.sampler(&[0.25, 2.0], turn, "LINEAR"),
         writer.sampler(&[0.0, 2.0], grow, "LINEAR"),
     ];
-    let channel = |sampler: usize, node: u32, path: &str| json!({ "sampler": sampler, "target": { "node": node, "path": path } });
+    let channel =
+        |sampler: usize, node: u32, path: &str| json!({ "sampler": sampler, "target": { "node": node, "path": path } });
     let flies = |first: usize| {
         [channel(first, 3, "translation"), channel(first + 1, 3, "rotation"), channel(first + 2, 3, "scale")].to_vec()
     };

@@ -15,7 +15,8 @@ use crate::moving::{CLIPS, moving};
 use crate::passes::{assert_agree, inputs, on_gpu};
 
 fn scene() -> (Loaded, Scene) {
-    let path = std::env::temp_dir().join(format!("pnaen-moving-{}-{:?}.glb", std::process::id(), std::thread::current().id()));
+    let path =
+        std::env::temp_dir().join(format!("pnaen-moving-{}-{:?}.glb", std::process::id(), std::thread::current().id()));
     std::fs::write(&path, moving()).expect("a writable temporary folder");
     let loaded = load(&Source::File(path.clone()), 0.0, &Progress::default()).expect("what was just written");
     let _ = std::fs::remove_file(path);

@@ -4,7 +4,8 @@
 use std::mem::{offset_of, size_of};
 
 use pnaen::gpu::layout::{
-    Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, JointMatrix, LodView, Params, Patch, PatchFactors, Slab, Vertex,
+    Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, JointMatrix, LodView, Params, Patch,
+    PatchFactors, Slab, Vertex,
 };
 use pnaen::gpu::{DomainParams, SHADERS, shader_source};
 use pnaen::render::layout::{Frame, Material, Pick};

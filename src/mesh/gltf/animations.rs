@@ -43,7 +43,12 @@ struct Sampler {
 }
 
 /// The document's clips; their channels' targets are nodes of the document. Those left out are among the warnings.
-pub fn read(animations: Vec<Value>, document: &Document, accessors: &Accessors, warnings: &mut Vec<String>) -> Vec<Clip> {
+pub fn read(
+    animations: Vec<Value>,
+    document: &Document,
+    accessors: &Accessors,
+    warnings: &mut Vec<String>,
+) -> Vec<Clip> {
     let mut reader = Reader { document, accessors, numbers_left: MAX_NUMBERS, target_counts: HashMap::new() };
     let mut clips = Vec::new();
     for (i, value) in animations.into_iter().enumerate() {
@@ -69,7 +74,8 @@ impl Reader<'_> {
     /// # Errors
     /// A clause that says what is wrong.
     fn clip(&mut self, index: usize, value: Value) -> Result<Clip, String> {
-        let animation: Animation = serde_json::from_value(value).map_err(|error| format!("it can't be read ({error})"))?;
+        let animation: Animation =
+            serde_json::from_value(value).map_err(|error| format!("it can't be read ({error})"))?;
         let mut channels: Vec<Channel> = Vec::new();
         for (i, entry) in animation.channels.iter().enumerate() {
             let channel = self.channel(entry, &animation.samplers).map_err(|reason| format!("channel {i} {reason}"))?;
@@ -89,7 +95,9 @@ impl Reader<'_> {
             "translation" => (Property::Translation, 3),
             "rotation" => (Property::Rotation, 4),
             "scale" => (Property::Scale, 3),
-            "weights" => (Property::Weights, *self.target_counts.entry(index).or_insert_with(|| nodes::target_count(&node))),
+            "weights" => {
+                (Property::Weights, *self.target_counts.entry(index).or_insert_with(|| nodes::target_count(&node)))
+            }
             _ => return Ok(None),
         };
         if width == 0 {

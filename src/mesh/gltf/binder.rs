@@ -3,15 +3,17 @@
 use std::collections::HashMap;
 
 use ::gltf::Document;
-use glam::{DMat3, DMat4, DVec3, Vec3};
+use glam::{DMat4, Vec3};
 
+use super::hanging::{Hang, carries_shown, hang};
 use super::nodes::{self, Placed};
 use super::skin;
+use super::space::{Space, untwisted};
 use super::vertices::Influences;
 use crate::mesh::Mesh;
 use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
-use crate::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Mover, Pose, Property, Reach, Rig};
+use crate::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Mover, Property, Reach, Rig};
 
 /// Vertices and displacements that are bound at most: no index overflows, and no memory is taken out of proportion.
 const MAX_BOUND: usize = 1 << 26;
@@ -40,12 +42,6 @@ pub struct Binder {
     pub displaced: usize,
     /// Why there can be no rig.
     problem: Option<String>,
-}
-
-#[derive(Clone, Copy)]
-struct Hang {
-    mover: Option<u32>,
-    below: DMat4,
 }
 
 /// A vertex to be deformed.
@@ -200,7 +196,9 @@ impl Binder {
             self.bound.push(bound);
         }
         if self.bound.len() > MAX_BOUND || self.deltas.len() > MAX_DELTAS {
-            self.give_up(format!("there are more than {MAX_DELTAS} displacements by morph targets, or too many vertices"));
+            self.give_up(format!(
+                "there are more than {MAX_DELTAS} displacements by morph targets, or too many vertices"
+            ));
         }
         id
     }
@@ -233,9 +231,12 @@ impl NodeBinder<'_> {
     }
 
     /// The bindings' numbers, one a vertex. `corners` are the vertices at rest.
-    pub fn bind(&mut self, vertices: Undeformed, corners: &[LooseCorner]) -> Vec<u32> {
+    pub fn bind(&mut self, mut vertices: Undeformed, corners: &[LooseCorner]) -> Vec<u32> {
         let hang = self.binder.hangs[self.node];
-        let rigid = vertices.influences.is_none().then(|| self.binder.joint(Joint { mover: hang.mover, offset: DMat4::IDENTITY }));
+        let rigid = vertices
+            .influences
+            .is_none()
+            .then(|| self.binder.joint(Joint { mover: hang.mover, offset: DMat4::IDENTITY }));
         let space = Space::new(if rigid.is_some() { hang.below } else { DMat4::IDENTITY });
         let mut ids = Vec::with_capacity(corners.len());
         for (i, corner) in corners.iter().enumerate() {
@@ -249,7 +250,7 @@ impl NodeBinder<'_> {
             let without_normal = corner.normal.is_none_or(|normal| Given::new(normal).unit().is_none());
             let normal = vertices.normals.map_or(Vec3::ZERO, |normals| normals[i]);
             let normal = if without_normal { Vec3::ZERO } else { normal };
-            let mut deltas = vertices.deltas.get(i).cloned().unwrap_or_default();
+            let mut deltas = vertices.deltas.get_mut(i).map(std::mem::take).unwrap_or_default();
             if without_normal {
                 deltas.iter_mut().for_each(|delta| delta.normal = [0.0; 3]);
             }
@@ -296,99 +297,4 @@ impl NodeBinder<'_> {
         }
         id
     }
-}
-
-/// From a mesh's own space to that of what moves it.
-struct Space {
-    matrix: DMat4,
-    linear: DMat3,
-    /// For normals; no entry is larger than 1.
-    cofactors: DMat3,
-}
-
-impl Space {
-    fn new(matrix: DMat4) -> Self {
-        let linear = DMat3::from_mat4(matrix);
-        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-        let largest = cofactors.to_cols_array().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-        let scale = if largest > 0.0 && largest.is_finite() { sign / largest } else { sign };
-        Self { matrix, linear, cofactors: cofactors * scale }
-    }
-
-    /// A vertex, and what morph targets add to it. The normal comes out at unit length, if it has a direction, and what is
-    /// added to it in the same proportion.
-    fn take(&self, position: Vec3, normal: Vec3, deltas: &mut [Delta]) -> ([f32; 3], [f32; 3]) {
-        let is_there = self.matrix == DMat4::IDENTITY;
-        let turned = if is_there { normal.as_dvec3() } else { self.cofactors * normal.as_dvec3() };
-        let length = turned.length();
-        let is_unit = !(length > 0.0) || !length.is_finite() || (is_there && (length - 1.0).abs() < 1e-6);
-        let scale = if is_unit { 1.0 } else { 1.0 / length };
-        for delta in deltas {
-            let [position, normal] = [delta.position, delta.normal].map(|v| Vec3::from(v).as_dvec3());
-            delta.position = finite(self.linear * position);
-            delta.normal = finite(if is_there { normal } else { self.cofactors * normal } * scale);
-        }
-        let position = if is_there { position } else { self.matrix.transform_point3(position.as_dvec3()).as_vec3() };
-        (position.to_array(), finite(turned * scale))
-    }
-}
-
-/// Zero for what no f32 holds.
-fn finite(vector: DVec3) -> [f32; 3] {
-    let vector = vector.as_vec3();
-    if vector.is_finite() { vector.to_array() } else { [0.0; 3] }
-}
-
-/// What a binding's normal must be for it to be `normal` in a pose: through the transpose of its matrix.
-fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
-    let mut sum = DVec3::ZERO;
-    for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
-        for (row, x) in pose.palette[joint as usize].rows().iter().zip(normal.as_dvec3().to_array()) {
-            sum += Vec3::from_slice(row).as_dvec3() * (x * f64::from(weight));
-        }
-    }
-    sum.try_normalize().map_or(normal, DVec3::as_vec3)
-}
-
-/// Which nodes have something shown on them or below them: a mesh, or a joint of the skin of one.
-fn carries_shown(document: &Document, placed: &Placed) -> Vec<bool> {
-    let mut carries = vec![false; placed.global.len()];
-    let mut seen_skins = vec![false; document.skins().len()];
-    for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
-        if node.mesh().is_none() {
-            continue;
-        }
-        carries[node.index()] = true;
-        if let Some(skin) = node.skin().filter(|skin| !std::mem::replace(&mut seen_skins[skin.index()], true)) {
-            skin.joints().for_each(|joint| carries[joint.index()] = true);
-        }
-    }
-    // Children before parents.
-    for &node in placed.order.iter().rev() {
-        if let Some(parent) = placed.parents[node].filter(|_| carries[node]) {
-            carries[parent] = true;
-        }
-    }
-    carries
-}
-
-/// The nodes that are moved, parents before children, and what each of the document's nodes hangs on.
-fn hang(document: &Document, placed: &Placed, moved: &[bool]) -> (Vec<Mover>, Vec<Hang>) {
-    let nodes: Vec<_> = document.nodes().collect();
-    let mut movers = Vec::new();
-    let mut hangs: Vec<Hang> = placed.global.iter().map(|&below| Hang { mover: None, below }).collect();
-    for &node in &placed.order {
-        let root = Hang { mover: None, below: DMat4::IDENTITY };
-        let above = placed.parents[node].map_or(root, |parent| hangs[parent]);
-        hangs[node] = match nodes::placement(&nodes[node]).filter(|_| moved[node]) {
-            Some(rest) => {
-                movers.push(Mover { parent: above.mover, between: above.below, rest, is_joint: false });
-                Hang { mover: Some(movers.len() as u32 - 1), below: DMat4::IDENTITY }
-            }
-            None => Hang { below: above.below * nodes::local(&nodes[node]), ..above },
-        };
-    }
-    (movers, hangs)
 }

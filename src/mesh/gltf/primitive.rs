@@ -3,8 +3,8 @@
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive};
 
-pub use super::vertices::Pose;
 use super::binder::NodeBinder;
+pub use super::vertices::Pose;
 use super::{Accessors, Problem, vertices};
 use crate::mesh::merge::LooseCorner;
 

@@ -91,8 +91,7 @@ pub fn read(
     let mut repairs = Repairs::default();
     let influences = attributes.influences(pose, values.positions.len())?;
     let matrices = influences.as_ref().map_or_else(Vec::new, |influences| matrices(pose, influences, &mut repairs));
-    let mut vertices =
-        Vertices { corners: Vec::new(), mirrored: Vec::new(), rescaled, bindings: Vec::new(), repairs };
+    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), rescaled, bindings: Vec::new(), repairs };
     for i in 0..values.positions.len() {
         let matrix = matrices.get(i).unwrap_or(&pose.global);
         vertices.push(&values, i, matrix, name)?;
@@ -217,7 +216,11 @@ impl Source<'_> {
                 }
             };
             let at = |vectors: &Option<Vec<Vec3>>, i: usize| {
-                vectors.as_ref().map_or(Vec3::ZERO, |vectors| vectors[i]).to_array().map(|x| if x.is_finite() { x } else { 0.0 })
+                vectors
+                    .as_ref()
+                    .map_or(Vec3::ZERO, |vectors| vectors[i])
+                    .to_array()
+                    .map(|x| if x.is_finite() { x } else { 0.0 })
             };
             for (i, deltas) in deltas.iter_mut().enumerate() {
                 let delta = Delta { position: at(&positions, i), weight, normal: at(&normals, i), _pad: 0.0 };

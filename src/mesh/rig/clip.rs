@@ -80,9 +80,8 @@ impl Keys {
     pub fn rotation(&self, time: f64) -> DQuat {
         let place = self.place(time);
         if self.interpolation == Interpolation::Linear && place.step > 0.0 {
-            let [from, to] = [place.key, place.key + 1].map(|key| {
-                unit(DQuat::from_array([0, 1, 2, 3].map(|i| self.value(key, 1, i))))
-            });
+            let [from, to] = [place.key, place.key + 1]
+                .map(|key| unit(DQuat::from_array([0, 1, 2, 3].map(|i| self.value(key, 1, i)))));
             return from.slerp(to, place.part);
         }
         DQuat::from_array([0, 1, 2, 3].map(|i| self.component(&place, i)))

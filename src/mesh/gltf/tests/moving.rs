@@ -140,7 +140,8 @@ fn normals_that_are_made_turn_too() {
 /// Two triangles with an edge in common, on a node each.
 fn touching() -> Draft {
     let mut draft = triangle();
-    let (at, n) = (draft.vectors(&[[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]), draft.vectors(&[[0.0, 0.0, 1.0]; 3]));
+    let (at, n) =
+        (draft.vectors(&[[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]), draft.vectors(&[[0.0, 0.0, 1.0]; 3]));
     draft.push("meshes", json!({ "primitives": [{ "attributes": { "POSITION": at, "NORMAL": n } }] }));
     draft.root["scenes"] = json!([{ "nodes": [2] }]);
     draft.root["nodes"] = json!([{ "mesh": 0 }, { "mesh": 1 }, { "children": [0, 1] }]);
@@ -189,7 +190,11 @@ fn bad_animations_are_left_out_and_told() {
         ("/samplers/0/interpolation", json!("CUBICSPLINE"), "channel 0 has 6 numbers for 2 keys of 9"),
         ("/channels/0/sampler", json!(3), "channel 0 uses sampler 3 of 1"),
         ("/channels/0/target/node", json!(9), "channel 0 moves node 9, which isn't there"),
-        ("/channels/0/target/path", json!("rotation"), "channel 0 has values in accessor 3, which has Vec3 elements where 4 numbers are needed"),
+        (
+            "/channels/0/target/path",
+            json!("rotation"),
+            "channel 0 has values in accessor 3, which has Vec3 elements where 4 numbers are needed",
+        ),
         ("/channels/0/target/path", json!("weights"), "channel 0 weighs morph targets of node 0, which has none"),
         ("/accessors/2/count", json!(1), "channel 0 has 6 numbers for 1 keys of 3"),
         ("/accessors/2/count", json!(4), "which needs 16 bytes of buffer view 2, which has 8"),
@@ -247,7 +252,8 @@ fn channels_of_extensions_are_passed_over() {
     let mut draft = triangle();
     draft.move_node(0);
     let channels = draft.root["animations"][0]["channels"].as_array_mut().unwrap();
-    channels.push(json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": {} } } }));
+    channels
+        .push(json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": {} } } }));
     channels.push(json!({ "sampler": 0, "target": { "node": 0, "path": "shine" } }));
     let mesh = draft.read().unwrap();
     assert_eq!((rig(&mesh).clips[0].channels.len(), mesh.warnings.len()), (1, 0));
@@ -286,7 +292,11 @@ fn targets_without_end_take_no_memory() {
     draft.animate(0, "weights", "SCALAR", &[0.0], &[0.0; 1025]);
     let mesh = draft.read().unwrap();
     assert!(mesh.rig.is_none());
-    assert!(mesh.warnings.iter().any(|warning| warning.contains("morph targets have more than")), "{:?}", mesh.warnings);
+    assert!(
+        mesh.warnings.iter().any(|warning| warning.contains("morph targets have more than")),
+        "{:?}",
+        mesh.warnings
+    );
 }
 
 proptest! {
