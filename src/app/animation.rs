@@ -1,6 +1,7 @@
 //! What moves: clip, time and speed, and playing.
 
 use super::App;
+use super::text::shortened;
 use super::widgets::{chooser, heading};
 use crate::mesh::Moment;
 use crate::mesh::rig::Clip;
@@ -75,7 +76,9 @@ impl App {
         if !is_same || !is_there {
             self.playback = Playback::default();
         }
-        self.frame_clip();
+        if self.playback.clip.is_some() {
+            self.frame_clip();
+        }
     }
 
     /// Plays, the first clip if none is chosen; or pauses.
@@ -107,11 +110,11 @@ impl App {
         }
         heading(ui, "Animation");
         let mut chosen = self.playback.clip;
-        let hovers: Vec<_> = self.clips().iter().take(LISTED).map(|clip| format!("{:.3} s.", clip.duration)).collect();
+        let texts: Vec<_> = self.clips().iter().take(LISTED).map(clip_texts).collect();
         egui::Grid::new("animation").num_columns(2).min_col_width(84.0).show(ui, |ui| {
             let mut choices = vec![(None, "Rest pose", "The mesh as it is without any clip.")];
-            let clips = self.clips().iter().zip(&hovers).enumerate();
-            choices.extend(clips.map(|(i, (clip, hover))| (Some(i), clip.name.as_str(), hover.as_str())));
+            let clips = texts.iter().enumerate();
+            choices.extend(clips.map(|(i, (name, hover))| (Some(i), name.as_str(), hover.as_str())));
             chooser(ui, "Clip", "What moves the mesh; shown from its start on.", &mut chosen, &choices);
             self.time_row(ui);
             self.speed_row(ui);
@@ -159,4 +162,9 @@ impl App {
             self.toggle_playing(ui.ctx());
         }
     }
+}
+
+/// A clip's name in the room that a list has, and all that is known about it.
+fn clip_texts(clip: &Clip) -> (String, String) {
+    (shortened(&clip.name, 18), format!("{}: {:.3} s.", shortened(&clip.name, 200), clip.duration))
 }

@@ -139,6 +139,16 @@ fn the_same_pose_recomputes_nothing_and_rest_is_as_before() {
 }
 
 #[test]
+fn the_pass_is_timed_where_something_is_deformed() {
+    let (_, mut scene) = scene();
+    scene.set_moment(Some(Moment { clip: 0, time: 0.3 })).expect("a small rig");
+    let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let times = engine().time(&mut scene, &target, &camera, &Settings::default()).expect("a draw");
+    assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), pnaen::gpu::PASSES);
+}
+
+#[test]
 fn backs_stay_in_a_pose() {
     let (loaded, mut scene) = scene();
     assert!(scene.tessellator.is_solid());

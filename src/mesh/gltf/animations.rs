@@ -16,7 +16,6 @@ const MAX_NUMBERS: usize = 1 << 26;
 
 #[derive(Deserialize)]
 struct Animation {
-    name: Option<String>,
     #[serde(default)]
     channels: Vec<ChannelEntry>,
     #[serde(default)]
@@ -52,14 +51,20 @@ pub fn read(
     let mut reader = Reader { document, accessors, numbers_left: MAX_NUMBERS, target_counts: HashMap::new() };
     let mut clips = Vec::new();
     for (i, value) in animations.into_iter().enumerate() {
-        let said = value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
-        let said = said.map_or_else(|| format!("animation {i}"), |name| format!("animation {i} \"{name}\""));
-        match reader.clip(i, value) {
+        let own_name = own_name(&value);
+        let quoted = own_name.as_ref().map_or_else(String::new, |name| format!(" \"{name}\""));
+        match reader.clip(own_name.unwrap_or_else(|| format!("animation {i}")), value) {
             Ok(clip) => clips.push(clip),
-            Err(reason) => warnings.push(format!("{said} is left out: {reason}.")),
+            Err(reason) => warnings.push(format!("animation {i}{quoted} is left out: {reason}.")),
         }
     }
     clips
+}
+
+/// An animation's name, if it has one, on one line.
+fn own_name(animation: &Value) -> Option<String> {
+    let name = animation.get("name")?.as_str()?.replace(char::is_control, " ");
+    (!name.trim().is_empty()).then_some(name)
 }
 
 struct Reader<'a> {
@@ -73,7 +78,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     /// # Errors
     /// A clause that says what is wrong.
-    fn clip(&mut self, index: usize, value: Value) -> Result<Clip, String> {
+    fn clip(&mut self, name: String, value: Value) -> Result<Clip, String> {
         let animation: Animation =
             serde_json::from_value(value).map_err(|error| format!("it can't be read ({error})"))?;
         let mut channels: Vec<Channel> = Vec::new();
@@ -82,7 +87,6 @@ impl Reader<'_> {
             channels.extend(channel);
         }
         let last = channels.iter().filter_map(|channel| channel.keys.times.last()).fold(0.0, |a: f32, b| a.max(*b));
-        let name = animation.name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("animation {index}"));
         Ok(Clip { name, duration: last.into(), channels })
     }
 

@@ -15,11 +15,10 @@ use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
 use crate::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Mover, Property, Reach, Rig};
 
-/// Vertices and displacements that are bound at most: no index overflows, and no memory is taken out of proportion.
-const MAX_BOUND: usize = 1 << 26;
-pub const MAX_DELTAS: usize = 1 << 24;
+/// Vertices, and displacements of them, that are bound at most: no memory is taken out of proportion.
+pub const MAX_BOUND: usize = 1 << 24;
 /// Elements of morph targets that are looked at.
-pub const MAX_DISPLACED: usize = 1 << 28;
+const MAX_DISPLACED: usize = 1 << 28;
 
 /// Gathers bindings, node by node, and makes a [`Rig`] of them.
 pub struct Binder {
@@ -39,7 +38,7 @@ pub struct Binder {
     lists: HashMap<Vec<u32>, u32>,
     deltas: Vec<Delta>,
     /// Elements of morph targets that have been looked at.
-    pub displaced: usize,
+    displaced: usize,
     /// Why there can be no rig.
     problem: Option<String>,
 }
@@ -133,7 +132,7 @@ impl Binder {
     }
 
     /// There will be no rig. The first reason stays.
-    pub fn give_up(&mut self, reason: String) {
+    fn give_up(&mut self, reason: String) {
         self.problem.get_or_insert(reason);
     }
 
@@ -195,10 +194,8 @@ impl Binder {
             self.deltas.extend_from_slice(deltas);
             self.bound.push(bound);
         }
-        if self.bound.len() > MAX_BOUND || self.deltas.len() > MAX_DELTAS {
-            self.give_up(format!(
-                "there are more than {MAX_DELTAS} displacements by morph targets, or too many vertices"
-            ));
+        if self.bound.len().max(self.deltas.len()) > MAX_BOUND {
+            self.give_up(format!("there are more than {MAX_BOUND} vertices, or displacements of them"));
         }
         id
     }
@@ -210,7 +207,7 @@ pub struct NodeBinder<'a> {
     skin: Option<&'a skin::Joints>,
     /// The palette's indices of the skin's joints that have been met.
     skin_joints: Vec<Option<u32>>,
-    pub binder: &'a mut Binder,
+    binder: &'a mut Binder,
 }
 
 /// A primitive's vertices, not deformed.
@@ -228,6 +225,23 @@ impl NodeBinder<'_> {
     pub fn first_weight(&self) -> Option<u32> {
         let morph = self.binder.node_morphs.get(&self.node)?;
         Some(self.binder.morphs[*morph].first_weight)
+    }
+
+    /// Counts elements of morph targets that are about to be read.
+    ///
+    /// # Errors
+    /// In words: there are too many.
+    pub fn look_at(&mut self, elements: usize) -> Result<(), String> {
+        self.binder.displaced = self.binder.displaced.saturating_add(elements);
+        if self.binder.displaced > MAX_DISPLACED {
+            return Err(format!("morph targets have more than {MAX_DISPLACED} elements"));
+        }
+        Ok(())
+    }
+
+    /// There will be no rig. The first reason stays.
+    pub fn give_up(&mut self, reason: String) {
+        self.binder.give_up(reason);
     }
 
     /// The bindings' numbers, one a vertex. `corners` are the vertices at rest.

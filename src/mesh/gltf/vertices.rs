@@ -4,7 +4,7 @@ use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
-use super::binder::{MAX_DELTAS, MAX_DISPLACED, NodeBinder, Undeformed};
+use super::binder::{MAX_BOUND, NodeBinder, Undeformed};
 use super::{Accessors, Problem};
 use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
@@ -99,7 +99,11 @@ pub fn read(
     if let Some(binder) = binder {
         let Attributes { positions, normals, .. } = unmorphed.as_ref().unwrap_or(&values);
         let (normals, influences) = (normals.as_deref(), influences.as_ref());
-        let deltas = first_weight.map_or_else(Vec::new, |first| attributes.deltas(first, positions.len(), binder));
+        let deltas = first_weight.map_or(Ok(Vec::new()), |first| attributes.deltas(first, positions.len(), binder));
+        let deltas = deltas.unwrap_or_else(|problem| {
+            binder.give_up(problem);
+            Vec::new()
+        });
         vertices.bindings = binder.bind(Undeformed { positions, normals, influences, deltas }, &vertices.corners);
     }
     Ok(vertices)
@@ -191,50 +195,44 @@ impl Source<'_> {
     }
 
     /// What each target of weight 1 adds to each vertex, of those that it moves or turns; target 0 has weight
-    /// `first_weight`. Nothing, and no rig either, if that can't be read.
-    fn deltas(&self, first_weight: u32, count: usize, binder: &mut NodeBinder) -> Vec<Vec<Delta>> {
+    /// `first_weight`.
+    ///
+    /// # Errors
+    /// In words: it can't be read, or is too much.
+    fn deltas(&self, first_weight: u32, count: usize, binder: &mut NodeBinder) -> Result<Vec<Vec<Delta>>, String> {
         let targets = self.primitive.morph_targets();
-        let elements = targets.clone().count().saturating_mul(count);
-        binder.binder.displaced = binder.binder.displaced.saturating_add(elements);
-        if binder.binder.displaced > MAX_DISPLACED {
-            binder.binder.give_up(format!("morph targets have more than {MAX_DISPLACED} elements"));
-            return Vec::new();
-        }
+        binder.look_at(targets.clone().count().saturating_mul(count))?;
         let mut deltas = vec![Vec::new(); count];
-        let mut room = MAX_DELTAS;
+        let mut found = 0;
         for (target, weight) in targets.zip(first_weight..) {
-            let vectors = |accessor: Option<Accessor>, attribute: &str| {
-                accessor.map(|accessor| self.vectors(&accessor, attribute, count)).transpose()
-            };
-            let positions = vectors(target.positions(), "POSITION of a morph target");
-            let normals = vectors(target.normals(), "NORMAL of a morph target");
-            let (positions, normals) = match (positions, normals) {
-                (Ok(positions), Ok(normals)) => (positions, normals),
-                (Err(problem), _) | (_, Err(problem)) => {
-                    binder.binder.give_up(problem.to_string());
-                    return Vec::new();
-                }
-            };
-            let at = |vectors: &Option<Vec<Vec3>>, i: usize| {
-                vectors
-                    .as_ref()
-                    .map_or(Vec3::ZERO, |vectors| vectors[i])
-                    .to_array()
-                    .map(|x| if x.is_finite() { x } else { 0.0 })
-            };
+            let positions = self.displacements(target.positions(), "POSITION of a morph target", count)?;
+            let normals = self.displacements(target.normals(), "NORMAL of a morph target", count)?;
+            let at = |vectors: &[[f32; 3]], i: usize| vectors.get(i).copied().unwrap_or_default();
             for (i, deltas) in deltas.iter_mut().enumerate() {
                 let delta = Delta { position: at(&positions, i), weight, normal: at(&normals, i), _pad: 0.0 };
                 if delta.position != [0.0; 3] || delta.normal != [0.0; 3] {
                     deltas.push(delta);
-                    room = room.saturating_sub(1);
+                    found += 1;
                 }
             }
-            if room == 0 {
-                binder.binder.give_up(format!("there are more than {MAX_DELTAS} displacements by morph targets"));
-                return Vec::new();
+            if found > MAX_BOUND {
+                return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
             }
         }
-        deltas
+        Ok(deltas)
+    }
+
+    /// A morph target's attribute, with 0 for what isn't finite; empty without one.
+    fn displacements(
+        &self,
+        accessor: Option<Accessor>,
+        attribute: &str,
+        count: usize,
+    ) -> Result<Vec<[f32; 3]>, String> {
+        let Some(accessor) = accessor else { return Ok(Vec::new()) };
+        let mut vectors = self.numbers::<3>(&accessor, attribute, count).map_err(|problem| problem.to_string())?;
+        vectors.as_flattened_mut().iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
+        Ok(vectors)
     }
 
     /// None without a skin.

@@ -228,8 +228,8 @@ fn bad_animations_are_left_out_and_told() {
 fn values_that_are_no_numbers_are_left_out() {
     let mut draft = triangle();
     draft.animate(0, "translation", "VEC3", &[0.0], &[0.0, f32::NAN, 0.0]);
-    draft.root["animations"][0]["name"] = json!("Walk");
-    let expected = ["animation 0 \"Walk\" is left out: channel 0 has values that aren't finite."];
+    draft.root["animations"][0]["name"] = json!("Walk\n\u{1b}on");
+    let expected = ["animation 0 \"Walk  on\" is left out: channel 0 has values that aren't finite."];
     assert_eq!(draft.read().unwrap().warnings, expected);
 }
 
