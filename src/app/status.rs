@@ -16,7 +16,9 @@ impl App {
                 return;
             };
             let scene = &document.scene;
-            let totals = scene.tessellator.is_counted().then(|| scene.tessellator.totals());
+            // While a clip plays, the last picture's: fields that flicker can't be read.
+            let is_known = scene.tessellator.is_counted() || self.is_playing();
+            let totals = is_known.then(|| scene.tessellator.totals());
             let (vertices, triangles) = totals.map_or_else(
                 || ("…".to_owned(), "…".to_owned()),
                 |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
