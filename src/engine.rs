@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
 use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
-use crate::mesh::{HeightSource, LoadError, Mesh, Progress, Rim, Source, Topology, with_rim};
+use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
-use crate::tessellate::{Inputs, PatchFactors, Tessellated, Vertex, is_beyond_near};
+use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -23,6 +23,16 @@ pub struct Loaded {
     pub topology: Arc<Topology>,
     pub load_ms: f64,
     pub topology_ms: f64,
+}
+
+impl Loaded {
+    /// The same at a moment of one of its clips, deformed on the CPU; at rest without one.
+    pub fn posed(&self, moment: Option<Moment>) -> Self {
+        let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
+        let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
+        let (mesh, topology) = Posed::new(mesh, topology, pose).deformed();
+        Self { mesh, topology, ..self.clone() }
+    }
 }
 
 /// What becomes of a mesh after it was read.
@@ -49,6 +59,10 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     if preparation.rim > 0.0 {
         let with_rim = with_rim(&read, &topology, preparation.rim, progress)?;
         mesh = Arc::new(with_rim.0);
+        if read.rig.is_some() {
+            let sentence = "its animations are left out, as a rim hangs on nothing that they move.";
+            Arc::make_mut(&mut mesh).warnings.push(sentence.to_owned());
+        }
         (topology, made) = (with_rim.1, with_rim.2);
     }
     if let Some(heights) = &preparation.heights {
@@ -203,7 +217,7 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
-        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let (mesh, topology) = scene.tessellator.posed().deformed();
         let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.asked_factors(scene)?);
         self.read_chunks(scene, true, |first, vertices, triangles| survey.take(first, vertices, triangles))?;
         Ok(survey.finish())
@@ -215,7 +229,7 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn deviation(&self, scene: &mut Scene, inputs: &Inputs) -> Result<Option<Deviant>, GpuError> {
-        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let (mesh, topology) = scene.tessellator.posed().deformed();
         let (_, total) = scene.tessellator.totals();
         let mut deviation = Deviation::new(&mesh, &topology, inputs);
         self.read_chunks(scene, true, |_, vertices, triangles| deviation.take(vertices, triangles, total))?;
@@ -248,7 +262,8 @@ impl Engine {
         let viewport = glam::vec2(size[0] as f32, size[1] as f32);
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
         // What clipping left out isn't in what was measured; its corners say whether it lies behind the near plane.
-        let whole = [measured.extent[0].min(scene.bounds.min), measured.extent[1].max(scene.bounds.max)];
+        let corners = scene.tessellator.posed().deformed().0.bounds();
+        let whole = [measured.extent[0].min(corners.min), measured.extent[1].max(corners.max)];
         let closed = scene.tessellator.topology().is_closed_and_oriented() && measured.culled.facing_away == 0;
         if !closed || !is_beyond_near(clip_from_object, whole) {
             return Ok(None);

@@ -1,7 +1,11 @@
 //! The real window, driven by the names that its controls have for a screen reader.
 
+#[path = "window/animation.rs"]
+mod animation;
 #[path = "window/lists.rs"]
 mod lists;
+#[path = "documents/moving.rs"]
+mod moving;
 #[path = "window/picking.rs"]
 mod picking;
 #[path = "window/spending.rs"]

@@ -4,18 +4,35 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::checks::Checks;
 use crate::engine::{self, Engine, Loaded, Preparation};
-use crate::mesh::{EdgeCounts, LoadError, Progress, Source};
+use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source};
 use crate::render::Scene;
 use crate::settings::ARENA_BYTES;
+use crate::tessellate::Deformed;
 
 /// What is open.
 pub struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
     pub edges: EdgeCounts,
+    /// What the scene was posed for; none at rest.
+    pub moment: Option<Moment>,
     pub checks: Checks,
+    /// Of the mesh's bounds at rest, in object units.
+    pub diagonal: f32,
     /// Tells one loaded document from the next, also of one file.
     pub generation: u64,
+}
+
+impl Document {
+    /// The mesh and its topology as they are shown, or as loaded while nobody knows them in the pose shown.
+    pub fn shown(&self) -> Deformed {
+        self.posed().unwrap_or_else(|| (self.loaded.mesh.clone(), self.loaded.topology.clone()))
+    }
+
+    /// The same; none while nobody knows.
+    pub fn posed(&self) -> Option<Deformed> {
+        self.scene.tessellator.posed().deformed_soon()
+    }
 }
 
 /// A load under way; dropping it cancels it.
@@ -90,5 +107,6 @@ fn load(
     let scene = engine.scene(&loaded, arena).map_err(|error| Some(error.to_string()))?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
-    Ok(Document { loaded, scene, edges, checks, generation })
+    let diagonal = scene.bounds.diagonal();
+    Ok(Document { loaded, scene, edges, moment: None, checks, diagonal, generation })
 }

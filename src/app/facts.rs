@@ -153,7 +153,12 @@ impl App {
             self.normal_facts(ui);
             fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
             for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
-                fact(ui, axis, &format!("{} units", short(f64::from(length))), "Extent of the mesh, in object units.");
+                fact(
+                    ui,
+                    axis,
+                    &format!("{} units", short(f64::from(length))),
+                    "Extent of the mesh, in object units; all through the clip, if one is chosen.",
+                );
             }
             fact(ui, "Loading", &format!("{} ms", short(document.loaded.load_ms)), "Reading the file.");
             fact(

@@ -23,7 +23,7 @@ impl App {
     pub(super) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
         let Some(ScreenView { clip_from_object, viewport }) = self.viewport.seen_from() else { return };
-        let topology = &document.loaded.topology;
+        let Some((_, topology)) = &document.posed() else { return };
         let at = |position| {
             let px = project(clip_from_object, viewport, position)?;
             Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))

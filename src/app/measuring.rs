@@ -139,9 +139,10 @@ impl Measuring {
         let (parts, received) = sync_channel(WAITING);
         let (sender, found) = channel();
         let wanted = Progress::default();
-        let (mesh, topology) = (scene.tessellator.mesh().clone(), scene.tessellator.topology().clone());
+        let posed = scene.tessellator.posed().clone();
         let still_wanted = wanted.clone();
         std::thread::spawn(move || {
+            let (mesh, topology) = posed.deformed();
             if let Some(result) = survey(&received, &mesh, &topology, view, &still_wanted) {
                 let _ = sender.send(result);
             }

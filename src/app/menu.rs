@@ -13,7 +13,7 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 31] = [
+pub const KEYS: [(&str, &str); 32] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -40,6 +40,7 @@ pub const KEYS: [(&str, &str); 31] = [
     ("L", "adaptive LOD"),
     ("D", "displacement, where there are heights"),
     ("Z", "freeze the LOD camera"),
+    ("Space", "play or pause the animation"),
     ("R", "reload the file"),
     ("Ctrl+O", "open a file"),
     ("Ctrl+L", "type a path to open"),
@@ -221,6 +222,10 @@ impl App {
         if steps != 0.0 && matches!(self.settings.used_lod(), Lod::Uniform | Lod::Distance) {
             let factor = self.settings.factor + steps;
             self.settings.factor = factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
+        }
+        // What has the focus takes it.
+        if pressed(context, Key::Space) && context.memory(|memory| memory.focused().is_none()) {
+            self.toggle_playing(context);
         }
         if pressed(context, Key::R) {
             self.reload(context);

@@ -1,5 +1,6 @@
 //! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
 
+mod animation;
 mod checks;
 mod document;
 mod facts;
@@ -33,6 +34,7 @@ use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::LodView;
 
+use animation::Playback;
 use document::{Document, Load};
 use measuring::Measuring;
 use pick::Selection;
@@ -103,6 +105,7 @@ pub struct App {
     /// The width of a rim that is being dragged.
     dragged_rim: Option<f32>,
     viewport: Viewport,
+    playback: Playback,
     measuring: Measuring,
     /// What lines are over the mesh.
     marked: Option<Marked>,
@@ -136,6 +139,7 @@ impl App {
             load: None,
             dialog: None,
             dragged_rim: None,
+            playback: Playback::default(),
             measuring: Measuring::default(),
             marked: None,
             selected_edge: None,
@@ -249,6 +253,7 @@ impl App {
                 if self.document.replace(document).is_some() {
                     self.error = None;
                 }
+                self.keep_playback(keep_view);
                 self.measuring = Measuring::default();
                 self.deselect();
             }
@@ -294,6 +299,7 @@ impl eframe::App for App {
             self.open_path(context, path);
         }
         self.shortcuts(context);
+        self.play_on(context);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {

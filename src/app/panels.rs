@@ -109,6 +109,7 @@ impl App {
                 self.rim_row(ui);
                 self.height_rows(ui);
             });
+            self.animation_section(ui);
             heading(ui, "Overlays");
             let overlays = &mut self.settings.overlays;
             egui::Grid::new("colors").num_columns(2).min_col_width(84.0).show(ui, |ui| {
@@ -184,8 +185,8 @@ impl App {
         let check = egui::Checkbox::new(&mut self.settings.cull_back_faces, "Cull back faces");
         ui.add_enabled(is_solid, check)
             .on_hover_text(
-                "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not while \
-                 the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
+                "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not in a \
+                 clip, not while the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
             )
             .on_disabled_hover_text(
                 "Backs of this mesh can be seen: it is open, a part of it is wound inward, or a material is double-sided.",
@@ -206,7 +207,7 @@ impl App {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));
                         ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
                             "As a part of the bounding diagonal: {} units here. Compared with the exact weld.",
-                            short(f64::from(joins.tolerance * document.scene.bounds.diagonal()))
+                            short(f64::from(joins.tolerance * document.diagonal))
                         ));
                     }
                 }

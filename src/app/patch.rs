@@ -40,12 +40,15 @@ struct Shown<'a> {
     factors: Option<PatchFactors>,
     sides: Option<[EdgeSide; 3]>,
     hit: Option<PickedTriangle>,
+    /// Whether it is measured only later.
+    is_playing: bool,
 }
 
 impl App {
     pub(super) fn patch_section(&mut self, ui: &mut Ui) {
         let Some(document) = &self.document else { return };
-        let (mesh, topology) = (&document.loaded.mesh, &document.loaded.topology);
+        let at_rest = || (document.loaded.mesh.clone(), document.loaded.topology.clone());
+        let (mesh, topology) = &self.selected_triangle().map_or_else(at_rest, |_| document.shown());
         let mut wish = chosen_triangle(ui, mesh, topology, self.selected_triangle());
         let found = self.measuring.found();
         match (self.selected_triangle(), self.selected_patch()) {
@@ -63,6 +66,7 @@ impl App {
                     factors: found.map(|found| found.rims.factors(patch)),
                     sides: found.and_then(|found| found.rims.patch(topology, patch)),
                     hit: self.hit().copied(),
+                    is_playing: self.is_playing(),
                 };
                 // Tables: lines closer than elsewhere.
                 ui.scope(|ui| {
@@ -175,6 +179,7 @@ impl Shown<'_> {
         );
         let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
         let empty = match self.factors {
+            None if self.is_playing => "measured when paused",
             None => "measuring…",
             Some(PatchFactors { inside: OUT_OF_VIEW, .. }) => "out of view: nothing is emitted",
             Some(PatchFactors { inside: FACING_AWAY, .. }) => "facing away: nothing is emitted",

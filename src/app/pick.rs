@@ -136,7 +136,7 @@ impl App {
     /// Turns the camera so that the selected patch is in the middle, seen from the side that it faces.
     pub(super) fn frame_patch(&mut self) {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
-        self.camera.frame_triangle(document.loaded.topology.patch_positions(patch), &document.scene.bounds);
+        self.camera.frame_triangle(document.shown().1.patch_positions(patch), &document.scene.bounds);
     }
 
     pub(super) fn outlined(&self) -> Outlined {

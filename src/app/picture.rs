@@ -10,6 +10,7 @@ use super::Document;
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks, ScreenView};
+use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Target};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, LodView};
@@ -18,6 +19,7 @@ use crate::tessellate::{Inputs, LodView};
 #[derive(Clone, Copy, PartialEq)]
 pub struct Wanted {
     pub document: u64,
+    pub moment: Option<Moment>,
     pub lines: u64,
     pub camera: Camera,
     pub settings: Settings,
@@ -221,6 +223,11 @@ impl Viewport {
         recorder.submit();
         engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
         Ok(())
+    }
+
+    /// Whether nothing is under way that a new pose would disturb.
+    pub fn is_free(&self) -> bool {
+        self.drawing.is_none() && self.counting.is_none() && self.in_flight.is_none()
     }
 
     /// Whether a picture is under way that takes more than a few steps.

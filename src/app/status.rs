@@ -16,7 +16,9 @@ impl App {
                 return;
             };
             let scene = &document.scene;
-            let totals = scene.tessellator.is_counted().then(|| scene.tessellator.totals());
+            // While a clip plays, the last picture's: fields that flicker can't be read.
+            let is_known = scene.tessellator.is_counted() || self.is_playing();
+            let totals = is_known.then(|| scene.tessellator.totals());
             let (vertices, triangles) = totals.map_or_else(
                 || ("…".to_owned(), "…".to_owned()),
                 |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
@@ -86,6 +88,7 @@ impl App {
             None => {
                 let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
                 let text = match self.measuring.fraction(chunks) {
+                    _ if self.is_playing() => "cracks when paused".into(),
                     Some(part) if chunks > 1 => format!("cracks … {:.0} %", 100.0 * part),
                     _ if self.is_busy() => "cracks …".into(),
                     _ => "cracks not measured".into(),

@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers and names as people read them.
 
 /// With a comma between thousands.
 pub fn grouped(number: u64) -> String {
@@ -37,6 +37,14 @@ pub fn short(number: f64) -> String {
     }
 }
 
+/// A name that someone else gave, in so many characters at most.
+pub fn shortened(name: &str, most: usize) -> String {
+    if name.chars().count() <= most {
+        return name.to_owned();
+    }
+    name.chars().take(most.saturating_sub(1)).chain(['…']).collect()
+}
+
 /// A factor with so many decimals; some forms of LOD ask for huge ones.
 pub fn factor(number: f64, decimals: usize) -> String {
     if number.abs() < 1000.0 { format!("{number:.decimals$}") } else { short(number) }
@@ -53,6 +61,7 @@ mod tests {
         assert_eq!([short(0.0), short(0.0123456), short(1.5), short(1234.5)], ["0", "0.0123", "1.50", "1234"]);
         assert_eq!([short(1.25e-7), short(123456.0)], ["1.25e-7", "1.23e5"]);
         assert_eq!([factor(7.3125, 2), factor(64.0, 3), factor(1.5e9, 2)], ["7.31", "64.000", "1.50e9"]);
+        assert_eq!([shortened("Walk", 4), shortened("Walking", 4)], ["Walk", "Wal…"]);
         assert_eq!(mebibytes(3 << 19), "1.5 MiB");
     }
 }

@@ -12,6 +12,7 @@ use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
+use crate::mesh::Moment;
 use crate::render::t_junction_lines;
 use crate::settings::Colors;
 
@@ -32,6 +33,8 @@ pub struct Marked {
     t_junctions: bool,
     selected_edge: Option<u32>,
     outlined: Outlined,
+    /// If there are any; and whether it is known where they are then.
+    moment: Option<(Moment, bool)>,
     /// Counts the times that they changed.
     generation: u64,
 }
@@ -65,6 +68,7 @@ impl App {
         let _ = self.engine.gpu.device.poll(wgpu::PollType::Poll);
         self.viewport.fit(&self.render_state, &self.engine, size)?;
         self.viewport.land(&self.engine);
+        self.pose()?;
         self.mark();
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
@@ -72,6 +76,7 @@ impl App {
         let inputs = self.settings.inputs(view);
         let wanted = Wanted {
             document: document.generation,
+            moment: document.moment,
             lines: self.marked.map_or(0, |marked| marked.generation),
             camera: self.camera,
             settings: self.settings,
@@ -81,9 +86,11 @@ impl App {
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
         self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
-        let shown = self.viewport.drawn.as_ref() == Some(&wanted);
+        let is_posed = document.moment == self.playback.moment();
+        let shown = is_posed && self.viewport.drawn.as_ref() == Some(&wanted);
         self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
-        if shown && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
+        let still = shown && !self.playback.is_playing();
+        if still && self.viewport.in_flight.is_none() && document.scene.tessellator.is_counted() {
             let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
             let follows = self.settings.overlays.colors == Colors::TriangleSize;
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
@@ -94,12 +101,25 @@ impl App {
         Ok(())
     }
 
+    /// Takes the moment that is wanted by now, unless a picture of another is under way: that is finished first, so that
+    /// playing shows pictures however long one takes.
+    fn pose(&mut self) -> Result<(), GpuError> {
+        let Some(document) = self.document.as_mut().filter(|_| self.viewport.is_free()) else { return Ok(()) };
+        if document.moment != self.playback.moment() {
+            document.moment = self.playback.moment();
+            document.scene.set_moment(document.moment)?;
+        }
+        Ok(())
+    }
+
     /// Puts the lines over the mesh that belong there by now: cracks, T-junctions, the selected edge.
     fn mark(&mut self) {
         let Some(document) = &self.document else { return };
         let overlays = self.settings.overlays;
         let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
         let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
+        let is_marked = junctions.is_some() || is_selected;
+        let posed = if is_marked { document.posed() } else { None };
         let wanted = Marked {
             document: document.generation,
             measured: if overlays.cracks || is_selected { self.measuring.generation } else { 0 },
@@ -107,19 +127,24 @@ impl App {
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge,
             outlined: self.outlined(),
+            moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
             generation: self.marked.map_or(0, |marked| marked.generation),
         };
         if self.marked == Some(wanted) {
             return;
         }
-        let topology = document.loaded.topology.clone();
-        let mut lines = t_junction_lines(&topology, junctions.unwrap_or_default());
+        let mut lines = Vec::new();
+        if let Some((_, topology)) = &posed {
+            lines.extend(t_junction_lines(topology, junctions.unwrap_or_default()));
+        }
         if let Some(found) = self.measuring.found().filter(|_| overlays.cracks) {
-            lines.extend(found.crack_lines(&topology));
+            lines.extend(found.crack_lines(&document.loaded.topology));
         }
         // Over all else.
-        lines.extend(self.patch_outline(&topology));
-        lines.extend(self.selection_lines(&topology));
+        if let Some((_, topology)) = &posed {
+            lines.extend(self.patch_outline(topology));
+            lines.extend(self.selection_lines(topology));
+        }
         self.marked = Some(Marked { generation: wanted.generation + 1, ..wanted });
         if let Some(document) = &mut self.document {
             document.scene.set_lines(&self.engine.gpu, &lines);

@@ -128,7 +128,7 @@ impl App {
     /// Selects an edge and turns the camera so that it is in the middle, seen from the side its triangles face.
     pub fn select_edge(&mut self, edge: u32) {
         let Some(document) = &self.document else { return };
-        let topology = &document.loaded.topology;
+        let topology = &document.shown().1;
         let Some(chosen) = topology.edges.get(edge as usize) else { return };
         let ends = chosen.points.map(|point| topology.points[point as usize]);
         self.camera.frame_edge(ends, topology.edge_facing(chosen), &document.scene.bounds);

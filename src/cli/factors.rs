@@ -9,7 +9,7 @@ use crate::factors_file::to_csv;
 use crate::gpu::Timing;
 use crate::mesh::Source;
 use crate::settings::Settings;
-use crate::tessellate;
+use crate::tessellate::{self, bounds_through};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -29,8 +29,10 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     let loaded = load(&args.file, &args.surface.preparation())?;
-    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
-    let bounds = mesh.bounds();
+    let moment = args.surface.animation.moment(&loaded)?;
+    let posed = loaded.posed(moment);
+    let (mesh, topology) = (&posed.mesh, &posed.topology);
+    let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
     let written = match args.device {
         Device::Cpu => {
@@ -40,6 +42,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         Device::Gpu => {
             let engine = Engine::headless()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
+            scene.set_moment(moment)?;
             let settings = args.surface.within_budget(|settings| {
                 engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
                 Ok(scene.tessellator.totals().1)

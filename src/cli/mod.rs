@@ -1,6 +1,7 @@
 //! The commands: no window, no display. One file a command; this one reads the command line and says what went wrong.
 
 mod adjacency;
+mod animation;
 mod domain;
 mod factors;
 mod gallery;
@@ -19,6 +20,7 @@ use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
+pub use animation::AnimationOption;
 pub use given::GivenOption;
 pub use options::{SurfaceOptions, WeldOption};
 
@@ -108,6 +110,8 @@ pub enum CliError {
     Indices { path: String, fault: crate::adjacency_file::Fault },
     #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
+    #[error("{file} has no animation \"{name}\": it has {has}")]
+    NoAnimation { file: String, name: String, has: String },
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }

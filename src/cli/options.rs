@@ -8,7 +8,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, Parser};
 use glam::Vec2;
 
-use super::CliError;
+use super::{AnimationOption, CliError};
 use crate::engine::Preparation;
 use crate::mesh::rim::WIDEST;
 use crate::mesh::{Bounds, HeightSource, Source};
@@ -87,6 +87,8 @@ pub struct SurfaceOptions {
     pub arena: u64,
     #[command(flatten)]
     pub weld: WeldOption,
+    #[command(flatten)]
+    pub animation: AnimationOption,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     pub size: Size,
@@ -154,7 +156,8 @@ impl SurfaceOptions {
             near,
             far,
             clip,
-            cull_back_faces,
+            // A pose may turn a part inside out, and its back is then seen.
+            cull_back_faces: cull_back_faces && self.animation.animation.is_none(),
             convention,
             displacement: self.displacement(),
             height_scale,

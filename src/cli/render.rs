@@ -91,10 +91,13 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let loaded = load(&args.file, &args.surface.preparation())?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
+    let moment = args.surface.animation.moment(&loaded)?;
     let engine = Engine::headless()?;
     let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
     scene.tessellator.give(given)?;
+    scene.frame_clip(moment.map(|moment| moment.clip));
+    scene.set_moment(moment)?;
     let target = Target::new(&engine.gpu, args.surface.size.0)?;
     let camera = args.surface.camera(&scene.bounds);
     let view = camera.lod_view(target.viewport(), &scene.bounds);
@@ -106,6 +109,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 
     let inputs = settings.inputs(view);
     engine.count(&mut scene, &inputs, &mut Timing::Off)?;
+    let (at_rest, loaded) = (&loaded.topology, loaded.posed(moment));
     let measured = if settings.overlays.cracks || selected.is_some() || args.stats.is_some() {
         let measured = engine.measure(&mut scene)?;
         Some(measured)
@@ -117,7 +121,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         _ => Vec::new(),
     };
     if settings.overlays.t_junctions {
-        let junctions = t_junctions(&loaded.topology, &Progress::default()).map_err(LoadError::from)?;
+        let junctions = t_junctions(at_rest, &Progress::default()).map_err(LoadError::from)?;
         lines.extend(t_junction_lines(&loaded.topology, &junctions));
     }
     if let Some(patch) = selected {
@@ -141,6 +145,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         }
         let viewport = target.viewport();
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
+        let name = args.surface.animation.animation.clone();
         let sizes = engine.sizes(&mut scene, ScreenView { clip_from_object, viewport })?;
         let stats = Stats {
             triangles_in_view: sizes.in_view,
@@ -149,6 +154,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             max_error_px,
             factors_capped,
             factors_file,
+            animation: moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time }),
             ..Stats::new(&engine, &loaded, &scene, &measured, &settings, &camera, &target, &passes)
         };
         write_text(path, &to_json(&stats)?)?;
@@ -248,6 +254,8 @@ struct Stats {
     factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     factors_file: Option<FactorsFile>,
+    /// None at rest.
+    animation: Option<AnimationStats>,
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -283,6 +291,13 @@ impl SettingsStats {
 /// What a value is called on the command line.
 fn option_name(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+#[derive(Debug, Serialize)]
+struct AnimationStats {
+    name: String,
+    /// s.
+    time: f64,
 }
 
 /// Memory, in bytes.
@@ -367,6 +382,7 @@ impl Stats {
             max_error_px: None,
             factors_capped: 0,
             factors_file: None,
+            animation: None,
             ms,
         }
     }

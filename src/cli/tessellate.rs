@@ -10,7 +10,7 @@ use crate::export::Exported;
 use crate::gpu::Timing;
 use crate::mesh::Source;
 use crate::settings::Settings;
-use crate::tessellate;
+use crate::tessellate::{self, bounds_through};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -40,10 +40,12 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     Exported::check(&args.output, 0, 0)?;
     let loaded = load(&args.file, &args.surface.preparation())?;
-    let (mesh, topology) = (&loaded.mesh, &loaded.topology);
+    let moment = args.surface.animation.moment(&loaded)?;
+    let posed = loaded.posed(moment);
+    let (mesh, topology) = (&posed.mesh, &posed.topology);
     let given =
         args.given.read(mesh, topology, args.surface.convention, args.surface.partitioning)?.map(|given| given.factors);
-    let bounds = mesh.bounds();
+    let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
     let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {
         Device::Cpu => {
@@ -63,6 +65,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             let engine = Engine::headless()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
             scene.tessellator.give(given)?;
+            scene.set_moment(moment)?;
             let settings = args.surface.within_budget(|settings| {
                 engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
                 Ok(scene.tessellator.totals().1)

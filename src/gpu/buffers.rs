@@ -42,7 +42,8 @@ impl MeshBuffers {
         let mut points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
         points.extend(patch_maps(mesh.heights.as_deref(), topology).into_iter().map(|map| [0.0, 0.0, 0.0, map]));
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
-        let dominance = mesh.heights.is_some().then(|| Dominance::new(topology, &grouped));
+        let heights = mesh.heights.as_deref();
+        let dominance = heights.map(|heights| Dominance::new(topology, &grouped, &heights.angles));
         let relief = dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, dominance)).transpose()?;
         let shares = dominance.map(|dominance| shares(mesh, topology, &dominance)).unwrap_or_default();
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();

@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+pub use crate::mesh::rig::{Binding, Delta, JointMatrix};
 pub use crate::tessellate::{PatchFactors, Vertex};
 
 /// View that factors are computed for; `LodView` in WGSL.

@@ -1,6 +1,6 @@
 //! The mathematics of [`crate::tessellate`] as compute passes.
 //!
-//! Once a mesh and surface: nets. When settings or view change: factors, counts, scan, chunks. Then, for every chunk of
+//! Once a pose: deform. Once a mesh, pose and surface: nets. When settings or view change: factors, counts, scan, chunks. Then, for every chunk of
 //! patches that fits the arena: emit, and whatever is done with it (a draw, a readback).
 
 mod arena;
@@ -15,6 +15,7 @@ mod params;
 mod pipelines;
 mod recorder;
 mod relief;
+mod rig;
 mod slab;
 mod tessellator;
 

@@ -26,7 +26,8 @@ const ROOMS: [&str; 11] =
     [DOMAIN[0], DOMAIN[1], DOMAIN[2], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
-pub const SHADERS: [(&str, &[&str]); 13] = [
+pub const SHADERS: [(&str, &[&str]); 14] = [
+    ("deform", &[include_str!("../../shaders/deform.wgsl"), include_str!("../../shaders/pass_deform.wgsl")]),
     ("nets", &[LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
     ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
@@ -58,6 +59,8 @@ pub fn shader_module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {
 
 /// One pipeline an entry point of the passes.
 pub struct ComputePipelines {
+    pub deform_corners: wgpu::ComputePipeline,
+    pub deform_points: wgpu::ComputePipeline,
     pub curve_nets: wgpu::ComputePipeline,
     pub centers: wgpu::ComputePipeline,
     pub edge_factors: wgpu::ComputePipeline,
@@ -78,7 +81,10 @@ impl ComputePipelines {
     pub fn new(gpu: &Gpu) -> Self {
         let (nets, scan, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "scan"), shader_module(gpu, "emit"));
         let levels = shader_module(gpu, "levels");
+        let deform = shader_module(gpu, "deform");
         Self {
+            deform_corners: compute_pipeline(gpu, &deform, "deform_corners_main"),
+            deform_points: compute_pipeline(gpu, &deform, "deform_points_main"),
             curve_nets: compute_pipeline(gpu, &nets, "curve_nets_main"),
             centers: compute_pipeline(gpu, &nets, "centers_main"),
             edge_factors: compute_pipeline(gpu, &shader_module(gpu, "factors"), "edge_factors_main"),

@@ -150,8 +150,8 @@ fn summed(times: impl Iterator<Item = PassTime>) -> Vec<PassTime> {
 }
 
 /// The names that passes have; a profiler's results give them back as owned text.
-pub const PASSES: [&str; 10] =
-    ["nets", "directions", "factors", "levels", "counts", "scan", "chunks", "emit", "displace", "draw"];
+pub const PASSES: [&str; 11] =
+    ["deform", "nets", "directions", "factors", "levels", "counts", "scan", "chunks", "emit", "displace", "draw"];
 
 fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {
     let pass = PASSES.into_iter().find(|pass| *pass == result.label)?;

@@ -12,10 +12,11 @@ use super::params::params_of;
 use super::pipelines::bind_group;
 use super::recorder::{Recorder, staging_buffer, wait};
 use super::relief::{HeightImages, ReliefPasses};
+use super::rig::RigBuffers;
 use super::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
-use crate::mesh::{Mesh, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Solid, sharing};
+use crate::mesh::{Mesh, Pose, Sharing, Topology};
+use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Posed, Solid, sharing};
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -26,8 +27,13 @@ pub struct Tessellator {
     pipelines: Arc<ComputePipelines>,
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
+    posed: Posed,
     solid: Option<Solid>,
     buffers: MeshBuffers,
+    /// What poses are made from, once there was one.
+    rig: Option<RigBuffers>,
+    /// Whether points and corners are those of the pose.
+    is_deformed: bool,
     inputs: Option<Inputs>,
     params: Params,
     params_buffer: wgpu::Buffer,
@@ -90,9 +96,12 @@ impl Tessellator {
             gpu: gpu.clone(),
             pipelines,
             solid: Solid::find(&mesh, &topology),
+            posed: Posed::new(mesh.clone(), topology.clone(), None),
             mesh,
             topology,
             buffers,
+            rig: None,
+            is_deformed: false,
             inputs: None,
             params,
             params_buffer,
@@ -120,11 +129,7 @@ impl Tessellator {
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
         let sharing = sharing(inputs.surface, inputs.edges);
         if sharing != self.buffers.sharing {
-            self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
-            self.nets = None;
-            self.relief = None;
-            self.nets_done = None;
-            self.slabs.iter_mut().for_each(|slab| slab.groups = None);
+            self.upload(sharing)?;
         }
         self.inputs = Some(*inputs);
         self.convention = inputs.convention;
@@ -138,6 +143,39 @@ impl Tessellator {
             self.emitted = None;
             self.generation += 1;
         }
+        Ok(())
+    }
+
+    /// Takes a pose, or none for the mesh as it is at rest; a mesh without a rig stays so. Takes effect with the next
+    /// [`Self::set`]; the pose that it has already recomputes nothing.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub fn set_pose(&mut self, pose: Option<Arc<Pose>>) -> Result<(), GpuError> {
+        let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != pose.as_deref()) else { return Ok(()) };
+        match (&pose, &mut self.rig) {
+            (Some(pose), Some(rig)) => rig.set_pose(&self.gpu, pose)?,
+            (Some(pose), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
+            (None, _) => self.upload(self.buffers.sharing)?,
+        }
+        self.posed = Posed::new(self.mesh.clone(), self.topology.clone(), pose);
+        self.forget();
+        Ok(())
+    }
+
+    /// What is shown, for the host.
+    pub fn posed(&self) -> &Posed {
+        &self.posed
+    }
+
+    /// Uploads the mesh as it is at rest.
+    fn upload(&mut self, sharing: Sharing) -> Result<(), GpuError> {
+        self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
+        self.is_deformed = false;
+        self.nets = None;
+        self.relief = None;
+        self.nets_done = None;
+        self.slabs.iter_mut().for_each(|slab| slab.groups = None);
         Ok(())
     }
 
@@ -157,6 +195,7 @@ impl Tessellator {
 
     /// Forgets all that was computed, so that every pass runs again: for timing.
     pub fn forget(&mut self) {
+        self.is_deformed = false;
         self.nets_done = None;
     }
 
@@ -174,9 +213,9 @@ impl Tessellator {
         (!leaves_out || inputs.view.clip_from_object == clip_from_object) && self.hides_backs(&seen)
     }
 
-    /// Given factors may tear any edge.
+    /// Given factors may tear any edge, and a pose may turn a part inside out.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
-        self.given.is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
+        self.given.is_none() && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
     }
 
     /// Whether vertices are moved after they were emitted.
@@ -199,10 +238,14 @@ impl Tessellator {
         !self.counts_done && self.pending.is_none()
     }
 
-    /// Records the passes that decide what will be emitted: nets (where they are out of date), factors, counts, scan,
-    /// chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
+    /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
+    /// scan, chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
     pub fn count(&mut self, recorder: &mut Recorder) {
         self.bind();
+        if let Some(rig) = self.rig.as_ref().filter(|_| self.posed.pose().is_some() && !self.is_deformed) {
+            recorder.compute("deform", |pass| rig.record(&self.gpu, &self.pipelines, &self.buffers, pass));
+            self.is_deformed = true;
+        }
         let shape = (self.params.surface, self.params.alpha);
         if self.nets_done != Some(shape) {
             self.record_nets(recorder);
@@ -409,10 +452,12 @@ impl Tessellator {
         &self.buffers
     }
 
+    /// At rest.
     pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 
+    /// At rest; in a pose, as connected.
     pub fn topology(&self) -> &Arc<Topology> {
         &self.topology
     }
@@ -426,10 +471,11 @@ impl Tessellator {
         self.arena.vertices.size() + self.arena.indices.size()
     }
 
-    /// Bytes of height images, counts, scans and indirect arguments.
+    /// Bytes of height images, counts, scans and indirect arguments, and of what a pose is made from.
     pub fn work_bytes(&self) -> u64 {
         let images = self.images.as_ref().map_or(0, HeightImages::bytes);
-        images + self.slabs.iter().map(SlabPasses::bytes).sum::<u64>()
+        let rig = self.rig.as_ref().map_or(0, RigBuffers::bytes);
+        images + rig + self.slabs.iter().map(SlabPasses::bytes).sum::<u64>()
     }
 
     fn bind(&mut self) {

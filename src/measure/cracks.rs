@@ -43,8 +43,12 @@ pub struct CrackedEdge {
 
 /// One unit in the last place of the largest coordinate in magnitude, in object units.
 pub fn ulp(topology: &Topology) -> f64 {
-    let largest = topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
-    f64::from(largest.next_up()) - f64::from(largest)
+    ulp_at(topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max))
+}
+
+/// One unit in the last place of a coordinate.
+pub fn ulp_at(coordinate: f32) -> f64 {
+    f64::from(coordinate.next_up()) - f64::from(coordinate)
 }
 
 impl Cracks {

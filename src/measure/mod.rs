@@ -15,7 +15,7 @@ mod sweep;
 
 pub use agreement::{Agreement, Disagreement, Order};
 pub use chart::{CHART_RANGE, ChartError, sweep_chart};
-pub use cracks::{CrackedEdge, Cracks, ulp};
+pub use cracks::{CrackedEdge, Cracks, ulp, ulp_at};
 pub use deviation::{Deviant, Deviation};
 pub use indices::{IndexDifference, Meaning, index_differences};
 pub use picture::{CompareError, Comparison, compare};

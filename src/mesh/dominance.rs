@@ -2,8 +2,6 @@
 //! coordinates (McDonald 2011, *Tessellation on Any Budget*: dominant edges and dominant vertices). And in what parts
 //! corners have a say in the one direction that a point is displaced in.
 
-use glam::Vec3;
-
 use super::{Curves, Topology};
 
 /// Who speaks for edges and points. What is asked for anew with every factor is asked in lists, point by point.
@@ -14,7 +12,7 @@ pub struct Dominance {
     /// For each point, its dominant corner: a patch that has it times 4, plus which of its corners.
     pub corners: Vec<u32>,
     /// Point p's corners and their parts: `parts[part_starts[p]..part_starts[p + 1]]`. A part is the sum of the angles, in
-    /// radians, that patches have at that corner: however a face is triangulated, it has the same say.
+    /// radians, that triangles have at that corner: however a face is triangulated, it has the same say. Never 0.
     pub part_starts: Vec<u32>,
     pub parts: Vec<(u32, f32)>,
     /// The factors of point p's edges: `factors[factor_starts[p]..factor_starts[p + 1]]`.
@@ -25,13 +23,13 @@ pub struct Dominance {
 }
 
 impl Dominance {
-    /// Linear in patches, but for points with many corners.
-    pub fn new(topology: &Topology, curves: &Curves) -> Self {
+    /// `angles` are those of [`super::Heights`]. Takes n log n steps.
+    pub fn new(topology: &Topology, curves: &Curves, angles: &[f32]) -> Self {
         let mut dominance = Self { sides: sides(topology, curves), ..Self::default() };
         let of_sides = |patch: &super::Patch| patch.sides.map(|side| curves.factor(topology, side));
         dominance.patch_factors = topology.patches.iter().map(of_sides).collect();
         let mut corners = vec![u32::MAX; topology.points.len()];
-        let mut parts: Vec<(u32, u32, f32)> = Vec::with_capacity(3 * topology.patches.len());
+        let mut parts: Vec<(u32, u32)> = Vec::with_capacity(3 * topology.patches.len());
         let mut factors: Vec<(u32, u32)> = Vec::with_capacity(6 * topology.patches.len());
         for (index, patch) in (0..).zip(&topology.patches) {
             for k in 0..3 {
@@ -39,18 +37,18 @@ impl Dominance {
                 let point = topology.corner_points[corner as usize];
                 let known = &mut corners[point as usize];
                 *known = (*known).min(index * 4 + k as u32);
-                parts.push((point, corner, angle(topology, index, k)));
+                parts.push((point, corner));
                 let own = dominance.patch_factors[index as usize];
                 factors.extend([(point, own[k]), (point, own[(k + 2) % 3])]);
             }
         }
         // Points that only degenerate triangles have are asked for by nobody.
         dominance.corners = corners.into_iter().map(|corner| if corner == u32::MAX { 0 } else { corner }).collect();
-        parts.sort_by_key(|&(point, corner, _)| (point, corner));
-        for run in parts.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            dominance.parts.push((run[0].1, run.iter().map(|part| part.2).sum()));
-        }
-        parts.dedup_by_key(|part| (part.0, part.1));
+        parts.sort_unstable();
+        parts.dedup();
+        let part =
+            |&(_, corner): &(u32, u32)| (corner, angles.get(corner as usize).map_or(1e-6, |angle| angle.max(1e-6)));
+        dominance.parts = parts.iter().map(part).collect();
         dominance.part_starts = starts(topology.points.len(), parts.iter().map(|part| part.0));
         factors.sort_unstable();
         factors.dedup();
@@ -82,23 +80,17 @@ fn starts(points: usize, sorted: impl Iterator<Item = u32>) -> Vec<u32> {
     starts
 }
 
-/// A patch's angle at its corner `k`, in radians; never 0, so that everybody has a say.
-fn angle(topology: &Topology, patch: u32, k: usize) -> f32 {
-    let corners = topology.patch_positions(patch).map(Vec3::as_dvec3);
-    let [a, b] = [1, 2].map(|step| (corners[(k + step) % 3] - corners[k]).normalize_or_zero());
-    (a.cross(b).length().atan2(a.dot(b)) as f32).max(1e-6)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Progress, Shape, Sharing};
+    use crate::mesh::{HeightMap, Heights, Progress, Shape, Sharing};
 
     fn dominance(shape: Shape, sharing: Sharing) -> (Topology, Curves, Dominance) {
         let mesh = shape.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
         let curves = Curves::build(&mesh, &topology, sharing);
-        let dominance = Dominance::new(&topology, &curves);
+        let heights = Heights::everywhere(&mesh, HeightMap::new([1, 1], vec![0.0]));
+        let dominance = Dominance::new(&topology, &curves, &heights.angles);
         (topology, curves, dominance)
     }
 

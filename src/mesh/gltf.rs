@@ -1,4 +1,4 @@
-//! glTF 2.0 (`.gltf` and `.glb`): the triangles of the default scene in their rest pose.
+//! glTF 2.0 (`.gltf` and `.glb`): the triangles of the default scene in their rest pose, and how they move.
 //!
 //! The `gltf` crate parses the document; its accessor readers are not used, since they panic on what a bad file may
 //! say. [`accessor`] reads instead, with every range checked.
@@ -6,17 +6,22 @@
 //! Source: Khronos, glTF 2.0 specification, <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 
 mod accessor;
+mod animations;
+mod binder;
 mod buffers;
 mod document;
+mod hanging;
 mod materials;
 mod nodes;
 mod primitive;
 mod problem;
 mod skin;
+mod space;
 mod uri;
 mod vertices;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use ::gltf::{Document, Node};
 use glam::DMat4;
@@ -25,6 +30,7 @@ use super::Mesh;
 use super::merge::MeshBuilder;
 use super::progress::Progress;
 use accessor::Accessors;
+use binder::Binder;
 use materials::Materials;
 use nodes::Placed;
 use primitive::Primitives;
@@ -40,12 +46,14 @@ const MAX_TRIANGLES: usize = 1 << 27;
 /// # Errors
 /// [`Problem`].
 pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Result<Mesh, Problem> {
-    let document::Parsed { document, blob, mut warnings } = document::parse(bytes)?;
+    let document::Parsed { document, blob, animations, mut warnings } = document::parse(bytes)?;
     progress.check()?;
     let buffers = buffers::load(&document, folder, blob, progress)?;
     progress.set(0.3);
     let placed = nodes::place(&document, &mut warnings);
     let accessors = Accessors::new(&document, &buffers);
+    let clips = animations::read(animations, &document, &accessors, &mut warnings);
+    progress.check()?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
@@ -53,6 +61,7 @@ pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Res
         materials: Materials::new(&document, &accessors, folder),
         builder: MeshBuilder::new(),
         primitives: Primitives::default(),
+        binder: Binder::new(clips, &document, &placed, &mut warnings),
     };
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
@@ -64,7 +73,12 @@ pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Res
     warnings.extend(scene.materials.warnings);
     warnings.extend(scene.primitives.warnings());
     progress.set(0.8);
-    let mut mesh = scene.builder.finish(name.to_owned(), progress)?;
+    let (mut mesh, bindings) = scene.builder.finish_bound(name.to_owned(), progress)?;
+    match scene.binder.map(|binder| binder.finish(&mesh, &bindings)) {
+        Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
+        Some(Err(warning)) => warnings.push(warning),
+        None => {}
+    }
     // What reaches the builder has been turned and is of unit length: only the reader knows what the file said.
     mesh.repairs.normals_rescaled += scene.primitives.rescaled;
     warnings.extend(mesh.repairs.warnings());
@@ -80,6 +94,8 @@ struct Scene<'a> {
     materials: Materials<'a>,
     builder: MeshBuilder,
     primitives: Primitives,
+    /// None if nothing moves.
+    binder: Option<Binder>,
 }
 
 impl<'a> Scene<'a> {
@@ -87,10 +103,9 @@ impl<'a> Scene<'a> {
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), Problem> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
         let Some(mesh) = node.mesh() else { return Ok(()) };
-        let joints = match node.skin() {
-            Some(skin) => skin::joint_matrices(&skin, &self.placed.global, self.accessors)?,
-            None => Vec::new(),
-        };
+        let skin = node.skin().map(|skin| skin::Joints::read(&skin, self.accessors)).transpose()?;
+        let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(&self.placed.global));
+        let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin.as_ref()));
         let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         for primitive in mesh.primitives() {
             progress.check()?;
@@ -99,13 +114,15 @@ impl<'a> Scene<'a> {
             }
             let material = self.materials.resolve(&primitive.material(), &mut self.builder);
             let pose = primitive::Pose { global, joints: &joints, weights: weights(&node) };
-            let triangles = self.primitives.read(&mesh, &primitive, &pose, material.uv_set, self.accessors)?;
-            if self.builder.len() + triangles.len() > MAX_TRIANGLES {
+            let (set, accessors) = (material.uv_set, self.accessors);
+            let triangles = self.primitives.read(&mesh, &primitive, &pose, set, accessors, binder.as_mut())?;
+            if self.builder.len() + triangles.corners.len() > MAX_TRIANGLES {
                 return Err(Problem::TooLarge { limit: MAX_TRIANGLES });
             }
-            for triangle in triangles {
+            for triangle in triangles.corners {
                 self.builder.triangle(material.index, triangle);
             }
+            self.builder.bind(material.index, triangles.bindings);
         }
         Ok(())
     }

@@ -87,6 +87,8 @@ pub struct Heights {
     pub of_material: Vec<Option<u32>>,
     /// The least and the greatest height in any map.
     pub range: [f32; 2],
+    /// The sum of the angles, in radians, that triangles have at each of the mesh's corners, before anything moves them.
+    pub angles: Vec<f32>,
     /// How far level l of any map, linearly interpolated, is from level 0 at most.
     pub detail: [f32; MAX_LEVELS],
 }
@@ -145,7 +147,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 impl Heights {
     /// One map for all of a mesh's materials.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
-        Self::new(vec![map], vec![Some(0); mesh.materials.len()])
+        Self::new(mesh, vec![map], vec![Some(0); mesh.materials.len()])
     }
 
     /// Reads a PNG or JPEG image and lays it over all materials.
@@ -187,10 +189,10 @@ impl Heights {
         if maps.len() > MAX_MAPS {
             return Err(HeightError::TooMany { name: mesh.name.clone(), count: maps.len() });
         }
-        Ok(Self::new(maps, of_material))
+        Ok(Self::new(mesh, maps, of_material))
     }
 
-    fn new(maps: Vec<HeightMap>, of_material: Vec<Option<u32>>) -> Self {
+    fn new(mesh: &Mesh, maps: Vec<HeightMap>, of_material: Vec<Option<u32>>) -> Self {
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
         let mut detail = [0.0_f32; MAX_LEVELS];
         for map in &maps {
@@ -211,7 +213,7 @@ impl Heights {
         for level in 1..MAX_LEVELS {
             detail[level] = detail[level].max(detail[level - 1]);
         }
-        Self { maps, of_material, range, detail }
+        Self { maps, of_material, range, angles: angles(mesh), detail }
     }
 
     /// How far anything is moved at most, in units of the scale.
@@ -223,6 +225,18 @@ impl Heights {
     pub fn bytes(&self) -> u64 {
         self.maps.iter().map(|map| size_of_val(&map.heights[..]) as u64).sum()
     }
+}
+
+fn angles(mesh: &Mesh) -> Vec<f32> {
+    let mut angles = vec![0.0; mesh.corners.len()];
+    for triangle in &mesh.triangles {
+        let at = triangle.map(|corner| mesh.corners[corner as usize].position.as_dvec3());
+        for k in 0..3 {
+            let [a, b] = [1, 2].map(|step| (at[(k + step) % 3] - at[k]).normalize_or_zero());
+            angles[triangle[k] as usize] += a.cross(b).length().atan2(a.dot(b)) as f32;
+        }
+    }
+    angles
 }
 
 /// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over the

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::joins::{Joins, joins};
 use super::progress::{Cancelled, Progress};
+use super::rig::{Clip, Moved, Rig};
 use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
 use super::{Mesh, NormalFaults, Repairs, Rim};
@@ -27,6 +28,7 @@ pub struct Info {
     pub corners: u32,
     pub points: u32,
     pub materials: Vec<MaterialInfo>,
+    pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
     pub joins: Vec<Joins>,
@@ -51,6 +53,17 @@ pub struct MaterialInfo {
     pub triangles: u32,
     /// Width and height in px, where there is a texture.
     pub texture: Option<[u32; 2]>,
+}
+
+/// An animation in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct AnimationInfo {
+    pub name: String,
+    /// s.
+    pub duration: f64,
+    /// What it moves.
+    #[serde(flatten)]
+    pub moved: Moved,
 }
 
 /// A T-junction with positions, in object units.
@@ -92,6 +105,7 @@ impl Info {
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(material).collect(),
+            animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: joins(mesh, progress)?,
             t_junctions: t_junctions.len() as u32,
@@ -117,6 +131,10 @@ impl fmt::Display for Info {
         for material in &self.materials {
             let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
             writeln!(f, "material      {}: {} triangles{texture}", material.name, material.triangles)?;
+        }
+        for AnimationInfo { name, duration, moved } in &self.animations {
+            // As the file has it: in f32.
+            writeln!(f, "animation     {name}: {} s, moves {moved}", *duration as f32)?;
         }
         for warning in &self.warnings {
             writeln!(f, "warning       {warning}")?;
@@ -196,6 +214,12 @@ fn material(material: &super::Material) -> MaterialInfo {
         triangles: material.triangles.len() as u32,
         texture: material.texture.as_ref().map(|texture| texture.size),
     }
+}
+
+fn animations(rig: &Rig) -> Vec<AnimationInfo> {
+    let animation =
+        |clip: &Clip| AnimationInfo { name: clip.name.clone(), duration: clip.duration, moved: rig.moved(clip) };
+    rig.clips.iter().map(animation).collect()
 }
 
 /// Points in use - edges + patches: 2 for whatever is like a sphere, 0 for a torus.

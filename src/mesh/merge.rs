@@ -28,6 +28,8 @@ impl From<Corner> for LooseCorner {
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     groups: Vec<(Material, Vec<[LooseCorner; 3]>)>,
+    /// A group's, as many as it has triangles; or none at all, which are all 0.
+    bindings: Vec<Vec<[u32; 3]>>,
 }
 
 impl MeshBuilder {
@@ -39,6 +41,7 @@ impl MeshBuilder {
     /// The mesh has its materials in the order of these calls.
     pub fn material(&mut self, material: Material) -> usize {
         self.groups.push((material, Vec::new()));
+        self.bindings.push(Vec::new());
         self.groups.len() - 1
     }
 
@@ -48,6 +51,15 @@ impl MeshBuilder {
     /// When `material` isn't an index that [`material`](Self::material) gave.
     pub fn triangle(&mut self, material: usize, corners: [LooseCorner; 3]) {
         self.groups[material].1.push(corners);
+    }
+
+    /// Tells corners of one material's next triangles apart by what they are bound to: those with different numbers aren't
+    /// merged. For all triangles or for none.
+    ///
+    /// # Panics
+    /// As [`triangle`](Self::triangle).
+    pub fn bind(&mut self, material: usize, bindings: Vec<[u32; 3]>) {
+        self.bindings[material].extend(bindings);
     }
 
     /// How many triangles there are so far.
@@ -67,22 +79,39 @@ impl MeshBuilder {
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn finish(mut self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
-        self.groups.retain(|(_, triangles)| !triangles.is_empty());
+    pub fn finish(self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
+        Ok(self.finish_bound(name, progress)?.0)
+    }
+
+    /// The same, and the number of each corner's binding (see [`bind`](Self::bind)).
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub fn finish_bound(mut self, name: String, progress: &Progress) -> Result<(Mesh, Vec<u32>), Cancelled> {
+        let bindings = std::mem::take(&mut self.bindings);
+        let mut corner_bindings = Vec::new();
         let repairs = self.repair();
         self.make_missing_normals(progress)?;
         let mut mesh = Mesh { name, repairs, warnings: repairs.warnings(), ..Mesh::default() };
         let mut ids = HashMap::new();
-        for (mut material, triangles) in self.groups {
+        for ((mut material, triangles), bindings) in self.groups.into_iter().zip(bindings) {
             progress.check()?;
+            if triangles.is_empty() {
+                continue;
+            }
             let first = mesh.triangles.len() as u32;
-            for triangle in triangles {
-                mesh.triangles.push(triangle.map(|corner| corner_id(&mut ids, &mut mesh.corners, corner)));
+            for (triangle, corners) in triangles.into_iter().enumerate() {
+                let bound = bindings.get(triangle).copied().unwrap_or_default();
+                mesh.triangles.push([0, 1, 2].map(|k| {
+                    let corner = corner_id(&mut ids, &mut mesh.corners, corners[k], bound[k]);
+                    corner_bindings.resize(mesh.corners.len(), bound[k]);
+                    corner
+                }));
             }
             material.triangles = first..mesh.triangles.len() as u32;
             mesh.materials.push(material);
         }
-        Ok(mesh)
+        Ok((mesh, corner_bindings))
     }
 
     /// Makes positions and normals fit for use. Normals without a direction are none afterwards.
@@ -119,12 +148,12 @@ impl MeshBuilder {
     }
 }
 
-fn corner_id(ids: &mut HashMap<[u32; 8], u32>, corners: &mut Vec<Corner>, loose: LooseCorner) -> u32 {
+fn corner_id(ids: &mut HashMap<[u32; 9], u32>, corners: &mut Vec<Corner>, loose: LooseCorner, binding: u32) -> u32 {
     let position = plus_zero3(loose.position);
     let normal = plus_zero3(loose.normal.unwrap_or(Vec3::Z));
     let uv = plus_zero2(loose.uv);
-    let values = [position.x, position.y, position.z, normal.x, normal.y, normal.z, uv.x, uv.y];
-    *ids.entry(values.map(f32::to_bits)).or_insert_with(|| {
+    let [[x, y, z], [a, b, c]] = [position, normal].map(|v| v.to_array().map(f32::to_bits));
+    *ids.entry([x, y, z, a, b, c, uv.x.to_bits(), uv.y.to_bits(), binding]).or_insert_with(|| {
         corners.push(Corner { position, normal, uv });
         corners.len() as u32 - 1
     })

@@ -16,6 +16,7 @@ pub mod normals;
 mod parts;
 pub mod progress;
 pub mod repairs;
+pub mod rig;
 pub mod rim;
 pub mod shapes;
 pub mod source;
@@ -40,6 +41,7 @@ pub use load::{LoadError, load};
 pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress};
 pub use repairs::Repairs;
+pub use rig::{Moment, Pose, Rig};
 pub use rim::{Rim, with_rim};
 pub use shapes::{Shape, UnknownShape};
 pub use source::Source;
@@ -60,7 +62,7 @@ pub struct Corner {
 pub struct Mesh {
     /// The file's or shape's name, for people.
     pub name: String,
-    /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0).
+    /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0), unless they move differently.
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -72,6 +74,8 @@ pub struct Mesh {
     pub repairs: Repairs,
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,
+    /// How it moves, if it does.
+    pub rig: Option<std::sync::Arc<rig::Rig>>,
 }
 
 /// What a patch looks like.

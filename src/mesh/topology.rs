@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::parts::Parts;
 use super::progress::{Cancelled, Progress};
-use super::weld::weld_within;
+use super::weld::weld_alike;
 use super::{Corner, Mesh};
 
 /// A mesh's patches and the edges between them.
@@ -16,7 +16,7 @@ use super::{Corner, Mesh};
 /// edge's sides by patch. So the same mesh always gives the same topology.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// Welded positions (see [`weld_within`]), in object units.
+    /// Welded positions (see [`weld_alike`]), in object units.
     pub points: Vec<Vec3>,
     /// The point of each of the mesh's corners.
     pub corner_points: Vec<u32>,
@@ -117,15 +117,19 @@ impl Topology {
         Self::build_within(mesh, 0.0, progress)
     }
 
-    /// Welds the corners within a tolerance (see [`weld_within`]) and finds the edges. The tolerance is relative to the
+    /// Welds the corners within a tolerance (see [`super::weld::weld_within`]) and finds the edges. The tolerance is relative to the
     /// mesh's bounding diagonal; 0 joins only exactly equal positions. Triangles whose corners it brings together are
-    /// degenerate. Linear in triangles, whatever the number of patches around a point.
+    /// degenerate. Corners that a clip moves apart stay apart. Linear in triangles, whatever the number of patches around a
+    /// point.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
         let distance = mesh.bounds().part(tolerance.into());
-        let (points, corner_points) = weld_within(mesh.corners.iter().map(|corner| corner.position), distance);
+        let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
+        let numbers = alike.iter().copied().chain(std::iter::repeat(0));
+        let positions = mesh.corners.iter().map(|corner| corner.position).zip(numbers);
+        let (points, corner_points) = weld_alike(positions, distance);
         progress.check()?;
         let patches = patches(mesh, &corner_points);
         progress.check()?;

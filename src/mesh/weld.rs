@@ -11,14 +11,20 @@ use super::grid::Grid;
 ///
 /// Returns the points, and for each position the index of its point. Linear in expectation.
 pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) {
-    let mut ids: HashMap<[u32; 3], u32> = HashMap::new();
+    let (points, point_of) = weld_exactly(positions.into_iter().map(|position| (position, 0)));
+    (points.into_iter().map(|(point, _)| point).collect(), point_of)
+}
+
+/// As [`weld`], of positions with a number each, which must be equal too.
+fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
+    let mut ids: HashMap<[u32; 4], u32> = HashMap::new();
     let mut points = Vec::new();
     let point_of = positions
-        .into_iter()
-        .map(|position| {
+        .map(|(position, number)| {
             let point = plus_zero3(position);
-            *ids.entry(point.to_array().map(f32::to_bits)).or_insert_with(|| {
-                points.push(point);
+            let [x, y, z] = point.to_array().map(f32::to_bits);
+            *ids.entry([x, y, z, number]).or_insert_with(|| {
+                points.push((point, number));
                 points.len() as u32 - 1
             })
         })
@@ -34,17 +40,23 @@ pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) 
 /// A tolerance that isn't above 0 gives exactly [`weld`]. Returns the points, and for each position the index of its
 /// point. Linear in expectation: only so many points that far apart fit into one cell of the grid.
 pub fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+    weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
+}
+
+/// As [`weld_within`], of positions with a number each: those with different numbers stay apart, wherever they are.
+pub fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     // Equal positions first: they must stay together though a nearer point may turn up between them.
-    let (distinct, mut point_of) = weld(positions);
+    let (distinct, mut point_of) = weld_exactly(positions);
     if tolerance.is_nan() || tolerance <= 0.0 {
-        return (distinct, point_of);
+        return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
     }
-    let mut grid: Grid<(DVec3, u32)> = Grid::new(tolerance);
+    let mut grids: HashMap<u32, Grid<(DVec3, u32)>> = HashMap::new();
     let mut points = Vec::new();
     let mut merged = Vec::with_capacity(distinct.len());
-    for position in distinct {
+    for (position, number) in distinct {
+        let grid = grids.entry(number).or_insert_with(|| Grid::new(tolerance));
         let place = position.as_dvec3();
-        let point = nearest(&grid, place, tolerance).unwrap_or_else(|| {
+        let point = nearest(grid, place, tolerance).unwrap_or_else(|| {
             let point = points.len() as u32;
             points.push(position);
             grid.at(place).push((place, point));
@@ -147,6 +159,14 @@ mod tests {
         let spot = (0..300_000).map(|i| Vec3::new(1.0 + 1e-7 * (i % 1000) as f32, 1.0 + 1e-7 * (i / 1000) as f32, 1.0));
         let (points, _) = weld_within(spot, 1e-3);
         assert_eq!(points.len(), 1);
+    }
+
+    #[test]
+    fn what_moves_differently_stays_apart() {
+        let positions = [(0.0, 7), (0.0, 9), (0.1, 9), (0.1, 7), (0.0, 7)].map(|(x, number)| (Vec3::X * x, number));
+        assert_eq!(weld_alike(positions.into_iter(), 0.0).1, [0, 1, 2, 3, 0]);
+        let (points, of) = weld_alike(positions.into_iter(), 0.5);
+        assert_eq!((points, of), (vec![Vec3::ZERO; 2], vec![0, 1, 1, 0, 0]));
     }
 
     proptest! {

@@ -10,12 +10,14 @@ use wgpu::util::DeviceExt;
 use super::Renderer;
 use super::layout::{Material, linear};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
-use crate::measure::ulp;
-use crate::mesh::{Bounds, Mesh, Texture, Topology};
+use crate::measure::{ulp, ulp_at};
+use crate::mesh::{Bounds, Mesh, Moment, Texture, Topology};
+use crate::tessellate::bounds_through;
 
 /// One mesh on the device, its materials, and the lines drawn over it.
 pub struct Scene {
     pub tessellator: Tessellator,
+    /// At rest, and all through the clip that is framed: see [`Self::frame_clip`].
     pub bounds: Bounds,
     /// See [`ulp`].
     pub(super) ulp: f32,
@@ -74,6 +76,23 @@ impl Scene {
         let materials = materials.collect();
         let ulp = ulp(tessellator.topology()) as f32;
         Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None })
+    }
+
+    /// Takes the bounds all through a clip, so that nothing that depends on them changes while it plays; those at rest
+    /// without one.
+    pub fn frame_clip(&mut self, clip: Option<usize>) {
+        self.bounds = bounds_through(self.tessellator.mesh(), clip);
+        let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
+        self.ulp = if clip.is_some() { ulp_at(largest) } else { ulp(self.tessellator.topology()) } as f32;
+    }
+
+    /// Shows the mesh at a moment of one of its clips; at rest without one. Takes effect with the next tessellation.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub fn set_moment(&mut self, moment: Option<Moment>) -> Result<(), GpuError> {
+        let rig = self.tessellator.mesh().rig.clone();
+        self.tessellator.set_pose(moment.zip(rig).map(|(moment, rig)| Arc::new(rig.pose(moment))))
     }
 
     /// Replaces the lines drawn over the mesh.

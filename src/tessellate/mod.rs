@@ -5,6 +5,7 @@ mod budget;
 mod control_points;
 mod convention;
 mod cull;
+mod deform;
 mod displace;
 pub mod domain;
 mod error;
@@ -13,6 +14,7 @@ mod hull;
 mod lod;
 mod mesh;
 mod normal;
+mod posed;
 mod relief;
 mod solid;
 mod subtriangulation;
@@ -50,6 +52,7 @@ pub use normal::{
     Normals, edge_normal, linear_normal, middle_normal, pack_normal, quadratic_edge_normal, quadratic_normal,
     surface_normal, unpack_normal,
 };
+pub use posed::{Deformed, Posed, bounds_through, deform};
 pub use relief::{detail, displacing, reach, texel_lengths};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents};

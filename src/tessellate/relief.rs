@@ -84,7 +84,7 @@ impl<'a> Relief<'a> {
     pub(super) fn new(nets: &Nets<'a>, inputs: &Inputs) -> Option<Self> {
         let (mesh, topology) = (nets.mesh, nets.topology);
         let heights = displacing(mesh, inputs)?;
-        let dominance = Dominance::new(topology, &nets.curves);
+        let dominance = Dominance::new(topology, &nets.curves, &heights.angles);
         Some(Self {
             mesh,
             topology,

@@ -1,11 +1,14 @@
 //! The commands as a person or a pipeline meets them: the program itself, its output, its pictures, its exit codes.
 
 mod adjacency;
+mod animation;
 mod domain;
 mod factors;
 mod gallery;
 mod info;
 mod lod;
+#[path = "../documents/moving.rs"]
+mod moving;
 mod render;
 mod stability;
 mod tessellate;

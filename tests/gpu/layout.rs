@@ -4,8 +4,8 @@
 use std::mem::{offset_of, size_of};
 
 use pnaen::gpu::layout::{
-    Chunk, Corner, Curve, CurveNet, DrawArgs, EmitArgs, HeightMap, LodView, Params, Patch, PatchFactors, Share, Slab,
-    Vertex,
+    Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView, Params, Patch,
+    PatchFactors, Share, Slab, Vertex,
 };
 use pnaen::gpu::{DomainParams, SHADERS, shader_source};
 use pnaen::render::layout::{Frame, Material, Pick};
@@ -54,6 +54,9 @@ macro_rules! same {
 
 #[test]
 fn shared_structs_have_one_layout() {
+    same!(Binding { position, first_delta, normal, delta_count, joints, weights });
+    same!(Delta { position, weight, normal });
+    same!(JointMatrix { x, y, z });
     same!(LodView { clip_from_object, half_viewport, reach, eye, radius });
     same!(Params {
         view,

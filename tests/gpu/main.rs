@@ -4,10 +4,13 @@
 
 mod conventions;
 mod culling;
+mod deforming;
 mod displacement;
 mod domain;
 mod error;
 mod layout;
+#[path = "../documents/moving.rs"]
+mod moving;
 mod passes;
 mod picking;
 mod pictures;

@@ -392,7 +392,8 @@ fn the_passes_are_timed_one_by_one() {
     let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let times = engine.time(&mut scene, &target, &camera, &Settings::default()).expect("a draw");
-    assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), pnaen::gpu::PASSES);
+    // Nothing is deformed here: see `deforming`.
+    assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), pnaen::gpu::PASSES[1..]);
     assert!(times.iter().all(|time| time.ms >= 0.0 && time.ms.is_finite()));
 }
 

@@ -11,6 +11,8 @@ use super::Problem;
 pub struct Parsed {
     pub document: Document,
     pub blob: Option<Vec<u8>>,
+    /// As the document has them, not checked: see [`super::animations`].
+    pub animations: Vec<Value>,
     pub warnings: Vec<String>,
 }
 
@@ -33,8 +35,8 @@ const EXTENSIONS: [&str; 14] = [
     "KHR_materials_volume",
 ];
 
-/// What is read of a document. The rest (animations, cameras, extras, ...) is dropped before it is parsed further, so
-/// that nothing in it can be the reason why a model doesn't load.
+/// What the crate reads of a document. The rest (cameras, extras, ...) is dropped before it is parsed further, so that
+/// nothing in it can be the reason why a model doesn't load; animations are set aside for the same reason.
 const KEPT: [&str; 12] = [
     "accessors",
     "asset",
@@ -64,10 +66,14 @@ pub fn parse(bytes: &[u8]) -> Result<Parsed, Problem> {
     let mut value: Value = serde_json::from_slice(json).map_err(not_gltf)?;
     check_version(&value)?;
     check_extensions(&value)?;
+    let animations = match value.get_mut("animations").map(Value::take) {
+        Some(Value::Array(animations)) => animations,
+        _ => Vec::new(),
+    };
     let warnings = simplify(&mut value)?;
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(not_gltf)?;
-    Ok(Parsed { document, blob, warnings })
+    Ok(Parsed { document, blob, animations, warnings })
 }
 
 fn not_gltf(reason: impl ToString) -> Problem {

@@ -1,7 +1,10 @@
 //! Where nodes stand: the scene's nodes and everybody's global transform.
 
+use ::gltf::scene::Transform;
 use ::gltf::{Document, Node};
 use glam::{DMat4, Mat4};
+
+use crate::mesh::rig::Placement;
 
 /// The nodes of a document in place.
 pub struct Placed {
@@ -9,6 +12,10 @@ pub struct Placed {
     pub global: Vec<DMat4>,
     /// The nodes that the scene shows: parents before children, siblings in order, each once.
     pub shown: Vec<usize>,
+    /// Each node's own; none for those that are their own ancestors.
+    pub parents: Vec<Option<usize>>,
+    /// All nodes but those that are their own ancestors, parents before children.
+    pub order: Vec<usize>,
 }
 
 /// Places all nodes and lists those of the default scene: the one that the document names, else its first, else all
@@ -18,13 +25,14 @@ pub fn place(document: &Document, warnings: &mut Vec<String>) -> Placed {
     let parents = parents(&nodes, warnings);
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
     let mut global = vec![DMat4::IDENTITY; nodes.len()];
-    for node in walk(&nodes, &roots) {
+    let order = walk(&nodes, &roots);
+    for &node in &order {
         let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
         global[node] = above * local(&nodes[node]);
     }
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let roots = scene.map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
-    Placed { global, shown: walk(&nodes, &roots) }
+    Placed { global, shown: walk(&nodes, &roots), parents, order }
 }
 
 /// The parent of each node; of several, the first.
@@ -59,16 +67,23 @@ fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
     order
 }
 
-fn local(node: &Node) -> DMat4 {
-    use ::gltf::scene::Transform;
+/// A node's own transform.
+pub fn local(node: &Node) -> DMat4 {
     match node.transform() {
         Transform::Matrix { matrix } => Mat4::from_cols_array_2d(&matrix).as_dmat4(),
-        Transform::Decomposed { translation, rotation, scale } => {
-            // Normalised, because f32 quaternions are of unit length only roughly; a zero one turns nothing.
-            let rotation = glam::Quat::from_array(rotation).as_dquat();
-            let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { glam::DQuat::IDENTITY };
-            let [translation, scale] = [translation, scale].map(|v| glam::Vec3::from(v).as_dvec3());
-            DMat4::from_scale_rotation_translation(scale, rotation, translation)
-        }
+        Transform::Decomposed { .. } => placement(node).unwrap_or_default().matrix(),
     }
+}
+
+/// The same in parts; none if the file has it as a matrix.
+pub fn placement(node: &Node) -> Option<Placement> {
+    let Transform::Decomposed { translation, rotation, scale } = node.transform() else { return None };
+    let [translation, scale] = [translation, scale].map(|v| glam::Vec3::from(v).as_dvec3());
+    Some(Placement { translation, rotation: glam::Quat::from_array(rotation).as_dquat(), scale })
+}
+
+/// How many morph targets a node's mesh has: those of the primitive with most.
+pub fn target_count(node: &Node) -> usize {
+    let primitives = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
+    primitives.map(|primitive| primitive.morph_targets().count()).max().unwrap_or(0)
 }

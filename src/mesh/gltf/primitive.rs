@@ -3,6 +3,7 @@
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive};
 
+use super::binder::NodeBinder;
 pub use super::vertices::Pose;
 use super::{Accessors, Problem, vertices};
 use crate::mesh::merge::LooseCorner;
@@ -21,6 +22,13 @@ pub struct Primitives {
     left_over: usize,
     /// Corners of triangles whose normal wasn't of unit length in the file.
     pub rescaled: u32,
+}
+
+/// A primitive's triangles.
+pub struct Triangles {
+    pub corners: Vec<[LooseCorner; 3]>,
+    /// Numbers of the corners' bindings; none at all if nothing moves.
+    pub bindings: Vec<[u32; 3]>,
 }
 
 impl Primitives {
@@ -46,9 +54,10 @@ impl Primitives {
         pose: &Pose,
         uv_set: u32,
         accessors: &Accessors,
-    ) -> Result<Vec<[LooseCorner; 3]>, Problem> {
+        binder: Option<&mut NodeBinder>,
+    ) -> Result<Triangles, Problem> {
         let name = name(mesh, primitive);
-        let vertices = vertices::read(primitive, &name, pose, uv_set, accessors)?;
+        let vertices = vertices::read(primitive, &name, pose, uv_set, accessors, binder)?;
         let indices = match primitive.indices() {
             Some(accessor) => accessors.indices(&accessor, &format!("indices of {name}"))?,
             None => (0..vertices.corners.len() as u32).collect(),
@@ -59,14 +68,14 @@ impl Primitives {
             let reason = format!("uses vertex {index} of {count}, at index {i}");
             return Err(Problem::Primitive { primitive: name, reason });
         }
-        let corners = |[a, b, c]: [u32; 3]| {
-            let ordered = if vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
-            ordered.map(|vertex| vertices.corners[vertex as usize])
-        };
-        let triangles = triangles(primitive.mode(), &indices);
+        let outward = |[a, b, c]: [u32; 3]| if vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
+        let triangles: Vec<_> = triangles(primitive.mode(), &indices).into_iter().map(outward).collect();
         let vertex_rescaled = |vertex: &&u32| vertices.rescaled[**vertex as usize];
         self.rescaled += triangles.as_flattened().iter().filter(vertex_rescaled).count() as u32;
-        Ok(triangles.into_iter().map(corners).collect())
+        let bound = !vertices.bindings.is_empty();
+        let bindings = triangles.iter().filter(|_| bound).map(|t| t.map(|vertex| vertices.bindings[vertex as usize]));
+        let corners = triangles.iter().map(|t| t.map(|vertex| vertices.corners[vertex as usize]));
+        Ok(Triangles { corners: corners.collect(), bindings: bindings.collect() })
     }
 
     fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {

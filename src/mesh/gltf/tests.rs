@@ -1,4 +1,5 @@
 mod files;
+mod moving;
 mod refused;
 
 use glam::{Vec2, Vec3};

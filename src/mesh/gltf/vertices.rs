@@ -4,9 +4,11 @@ use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
+use super::binder::{MAX_BOUND, NodeBinder, Undeformed};
 use super::{Accessors, Problem};
 use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
+use crate::mesh::rig::{Delta, LARGEST_COORDINATE};
 
 /// How the primitive's node stands.
 pub struct Pose<'a> {
@@ -25,6 +27,8 @@ pub struct Vertices {
     pub mirrored: Vec<bool>,
     /// The vertex's normal has a direction, but wasn't of unit length in the file.
     pub rescaled: Vec<bool>,
+    /// Numbers of the vertices' bindings; none at all if nothing moves.
+    pub bindings: Vec<u32>,
     pub repairs: Repairs,
 }
 
@@ -40,13 +44,32 @@ pub struct Repairs {
 }
 
 /// The attributes as the file has them.
+#[derive(Clone)]
 struct Attributes {
     positions: Vec<Vec3>,
     normals: Option<Vec<Vec3>>,
     uvs: Option<Vec<[f32; 2]>>,
 }
 
-/// Reads and poses a primitive's vertices. `name` is the primitive's, for messages; `uv_set` the n of TEXCOORD_n.
+/// The joints of a skin that move each vertex, and by how much.
+pub struct Influences {
+    joints: Vec<[f32; 4]>,
+    weights: Vec<[f32; 4]>,
+}
+
+impl Influences {
+    /// A vertex's joints with weights that sum to 1, which quantised ones miss; none if they are unusable, of a skin with so
+    /// many joints.
+    pub fn of(&self, vertex: usize, joint_count: usize) -> Option<impl Iterator<Item = (usize, f64)>> {
+        let slots = || self.joints[vertex].into_iter().zip(self.weights[vertex]).filter(|(_, weight)| *weight != 0.0);
+        let total: f64 = slots().map(|(_, weight)| f64::from(weight)).sum();
+        let is_usable = total.is_finite() && total > 0.0 && slots().all(|(joint, _)| (joint as usize) < joint_count);
+        is_usable.then(|| slots().map(move |(joint, weight)| (joint as usize, f64::from(weight) / total)))
+    }
+}
+
+/// Reads and poses a primitive's vertices. `name` is the primitive's, for messages; `uv_set` the n of TEXCOORD_n. They are
+/// bound to what moves them where there is a `binder`.
 ///
 /// # Errors
 /// [`Problem::Accessor`] and [`Problem::Primitive`].
@@ -56,24 +79,35 @@ pub fn read(
     pose: &Pose,
     uv_set: u32,
     accessors: &Accessors,
+    binder: Option<&mut NodeBinder>,
 ) -> Result<Vertices, Problem> {
     let attributes = Source { primitive, name, accessors };
     let mut values = attributes.read(uv_set)?;
     // Before morphing, which leaves no normal at unit length and is no fault.
     let rescaled = rescaled(values.normals.as_deref(), values.positions.len());
+    let first_weight = binder.as_ref().and_then(|binder| binder.first_weight());
+    let unmorphed = first_weight.map(|_| values.clone());
     attributes.morph(&mut values, pose.weights)?;
     let mut repairs = Repairs::default();
-    let matrices = attributes.matrices(pose, values.positions.len(), &mut repairs)?;
-    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), rescaled, repairs };
+    let influences = attributes.influences(pose, values.positions.len())?;
+    let matrices = influences.as_ref().map_or_else(Vec::new, |influences| matrices(pose, influences, &mut repairs));
+    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), rescaled, bindings: Vec::new(), repairs };
     for i in 0..values.positions.len() {
         let matrix = matrices.get(i).unwrap_or(&pose.global);
         vertices.push(&values, i, matrix, name)?;
     }
+    if let Some(binder) = binder {
+        let Attributes { positions, normals, .. } = unmorphed.as_ref().unwrap_or(&values);
+        let (normals, influences) = (normals.as_deref(), influences.as_ref());
+        let deltas = first_weight.map_or(Ok(Vec::new()), |first| attributes.deltas(first, positions.len(), binder));
+        let deltas = deltas.unwrap_or_else(|problem| {
+            binder.give_up(problem);
+            Vec::new()
+        });
+        vertices.bindings = binder.bind(Undeformed { positions, normals, influences, deltas }, &vertices.corners);
+    }
     Ok(vertices)
 }
-
-/// In object units. Control points, which are sums of several positions, stay within f32.
-const LARGEST_COORDINATE: f32 = 1e37;
 
 impl Vertices {
     fn push(&mut self, values: &Attributes, i: usize, matrix: &DMat4, name: &str) -> Result<(), Problem> {
@@ -160,21 +194,55 @@ impl Source<'_> {
         Ok(())
     }
 
-    /// A skinned vertex's own matrix; none at all without a skin.
-    fn matrices(&self, pose: &Pose, count: usize, repairs: &mut Repairs) -> Result<Vec<DMat4>, Problem> {
+    /// What each target of weight 1 adds to each vertex, of those that it moves or turns; target 0 has weight
+    /// `first_weight`.
+    ///
+    /// # Errors
+    /// In words: it can't be read, or is too much.
+    fn deltas(&self, first_weight: u32, count: usize, binder: &mut NodeBinder) -> Result<Vec<Vec<Delta>>, String> {
+        let targets = self.primitive.morph_targets();
+        binder.look_at(targets.clone().count().saturating_mul(count))?;
+        let mut deltas = vec![Vec::new(); count];
+        let mut found = 0;
+        for (target, weight) in targets.zip(first_weight..) {
+            let positions = self.displacements(target.positions(), "POSITION of a morph target", count)?;
+            let normals = self.displacements(target.normals(), "NORMAL of a morph target", count)?;
+            let at = |vectors: &[[f32; 3]], i: usize| vectors.get(i).copied().unwrap_or_default();
+            for (i, deltas) in deltas.iter_mut().enumerate() {
+                let delta = Delta { position: at(&positions, i), weight, normal: at(&normals, i), _pad: 0.0 };
+                if delta.position != [0.0; 3] || delta.normal != [0.0; 3] {
+                    deltas.push(delta);
+                    found += 1;
+                }
+            }
+            if found > MAX_BOUND {
+                return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
+            }
+        }
+        Ok(deltas)
+    }
+
+    /// A morph target's attribute, with 0 for what isn't finite; empty without one.
+    fn displacements(
+        &self,
+        accessor: Option<Accessor>,
+        attribute: &str,
+        count: usize,
+    ) -> Result<Vec<[f32; 3]>, String> {
+        let Some(accessor) = accessor else { return Ok(Vec::new()) };
+        let mut vectors = self.numbers::<3>(&accessor, attribute, count).map_err(|problem| problem.to_string())?;
+        vectors.as_flattened_mut().iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
+        Ok(vectors)
+    }
+
+    /// None without a skin.
+    fn influences(&self, pose: &Pose, count: usize) -> Result<Option<Influences>, Problem> {
         if pose.joints.is_empty() {
-            return Ok(Vec::new());
+            return Ok(None);
         }
         let joints = self.attribute::<4>(Semantic::Joints(0), count)?;
         let weights = self.attribute::<4>(Semantic::Weights(0), count)?;
-        let (Some(joints), Some(weights)) = (joints, weights) else { return Ok(Vec::new()) };
-        let blends = joints.iter().zip(&weights).map(|(joints, weights)| {
-            blend(pose.joints, joints, weights).unwrap_or_else(|| {
-                repairs.bad_weights += 1;
-                DMat4::IDENTITY
-            })
-        });
-        Ok(blends.collect())
+        Ok(joints.zip(weights).map(|(joints, weights)| Influences { joints, weights }))
     }
 
     fn attribute<const N: usize>(&self, semantic: Semantic, count: usize) -> Result<Option<Vec<[f32; N]>>, Problem> {
@@ -210,12 +278,14 @@ fn add(values: &mut [Vec3], changes: &[Vec3], weight: f32) {
     }
 }
 
-/// The mean of the joints' matrices by weight. Weights are brought to a sum of 1, which quantised ones miss.
-fn blend(matrices: &[DMat4], joints: &[f32; 4], weights: &[f32; 4]) -> Option<DMat4> {
-    let (mut sum, mut total) = (DMat4::ZERO, 0.0);
-    for (&joint, &weight) in joints.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-        sum += *matrices.get(joint as usize)? * f64::from(weight);
-        total += f64::from(weight);
-    }
-    (total.is_finite() && total > 0.0).then(|| sum * (1.0 / total))
+/// Each skinned vertex's own matrix: the mean of its joints' by weight.
+fn matrices(pose: &Pose, influences: &Influences, repairs: &mut Repairs) -> Vec<DMat4> {
+    let blend = |vertex| {
+        let Some(joints) = influences.of(vertex, pose.joints.len()) else {
+            repairs.bad_weights += 1;
+            return DMat4::IDENTITY;
+        };
+        joints.fold(DMat4::ZERO, |sum, (joint, weight)| sum + pose.joints[joint] * weight)
+    };
+    (0..influences.joints.len()).map(blend).collect()
 }

@@ -1,0 +1,61 @@
+// Once a pose, before the nets: every corner's normal, then every point's position, from what they are before they are
+// deformed. A point is computed once, from its lowest corner: whatever moves, it stays one point.
+
+@group(0) @binding(0) var<storage, read> bindings: array<Binding>;
+@group(0) @binding(1) var<storage, read> deltas: array<Delta>;
+@group(0) @binding(2) var<storage, read> palette: array<JointMatrix>;
+@group(0) @binding(3) var<storage, read> morph_weights: array<f32>;
+@group(0) @binding(4) var<storage, read> point_corners: array<u32>;
+@group(0) @binding(5) var<storage, read_write> corners: array<Corner>;
+// Points, then every patch's centre.
+@group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
+
+// Morph targets come first, then joints (glTF 2.0, section 3.7.2.2).
+fn posed_position(corner: u32) -> vec3<f32> {
+    let bound = bindings[corner];
+    var position = bound.position;
+    for (var i = 0u; i < bound.delta_count; i++) {
+        let delta = deltas[bound.first_delta + i];
+        position += delta.position * morph_weights[delta.weight];
+    }
+    return deform_position(posed_matrix(bound), position);
+}
+
+fn posed_normal(corner: u32) -> vec3<f32> {
+    let bound = bindings[corner];
+    var normal = bound.normal;
+    for (var i = 0u; i < bound.delta_count; i++) {
+        let delta = deltas[bound.first_delta + i];
+        normal += delta.normal * morph_weights[delta.weight];
+    }
+    return deform_normal(posed_matrix(bound), unit_or(normal, bound.normal));
+}
+
+fn posed_matrix(bound: Binding) -> JointMatrix {
+    let j = bound.joints;
+    return blend(palette[j.x], palette[j.y], palette[j.z], palette[j.w], bound.weights);
+}
+
+@compute @workgroup_size(256)
+fn deform_corners_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index < arrayLength(&bindings) {
+        corners[index].normal = posed_normal(index);
+    }
+}
+
+@compute @workgroup_size(256)
+fn deform_points_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index < arrayLength(&point_corners) {
+        points[index] = vec4<f32>(posed_position(point_corners[index]), 0.0);
+    }
+}

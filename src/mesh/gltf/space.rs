@@ -1,0 +1,60 @@
+//! Vertices before they are deformed, in the space of what moves them.
+
+use glam::{DMat3, DMat4, DVec3, Vec3};
+
+use crate::mesh::rig::{Binding, Delta, Pose};
+
+/// From a mesh's own space to that of what moves it.
+pub struct Space {
+    matrix: DMat4,
+    linear: DMat3,
+    /// For normals; no entry is larger than 1.
+    cofactors: DMat3,
+}
+
+impl Space {
+    pub fn new(matrix: DMat4) -> Self {
+        let linear = DMat3::from_mat4(matrix);
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        let largest = cofactors.to_cols_array().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+        let scale = if largest > 0.0 && largest.is_finite() { sign / largest } else { sign };
+        Self { matrix, linear, cofactors: cofactors * scale }
+    }
+
+    /// A vertex, and what morph targets add to it. The normal comes out at unit length, if it has a direction, and what is
+    /// added to it in the same proportion.
+    pub fn take(&self, position: Vec3, normal: Vec3, deltas: &mut [Delta]) -> ([f32; 3], [f32; 3]) {
+        let is_there = self.matrix == DMat4::IDENTITY;
+        let turned = if is_there { normal.as_dvec3() } else { self.cofactors * normal.as_dvec3() };
+        let length = turned.length();
+        let has_direction = length > 0.0 && length.is_finite();
+        let is_unit = is_there && (length - 1.0).abs() < 1e-6;
+        let scale = if has_direction && !is_unit { 1.0 / length } else { 1.0 };
+        for delta in deltas {
+            let [position, normal] = [delta.position, delta.normal].map(|v| Vec3::from(v).as_dvec3());
+            delta.position = finite(self.linear * position);
+            delta.normal = finite(if is_there { normal } else { self.cofactors * normal } * scale);
+        }
+        let position = if is_there { position } else { self.matrix.transform_point3(position.as_dvec3()).as_vec3() };
+        (position.to_array(), finite(turned * scale))
+    }
+}
+
+/// Zero for what no f32 holds.
+fn finite(vector: DVec3) -> [f32; 3] {
+    let vector = vector.as_vec3();
+    if vector.is_finite() { vector.to_array() } else { [0.0; 3] }
+}
+
+/// What a binding's normal must be for it to be `normal` in a pose: through the transpose of its matrix.
+pub fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
+    let mut sum = DVec3::ZERO;
+    for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
+        for (row, x) in pose.palette[joint as usize].rows().iter().zip(normal.as_dvec3().to_array()) {
+            sum += Vec3::from_slice(row).as_dvec3() * (x * f64::from(weight));
+        }
+    }
+    sum.try_normalize().map_or(normal, DVec3::as_vec3)
+}

@@ -1,0 +1,338 @@
+//! Documents that move, and animations that are left out.
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::mesh::rig::Moved;
+use crate::mesh::{Moment, Rig};
+use crate::tessellate::deform;
+
+impl Draft {
+    /// An animation of one channel, linear between keys.
+    fn animate(&mut self, node: usize, path: &str, kind: &str, times: &[f32], values: &[f32]) {
+        let (input, output) = (self.floats("SCALAR", times), self.floats(kind, values));
+        let animation = json!({
+            "samplers": [{ "input": input, "output": output }],
+            "channels": [{ "sampler": 0, "target": { "node": node, "path": path } }],
+        });
+        if self.root.get("animations").is_none() {
+            self.root["animations"] = json!([]);
+        }
+        self.push("animations", animation);
+    }
+
+    /// Moves a node to (0, 0, 8) in two seconds.
+    fn move_node(&mut self, node: usize) {
+        self.animate(node, "translation", "VEC3", &[0.0, 2.0], &[0.0, 0.0, 0.0, 0.0, 0.0, 8.0]);
+    }
+}
+
+fn rig(mesh: &Mesh) -> &Rig {
+    mesh.rig.as_deref().unwrap()
+}
+
+fn topology(mesh: &Mesh) -> Topology {
+    Topology::build(mesh, &Progress::new()).unwrap()
+}
+
+fn posed(mesh: &Mesh, time: f64) -> Mesh {
+    deform(mesh, &topology(mesh), &rig(mesh).pose(Moment { clip: 0, time })).0
+}
+
+/// The pose at rest must be what was read at rest.
+fn assert_rests(mesh: &Mesh) {
+    let deformed = deform(mesh, &topology(mesh), &rig(mesh).rest()).0;
+    for (own, read) in deformed.corners.iter().zip(&mesh.corners) {
+        let slack = 1e-6 * (1.0 + read.position.length());
+        assert!(own.position.distance(read.position) < slack, "{} {}", own.position, read.position);
+        assert!(own.normal.distance(read.normal) < 1e-6, "{} {}", own.normal, read.normal);
+    }
+}
+
+fn skinned() -> Draft {
+    let mut draft = triangle();
+    let joints = draft.accessor(&[0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0], 5121, "VEC4", 3);
+    let weights = draft.floats("VEC4", &[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]);
+    let bind = |x| glam::Mat4::from_translation(Vec3::X * x).to_cols_array();
+    let binds = draft.floats("MAT4", &[bind(0.0), bind(-1.0)].concat());
+    let attributes = &mut draft.root["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = json!(joints);
+    attributes["WEIGHTS_0"] = json!(weights);
+    draft.root["skins"] = json!([{ "joints": [1, 2], "inverseBindMatrices": binds }]);
+    draft.root["nodes"] =
+        json!([{ "mesh": 0, "skin": 0, "translation": [9, 9, 9] }, { "children": [2] }, { "translation": [1, 0, 0] }]);
+    // A quarter turn about Y, of the joint in vertex 1.
+    let half = 0.5_f32.sqrt();
+    draft.animate(2, "rotation", "VEC4", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half]);
+    draft
+}
+
+#[test]
+fn skins_follow_their_joints() {
+    let mesh = skinned().read().unwrap();
+    assert_rests(&mesh);
+    assert_eq!(positions(&mesh), TRIANGLE);
+    let bent = posed(&mesh, 1.0);
+    // Vertex 2 is half of itself, and half of itself turned about (1, 0, 0): (1, 1, 1).
+    let expected = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.5]];
+    for (own, expected) in positions(&bent).into_iter().zip(expected) {
+        assert!(Vec3::from(own).distance(expected.into()) < 1e-6, "{own:?} {expected:?}");
+    }
+    let normals: Vec<Vec3> = bent.corners.iter().map(|corner| corner.normal).collect();
+    assert!(normals[0].distance(Vec3::Z) < 1e-6 && normals[1].distance(Vec3::X) < 1e-6, "{normals:?}");
+    assert!(normals[2].distance(Vec3::new(1.0, 0.0, 1.0).normalize()) < 1e-6, "{normals:?}");
+    let clip = &rig(&mesh).clips[0];
+    assert_eq!((clip.name.as_str(), clip.duration), ("animation 0", 1.0));
+    assert_eq!(rig(&mesh).moved(clip), Moved { joints: 1, nodes: 0, targets: 0 });
+}
+
+#[test]
+fn morph_targets_follow_their_weights() {
+    let mut draft = triangle();
+    let (move_up, turn) = (draft.vectors(&[[0.0, 0.0, 2.0]; 3]), draft.vectors(&[[3.0, 0.0, 0.0]; 3]));
+    draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": move_up }, { "NORMAL": turn }]);
+    draft.root["meshes"][0]["weights"] = json!([0.5, 0.0]);
+    draft.root["nodes"][0]["scale"] = json!([1.0, 1.0, 2.0]);
+    draft.animate(0, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 0.0, 1.0, 1.0]);
+    let mesh = draft.read().unwrap();
+    assert_rests(&mesh);
+    assert!(positions(&mesh).iter().all(|[_, _, z]| *z == 2.0), "half of the target, and the node");
+    let bent = posed(&mesh, 1.0);
+    assert!(positions(&bent).iter().all(|[_, _, z]| *z == 4.0));
+    // (3, 0, 1), through the inverse of the scale.
+    let expected = Vec3::new(3.0, 0.0, 0.5).normalize();
+    assert!(bent.corners.iter().all(|corner| corner.normal.distance(expected) < 1e-6));
+    assert_eq!(rig(&mesh).moved(&rig(&mesh).clips[0]), Moved { joints: 0, nodes: 0, targets: 2 });
+}
+
+#[test]
+fn nodes_carry_what_hangs_below_them() {
+    let mut draft = triangle();
+    draft.root["scenes"] = json!([{ "nodes": [1] }]);
+    draft.root["nodes"] = json!([
+        { "mesh": 0, "scale": [-2.0, 1.0, 3.0], "rotation": [0.6, 0.0, 0.0, 0.8] },
+        { "children": [2], "translation": [0.0, 0.0, 5.0], "scale": [1.0, 7.0, 1.0] },
+        { "children": [0], "rotation": [0.0, 0.6, 0.0, 0.8] },
+    ]);
+    draft.move_node(1);
+    let mesh = draft.read().unwrap();
+    assert_rests(&mesh);
+    let (start, end) = (posed(&mesh, 0.0), posed(&mesh, 2.0));
+    for ((start, end), rest) in start.corners.iter().zip(&end.corners).zip(&mesh.corners) {
+        assert!(start.position.distance(rest.position - 5.0 * Vec3::Z) < 1e-5);
+        assert!(end.position.distance(start.position + 8.0 * Vec3::Z) < 1e-5);
+        assert!(end.normal.distance(rest.normal) < 1e-6);
+    }
+    assert_eq!(rig(&mesh).moved(&rig(&mesh).clips[0]), Moved { joints: 0, nodes: 1, targets: 0 });
+}
+
+#[test]
+fn normals_that_are_made_turn_too() {
+    let mut draft = skinned();
+    draft.root["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("NORMAL");
+    draft.root["nodes"][1]["rotation"] = json!([0.5, 0.5, 0.5, 0.5]);
+    draft.root["nodes"][1]["scale"] = json!([1.0, -2.0, 3.0]);
+    let mesh = draft.read().unwrap();
+    assert!(mesh.repairs.normals_made == 3);
+    assert_rests(&mesh);
+}
+
+/// Two triangles with an edge in common, on a node each.
+fn touching() -> Draft {
+    let mut draft = triangle();
+    let (at, n) =
+        (draft.vectors(&[[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]), draft.vectors(&[[0.0, 0.0, 1.0]; 3]));
+    draft.push("meshes", json!({ "primitives": [{ "attributes": { "POSITION": at, "NORMAL": n } }] }));
+    draft.root["scenes"] = json!([{ "nodes": [2] }]);
+    draft.root["nodes"] = json!([{ "mesh": 0 }, { "mesh": 1 }, { "children": [0, 1] }]);
+    draft
+}
+
+#[test]
+fn what_moves_apart_is_not_welded() {
+    let points = |moved: Option<usize>, tolerance: f32| {
+        let mut draft = touching();
+        if let Some(node) = moved {
+            draft.move_node(node);
+        }
+        let mesh = draft.read().unwrap();
+        assert_eq!(mesh.rig.is_some(), moved.is_some());
+        Topology::build_within(&mesh, tolerance, &Progress::new()).unwrap().points.len()
+    };
+    for tolerance in [0.0, 1e-3] {
+        assert_eq!(points(None, tolerance), 4, "nothing moves");
+        assert_eq!(points(Some(2), tolerance), 4, "both move together");
+        assert_eq!(points(Some(1), tolerance), 6, "one moves");
+    }
+}
+
+#[test]
+fn morph_targets_that_part_an_edge_part_its_points() {
+    let mut draft = touching();
+    let second = draft.root["meshes"][1]["primitives"][0].clone();
+    draft.primitive(second);
+    draft.root["scenes"] = json!([{ "nodes": [0] }]);
+    let (still, apart) = (draft.vectors(&[[0.0; 3]; 3]), draft.vectors(&[[0.0, 0.0, 1.0], [0.0; 3], [0.0; 3]]));
+    draft.animate(0, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 1.0]);
+    for (target, points) in [(still, 4), (apart, 5)] {
+        draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": still }]);
+        draft.root["meshes"][0]["primitives"][1]["targets"] = json!([{ "POSITION": target }]);
+        assert_eq!(topology(&draft.read().unwrap()).points.len(), points);
+    }
+}
+
+#[test]
+fn bad_animations_are_left_out_and_told() {
+    let changes: [(&str, Value, &str); 14] = [
+        ("/samplers/0/input", json!(77), "channel 0 names accessor 77, which isn't there"),
+        ("/samplers/0/input", json!("no"), "it can't be read (invalid type: string \"no\", expected usize)"),
+        ("/samplers/0/interpolation", json!("CUBIC"), "channel 0 has an interpolation \"CUBIC\", which isn't known"),
+        ("/samplers/0/interpolation", json!("CUBICSPLINE"), "channel 0 has 6 numbers for 2 keys of 9"),
+        ("/channels/0/sampler", json!(3), "channel 0 uses sampler 3 of 1"),
+        ("/channels/0/target/node", json!(9), "channel 0 moves node 9, which isn't there"),
+        (
+            "/channels/0/target/path",
+            json!("rotation"),
+            "channel 0 has values in accessor 3, which has Vec3 elements where 4 numbers are needed",
+        ),
+        ("/channels/0/target/path", json!("weights"), "channel 0 weighs morph targets of node 0, which has none"),
+        ("/accessors/2/count", json!(1), "channel 0 has 6 numbers for 1 keys of 3"),
+        ("/accessors/2/count", json!(4), "which needs 16 bytes of buffer view 2, which has 8"),
+        ("/accessors/3/count", json!(1u64 << 60), "takes the document beyond 67108864 animated numbers"),
+        ("/nodes/0/matrix", json!(glam::Mat4::IDENTITY.to_cols_array()), "moves node 0, which is placed by a matrix"),
+        ("/times", json!([2.0, 2.0]), "channel 0 has times that don't rise from 0 or later"),
+        ("/times", json!([-1.0, 2.0]), "channel 0 has times that don't rise from 0 or later"),
+    ];
+    for (pointer, value, expected) in changes {
+        let mut draft = triangle();
+        draft.move_node(0);
+        if pointer == "/times" {
+            let times: Vec<f32> = serde_json::from_value(value).unwrap();
+            let input = draft.floats("SCALAR", &times);
+            draft.root["animations"][0]["samplers"][0]["input"] = json!(input);
+        } else {
+            let is_own = pointer.starts_with("/samplers") || pointer.starts_with("/channels");
+            let (parent, key) = pointer.rsplit_once('/').unwrap();
+            let parent = if is_own { format!("/animations/0{parent}") } else { parent.to_owned() };
+            draft.root.pointer_mut(&parent).unwrap()[key] = value;
+        }
+        let mesh = draft.read().unwrap();
+        assert!(mesh.rig.is_none(), "{pointer}");
+        let [warning] = &mesh.warnings[..] else { panic!("{pointer}: {:?}", mesh.warnings) };
+        assert!(warning.starts_with("animation 0 is left out: "), "{warning}");
+        assert!(warning.contains(expected), "{pointer}: {warning}");
+    }
+}
+
+#[test]
+fn values_that_are_no_numbers_are_left_out() {
+    let mut draft = triangle();
+    draft.animate(0, "translation", "VEC3", &[0.0], &[0.0, f32::NAN, 0.0]);
+    draft.root["animations"][0]["name"] = json!("Walk\n\u{1b}on");
+    let expected = ["animation 0 \"Walk  on\" is left out: channel 0 has values that aren't finite."];
+    assert_eq!(draft.read().unwrap().warnings, expected);
+}
+
+#[test]
+fn what_moves_nothing_shown_is_left_out() {
+    let mut draft = triangle();
+    draft.push("nodes", json!({ "name": "camera" }));
+    draft.move_node(1);
+    let mesh = draft.read().unwrap();
+    assert_eq!(mesh.warnings, ["animation \"animation 0\" moves nothing that is shown; it is left out."]);
+    assert!(mesh.rig.is_none());
+    draft.move_node(0);
+    let mesh = draft.read().unwrap();
+    let names: Vec<_> = rig(&mesh).clips.iter().map(|clip| clip.name.as_str()).collect();
+    assert_eq!(names, ["animation 1"], "it keeps its number");
+}
+
+#[test]
+fn channels_of_extensions_are_passed_over() {
+    let mut draft = triangle();
+    draft.move_node(0);
+    let channels = draft.root["animations"][0]["channels"].as_array_mut().unwrap();
+    channels
+        .push(json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": {} } } }));
+    channels.push(json!({ "sampler": 0, "target": { "node": 0, "path": "shine" } }));
+    let mesh = draft.read().unwrap();
+    assert_eq!((rig(&mesh).clips[0].channels.len(), mesh.warnings.len()), (1, 0));
+}
+
+#[test]
+fn bad_morph_targets_leave_the_mesh_at_rest() {
+    let mut draft = triangle();
+    let short = draft.vectors(&[[0.0; 3]; 2]);
+    draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": short }]);
+    draft.animate(0, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 1.0]);
+    let mesh = draft.read().unwrap();
+    let [warning] = &mesh.warnings[..] else { panic!("{:?}", mesh.warnings) };
+    assert!(warning.starts_with("animations are left out: accessor 2 (POSITION of a morph target of"), "{warning}");
+    assert!(mesh.rig.is_none());
+}
+
+#[test]
+fn targets_without_end_take_no_memory() {
+    let mut draft = triangle();
+    // Many targets of one long list of zeros, which takes no bytes in the file but for one value.
+    let (places, values) = (draft.view(&[0]), draft.view(&[0; 12]));
+    let zeros = json!({
+        "componentType": 5126, "type": "VEC3", "count": 1 << 18,
+        "sparse": {
+            "count": 1,
+            "indices": { "bufferView": places, "componentType": 5121 },
+            "values": { "bufferView": values },
+        },
+    });
+    let zeros = draft.push("accessors", zeros);
+    let targets: Vec<Value> = (0..1025).map(|_| json!({ "POSITION": zeros })).collect();
+    draft.root["meshes"][0]["primitives"][0] = json!({ "attributes": { "POSITION": zeros }, "targets": targets });
+    let indices = draft.indices(&[0, 1, 2]);
+    draft.root["meshes"][0]["primitives"][0]["indices"] = json!(indices);
+    draft.animate(0, "weights", "SCALAR", &[0.0], &[0.0; 1025]);
+    let mesh = draft.read().unwrap();
+    assert!(mesh.rig.is_none());
+    assert!(
+        mesh.warnings.iter().any(|warning| warning.contains("morph targets have more than")),
+        "{:?}",
+        mesh.warnings
+    );
+}
+
+proptest! {
+    #[test]
+    fn no_document_that_moves_brings_it_down(
+        number in 0_usize..200,
+        value in prop_oneof![any::<i64>().prop_map(|x| json!(x)), any::<f64>().prop_map(|x| json!(x)), Just(json!([])), Just(json!("x"))],
+        byte in any::<(prop::sample::Index, u8)>(),
+    ) {
+        let mut draft = skinned();
+        let target = draft.vectors(&TRIANGLE);
+        draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": target, "NORMAL": target }]);
+        draft.animate(0, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 1.0]);
+        draft.move_node(1);
+        let at = byte.0.index(draft.bytes.len());
+        draft.bytes[at] = byte.1;
+        let mut open = vec![&mut draft.root];
+        let mut numbers = Vec::new();
+        while let Some(next) = open.pop() {
+            match next {
+                Value::Array(values) => open.extend(values),
+                Value::Object(values) => open.extend(values.values_mut()),
+                Value::Number(_) => numbers.push(next),
+                _ => {}
+            }
+        }
+        let count = numbers.len();
+        *numbers[number % count] = value;
+        if let Ok(mesh) = draft.read() && let Some(rig) = &mesh.rig {
+            let topology = topology(&mesh);
+            for clip in 0..rig.clips.len() {
+                for time in [0.0, 0.3, 1e9] {
+                    let deformed = deform(&mesh, &topology, &rig.pose(Moment { clip, time })).0;
+                    prop_assert!(deformed.corners.iter().all(|corner| corner.position.is_finite() && corner.normal.is_finite()));
+                }
+            }
+        }
+    }
+}

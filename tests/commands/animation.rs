@@ -1,0 +1,102 @@
+//! `--animation` and `--time`, on whatever tessellates.
+
+use serde_json::{Value, json};
+
+use crate::moving::moving;
+use crate::{Folder, failure, output, run};
+
+fn file(folder: &Folder) -> String {
+    let path = folder.path("moving.glb");
+    std::fs::write(&path, moving()).expect("a writable temporary folder");
+    path
+}
+
+#[test]
+fn a_picture_of_a_pose_says_so_and_has_no_cracks() {
+    let folder = Folder::new("animation-render");
+    let file = file(&folder);
+    let picture = |name: &str, options: &[&str]| {
+        let picture = folder.path(name);
+        let all = [&["render", &file, "-o", &picture, "--size", "200x160", "--stats", "-"], options].concat();
+        let stats: Value = serde_json::from_str(&output(&all)).expect("JSON");
+        (std::fs::read(&picture).expect("a picture"), stats)
+    };
+    let (rest, stats) = picture("rest.png", &[]);
+    assert!(stats["animation"].is_null());
+    let (bent, stats) = picture("bent.png", &["--animation", "All", "--time", "0.6"]);
+    assert_eq!(stats["animation"], json!({ "name": "All", "time": 0.6 }));
+    assert_eq!(stats["cracks"]["different_bits"], 0);
+    assert_eq!(stats["leaks"], 0);
+    assert!(stats["ms"]["deform"].as_f64().is_some());
+    let (start, _) = picture("start.png", &["--animation", "All"]);
+    assert!(rest != bent && bent != start);
+}
+
+#[test]
+fn both_devices_write_the_pose() {
+    let folder = Folder::new("animation-tessellate");
+    let file = file(&folder);
+    let extent = |options: &[&str]| {
+        let path = folder.path("out.obj");
+        output(&[&["tessellate", &file, "-o", &path, "--factor", "4"], options].concat());
+        let text = std::fs::read_to_string(path).expect("a mesh");
+        let xs = text.lines().filter_map(|line| line.strip_prefix("v ")?.split(' ').next()?.parse::<f64>().ok());
+        xs.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)])
+    };
+    let rest = extent(&[]);
+    let pose = ["--animation", "Bend", "--time", "0.5"];
+    let [gpu, cpu] = ["gpu", "cpu"].map(|device| extent(&[&pose[..], &["--device", device]].concat()));
+    // It bends over, to -x.
+    assert!(rest[0] > -0.9 && gpu[0] < -1.5, "{rest:?} {gpu:?}");
+    assert!((gpu[0] - cpu[0]).abs() < 1e-4 && (gpu[1] - cpu[1]).abs() < 1e-4, "{gpu:?} {cpu:?}");
+    let factors = |options: &[&str]| {
+        let lod = ["factors", &file, "-o", "-", "--lod", "edge-length"];
+        output(&[&lod[..], &["--device", "cpu"], options].concat())
+    };
+    assert_ne!(factors(&[]), factors(&pose));
+}
+
+#[test]
+fn after_its_end_a_clip_is_at_its_end() {
+    let folder = Folder::new("animation-end");
+    let file = file(&folder);
+    let written = |time: &str| {
+        let path = folder.path("out.obj");
+        let command = ["tessellate", &file, "-o", &path, "--device", "cpu", "--animation", "Swell", "--time", time];
+        let said = String::from_utf8(run(&command).stderr).expect("UTF-8");
+        (std::fs::read(&path).expect("a mesh"), said)
+    };
+    let (end, said) = written("1.5");
+    assert!(!said.contains("ends"), "{said}");
+    let (after, said) = written("99");
+    assert!(said.contains("pnaen: Swell ends at 1.5 s, and is shown as it is then"), "{said}");
+    assert!(end == after);
+}
+
+#[test]
+fn what_is_not_there_is_said() {
+    let folder = Folder::new("animation-missing");
+    let (file, picture) = (file(&folder), folder.path("out.png"));
+    let said = failure(&["render", &file, "-o", &picture, "--animation", "Fly away"], 1);
+    assert!(said.contains("has no animation \"Fly away\": it has Bend, Swell, Fly, All"), "{said}");
+    let said = failure(&["render", "shape:torus", "-o", &picture, "--animation", "Fly"], 1);
+    assert!(said.contains("shape:torus has no animation \"Fly\": it has none"), "{said}");
+    let said = failure(&["render", &file, "-o", &picture, "--time", "1"], 2);
+    assert!(said.contains("--animation"), "{said}");
+    for time in ["nan", "x", "inf", "-1"] {
+        failure(&["render", &file, "-o", &picture, "--animation", "Fly", &format!("--time={time}")], 2);
+    }
+}
+
+#[test]
+fn info_lists_clips() {
+    let folder = Folder::new("animation-info");
+    let file = file(&folder);
+    let text = output(&["info", &file]);
+    assert!(text.contains("\nanimation     Bend: 1 s, moves 1 joint\n"), "{text}");
+    assert!(text.contains("\nanimation     Swell: 1.5 s, moves 2 morph targets\n"), "{text}");
+    assert!(text.contains("\nanimation     All: 2 s, moves 1 joint, 1 node, 2 morph targets\n"), "{text}");
+    let info: Value = serde_json::from_str(&output(&["info", &file, "--json"])).expect("JSON");
+    let fly = json!({ "name": "Fly", "duration": 2.0, "joints": 0, "nodes": 1, "targets": 0 });
+    assert_eq!(info["animations"][2], fly);
+}

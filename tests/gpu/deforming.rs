@@ -1,0 +1,198 @@
+//! Poses, deformed on the device: held against the CPU's reference, against themselves, and for cracks.
+
+use std::sync::Arc;
+
+use pnaen::engine::{Loaded, Preparation, load};
+use pnaen::gpu::{Timing, read_buffer, take_times};
+use pnaen::measure::ulp;
+use pnaen::mesh::{Mesh, Moment, Progress, Rig, Source};
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::{ARENA_BYTES, Settings};
+use pnaen::tessellate::{Edges, Lod, Partitioning, Surface, tessellate};
+
+use crate::engine;
+use crate::moving::{CLIPS, moving};
+use crate::passes::{assert_agree, inputs, on_gpu};
+
+fn scene() -> (Loaded, Scene) {
+    let path =
+        std::env::temp_dir().join(format!("pnaen-moving-{}-{:?}.glb", std::process::id(), std::thread::current().id()));
+    std::fs::write(&path, moving()).expect("a writable temporary folder");
+    let loaded = load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
+        .expect("what was just written");
+    let _ = std::fs::remove_file(path);
+    let scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    (loaded, scene)
+}
+
+fn rig(mesh: &Mesh) -> &Rig {
+    mesh.rig.as_deref().expect("a document with clips")
+}
+
+/// Every clip at some of its times.
+fn moments(mesh: &Mesh, count: u32) -> Vec<Moment> {
+    let clips = rig(mesh).clips.iter().enumerate();
+    let times = |(clip, duration): (usize, f64)| {
+        (0..count).map(move |i| Moment { clip, time: duration * f64::from(i) / f64::from(count - 1) })
+    };
+    clips.map(|(clip, found)| (clip, found.duration)).flat_map(times).collect()
+}
+
+/// Points and corners' normals on the device.
+fn deformed(scene: &Scene) -> (Vec<[f32; 4]>, Vec<[f32; 8]>) {
+    let buffers = scene.tessellator.buffers();
+    let read = |buffer: &wgpu::Buffer| read_buffer(&engine().gpu, buffer, 0, buffer.size()).expect("a readback");
+    let points: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(&buffers.points));
+    (points[..buffers.point_count as usize].to_vec(), bytemuck::pod_collect_to_vec(&read(&buffers.corners)))
+}
+
+/// Each coordinate is a sum of 16 products and as many of morph targets, which one side may fuse and the other not.
+#[test]
+fn the_device_deforms_as_the_cpu_does() {
+    let (loaded, mut scene) = scene();
+    let settings = Settings::default();
+    for moment in moments(&loaded.mesh, 7) {
+        scene.set_moment(Some(moment)).expect("a small rig");
+        engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
+        let (points, corners) = deformed(&scene);
+        let posed = loaded.posed(Some(moment));
+        let bound = 4.0 * ulp(&posed.topology);
+        for (own, other) in points.iter().zip(&posed.topology.points) {
+            let apart = glam::Vec3::from_slice(own).distance(*other);
+            assert!(f64::from(apart) <= bound, "{moment:?}: {own:?} {other}");
+        }
+        for (own, other) in corners.iter().zip(&posed.mesh.corners) {
+            let apart = glam::Vec3::from_slice(own).distance(other.normal);
+            assert!(apart < 2e-6, "{moment:?}: {own:?} {}", other.normal);
+        }
+    }
+}
+
+#[test]
+fn what_is_emitted_in_a_pose_is_what_the_cpu_emits() {
+    let (loaded, mut scene) = scene();
+    for surface in [Surface::Flat, Surface::Pn, Surface::PnAen] {
+        for moment in moments(&loaded.mesh, 3) {
+            let settings = Settings { surface, factor: 5.3, ..Settings::default() };
+            scene.set_moment(Some(moment)).expect("a small rig");
+            let posed = loaded.posed(Some(moment));
+            let inputs = inputs(&posed, &settings);
+            let gpu = on_gpu(&mut scene, &inputs);
+            let cpu = tessellate(&posed.mesh, &posed.topology, &inputs, None);
+            assert_agree(&posed, &gpu, &cpu, &format!("{surface:?} {moment:?}"));
+        }
+    }
+}
+
+#[test]
+fn nothing_cracks_however_it_moves() {
+    let (loaded, mut scene) = scene();
+    assert!(loaded.topology.is_closed_and_oriented(), "a beam of faces that share nothing but positions");
+    let counts = loaded.topology.edge_counts();
+    assert!(counts.split > 0 && counts.boundary == 0, "{counts:?}");
+    for moment in moments(&loaded.mesh, 9) {
+        for lod in [Lod::Uniform, Lod::EdgeLength, Lod::Error] {
+            let partitioning = if lod == Lod::Error { Partitioning::Integer } else { Partitioning::FractionalEven };
+            let settings = Settings { surface: Surface::PnAen, lod, partitioning, factor: 6.7, ..Settings::default() };
+            scene.set_moment(Some(moment)).expect("a small rig");
+            let inputs = inputs(&loaded.posed(Some(moment)), &settings);
+            engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+            let measured = engine().measure(&mut scene).expect("a readback");
+            assert!(measured.cracks.edge_points > 100, "{moment:?} {lod:?}");
+            assert_eq!(measured.cracks.different_bits, 0, "{moment:?} {lod:?}");
+            assert_eq!(measured.cracks.different_factors, 0, "{moment:?} {lod:?}");
+            assert_eq!(measured.not_finite, 0, "{moment:?} {lod:?}");
+        }
+    }
+    // What measures sees the pose: PN tears split normals in it.
+    let torn = Settings { surface: Surface::Pn, ..Settings::default() };
+    engine().count(&mut scene, &inputs(&loaded, &torn), &mut Timing::Off).expect("counts");
+    assert!(engine().measure(&mut scene).expect("a readback").cracks.different_bits > 0);
+}
+
+#[test]
+fn the_same_pose_recomputes_nothing_and_rest_is_as_before() {
+    let (loaded, mut scene) = scene();
+    let settings = Settings::default();
+    let inputs = inputs(&loaded, &settings);
+    let at_rest = on_gpu(&mut scene, &inputs);
+    let moment = Moment { clip: 3, time: 0.6 };
+    let passes = |scene: &mut Scene| {
+        let mut timing = Timing::on(&engine().gpu);
+        engine().count(scene, &inputs, &mut timing).expect("counts");
+        let times = take_times(&engine().gpu, &mut timing);
+        times.into_iter().map(|time| time.pass).filter(|pass| ["deform", "nets"].contains(pass)).collect::<Vec<_>>()
+    };
+    scene.set_moment(Some(moment)).expect("a small rig");
+    assert_eq!(passes(&mut scene), ["deform", "nets"]);
+    let generation = scene.tessellator.generation();
+    let bent = on_gpu(&mut scene, &inputs);
+    assert!(bent != at_rest);
+    scene.set_moment(Some(moment)).expect("a small rig");
+    assert_eq!(passes(&mut scene), [""; 0], "nothing has changed");
+    assert_eq!(scene.tessellator.generation(), generation);
+    // Another surface makes other nets of the same pose, also where sides share other curves.
+    let pn = Settings { surface: Surface::Pn, edges: Edges::AsPublished, ..settings }.inputs(inputs.view);
+    assert!(on_gpu(&mut scene, &pn) != bent);
+    assert!(on_gpu(&mut scene, &inputs) == bent, "back to the bit");
+    scene.set_moment(None).expect("rest");
+    assert!(on_gpu(&mut scene, &inputs) == at_rest, "back to the bit");
+}
+
+#[test]
+fn the_pass_is_timed_where_something_is_deformed() {
+    let (_, mut scene) = scene();
+    scene.set_moment(Some(Moment { clip: 0, time: 0.3 })).expect("a small rig");
+    let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let times = engine().time(&mut scene, &target, &camera, &Settings::default()).expect("a draw");
+    assert_eq!(times.iter().map(|time| time.pass).collect::<Vec<_>>(), pnaen::gpu::PASSES);
+}
+
+#[test]
+fn backs_stay_in_a_pose() {
+    let (loaded, mut scene) = scene();
+    assert!(scene.tessellator.is_solid());
+    let settings = Settings { cull_back_faces: true, ..Settings::default() };
+    let inputs = inputs(&loaded, &settings);
+    engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+    assert!(engine().measure(&mut scene).expect("a readback").culled.facing_away > 0);
+    scene.set_moment(Some(Moment { clip: 0, time: 0.3 })).expect("a small rig");
+    engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+    let measured = engine().measure(&mut scene).expect("a readback");
+    assert_eq!(measured.culled.total(), 0);
+    assert!(!scene.tessellator.shows_fronts_only(inputs.view.clip_from_object));
+    let target = Target::new(&engine().gpu, [320, 240]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    engine().draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
+    assert_eq!(engine().leaks(&mut scene, &measured, target.size, &camera).expect("a readback"), Some(0));
+}
+
+#[test]
+fn a_clip_is_framed_all_through() {
+    let (loaded, mut scene) = scene();
+    let at_rest = scene.bounds;
+    assert_eq!(at_rest, loaded.mesh.bounds());
+    for (clip, name) in CLIPS.iter().enumerate() {
+        assert_eq!(rig(&loaded.mesh).clip(name), Some(clip));
+        scene.frame_clip(Some(clip));
+        let slack = 0.05 * scene.bounds.radius();
+        for moment in moments(&loaded.mesh, 23).into_iter().filter(|moment| moment.clip == clip) {
+            let posed = loaded.posed(Some(moment)).mesh.bounds();
+            let is_inside = posed.min.cmpge(scene.bounds.min - slack) & posed.max.cmple(scene.bounds.max + slack);
+            assert!(is_inside.all(), "{name} {moment:?}");
+        }
+    }
+    scene.frame_clip(None);
+    assert_eq!(scene.bounds, at_rest);
+}
+
+#[test]
+fn a_mesh_that_cannot_move_takes_no_pose() {
+    let (loaded, mut scene) = crate::scene(pnaen::mesh::Shape::Torus);
+    let inputs = inputs(&loaded, &Settings::default());
+    let before = on_gpu(&mut scene, &inputs);
+    scene.set_moment(Some(Moment { clip: 0, time: 1.0 })).expect("nothing to upload");
+    scene.tessellator.set_pose(Some(Arc::default())).expect("nothing to upload");
+    assert!(on_gpu(&mut scene, &inputs) == before);
+}

@@ -1,0 +1,148 @@
+//! Clips: chosen, scrubbed, played and paused.
+
+use egui::Key;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::mesh::{Moment, Shape, Source};
+
+use crate::moving::{CLIPS, moving};
+use crate::{choose, click, press, settle, uniform, window};
+
+/// A window on a mesh that moves, and the file, which stays for who loads it again.
+fn moving_window(name: &str) -> (Harness<'static, App>, std::path::PathBuf) {
+    let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}.glb", std::process::id()));
+    std::fs::write(&path, moving()).expect("a writable temporary folder");
+    (uniform(Some(Source::File(path.clone()))), path)
+}
+
+fn time(harness: &Harness<App>) -> f64 {
+    harness.state().moment().expect("a clip").time
+}
+
+#[test]
+fn what_cannot_move_has_no_animation() {
+    let harness = window(Some(Source::Shape(Shape::Torus)));
+    assert_eq!(harness.query_all_by_label("Animation").count(), 0);
+    assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Clip").count(), 0);
+}
+
+#[test]
+fn a_clip_is_chosen_and_scrubbed() {
+    let (mut harness, path) = moving_window("scrub");
+    harness.get_by_label("Animation");
+    assert_eq!(harness.state().moment(), None, "it opens at rest");
+    let (rest, pictures) = (harness.state().camera().target, harness.state().pictures());
+    choose(&mut harness, "Clip", CLIPS[3]);
+    assert_eq!(harness.state().moment(), Some(Moment { clip: 3, time: 0.0 }));
+    assert_eq!(harness.state().camera().target, rest, "nobody asked the camera to move");
+    assert!(!harness.state().is_playing());
+    assert!(harness.state().pictures() > pictures);
+    let pictures = harness.state().pictures();
+    harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(1.25);
+    settle(&mut harness);
+    assert_eq!(time(&harness), 1.25);
+    assert!(harness.state().pictures() > pictures, "another pose, another picture");
+    // Measured in the pose.
+    let cracks = harness.state().cracks().expect("measured");
+    assert!(cracks.edge_points > 100 && cracks.different_bits == 0);
+    // Nothing is drawn when nothing has changed.
+    let pictures = harness.state().pictures();
+    harness.run_steps(5);
+    assert_eq!(harness.state().pictures(), pictures);
+    choose(&mut harness, "Clip", "Rest pose");
+    assert_eq!(harness.state().moment(), None);
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn space_plays_and_pauses_and_measuring_waits() {
+    let (mut harness, path) = moving_window("play");
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    assert!(harness.state().is_playing(), "the first clip, if none is chosen");
+    let pictures = harness.state().pictures();
+    let mut times = Vec::new();
+    let start = std::time::Instant::now();
+    while harness.state().pictures() < pictures + 4 {
+        assert!(start.elapsed() < crate::PATIENCE, "no pictures while playing");
+        harness.step();
+        times.push(time(&harness));
+    }
+    assert!(times.windows(2).all(|pair| pair[0] != pair[1]), "time goes on");
+    assert!(times.iter().all(|time| (0.0..1.0).contains(time)), "round and round: {times:?}");
+    assert!(harness.state().cracks().is_none(), "measured when paused");
+    harness.get_by_label("cracks when paused");
+    harness.get_by_role_and_label(Role::Button, "Pause").click();
+    settle(&mut harness);
+    assert!(!harness.state().is_playing());
+    let (paused, pictures) = (time(&harness), harness.state().pictures());
+    assert_eq!(harness.state().cracks().map(|cracks| cracks.different_bits), Some(0));
+    harness.get_by_label("cracks 0");
+    harness.run_steps(5);
+    assert_eq!((time(&harness), harness.state().pictures()), (paused, pictures), "still");
+    harness.get_by_role_and_label(Role::Button, "Play");
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn speed_is_a_factor_of_time() {
+    let (mut harness, path) = moving_window("speed");
+    choose(&mut harness, "Clip", CLIPS[2]);
+    let passed = |harness: &mut Harness<App>| {
+        harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.0);
+        settle(harness);
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
+        let before = time(harness);
+        harness.step();
+        let passed = time(harness) - before;
+        harness.key_press(Key::Space);
+        settle(harness);
+        passed
+    };
+    let normal = passed(&mut harness);
+    assert!(normal > 0.0, "{normal}");
+    harness.get_by_role_and_label(Role::Slider, "Speed").set_value_accesskit(4.0);
+    let fast = passed(&mut harness);
+    assert!((fast / normal - 4.0).abs() < 1e-3, "{normal} {fast}");
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn what_is_selected_moves_along() {
+    let (mut harness, path) = moving_window("selected");
+    harness.state_mut().select_triangle(Some(20));
+    settle(&mut harness);
+    choose(&mut harness, "Clip", CLIPS[0]);
+    harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
+    settle(&mut harness);
+    press(&mut harness, Key::F);
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, Key::F);
+    settle(&mut harness);
+    let loaded = harness.state().loaded().expect("a mesh");
+    let posed = loaded.posed(harness.state().moment());
+    let patch = posed.topology.patch_of(20).expect("a patch");
+    let middle = |corners: [glam::Vec3; 3]| (corners[0] + corners[1] + corners[2]) / 3.0;
+    let target = harness.state().camera().target;
+    assert!(target.distance(middle(posed.topology.patch_positions(patch))) < 1e-4);
+    assert!(target.distance(middle(loaded.topology.patch_positions(patch))) > 0.1);
+    let _ = std::fs::remove_file(path);
+}
+
+#[test]
+fn a_mesh_loaded_again_keeps_its_place_and_another_rests() {
+    let (mut harness, path) = moving_window("again");
+    choose(&mut harness, "Clip", CLIPS[1]);
+    harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
+    settle(&mut harness);
+    press(&mut harness, Key::R);
+    assert_eq!(harness.state().moment(), Some(Moment { clip: 1, time: 0.5 }));
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    assert_eq!(harness.state().moment(), None);
+    click(&mut harness, "Wireframe");
+    let _ = std::fs::remove_file(path);
+}
