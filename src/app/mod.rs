@@ -238,6 +238,10 @@ impl App {
     }
 
     fn take_loaded(&mut self, context: &egui::Context) {
+        // It is framed for the viewport, whose size the first frame tells.
+        if self.viewport.target.is_none() {
+            return;
+        }
         let Some(load) = &mut self.load else { return };
         let Some(result) = load.take() else { return };
         let keep_view = load.keep_view;

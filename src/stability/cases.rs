@@ -62,7 +62,7 @@ pub const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, tar
 const CASE: Case = Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
 
 /// Every case, in the order of the documentation.
-pub const CASES: [Case; 33] = [
+pub const CASES: [Case; 34] = [
     Case {
         name: "split-normals",
         about: "A cube whose faces have normals of their own. Under PN each face follows its own normals, and all twelve \
@@ -266,6 +266,14 @@ pub const CASES: [Case; 33] = [
                 holds.",
         mesh: meshes::height_splits,
         look: Look { factor: 12.0, ..LOOK },
+        ..CASE
+    },
+    Case {
+        name: "moving",
+        about: "A cylinder that bends and swells, at as many times as there are trials, by two joints and a morph target. A \
+                point is deformed once, whatever meets there, and then its edges' control points are made: what agrees at rest \
+                agrees in every pose.",
+        mesh: meshes::moving,
         ..CASE
     },
     Case {

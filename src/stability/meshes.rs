@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{Vec2, Vec3, vec3};
+use glam::{DMat4, Vec2, Vec3, vec3};
 
 use crate::mesh::merge::{LooseCorner, MeshBuilder};
-use crate::mesh::{Corner, HeightMap, Heights, Material, Mesh, Progress, Shape};
+use crate::mesh::rig::{
+    Binding, Channel, Clip, Delta, Interpolation, Joint, Keys, Morph, Mover, Placement, Property, Reach,
+};
+use crate::mesh::{Corner, HeightMap, Heights, Material, Mesh, Progress, Rig, Shape};
 
 /// A mesh of loose triangles, made as a file's would be: normals repaired, equal corners merged.
 fn mesh(triangles: impl IntoIterator<Item = [LooseCorner; 3]>) -> Mesh {
@@ -285,6 +288,46 @@ pub fn height_seams() -> Mesh {
 /// A cube with split normals under waves.
 pub fn height_splits() -> Mesh {
     displaced(Shape::CubeSplit.build())
+}
+
+/// A cylinder that bends about its middle and swells, a clip of two seconds: two joints, whose shares change along it, and
+/// a morph target that a joint then moves. Its caps' normals are split from its side's, and its side has a seam.
+pub fn moving() -> Mesh {
+    let mut mesh = Shape::Cylinder.build();
+    let bounds = mesh.bounds();
+    let mut rig = Rig { joints: Vec::new(), ..Rig::default() };
+    for (index, corner) in (0..).zip(&mesh.corners) {
+        let up = (corner.position.y - bounds.min.y) / (bounds.max.y - bounds.min.y);
+        let upper = up * up * (3.0 - 2.0 * up);
+        rig.bindings.push(Binding {
+            position: corner.position.to_array(),
+            first_delta: index,
+            normal: corner.normal.to_array(),
+            delta_count: 1,
+            joints: [0, 1, 0, 0],
+            weights: [1.0 - upper, upper, 0.0, 0.0],
+        });
+        let swell = vec3(corner.position.x, 0.0, corner.position.z) * (4.0 * up * (1.0 - up));
+        rig.deltas.push(Delta { position: swell.to_array(), weight: 0, ..Delta::default() });
+        rig.alike.push(0);
+    }
+    let mover = |parent| Mover { parent, between: DMat4::IDENTITY, rest: Placement::default(), is_joint: true };
+    rig.movers = vec![mover(None), mover(Some(0))];
+    rig.joints = [0, 1].map(|mover| Joint { mover: Some(mover), offset: DMat4::IDENTITY }).to_vec();
+    rig.morphs = vec![Morph { first_weight: 0, rest: vec![0.0] }];
+    let keys = |values: &[f32], width| Keys {
+        times: vec![0.0, 1.0, 2.0],
+        values: values.to_vec(),
+        width,
+        interpolation: Interpolation::Linear,
+    };
+    let bend = [0.0, 0.0, 0.0, 1.0, 0.5, 0.1, 0.0, 0.86, 0.0, 0.3, 0.3, 0.9];
+    let rotation = Channel { target: 1, property: Property::Rotation, keys: keys(&bend, 4) };
+    let weights = Channel { target: 0, property: Property::Weights, keys: keys(&[0.0, 1.0, -0.5], 1) };
+    rig.clips = vec![Clip { name: "bend".to_owned(), duration: 2.0, channels: vec![rotation, weights] }];
+    rig.reach = Reach::of(&rig.bindings, &rig.deltas);
+    mesh.rig = Some(Arc::new(rig));
+    mesh
 }
 
 /// A ground of two large triangles that rises towards its corners.

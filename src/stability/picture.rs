@@ -10,7 +10,7 @@ use super::{Method, Probe, Subject, views};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Timing};
 use crate::measure::{ChartError, SWEEP_STEP, sheet, sweep, sweep_chart};
-use crate::mesh::{Progress, Topology, t_junctions};
+use crate::mesh::{Moment, Progress, Topology, t_junctions};
 use crate::render::{LineSegment, Target, t_junction_lines};
 use crate::settings::{ARENA_BYTES, Overlays, Settings};
 use crate::tessellate::{LodView, Partitioning};
@@ -49,6 +49,11 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
     let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());
     let junctions = t_junctions(&topology, &Progress::new()).unwrap_or_default();
     let mut scene = engine.scene_of(mesh, topology.clone(), ARENA_BYTES)?;
+    if let Some(rig) = &case.mesh.rig {
+        // Halfway through what it does first.
+        let time = rig.clips.first().map_or(0.0, |clip| 0.4 * clip.duration);
+        scene.tessellator.set_pose(Some(Arc::new(rig.pose(Moment { clip: 0, time }))))?;
+    }
     let target = Target::new(&engine.gpu, PART)?;
     let viewport = Vec2::from(PART.map(|side| side as f32));
     let camera = views::look(&scene.bounds, &case.look, viewport);
@@ -62,7 +67,8 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
         let settings = Settings { overlays, ..method.displacing(&case.mesh, settings) };
         let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
         engine.count(&mut scene, &inputs, &mut Timing::Off)?;
-        let mut lines: Vec<LineSegment> = engine.measure(&mut scene)?.crack_lines(&topology);
+        let (_, posed) = scene.tessellator.posed().deformed();
+        let mut lines: Vec<LineSegment> = engine.measure(&mut scene)?.crack_lines(&posed);
         lines.extend(t_junction_lines(&topology, &junctions));
         scene.set_lines(&engine.gpu, &lines);
         engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;

@@ -13,10 +13,10 @@ use super::{Method, Probe, Quantity, Row, Subject, views};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Timing};
 use crate::measure::{AskedFactors, Measured, SWEEP_STEP, sweep};
-use crate::mesh::{Bounds, Mesh, Progress, Topology, t_junctions};
+use crate::mesh::{Bounds, Mesh, Moment, Pose, Progress, Topology, t_junctions};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, tessellate};
+use crate::tessellate::{Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, Posed, bounds_through, tessellate};
 
 /// How much is tried, and where.
 #[derive(Clone, Debug)]
@@ -60,6 +60,8 @@ impl Worst {
 
 /// What is tried once.
 struct Trial {
+    /// Of meshes that move.
+    pose: Option<Arc<Pose>>,
     settings: Settings,
     /// Decides factors and what is clipped; leaks are looked for from here.
     camera: Camera,
@@ -123,7 +125,7 @@ impl<'a> Running<'a> {
             }
             None => None,
         };
-        let bounds = mesh.bounds();
+        let bounds = bounds_through(&mesh, Some(0));
         Ok(Self { case, mesh, topology, bounds, device })
     }
 
@@ -146,6 +148,7 @@ impl<'a> Running<'a> {
         let look = views::look(&self.bounds, &self.case.look, views::viewport());
         let random = |index| views::random(&self.bounds, index);
         let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| Trial {
+            pose: None,
             settings: method.displacing(&self.mesh, method.settings(partitioning, factor)),
             camera: look,
             // The factors share the cameras out between them.
@@ -155,20 +158,34 @@ impl<'a> Running<'a> {
         let unclipped = Settings { clip: Clip::Off, ..adaptive };
         // The paper's clip test drops whole patches, beside which nothing else would be seen: it has cases of its own.
         let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
-        let seen = |settings, camera| Trial { settings, camera, also_from: Vec::new() };
+        let seen = |settings, camera| Trial { pose: None, settings, camera, also_from: Vec::new() };
         let random = (0..effort.cameras).map(|index| seen(everywhere, random(index)));
         let views = [seen(unclipped, look), seen(adaptive, look)];
         let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
-        uniform.chain(random).chain(views).collect()
+        let mut trials: Vec<_> = uniform.chain(random).chain(views).collect();
+        for (index, trial) in trials.iter_mut().enumerate() {
+            trial.pose = self.pose(index);
+        }
+        trials
+    }
+
+    /// A pose for a trial of a mesh that moves: at times of its clips in turn that never come close to each other.
+    fn pose(&self, index: usize) -> Option<Arc<Pose>> {
+        const GOLDEN: f64 = 0.618_033_988_749_895;
+        let rig = self.mesh.rig.as_deref()?;
+        let clip = index % rig.clips.len().max(1);
+        let time = rig.clips.get(clip)?.duration * (GOLDEN * (index + 1) as f64).fract();
+        Some(Arc::new(rig.pose(Moment { clip, time })))
     }
 
     fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
         let mut worst = Worst::default();
-        for Trial { settings, camera, .. } in self.trials(method, partitioning, effort) {
+        for Trial { pose, settings, camera, .. } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
-            let out = tessellate(&self.mesh, &self.topology, &settings.inputs(view), None);
+            let (mesh, topology) = Posed::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
+            let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
             let asked = AskedFactors::new(settings.edges, settings.convention, out.edge_factors.clone());
-            self.take(&mut worst, &Measured::of(&self.mesh, &self.topology, asked, &out), &settings, &view);
+            self.take(&mut worst, &Measured::of(&mesh, &topology, asked, &out), &settings, &view);
         }
         if self.case.probe == Probe::Sweep {
             let view = LodView::new(glam::Mat4::IDENTITY, views::viewport());
@@ -183,9 +200,10 @@ impl<'a> Running<'a> {
 
     fn on_device(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Worst, GpuError> {
         let mut worst = Worst::default();
-        for Trial { settings, camera, also_from } in self.trials(method, partitioning, effort) {
+        for Trial { pose, settings, camera, also_from } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let Some((engine, scene, _)) = &mut self.device else { break };
+            scene.tessellator.set_pose(pose)?;
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
             let measured = engine.measure(scene)?;
             for camera in also_from.iter().chain([&camera]) {
