@@ -10,6 +10,8 @@ mod moving;
 mod picking;
 #[path = "window/spending.rs"]
 mod spending;
+#[path = "window/techniques.rs"]
+mod techniques;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

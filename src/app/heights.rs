@@ -32,12 +32,17 @@ impl App {
         }
     }
 
-    /// Loads the same mesh again with other heights, and displaces it.
+    /// Loads the same mesh again with other heights, which displace it once they are there.
     pub fn displace(&mut self, context: &egui::Context, heights: Option<HeightSource>) {
-        if heights.is_some() && self.settings.displacement == Displacement::Off {
+        self.prepare(context, |preparation| preparation.heights = heights);
+    }
+
+    /// Another mesh is shown, or the same with other heights: first ones displace it.
+    pub(super) fn take_heights(&mut self, before: Option<&HeightSource>) {
+        let has_new = self.document.as_ref().is_some_and(|document| document.loaded.preparation.heights.is_some());
+        if has_new && before.is_none() {
             self.settings.displacement = Displacement::On;
         }
-        self.prepare(context, |preparation| preparation.heights = heights);
     }
 
     /// The image's row; and while there is one, what is done with it.

@@ -254,9 +254,11 @@ impl App {
                 }
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
-                if self.document.replace(document).is_some() {
+                let before = self.document.replace(document);
+                if before.is_some() {
                     self.error = None;
                 }
+                self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
                 self.measuring = Measuring::default();
                 self.deselect();

@@ -7,10 +7,13 @@ use pnaen::engine::{Loaded, Preparation};
 use pnaen::gpu::Timing;
 use pnaen::measure::{Measured, ulp};
 use pnaen::mesh::rim::Rim;
-use pnaen::mesh::{Corner, HeightMap, Heights, Mesh, Progress, Shape, Source, Topology};
+use pnaen::mesh::{Corner, HeightMap, Heights, Mesh, Moment, Progress, Shape, Source, Topology};
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
-use pnaen::tessellate::{Clip, Displacement, Edges, Lod, Normals, Partitioning, Surface, tessellate, unpack_normal};
+use pnaen::stability::CASES;
+use pnaen::tessellate::{
+    Clip, Displacement, Edges, Lod, Normals, Partitioning, Surface, deform, tessellate, unpack_normal,
+};
 
 use crate::engine;
 use crate::passes::{inputs, on_gpu};
@@ -41,6 +44,10 @@ fn shifted_torus() -> Mesh {
 
 fn under_waves(shape: Shape, mut mesh: Mesh) -> (Loaded, Scene) {
     mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves(64))));
+    on_device(shape, mesh)
+}
+
+fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
     let (mesh, source) = (Arc::new(mesh), Source::Shape(shape));
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
     let scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
@@ -204,4 +211,35 @@ fn lod_by_error_holds_with_gentle_heights() {
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         assert!(scene.tessellator.totals().1 > plain || shape == Shape::Icosphere, "{shape:?}: heights cost triangles");
     }
+}
+
+#[test]
+fn a_mesh_that_moves_is_displaced_in_every_pose() {
+    let case = CASES.iter().find(|case| case.name == "moving").expect("a case of this name");
+    let mut mesh = (case.mesh)();
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves(32))));
+    let (loaded, mut scene) = on_device(Shape::Cylinder, mesh);
+    let rig = loaded.mesh.rig.clone().expect("a rig");
+    let settings = Settings { displacement: Displacement::On, factor: 5.0, height_scale: 0.1, ..Settings::default() };
+    let inputs = inputs(&loaded, &settings);
+    let mut passes = Vec::new();
+    for time in [0.3, 0.9, 1.6] {
+        let pose = Arc::new(rig.pose(Moment { clip: 0, time }));
+        scene.tessellator.set_pose(Some(pose.clone())).expect("a small rig");
+        let gpu = on_gpu(&mut scene, &inputs);
+        let (mesh, topology) = deform(&loaded.mesh, &loaded.topology, &pose);
+        let cpu = tessellate(&mesh, &topology, &inputs, None);
+        for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
+            let [p, q] = [a.position, b.position].map(glam::Vec3::from);
+            assert!(p.distance(q) <= 2e-5, "{time} s: {p} {q}");
+        }
+        let cracks = engine().measure(&mut scene).expect("a readback").cracks;
+        assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{time} s");
+        let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
+        let camera = pnaen::render::Camera::framing(&scene.bounds, target.viewport());
+        let times = engine().time(&mut scene, &target, &camera, &settings).expect("a draw");
+        passes = times.iter().map(|time| time.pass).collect();
+    }
+    // A pose that stays isn't computed again.
+    assert_eq!(passes, pnaen::gpu::PASSES[1..]);
 }
