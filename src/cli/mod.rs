@@ -10,6 +10,7 @@ mod info;
 mod options;
 mod render;
 mod stability;
+mod stats;
 mod tessellate;
 
 use std::io::{Read, Write};

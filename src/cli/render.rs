@@ -1,18 +1,14 @@
 //! `pnaen render`: the window's picture, without the window.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
-use serde::Serialize;
-
-use super::given::FactorsFile;
+use super::stats::{AnimationStats, Stats};
 use super::{CliError, GivenOption, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
 use crate::engine::{Engine, Loaded};
-use crate::gpu::{PassTime, Timing};
-use crate::measure::{Measured, ScreenView, compare, patch_edges, ulp};
-use crate::mesh::{EdgeCounts, LoadError, Progress, Source, t_junctions};
-use crate::render::{Camera, Scene, Target, patch_lines, t_junction_lines};
+use crate::gpu::Timing;
+use crate::measure::{ScreenView, compare, patch_edges};
+use crate::mesh::{LoadError, Progress, Source, t_junctions};
+use crate::render::{Target, patch_lines, t_junction_lines};
 use crate::settings::{Overlay, Overlays, Settings};
 use crate::tessellate::Lod;
 
@@ -147,16 +143,14 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
         let name = args.surface.animation.animation.clone();
         let sizes = engine.sizes(&mut scene, ScreenView { clip_from_object, viewport })?;
-        let stats = Stats {
-            triangles_in_view: sizes.in_view,
-            triangles_below_3_px: sizes.small,
-            leaks,
-            max_error_px,
-            factors_capped,
-            factors_file,
-            animation: moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time }),
-            ..Stats::new(&engine, &loaded, &scene, &measured, &settings, &camera, &target, &passes)
-        };
+        let mut stats = Stats::new(&engine, &loaded, &scene, &measured, &settings, &camera, &target, &passes);
+        stats.triangles_in_view = sizes.in_view;
+        stats.triangles_below_3_px = sizes.small;
+        stats.leaks = leaks;
+        stats.max_error_px = max_error_px;
+        stats.factors_capped = factors_capped;
+        stats.factors_file = factors_file;
+        stats.animation = moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
         write_text(path, &to_json(&stats)?)?;
     }
     match args.reference.as_deref().zip(reference) {
@@ -212,178 +206,4 @@ fn hold_against(
         threshold: args.threshold,
         see,
     })
-}
-
-/// What was done and what it cost. Times are medians in ms.
-#[derive(Debug, Serialize)]
-struct Stats {
-    adapter: String,
-    settings: SettingsStats,
-    triangles_in: u64,
-    points: u64,
-    corners: u64,
-    edges: EdgeCounts,
-    degenerate: u32,
-    patches: u64,
-    /// For whatever reason.
-    patches_culled: u32,
-    patches_out_of_view: u32,
-    patches_facing_away: u32,
-    /// Patches drawn with factors that are all below 2, edges and inside.
-    patches_below_factor_2: u32,
-    triangles_out: u64,
-    /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
-    triangles_in_view: u64,
-    /// Those of them that are half of squares with sides of less than 3 px.
-    triangles_below_3_px: u64,
-    vertices_out: u64,
-    bytes: Bytes,
-    cracks: CrackStats,
-    /// Px through which one looks into the mesh; none if it is open, reaches the near plane, or patches that face away were
-    /// left out.
-    leaks: Option<u64>,
-    /// Triangles that face away from the side that their patch faces.
-    folds: u64,
-    /// Vertices with a position or uv that is no finite number.
-    not_finite: u64,
-    /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
-    /// nothing is in view.
-    max_error_px: Option<f64>,
-    /// Edges (as published or from a file, sides), and under LOD by error insides, that asked for more segments than the
-    /// partitioning has.
-    factors_capped: u64,
-    /// What was found about the factors of a file, if they came from one.
-    factors_file: Option<FactorsFile>,
-    /// None at rest.
-    animation: Option<AnimationStats>,
-    ms: BTreeMap<&'static str, f64>,
-}
-
-/// What was drawn, in the options' names.
-#[derive(Debug, Serialize)]
-struct SettingsStats {
-    surface: String,
-    /// Of Phong tessellation alone.
-    alpha: Option<f32>,
-    normals: String,
-    edges: String,
-    partitioning: &'static str,
-    lod: String,
-    clip: String,
-    convention: String,
-}
-
-impl SettingsStats {
-    fn new(settings: &Settings) -> Self {
-        Self {
-            surface: option_name(settings.surface),
-            alpha: settings.surface.is_phong().then_some(settings.alpha),
-            normals: option_name(settings.normals),
-            edges: option_name(settings.edges),
-            partitioning: settings.partitioning.name(),
-            lod: option_name(settings.lod),
-            clip: option_name(settings.clip),
-            convention: option_name(settings.convention),
-        }
-    }
-}
-
-/// What a value is called on the command line.
-fn option_name(value: impl ValueEnum) -> String {
-    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
-}
-
-#[derive(Debug, Serialize)]
-struct AnimationStats {
-    name: String,
-    /// s.
-    time: f64,
-}
-
-/// Memory, in bytes.
-#[derive(Debug, Serialize)]
-struct Bytes {
-    /// Corners and triangles as loaded.
-    input: u64,
-    /// Points, patches, edges, nets, factors and counts on the device.
-    topology: u64,
-    /// Output on the device.
-    arena: u64,
-}
-
-#[derive(Debug, Serialize)]
-struct CrackStats {
-    edge_points: u64,
-    edges_compared: u64,
-    different_bits: u64,
-    different_factors: u64,
-    different_normals: u64,
-    /// Object units.
-    max_gap: f64,
-    /// In units of the last place of the mesh's largest coordinate.
-    max_gap_ulp: f64,
-    max_gap_px: f64,
-    edges: u64,
-}
-
-impl Stats {
-    fn new(
-        engine: &Engine,
-        loaded: &Loaded,
-        scene: &Scene,
-        measured: &Measured,
-        settings: &Settings,
-        camera: &Camera,
-        target: &Target,
-        passes: &[PassTime],
-    ) -> Self {
-        let (mesh, topology) = (&loaded.mesh, &loaded.topology);
-        let (vertices_out, triangles_out) = scene.tessellator.totals();
-        let cracks = &measured.cracks;
-        let viewport = target.viewport();
-        let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
-        ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
-        Self {
-            adapter: engine.gpu.info.name.clone(),
-            settings: SettingsStats::new(settings),
-            triangles_in: mesh.triangles.len() as u64,
-            points: topology.points.len() as u64,
-            corners: mesh.corners.len() as u64,
-            edges: topology.edge_counts(),
-            degenerate: topology.degenerate,
-            patches: topology.patches.len() as u64,
-            patches_culled: measured.culled.total(),
-            patches_out_of_view: measured.culled.out_of_view,
-            patches_facing_away: measured.culled.facing_away,
-            patches_below_factor_2: measured.patches_low,
-            triangles_out,
-            triangles_in_view: 0,
-            triangles_below_3_px: 0,
-            vertices_out,
-            bytes: Bytes {
-                input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,
-                topology: scene.tessellator.buffers().bytes() + scene.tessellator.work_bytes(),
-                arena: scene.tessellator.arena_bytes(),
-            },
-            cracks: CrackStats {
-                edge_points: cracks.edge_points,
-                edges_compared: cracks.edges_compared,
-                different_bits: cracks.different_bits,
-                different_factors: cracks.different_factors,
-                different_normals: cracks.different_normals,
-                max_gap: cracks.max_gap(),
-                max_gap_ulp: cracks.max_gap() / ulp(topology),
-                max_gap_px: cracks.max_gap_px(camera.clip_from_object(viewport, &scene.bounds), viewport),
-                edges: cracks.edges.len() as u64,
-            },
-            leaks: None,
-            folds: measured.folds,
-            not_finite: measured.not_finite,
-            max_error_px: None,
-            factors_capped: 0,
-            factors_file: None,
-            animation: None,
-            ms,
-        }
-    }
 }

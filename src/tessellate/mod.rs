@@ -11,6 +11,7 @@ pub mod domain;
 mod error;
 pub mod factors;
 mod hull;
+mod limit;
 mod lod;
 mod mesh;
 mod normal;
@@ -40,12 +41,13 @@ pub use factors::{
     patch_is_low, point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull::HullFactors;
+pub use limit::Limit;
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
     project_and_scale,
 };
 pub use mesh::{
-    Edges, Inputs, Limit, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
+    Edges, Inputs, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
     tessellate_given, totals,
 };
 pub use normal::{

@@ -11,6 +11,7 @@ mod lod;
 mod moving;
 mod render;
 mod stability;
+mod techniques;
 mod tessellate;
 mod usage;
 

@@ -11,8 +11,11 @@ use pnaen::mesh::{EdgeKind, Progress, Shape, Source, t_junctions};
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
 use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, project, t_junction_lines};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlay, Overlays, Settings};
-use pnaen::tessellate::{Convention, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, domain_side};
+use pnaen::tessellate::{
+    Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, domain_side,
+};
 
+use crate::displacement::wavy;
 use crate::passes::sheet;
 use crate::stability::{case, seen};
 use crate::{engine, picture, scene};
@@ -81,6 +84,17 @@ fn a_rim_looks_as_it_did() {
     let settings = Settings { surface: Surface::Pn, factor: 12.0, ..Settings::default() };
     let picture = picture(&mut scene, &settings, SIZE);
     assert_eq!(differing(vec![("surface-pn-rim".to_owned(), picture)]), Vec::<String>::new());
+}
+
+#[test]
+fn displaced_surfaces_look_as_they_did() {
+    let (_, mut scene) = wavy(Shape::CubeSplit);
+    let all = [("on", Displacement::On), ("as-published", Displacement::AsPublished)];
+    let pictures = all.map(|(name, displacement)| {
+        let settings = Settings { displacement, height_scale: 0.15, factor: 32.0, ..Settings::default() };
+        (format!("displacement-{name}"), picture(&mut scene, &settings, SIZE))
+    });
+    assert_eq!(differing(pictures.into()), Vec::<String>::new());
 }
 
 #[test]

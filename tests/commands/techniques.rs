@@ -1,0 +1,96 @@
+//! Surfaces, normals and displacement on the command line.
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, sentence, stats};
+
+/// A height image with a slope, a step and a single bright px, written into a folder.
+fn height_image(folder: &Folder) -> String {
+    let path = folder.path("heights.png");
+    let image = image::GrayImage::from_fn(32, 32, |x, y| {
+        image::Luma([if (x, y) == (20, 9) { 255 } else { (x * 4 + if y > 15 { 60 } else { 0 }) as u8 }])
+    });
+    image.save(&path).expect("a writable folder");
+    path
+}
+
+fn text<'a>(stats: &'a Value, path: &str) -> &'a str {
+    stats.pointer(path).and_then(Value::as_str).unwrap_or_default()
+}
+
+#[test]
+fn stats_name_what_was_drawn_as_the_options_do() {
+    let surfaces = ["flat", "pn", "pn-aen", "pn-crease", "phong", "phong-aen", "nagata", "nagata-aen"];
+    let normals = ["linear", "quadratic", "surface"];
+    for (index, surface) in surfaces.into_iter().enumerate() {
+        let normals = normals[index % 3];
+        let stats = stats(&["shape:cube-split", "--surface", surface, "--normals", normals, "--alpha", "0.5"]);
+        assert_eq!((text(&stats, "/settings/surface"), text(&stats, "/settings/normals")), (surface, normals));
+        let alpha = stats.pointer("/settings/alpha").and_then(Value::as_f64);
+        assert_eq!(alpha, surface.starts_with("phong").then_some(0.5), "{surface}");
+        let torn = number(&stats, "/cracks/different_bits") > 0.0;
+        assert_eq!(torn, ["pn", "phong", "nagata"].contains(&surface), "{surface}");
+    }
+}
+
+#[test]
+fn an_image_displaces_any_surface_without_cracks() {
+    let folder = Folder::new("heights");
+    let path = height_image(&folder);
+    for surface in ["flat", "pn-aen", "phong-aen", "nagata-aen"] {
+        let base =
+            ["shape:cube-split", "--surface", surface, "--factor", "6", "--height", &path, "--height-scale", "0.2"];
+        let on = stats(&base);
+        assert_eq!(text(&on, "/settings/displacement"), "on", "{surface}");
+        assert_eq!(number(&on, "/cracks/different_bits"), 0.0, "{surface}");
+        assert_eq!(on.pointer("/leaks").and_then(Value::as_u64), Some(0), "{surface}");
+        let torn = stats(&[&base[..], &["--displacement", "as-published"]].concat());
+        assert!(number(&torn, "/cracks/different_bits") > 60.0, "{surface}");
+    }
+}
+
+#[test]
+fn both_devices_write_the_same_displaced_mesh() {
+    let folder = Folder::new("displaced");
+    let (image, [gpu, cpu]) = (height_image(&folder), ["gpu.obj", "cpu.obj"].map(|name| folder.path(name)));
+    for (device, path) in [("gpu", &gpu), ("cpu", &cpu)] {
+        let options = ["--height", &image, "--midlevel", "0.2", "--factor", "3", "--device", device];
+        output(&[&["tessellate", "shape:torus", "-o", path][..], &options].concat());
+    }
+    let vertices = |path: &str| -> Vec<[f64; 3]> {
+        let text = std::fs::read_to_string(path).expect("what was just written");
+        let numbers = |line: &str| line.split(' ').map(|x| x.parse().expect("a number")).collect::<Vec<f64>>();
+        let lines = text.lines().filter_map(|line| line.strip_prefix("v "));
+        lines.map(|line| numbers(line)[..3].try_into().expect("three")).collect()
+    };
+    let (gpu, cpu) = (vertices(&gpu), vertices(&cpu));
+    assert!(gpu.len() > 500 && gpu.len() == cpu.len());
+    let apart = |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max);
+    assert!(gpu.iter().zip(&cpu).map(apart).fold(0.0, f64::max) < 2e-5);
+}
+
+#[test]
+fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
+    let folder = Folder::new("no-heights");
+    let out = folder.path("out.png");
+    let text = folder.path("notes.txt");
+    std::fs::write(&text, "no image").expect("a writable folder");
+    let render = |options: &[&'static str]| [&["render", "shape:torus", "-o", "unused.png"][..], options].concat();
+    sentence(&["render", "shape:torus", "-o", &out, "--height", "nowhere.png"], &["nowhere.png", "height image"]);
+    sentence(&["render", "shape:torus", "-o", &out, "--height", &text], &["notes.txt", "height image"]);
+    sentence(
+        &["render", "shape:torus", "-o", &out, "--displacement", "on"],
+        &["no material has a base colour image; name a height image"],
+    );
+    for wrong in [
+        &["--height-scale", "2"][..],
+        &["--height-scale", "nan"],
+        &["--midlevel", "1.5"],
+        &["--alpha", "-0.1"],
+        &["--normals", "flat"],
+        &["--displacement", "maybe"],
+    ] {
+        failure(&render(wrong), 2);
+    }
+    assert!(!std::path::Path::new(&out).exists());
+}
