@@ -141,9 +141,10 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         }
         let viewport = target.viewport();
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
+        let view = ScreenView { clip_from_object, viewport };
         let name = args.surface.animation.animation.clone();
-        let sizes = engine.sizes(&mut scene, ScreenView { clip_from_object, viewport })?;
-        let mut stats = Stats::new(&engine, &loaded, &scene, &measured, &settings, &camera, &target, &passes);
+        let sizes = engine.sizes(&mut scene, view)?;
+        let mut stats = Stats::new(&engine, &loaded, &scene, &measured, &settings, view, &passes);
         stats.triangles_in_view = sizes.in_view;
         stats.triangles_below_3_px = sizes.small;
         stats.leaks = leaks;

@@ -8,9 +8,9 @@ use serde::Serialize;
 use super::given::FactorsFile;
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
-use crate::measure::{Measured, ulp};
+use crate::measure::{Measured, ScreenView, ulp};
 use crate::mesh::EdgeCounts;
-use crate::render::{Camera, Scene, Target};
+use crate::render::Scene;
 use crate::settings::Settings;
 use crate::tessellate::Displacement;
 
@@ -138,20 +138,19 @@ struct CrackStats {
 }
 
 impl Stats {
+    /// What is known of every picture, seen from `view`.
     pub fn new(
         engine: &Engine,
         loaded: &Loaded,
         scene: &Scene,
         measured: &Measured,
         settings: &Settings,
-        camera: &Camera,
-        target: &Target,
+        view: ScreenView,
         passes: &[PassTime],
     ) -> Self {
         let (mesh, topology) = (&loaded.mesh, &loaded.topology);
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         let cracks = &measured.cracks;
-        let viewport = target.viewport();
         let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
         ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
         Self {
@@ -184,7 +183,7 @@ impl Stats {
                 different_normals: cracks.different_normals,
                 max_gap: cracks.max_gap(),
                 max_gap_ulp: cracks.max_gap() / ulp(topology),
-                max_gap_px: cracks.max_gap_px(camera.clip_from_object(viewport, &scene.bounds), viewport),
+                max_gap_px: cracks.max_gap_px(view.clip_from_object, view.viewport),
                 edges: cracks.edges.len() as u64,
             },
             leaks: None,

@@ -10,7 +10,7 @@ use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
 
 /// What a mesh is on the device: its topology, and room for its control nets.
 pub struct MeshBuffers {
-    /// Points, then room for every patch's centre, with its height map as w: see [`patch_maps`].
+    /// Points, then room for every patch's centre, with its height map as w: 1 for the first, 0 for none.
     pub points: wgpu::Buffer,
     pub corners: wgpu::Buffer,
     pub patches: wgpu::Buffer,

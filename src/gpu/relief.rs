@@ -124,18 +124,16 @@ pub struct ReliefPasses {
 }
 
 impl ReliefPasses {
-    /// One bind group for every slab, in their order.
+    /// Of a mesh with heights; one bind group for every slab, in their order.
     pub fn new(
         gpu: &Gpu,
         pipelines: &ComputePipelines,
         b: &MeshBuffers,
-        relief: &ReliefBuffers,
         images: &HeightImages,
-        params: &wgpu::Buffer,
-        given: &wgpu::Buffer,
-        vertices: &wgpu::Buffer,
+        [params, given, vertices]: [&wgpu::Buffer; 3],
         slabs: &[SlabPasses],
-    ) -> Self {
+    ) -> Option<Self> {
+        let relief = b.relief.as_ref()?;
         let own = [(0, params), (6, &b.shares)];
         let directions = [&own[..], &[(2, &b.corners), (7, &relief.part_starts), (8, &relief.parts)]].concat();
         let mesh = [(1, &b.points), (2, &b.corners), (3, &b.patches), (4, &b.edge_factors), (5, given)];
@@ -170,12 +168,12 @@ impl ReliefPasses {
                 entries: &entries,
             })
         });
-        Self {
+        Some(Self {
             directions: group("directions", &pipelines.directions, &directions),
             factor_levels: group("levels.factors", &pipelines.factor_levels, &factor_levels),
             point_levels: group("levels.points", &pipelines.point_levels, &point_levels),
             displace: displace.collect(),
-        }
+        })
     }
 
     /// Once a mesh, as its nets are: the direction of every point.

@@ -490,11 +490,9 @@ impl Tessellator {
                 bind_group(&self.gpu, "nets.centers", &nets.centers.get_bind_group_layout(0), &centers),
             )
         });
-        if let (None, Some(relief), Some(images)) = (&self.relief, &b.relief, &self.images) {
-            let (vertices, pipelines) = (&self.arena.vertices, &self.pipelines);
-            let passes =
-                ReliefPasses::new(&self.gpu, pipelines, b, relief, images, params, given, vertices, &self.slabs);
-            self.relief = Some(passes);
+        if let (None, Some(images)) = (&self.relief, &self.images) {
+            let buffers = [params, given, &self.arena.vertices];
+            self.relief = ReliefPasses::new(&self.gpu, &self.pipelines, b, images, buffers, &self.slabs);
         }
         for slab in &mut self.slabs {
             if slab.groups.is_none() {

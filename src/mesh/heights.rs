@@ -94,7 +94,7 @@ pub struct Heights {
 }
 
 impl HeightMap {
-    /// Of rows from the top. Larger than [`MAX_KEPT`] is made smaller first.
+    /// Of rows from the top. Sides of more than 4,096 px are made smaller first.
     pub fn new(size: [u32; 2], heights: Vec<f32>) -> Self {
         let [width, height] = size;
         let base: Level = ImageBuffer::from_raw(width, height, heights)

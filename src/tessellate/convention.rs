@@ -26,7 +26,7 @@ pub enum Convention {
     /// adaptive LOD cracks.
     #[value(name = "rotated")]
     Rotated = 3,
-    /// A mistake: as Direct3D 11, but TessFactor[0] and [1] are exchanged, as if patches were wound the other way, and
+    /// A mistake: as Direct3D 11, but the first two factors are exchanged, as if patches were wound the other way, and
     /// adaptive LOD cracks.
     #[value(name = "mirrored")]
     Mirrored = 4,

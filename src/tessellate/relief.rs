@@ -80,7 +80,7 @@ fn side_weights(side: usize, t: u32) -> [u32; 2] {
 }
 
 impl<'a> Relief<'a> {
-    /// What the mesh is displaced by under these inputs, if anything. It has no levels before [`Self::set_levels`].
+    /// What the mesh is displaced by under these inputs, if anything. It has no levels yet.
     pub(super) fn new(nets: &Nets<'a>, inputs: &Inputs) -> Option<Self> {
         let (mesh, topology) = (nets.mesh, nets.topology);
         let heights = displacing(mesh, inputs)?;
