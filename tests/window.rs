@@ -29,7 +29,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
     let mut harness = Harness::builder()
-        .with_size([1200.0, 860.0])
+        .with_size([1200.0, 960.0])
         .wgpu()
         .build_eframe(move |context| App::new(context, source).expect("these tests need a graphics adapter"));
     settle(&mut harness);
@@ -221,7 +221,9 @@ fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::L);
     settle(&mut harness);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
-    harness.get_by_label("A .gltf or .glb file, or shape:NAME").type_text(&path.display().to_string());
+    harness
+        .get_by_label("A .gltf or .glb file, shape:NAME, or a height image (.png, .jpg)")
+        .type_text(&path.display().to_string());
     settle(&mut harness);
     click(&mut harness, "Open");
     assert_eq!(harness.state().source(), Some(&vase()));

@@ -224,6 +224,11 @@ pub struct Trial {
     pub camera: Camera,
 }
 
+/// Nagata's curves can be a thousand times as long as their edges: of vast meshes, beyond what f32 has.
+fn is_nagata(settings: &Settings) -> bool {
+    matches!(settings.surface, Surface::Nagata | Surface::NagataAen)
+}
+
 pub fn any_trial() -> impl Strategy<Value = Trial> {
     let scale = prop::sample::select(vec![1e-36, 1e-6, 1.0, 1.0, 1e6, 9e36]);
     let lod = prop::sample::select(vec![Lod::Uniform, Lod::Paper, Lod::EdgeLength, Lod::Error, Lod::Distance]);
@@ -237,9 +242,7 @@ pub fn any_trial() -> impl Strategy<Value = Trial> {
             prop::sample::select(every_method(settings))
         });
     (any_soup(), scale, settings, any_camera()).prop_map(|(soup, scale, settings, camera)| {
-        // Nagata's curves can be a thousand times as long as their edges: beyond what f32 has.
-        let is_nagata = matches!(settings.surface, Surface::Nagata | Surface::NagataAen);
-        let scale = if is_nagata { f32::min(scale, 1e33) } else { scale };
+        let scale = if is_nagata(&settings) { f32::min(scale, 1e33) } else { scale };
         let mut builder = MeshBuilder::new();
         let material = builder.material(Material::plain("soup", [0.6, 0.6, 0.6, 1.0]));
         for corners in soup {
@@ -297,8 +300,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
     fn any_soup_holds_together_on_the_device(trial in any_trial()) {
+        let is_vast = trial.mesh.bounds().diagonal() > 1e34;
         let mut scene = scene_of(trial.mesh, 0.0);
-        for settings in every_method(trial.settings) {
+        for settings in every_method(trial.settings).into_iter().filter(|settings| !(is_vast && is_nagata(settings))) {
             judge(&settings, &measured(&mut scene, &settings, &trial.camera))?;
         }
     }
