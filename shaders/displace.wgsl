@@ -29,14 +29,22 @@ fn fetch_height(map: HeightMap, index: u32) -> f32 {
     return textureLoad(heights, vec2<u32>(i % HEIGHTS_ACROSS, i / HEIGHTS_ACROSS), 0).r;
 }
 
+fn pixel_place(map: HeightMap, x: f32, size: u32) -> f32 {
+    if map.repeats != 0u {
+        return wrapped(x) * f32(size) + f32(size) - 0.5;
+    }
+    return clamp(x * f32(size) - 0.5, 0.0, f32(size - 1u));
+}
+
 fn bilinear_height(map: HeightMap, level: u32, uv: vec2<f32>) -> f32 {
     let width = max(map.size.x >> level, 1u);
     let height = max(map.size.y >> level, 1u);
-    let x = wrapped(uv.x) * f32(width) + f32(width) - 0.5;
-    let y = wrapped(uv.y) * f32(height) + f32(height) - 0.5;
+    let x = pixel_place(map, uv.x, width);
+    let y = pixel_place(map, uv.y, height);
     let left = u32(x) % width;
-    let right = (left + 1u) % width;
     let upper = u32(y) % height;
+    // Beyond the last px of an image that ends there nothing is asked for.
+    let right = (left + 1u) % width;
     let lower = (upper + 1u) % height;
     let start = level_start(map, level);
     let a = fetch_height(map, start + upper * width + left);

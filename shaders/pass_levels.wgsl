@@ -36,17 +36,23 @@ fn directions_main(
     shares[point].direction = unit_or(sum, dominant);
 }
 
-// An edge's factor; of given ones, that of its dominant side.
+// An edge's factor, 1 to 64; of given ones, that of its dominant side, which may be no number: told by its bits, as those
+// of numbers that are not negative are in their order.
 fn segments_of(index: u32, dominant: u32) -> f32 {
+    var bits = bitcast<u32>(1.0);
     if params.lod != LOD_GIVEN {
-        return edge_factors[index];
-    }
-    for (var i = 0u; i < 3u; i++) {
-        if factor_side(params.convention, i) == dominant % 4u {
-            return bitcast<f32>(given_factors[dominant / 4u][i]);
+        bits = bitcast<u32>(edge_factors[index]);
+    } else {
+        for (var i = 0u; i < 3u; i++) {
+            if factor_side(params.convention, i) == dominant % 4u {
+                bits = given_factors[dominant / 4u][i];
+            }
         }
     }
-    return 1.0;
+    if bits > 0x7f800000u {
+        return 1.0;
+    }
+    return bitcast<f32>(clamp(bits, bitcast<u32>(1.0), bitcast<u32>(64.0)));
 }
 
 @compute @workgroup_size(256)
@@ -66,7 +72,7 @@ fn factor_levels_main(
         let uvs = patch_uvs(dominant / 4u);
         let side = dominant % 4u;
         let texels = texel_length(maps[map - 1u], uvs[side], uvs[(side + 1u) % 3u]);
-        level = segment_level(maps[map - 1u], texels, clamp(segments_of(index, dominant), 1.0, 64.0));
+        level = segment_level(maps[map - 1u], texels, segments_of(index, dominant));
     }
     shares[params.point_count + index].level = level;
 }

@@ -85,9 +85,11 @@ struct Share {
 
 // One of the height images: width and height of level 0 in px, and where it starts among all heights.
 struct HeightMap {
-    size: vec2<u32>,
+    @align(16) size: vec2<u32>,
     levels: u32,
     start: u32,
+    // 1 where it starts again where it ends.
+    repeats: u32,
 }
 
 // A vertex as it is drawn: position, patch and domain coordinates packed in 64 bits, normal packed in 32, uv.

@@ -261,7 +261,7 @@ impl Settings {
             cull_back_faces,
             convention,
             displacement,
-            height_scale: height_scale * view.radius,
+            height_scale,
             midlevel,
             view,
         }

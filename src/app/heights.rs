@@ -81,18 +81,24 @@ impl App {
     }
 
     pub(super) fn toggle_displacement(&mut self) {
-        let is_off = self.settings.displacement == Displacement::Off;
-        self.settings.displacement = if is_off { Displacement::On } else { Displacement::Off };
+        let last = std::mem::replace(&mut self.last_displacement, self.settings.displacement);
+        self.settings.displacement = match self.settings.displacement {
+            Displacement::Off if last == Displacement::Off => Displacement::On,
+            Displacement::Off => last,
+            _ => Displacement::Off,
+        };
     }
 
     fn displacement_rows(&mut self, ui: &mut egui::Ui) {
-        let radius = self.document.as_ref().map_or(0.0, |document| document.scene.bounds.radius());
+        let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
+        let radius = heights.map_or(0.0, |heights| heights.radius);
         let settings = &mut self.settings;
         let hover = "Whether the surface is displaced, and what its patches agree on where they meet (D).";
         value_chooser(ui, "Displace", hover, &mut settings.displacement, &DISPLACEMENTS);
         let is_on = settings.displacement != Displacement::Off;
         let units = short(f64::from(settings.height_scale * radius));
-        let hover = format!("How far white is above black, in bounding radii (r): {units} units here.");
+        let hover =
+            format!("How far white is above black, in bounding radii (r) of the mesh at rest: {units} units here.");
         let label = ui.label("Scale").on_hover_text(&hover);
         let slider = egui::Slider::new(&mut settings.height_scale, HEIGHT_RANGE).max_decimals(3).suffix(" r");
         ui.add_enabled(is_on, slider.update_while_editing(false)).labelled_by(label.id).on_hover_text(&hover);

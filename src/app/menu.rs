@@ -1,5 +1,6 @@
 //! The menu bar, the keys, and the small windows they open.
 
+use egui::text::CCursor;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
@@ -313,6 +314,11 @@ impl App {
             let response = ui.add(edit).labelled_by(label.id);
             if !response.has_focus() && !response.lost_focus() {
                 response.request_focus();
+                // What is typed takes the place of what is there.
+                let all = egui::text::CCursorRange::two(CCursor::new(0), CCursor::new(path.chars().count()));
+                let mut state = egui::TextEdit::load_state(ui.ctx(), response.id).unwrap_or_default();
+                state.cursor.set_char_range(Some(all));
+                state.store(ui.ctx(), response.id);
             }
             accepted = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
             ui.horizontal(|ui| {

@@ -32,7 +32,7 @@ use crate::measure::{Cracks, Sizes};
 use crate::mesh::Source;
 use crate::render::Camera;
 use crate::settings::Settings;
-use crate::tessellate::LodView;
+use crate::tessellate::{Displacement, LodView};
 
 use animation::Playback;
 use document::{Document, Load};
@@ -97,6 +97,8 @@ pub struct App {
     camera: Camera,
     /// Where the split was when it was last on.
     last_split: f32,
+    /// What displacement was before it was last switched.
+    last_displacement: Displacement,
     /// The view that LOD and clipping stay computed for, while frozen.
     frozen: Option<LodView>,
     document: Option<Document>,
@@ -134,6 +136,7 @@ impl App {
             settings: Settings::opening(),
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             last_split: 0.5,
+            last_displacement: Displacement::Off,
             frozen: None,
             document: None,
             load: None,

@@ -6,7 +6,7 @@ use super::widgets::{chooser, fixed, heading, value_chooser};
 use crate::settings::{
     ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
 };
-use crate::tessellate::{Clip, Convention, Edges, Lod, Normals, Partitioning, Surface};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// What values are called here; what they are is said where they are defined, for the commands too.
 const SURFACES: [(Surface, &str); 8] = [
@@ -181,7 +181,9 @@ impl App {
 
     fn back_face_row(&mut self, ui: &mut egui::Ui) {
         let scene = self.document.as_ref().map(|document| &document.scene);
-        let is_solid = scene.is_some_and(|scene| scene.tessellator.is_solid());
+        let moves = self.settings.displacement != Displacement::Off
+            && scene.is_some_and(|scene| scene.tessellator.mesh().heights.is_some());
+        let is_solid = scene.is_some_and(|scene| scene.tessellator.is_solid()) && !moves && self.moment().is_none();
         let check = egui::Checkbox::new(&mut self.settings.cull_back_faces, "Cull back faces");
         ui.add_enabled(is_solid, check)
             .on_hover_text(
@@ -189,7 +191,8 @@ impl App {
                  clip, not while the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
             )
             .on_disabled_hover_text(
-                "Backs of this mesh can be seen: it is open, a part of it is wound inward, or a material is double-sided.",
+                "Backs of this mesh can be seen: it is open, a part of it is wound inward, a material is double-sided, it is \
+                 displaced, or it moves.",
             );
     }
 

@@ -15,7 +15,7 @@ pub struct AnimationOption {
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
     /// Time in the animation, in s from 0 on; after its end is at its end
-    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = seconds, default_value_t = 0.0)]
+    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = seconds, default_value_t = 0.0, allow_hyphen_values = true)]
     pub time: f64,
 }
 

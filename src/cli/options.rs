@@ -73,7 +73,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
     /// Whether the surface is displaced, and what its patches agree on where they meet; by default on with --height, else
-    /// off
+    /// off. Without --height, by the materials' images
     #[arg(long, value_enum)]
     pub displacement: Option<Displacement>,
     /// How far white is above black, in bounding radii, -1 to 1
@@ -114,12 +114,23 @@ impl SurfaceOptions {
     /// What parsing can't see: options that need one another.
     ///
     /// # Errors
-    /// A budget without a tolerance to raise, or factors that differ under a partitioning that has one for all.
+    /// A budget without a tolerance to raise, an animation of what a rim was made for, heights that there aren't, or factors
+    /// that differ under a partitioning that has one for all.
     pub fn check(&self) -> Result<(), CliError> {
         if self.partitioning == Partitioning::Subtriangulation && self.lod != Lod::Uniform {
             return Err(CliError::Usage(
                 "--partitioning subtriangulation has one number of segments for all edges: it needs --lod uniform",
             ));
+        }
+        if self.weld.rim > 0.0 && self.animation.animation.is_some() {
+            return Err(CliError::Usage(
+                "--animation can't be with --rim: a rim's triangles hang on nothing that moves",
+            ));
+        }
+        let takes_heights = self.height.is_some() || self.displacement() != Displacement::Off;
+        let Settings { height_scale, midlevel, .. } = Settings::default();
+        if !takes_heights && (self.height_scale != height_scale || self.midlevel != midlevel) {
+            return Err(CliError::Usage("--height-scale and --midlevel need --height, or --displacement"));
         }
         if self.max_triangles.is_some() && self.lod != Lod::Error {
             return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
@@ -236,8 +247,8 @@ pub struct WeldOption {
     pub weld: f32,
     /// Cut triangles back from creases, edges with split normals, by this width, and fill it with a rim of small triangles
     /// with one normal on the crease, so that PN triangles don't tear there (Vlachos et al. 2001). Relative to the bounding
-    /// diagonal; 0 is no rim. No wider than a third of an edge, or than half-way to the middle of a triangle's incircle
-    #[arg(long, value_name = "WIDTH", default_value_t = 0.0, value_parser = rim)]
+    /// diagonal, 0 to 0.1; 0 is no rim. No wider than a third of an edge, or than half-way to the middle of a triangle's incircle
+    #[arg(long, value_name = "WIDTH", default_value_t = 0.0, value_parser = rim, allow_hyphen_values = true)]
     pub rim: f32,
 }
 

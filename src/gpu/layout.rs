@@ -133,6 +133,9 @@ pub struct HeightMap {
     pub size: [u32; 2],
     pub levels: u32,
     pub start: u32,
+    /// 1 where it starts again where it ends.
+    pub repeats: u32,
+    pub _pad: [u32; 3],
 }
 
 /// Patches that go through the arena together. `first_vertex` and `first_triangle` count from the slab's start.

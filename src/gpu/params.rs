@@ -44,7 +44,7 @@ pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: 
         alpha: if inputs.surface.is_phong() { inputs.alpha } else { 0.0 },
         normals: inputs.normals as u32,
         displacement: heights.map_or(0, |_| inputs.displacement as u32),
-        height_scale: heights.map_or(0.0, |_| inputs.height_scale),
+        height_scale: heights.map_or(0.0, |heights| tessellate::height_units(heights, inputs)),
         midlevel: heights.map_or(0.0, |_| inputs.midlevel),
         _pad: [0; 3],
         detail: detail.as_chunks().0.try_into().unwrap_or_default(),

@@ -24,21 +24,20 @@ impl HeightImages {
     /// # Errors
     /// They are larger than the adapter's textures.
     pub fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
-        let mut table = [HeightMap { size: [1, 1], levels: 1, start: 0 }; MAX_MAPS];
-        let mut all: Vec<f32> = Vec::new();
-        for (entry, map) in table.iter_mut().zip(&heights.maps) {
-            *entry = HeightMap { size: map.size, levels: map.levels, start: all.len() as u32 };
-            all.extend_from_slice(&map.heights);
-        }
-        let rows = (all.len() as u32).div_ceil(HEIGHTS_ACROSS).max(1);
-        let limit = gpu.device.limits().max_texture_dimension_2d;
+        let texels: u64 = heights.maps.iter().map(|map| map.heights.len() as u64).sum();
+        let rows = texels.div_ceil(u64::from(HEIGHTS_ACROSS)).max(1);
+        let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
         if rows > limit {
-            let bytes = 4 * all.len() as u64;
-            return Err(GpuError::TooLarge {
-                what: "height images",
-                bytes,
-                limit: 4 * u64::from(limit * HEIGHTS_ACROSS),
-            });
+            let limit = 4 * limit * u64::from(HEIGHTS_ACROSS);
+            return Err(GpuError::TooLarge { what: "height images", bytes: 4 * texels, limit });
+        }
+        let rows = rows as u32;
+        let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
+        let mut all: Vec<f32> = Vec::with_capacity((rows * HEIGHTS_ACROSS) as usize);
+        for (entry, map) in table.iter_mut().zip(&heights.maps) {
+            let (start, repeats) = (all.len() as u32, u32::from(map.repeats));
+            *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, ..*entry };
+            all.extend_from_slice(&map.heights);
         }
         all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
         Ok(Self {

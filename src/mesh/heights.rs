@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec2;
 use image::imageops::{self, FilterType};
-use image::{DynamicImage, ImageBuffer, ImageReader, Limits, Luma};
+use image::{DynamicImage, ImageBuffer, ImageError, ImageReader, Limits, Luma};
 
 use super::{Mesh, Texture};
 
@@ -26,7 +26,9 @@ pub const MAX_MAPS: usize = 256;
 pub enum HeightError {
     #[error("{} can't be read as a height image: {reason}", path.display())]
     Image { path: PathBuf, reason: String },
-    #[error("{name} has no image to displace by: no material has a base colour image; name a height image")]
+    #[error(
+        "{name} has no image to displace by: no material has a base colour image that can be read; name a height image"
+    )]
     NoImage { name: String },
     #[error("{name} has {count} images to displace by, and at most {MAX_MAPS} are taken; name one height image")]
     TooMany { name: String, count: usize },
@@ -75,6 +77,8 @@ pub struct HeightMap {
     /// Width and height of level 0, in px.
     pub size: [u32; 2],
     pub levels: u32,
+    /// Whether it starts again where it ends: some texture coordinate goes beyond 0 to 1. Else its border goes on.
+    pub repeats: bool,
     /// Rows from the top, level after level.
     pub heights: Vec<f32>,
 }
@@ -87,6 +91,8 @@ pub struct Heights {
     pub of_material: Vec<Option<u32>>,
     /// The least and the greatest height in any map.
     pub range: [f32; 2],
+    /// The mesh's bounding radius before anything moves it, in object units: heights are measured in it.
+    pub radius: f32,
     /// The sum of the angles, in radians, that triangles have at each of the mesh's corners, before anything moves them.
     pub angles: Vec<f32>,
     /// How far level l of any map, linearly interpolated, is from level 0 at most.
@@ -109,7 +115,7 @@ impl HeightMap {
             all.extend_from_slice(level.as_raw());
             levels += 1;
         }
-        Self { size: fitted, levels, heights: all }
+        Self { size: fitted, levels, repeats: false, heights: all }
     }
 
     /// The brightness of an image's px as they are stored: the weights of Rec. 709, and no transfer function, since heights
@@ -161,7 +167,10 @@ impl Heights {
         let mut limits = Limits::default();
         (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIZE), Some(MAX_SIZE));
         reader.limits(limits);
-        let image = reader.decode().map_err(|error| fail(error.to_string()))?;
+        let image = reader.decode().map_err(|error| match error {
+            ImageError::Unsupported(_) => fail("choose a PNG or JPEG image".to_owned()),
+            error => fail(error.to_string()),
+        })?;
         Ok(Self::everywhere(mesh, HeightMap::from_image(&image)))
     }
 
@@ -192,7 +201,15 @@ impl Heights {
         Ok(Self::new(mesh, maps, of_material))
     }
 
-    fn new(mesh: &Mesh, maps: Vec<HeightMap>, of_material: Vec<Option<u32>>) -> Self {
+    fn new(mesh: &Mesh, mut maps: Vec<HeightMap>, of_material: Vec<Option<u32>>) -> Self {
+        for (material, map) in mesh.materials.iter().zip(&of_material) {
+            let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
+            let uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
+            let beyond = |uv: Vec2| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any();
+            if let Some(map) = map.and_then(|map| maps.get_mut(map as usize)) {
+                map.repeats |= uvs.clone().any(beyond);
+            }
+        }
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
         let mut detail = [0.0_f32; MAX_LEVELS];
         for map in &maps {
@@ -213,7 +230,7 @@ impl Heights {
         for level in 1..MAX_LEVELS {
             detail[level] = detail[level].max(detail[level - 1]);
         }
-        Self { maps, of_material, range, angles: angles(mesh), detail }
+        Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail }
     }
 
     /// How far anything is moved at most, in units of the scale.
@@ -239,18 +256,40 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
     angles
 }
 
-/// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over the
-/// image's border it says nothing: most images don't repeat, and most texture coordinates don't ask them to.
+/// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over a
+/// repeating image's border it says nothing: many don't quite meet there.
 fn lost_detail(map: &HeightMap, level: u32) -> f32 {
-    let [width, height] = map.size;
-    let [margin_x, margin_y] = map.level_size(level).map(|side| 0.5 / side as f32);
-    let at = |i: u32| {
-        let uv = Vec2::new((i % width) as f32 + 0.5, (i / width) as f32 + 0.5) / Vec2::new(width as f32, height as f32);
-        let inside = (margin_x..=1.0 - margin_x).contains(&uv.x) && (margin_y..=1.0 - margin_y).contains(&uv.y);
-        let lost = || (map.heights[i as usize] - crate::tessellate::bilinear_height(map, level, uv)).abs();
-        if inside { lost() } else { 0.0 }
+    let [width, height] = map.size.map(|side| side as usize);
+    let [across, down] = map.level_size(level).map(|side| side as usize);
+    let start = (0..level).map(|l| map.level_size(l)).map(|[x, y]| (x * y) as usize).sum::<usize>();
+    let (columns, rows) = (places(width, across, map.repeats), places(height, down, map.repeats));
+    let own = &map.heights[start..start + across * down];
+    let mut lost = 0.0_f32;
+    for (y, row) in rows.iter().enumerate() {
+        let Some((upper, lower, below)) = *row else { continue };
+        for (x, column) in columns.iter().enumerate() {
+            let Some((left, right, beside)) = *column else { continue };
+            let line = |row: usize| {
+                let (a, b) = (own[row * across + left], own[row * across + right]);
+                a + (b - a) * beside
+            };
+            let (above, under) = (line(upper), line(lower));
+            lost = lost.max((map.heights[y * width + x] - (above + (under - above) * below)).abs());
+        }
+    }
+    lost
+}
+
+/// For each of `count` px of level 0 along one side, between which two of a level's `own` it lies, and how far from the
+/// first; none beyond the last of a repeating one.
+fn places(count: usize, own: usize, repeats: bool) -> Vec<Option<(usize, usize, f32)>> {
+    let place = |i: usize| {
+        let at = (i as f32 + 0.5) / count as f32 * own as f32 - 0.5;
+        let inside = at.clamp(0.0, (own - 1) as f32);
+        let first = inside as usize;
+        (!repeats || at == inside).then(|| (first, (first + 1).min(own - 1), inside - first as f32))
     };
-    (0..width * height).map(at).fold(0.0, f32::max)
+    (0..count).map(place).collect()
 }
 
 #[cfg(test)]

@@ -44,15 +44,24 @@ fn fetch_height(map: &HeightMap, index: u32) -> f32 {
     map.heights[index as usize]
 }
 
-/// A level's height at a texture coordinate, between its four nearest px; images repeat.
+/// Where a texture coordinate lies along one side of `size` px: after the middle of px 0, in px.
+fn pixel_place(map: &HeightMap, x: f32, size: u32) -> f32 {
+    if map.repeats {
+        return wrapped(x) * size as f32 + size as f32 - 0.5;
+    }
+    (x * size as f32 - 0.5).clamp(0.0, (size - 1) as f32)
+}
+
+/// A level's height at a texture coordinate, between its four nearest px.
 pub fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     let width = (map.size[0] >> level).max(1);
     let height = (map.size[1] >> level).max(1);
-    let x = wrapped(uv.x) * width as f32 + width as f32 - 0.5;
-    let y = wrapped(uv.y) * height as f32 + height as f32 - 0.5;
+    let x = pixel_place(map, uv.x, width);
+    let y = pixel_place(map, uv.y, height);
     let left = x as u32 % width;
-    let right = (left + 1) % width;
     let upper = y as u32 % height;
+    // Beyond the last px of an image that ends there nothing is asked for.
+    let right = (left + 1) % width;
     let lower = (upper + 1) % height;
     let start = level_start(map, level);
     let a = fetch_height(map, start + upper * width + left);
@@ -140,7 +149,18 @@ mod tests {
 
     /// A slope across, times two down.
     fn slope() -> HeightMap {
-        HeightMap::new([4, 2], (0..8).map(|i| (i % 4) as f32 / 8.0 + (i / 4) as f32 / 4.0).collect())
+        let heights = (0..8).map(|i| (i % 4) as f32 / 8.0 + (i / 4) as f32 / 4.0).collect();
+        HeightMap { repeats: true, ..HeightMap::new([4, 2], heights) }
+    }
+
+    #[test]
+    fn images_that_do_not_repeat_go_on_as_their_border_is() {
+        let map = HeightMap { repeats: false, ..slope() };
+        for (u, expected) in [(-1.0, 0.0), (0.0, 0.0), (0.125, 0.0), (0.875, 0.375), (1.0, 0.375), (7.0, 0.375)] {
+            assert_eq!(bilinear_height(&map, 0, vec2(u, 0.25)), expected, "{u}");
+        }
+        let between = bilinear_height(&map, 0, vec2(0.5, 0.5));
+        assert_eq!(between, slope().heights[..8].iter().sum::<f32>() / 8.0, "inside it makes no difference");
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub struct Inputs {
     pub cull_back_faces: bool,
     pub convention: Convention,
     pub displacement: Displacement,
-    /// How far the greatest height is above the least, in object units.
+    /// How far white is above black, in bounding radii of the mesh at rest.
     pub height_scale: f32,
     /// The height that stays where it is, 0 to 1.
     pub midlevel: f32,

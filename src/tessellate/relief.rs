@@ -17,9 +17,14 @@ pub fn displacing<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
     mesh.heights.as_deref().filter(|_| inputs.displacement != Displacement::Off)
 }
 
+/// How far white is above black, in object units: by the size of the mesh at rest, so that it is the same in every pose.
+pub fn height_units(heights: &Heights, inputs: &Inputs) -> f32 {
+    inputs.height_scale * heights.radius
+}
+
 /// How far any point is moved at most, in object units.
 pub fn reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
-    displacing(mesh, inputs).map_or(0.0, |heights| inputs.height_scale.abs() * heights.reach(inputs.midlevel))
+    displacing(mesh, inputs).map_or(0.0, |heights| height_units(heights, inputs).abs() * heights.reach(inputs.midlevel))
 }
 
 /// Heights over a mesh, and what its patches agree on.
@@ -91,7 +96,7 @@ impl<'a> Relief<'a> {
             heights,
             mode: inputs.displacement,
             normals: inputs.normals,
-            scale: inputs.height_scale,
+            scale: height_units(heights, inputs),
             midlevel: inputs.midlevel,
             directions: directions(mesh, &dominance),
             texels: texel_lengths(heights, mesh, topology, &dominance),
@@ -148,7 +153,11 @@ impl<'a> Relief<'a> {
         let (patch, side) = (dominant / 4, dominant as usize % 4);
         let uvs = self.uvs(patch);
         let Some(map) = self.map(patch) else { return 0.0 };
-        segment_level(map, texel_length(map, uvs[side], uvs[(side + 1) % 3]), segments.clamp(1.0, 64.0))
+        segment_level(
+            map,
+            texel_length(map, uvs[side], uvs[(side + 1) % 3]),
+            if segments >= 1.0 { segments.min(64.0) } else { 1.0 },
+        )
     }
 
     fn map(&self, patch: u32) -> Option<&'a HeightMap> {
@@ -289,7 +298,7 @@ fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
 
 /// How far level l of any map is from level 0 at most, in object units; more than anything beyond the last level.
 pub fn detail(heights: &Heights, inputs: &Inputs) -> [f32; 16] {
-    let own = heights.detail.map(|lost| lost * inputs.height_scale.abs());
+    let own = heights.detail.map(|lost| lost * height_units(heights, inputs).abs());
     std::array::from_fn(|level| own.get(level).copied().unwrap_or(f32::MAX))
 }
 

@@ -89,6 +89,11 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
         &["--alpha", "-0.1"],
         &["--normals", "flat"],
         &["--displacement", "maybe"],
+        // Of what isn't there.
+        &["--height-scale", "0.1"],
+        &["--midlevel", "0.1"],
+        &["--rim", "0.02", "--animation", "Walk"],
+        &["--rim", "-1"],
     ] {
         failure(&render(wrong), 2);
     }

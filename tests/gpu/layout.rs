@@ -84,7 +84,7 @@ fn shared_structs_have_one_layout() {
         detail,
     });
     same!(Share { direction, level, dominant, texels });
-    same!(HeightMap { size, levels, start });
+    same!(HeightMap { size, levels, start, repeats });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
     same!(Curve { points, first_side, side_count });

@@ -75,7 +75,7 @@ fn an_image_displaces_the_mesh_and_settings_stay() {
     press(&mut harness, Key::D);
     assert_eq!(harness.state().settings().displacement, Displacement::Off);
     press(&mut harness, Key::D);
-    assert_eq!(harness.state().settings().displacement, Displacement::On);
+    assert_eq!(harness.state().settings().displacement, Displacement::AsPublished, "what it was before");
     choose(&mut harness, "Heights", "None");
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(), 0);
     let _ = std::fs::remove_file(path);
