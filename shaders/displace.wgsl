@@ -97,21 +97,42 @@ fn direction_slopes(directions: array<vec3<f32>, 3>, direction: vec3<f32>, lengt
     return array<vec3<f32>, 2>(flat_u * (1.0 / length), flat_v * (1.0 / length));
 }
 
-// Mikkelsen 2008, the surface gradient.
-fn raised_normal(tangents: array<vec3<f32>, 2>, slopes: vec2<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let largest = max(abs(tangents[0]), abs(tangents[1]));
+// Of both texture coordinates over a flat triangle, each times twice its area; and that.
+struct UvGradients {
+    u: vec3<f32>,
+    v: vec3<f32>,
+    area: f32,
+}
+
+fn uv_gradients(corners: array<vec3<f32>, 3>, uvs: array<vec2<f32>, 3>) -> UvGradients {
+    let none = UvGradients(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
+    let along = corners[1] - corners[0];
+    let beside = corners[2] - corners[0];
+    let largest = max(abs(along), abs(beside));
     let size = max(max(largest.x, largest.y), largest.z);
     if size == 0.0 {
-        return normal;
+        return none;
     }
-    let along_u = tangents[0] * (1.0 / size);
-    let along_v = tangents[1] * (1.0 / size);
-    let rises = slopes * (1.0 / size);
-    let area = dot(cross(along_u, along_v), normal);
-    let back = cross(along_u, normal) * rises.y + cross(normal, along_v) * rises.x;
-    if area < 0.0 {
-        // Shaded from the other side.
-        return unit_or(normal * -area - back, normal);
+    let a = along * (1.0 / size);
+    let b = beside * (1.0 / size);
+    let facing = cross(a, b);
+    let area = length(facing);
+    if area <= 1e-12 {
+        return none;
     }
-    return unit_or(normal * area + back, normal);
+    let normal = facing * (1.0 / area);
+    let first = uvs[1] - uvs[0];
+    let second = uvs[2] - uvs[0];
+    let across = cross(b, normal);
+    let down = cross(normal, a);
+    return UvGradients(
+        (across * first.x + down * second.x) * size,
+        (across * first.y + down * second.y) * size,
+        area * size * size,
+    );
+}
+
+// Mikkelsen 2008, the surface gradient.
+fn raised_normal(gradient: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    return unit_or(normal - (gradient - normal * dot(gradient, normal)), normal);
 }

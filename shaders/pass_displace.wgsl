@@ -153,6 +153,28 @@ fn offset_at(at: Lookup) -> f32 {
     return params.height_scale * (height_at(own, lookup_level(own, at), uv) - params.midlevel);
 }
 
+// Where heights rise, and how steeply, by the frames of a patch's corners.
+fn uphill_at(at: Lookup) -> vec3<f32> {
+    let map = map_of(at.patch_index);
+    if map == 0u {
+        return vec3<f32>(0.0);
+    }
+    let own = maps[map - 1u];
+    let uv = linear_uv(patch_uvs(at.patch_index), at.u, at.v);
+    let rises = height_slopes(own, lookup_level(own, at), uv) * params.height_scale;
+    let at_corners = patches[at.patch_index].corners;
+    let x = f32(at.u) * UNIT;
+    let y = f32(at.v) * UNIT;
+    let z = f32(FIXED_ONE - at.u - at.v) * UNIT;
+    let along_u = corner_gradient(at_corners[0], 0u) * x
+        + corner_gradient(at_corners[1], 0u) * y
+        + corner_gradient(at_corners[2], 0u) * z;
+    let along_v = corner_gradient(at_corners[0], 1u) * x
+        + corner_gradient(at_corners[1], 1u) * y
+        + corner_gradient(at_corners[2], 1u) * z;
+    return along_u * rises.x + along_v * rises.y;
+}
+
 // How a patch's height changes with u and with v, and its tangents, moved by `offset` as a whole.
 struct Rise {
     slopes: vec2<f32>,
@@ -213,8 +235,7 @@ fn displace_main(
         let along_v = rise.tangents[1] + direction * rise.slopes.y;
         raised = facing_or(array<vec3<f32>, 2>(along_u, along_v), normal);
     } else {
-        let rise = rise_at(asked, offset);
-        raised = raised_normal(rise.tangents, rise.slopes, normal);
+        raised = raised_normal(uphill_at(asked), normal);
     }
     let p = vec3<f32>(vertex.x, vertex.y, vertex.z) + direction * offset;
     vertices[index] = Vertex(p.x, p.y, p.z, vertex.key0, vertex.key1, pack_normal(raised), vertex.uv);

@@ -1,4 +1,5 @@
-// What points and edges share where a mesh is displaced. Once a mesh (or pose): the direction of every point. Then, with the
+// What points, edges and corners share where a mesh is displaced. Once a mesh (or pose): the direction of every point, and
+// how texture coordinates change at every corner. Then, with the
 // factors: the level of the height image that fits the segments of every edge, and for a point the finest of its edges'.
 
 // Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
@@ -34,6 +35,34 @@ fn directions_main(
         dominant = corners[parts[starts[point]].x].normal;
     }
     shares[point].direction = unit_or(sum, dominant);
+}
+
+// A corner's patches are in `point_factors`, from `starts` on.
+@compute @workgroup_size(256)
+fn frames_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let corner = grid_index(workgroup, workgroups, local);
+    if corner + 1u >= arrayLength(&starts) {
+        return;
+    }
+    var u = vec3<f32>(0.0);
+    var v = vec3<f32>(0.0);
+    var area = 0.0;
+    for (var i = starts[corner]; i < starts[corner + 1u]; i++) {
+        let at = patches[point_factors[i]].points;
+        let positions = array<vec3<f32>, 3>(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
+        let own = uv_gradients(positions, patch_uvs(point_factors[i]));
+        u += own.u;
+        v += own.v;
+        area += own.area;
+    }
+    let share = select(1.0, 1.0 / area, area > 0.0);
+    let first = params.point_count + params.factor_count + 2u * corner;
+    shares[first].direction = u * share;
+    shares[first + 1u].direction = v * share;
 }
 
 // An edge's factor, 1 to 64; of given ones, that of its dominant side, which may be no number: told by its bits, as those

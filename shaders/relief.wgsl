@@ -5,6 +5,11 @@ fn share_of_factor(index: u32) -> Share {
     return shares[params.point_count + index];
 }
 
+// How a texture coordinate (0 or 1) changes at a corner.
+fn corner_gradient(corner: u32, coordinate: u32) -> vec3<f32> {
+    return shares[params.point_count + params.factor_count + 2u * corner + coordinate].direction;
+}
+
 // A patch's map, as behind its centre: none is 0.
 fn map_of(patch_index: u32) -> u32 {
     return u32(points[params.point_count + patch_index].w);

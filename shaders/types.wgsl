@@ -74,7 +74,8 @@ struct CurveNet {
 
 // What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
 // corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, and its dominant
-// side likewise, and its length.
+// side likewise, and its length. Of a corner, behind the factors: how its texture coordinates change, one after the other,
+// as directions.
 struct Share {
     direction: vec3<f32>,
     level: f32,

@@ -20,7 +20,7 @@ pub struct MeshBuffers {
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
     pub edge_factors: wgpu::Buffer,
-    /// What displacement shares, of points, then of factors; empty without heights.
+    /// What displacement shares, of points, then of factors, then of corners; empty without heights.
     pub shares: wgpu::Buffer,
     /// Of a mesh with heights.
     pub relief: Option<ReliefBuffers>,
@@ -44,7 +44,8 @@ impl MeshBuffers {
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
         let heights = mesh.heights.as_deref();
         let dominance = heights.map(|heights| Dominance::new(topology, &grouped, &heights.angles));
-        let relief = dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, dominance)).transpose()?;
+        let relief =
+            dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
         let shares = dominance.map(|dominance| shares(mesh, topology, &dominance)).unwrap_or_default();
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {

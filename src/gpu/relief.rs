@@ -75,33 +75,60 @@ pub struct ReliefBuffers {
     parts: wgpu::Buffer,
     factor_starts: wgpu::Buffer,
     factors: wgpu::Buffer,
+    corner_starts: wgpu::Buffer,
+    corner_patches: wgpu::Buffer,
+    corner_count: u32,
 }
 
 impl ReliefBuffers {
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, dominance: &Dominance) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Result<Self, GpuError> {
+        let (corner_starts, corner_patches) = patches_of_corners(mesh, topology);
         let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
         Ok(Self {
             part_starts: filled(gpu, "part starts", &dominance.part_starts)?,
             parts: filled(gpu, "parts", &parts)?,
             factor_starts: filled(gpu, "factor starts", &dominance.factor_starts)?,
             factors: filled(gpu, "point factors", &dominance.factors)?,
+            corner_starts: filled(gpu, "corner starts", &corner_starts)?,
+            corner_patches: filled(gpu, "corner patches", &corner_patches)?,
+            corner_count: mesh.corners.len() as u32,
         })
     }
 
     pub fn bytes(&self) -> u64 {
-        [&self.part_starts, &self.parts, &self.factor_starts, &self.factors].iter().map(|buffer| buffer.size()).sum()
+        let corners = [&self.corner_starts, &self.corner_patches];
+        let points = [&self.part_starts, &self.parts, &self.factor_starts, &self.factors];
+        corners.iter().chain(&points).map(|buffer| buffer.size()).sum()
     }
 }
 
-/// What points and then factors share, as far as it never changes.
+/// What points, then factors, then corners share, as far as it never changes.
 pub fn shares(mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Vec<Share> {
     let lengths = mesh.heights.as_deref().map(|heights| texel_lengths(heights, mesh, topology, dominance));
     let lengths = lengths.unwrap_or_default();
     let share = |dominant, texels| Share { dominant, texels, ..bytemuck::Zeroable::zeroed() };
     let points = dominance.corners.iter().map(|&dominant| share(dominant, 0.0));
-    points.chain(dominance.sides.iter().zip(lengths).map(|(&dominant, texels)| share(dominant, texels))).collect()
+    let factors = dominance.sides.iter().zip(lengths).map(|(&dominant, texels)| share(dominant, texels));
+    let corners = std::iter::repeat_n(share(0, 0.0), 2 * mesh.corners.len());
+    points.chain(factors).chain(corners).collect()
+}
+
+/// Where each corner's run of patches starts, and where the last ends; and the patches.
+fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) {
+    let mut starts = vec![0; mesh.corners.len() + 1];
+    let corners = || (0..).zip(&topology.patches).flat_map(|(patch, own)| own.corners.map(|corner| (corner, patch)));
+    corners().for_each(|(corner, _)| starts[corner as usize + 1] += 1);
+    for corner in 0..mesh.corners.len() {
+        starts[corner + 1] += starts[corner];
+    }
+    let (mut next, mut patches) = (starts.clone(), vec![0; 3 * topology.patches.len()]);
+    for (corner, patch) in corners() {
+        patches[next[corner as usize] as usize] = patch;
+        next[corner as usize] += 1;
+    }
+    (starts, patches)
 }
 
 /// A patch's height map, as it stands behind its centre among the points: 1 for the first, 0 for none.
@@ -117,6 +144,8 @@ pub fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
 /// The passes that displace a mesh, bound to its buffers.
 pub struct ReliefPasses {
     directions: wgpu::BindGroup,
+    frames: wgpu::BindGroup,
+    corner_count: u32,
     factor_levels: wgpu::BindGroup,
     point_levels: wgpu::BindGroup,
     displace: Vec<wgpu::BindGroup>,
@@ -135,6 +164,8 @@ impl ReliefPasses {
         let relief = b.relief.as_ref()?;
         let own = [(0, params), (6, &b.shares)];
         let directions = [&own[..], &[(2, &b.corners), (7, &relief.part_starts), (8, &relief.parts)]].concat();
+        let around = [(1, &b.points), (2, &b.corners), (3, &b.patches)];
+        let frames = [&own[..], &around, &[(7, &relief.corner_starts), (9, &relief.corner_patches)]].concat();
         let mesh = [(1, &b.points), (2, &b.corners), (3, &b.patches), (4, &b.edge_factors), (5, given)];
         let factor_levels = [&own[..], &mesh[..], &[(21, &images.maps)]].concat();
         let point_levels = [&own[..], &[(7, &relief.factor_starts), (9, &relief.factors)]].concat();
@@ -169,16 +200,19 @@ impl ReliefPasses {
         });
         Some(Self {
             directions: group("directions", &pipelines.directions, &directions),
+            frames: group("frames", &pipelines.frames, &frames),
+            corner_count: relief.corner_count,
             factor_levels: group("levels.factors", &pipelines.factor_levels, &factor_levels),
             point_levels: group("levels.points", &pipelines.point_levels, &point_levels),
             displace: displace.collect(),
         })
     }
 
-    /// Once a mesh, as its nets are: the direction of every point.
+    /// Once a mesh, as its nets are: the direction of every point, and the frame of every corner.
     pub fn record_directions(&self, recorder: &mut Recorder, pipelines: &ComputePipelines, b: &MeshBuffers) {
         recorder.compute("directions", |pass| {
             dispatch(pass, &pipelines.directions, &self.directions, grid(b.point_count));
+            dispatch(pass, &pipelines.frames, &self.frames, grid(self.corner_count));
         });
     }
 

@@ -120,24 +120,36 @@ pub fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> 
     [flat_u * (1.0 / length), flat_v * (1.0 / length)]
 }
 
-/// The normal of what was shaded with `normal`, has these tangents along u and v, and rises by `slopes` with them: exact if
-/// it rises along its normal (Mikkelsen 2008, the surface gradient).
-pub fn raised_normal(tangents: [Vec3; 2], slopes: Vec2, normal: Vec3) -> Vec3 {
-    let size = tangents[0].abs().max(tangents[1].abs()).max_element();
+/// How both texture coordinates change over a flat triangle: two vectors in its plane, in texture widths and heights a unit,
+/// each times twice the triangle's area; and that area. Zero where there is no triangle.
+pub fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
+    let along = corners[1] - corners[0];
+    let beside = corners[2] - corners[0];
+    let size = along.abs().max(beside.abs()).max_element();
     if size == 0.0 {
-        return normal;
+        return ([Vec3::ZERO; 2], 0.0);
     }
     // Areas of very small or large lengths are none: only proportions matter.
-    let along_u = tangents[0] * (1.0 / size);
-    let along_v = tangents[1] * (1.0 / size);
-    let rises = slopes * (1.0 / size);
-    let area = along_u.cross(along_v).dot(normal);
-    let back = along_u.cross(normal) * rises.y + normal.cross(along_v) * rises.x;
-    if area < 0.0 {
-        // Shaded from the other side.
-        return unit_or(normal * -area - back, normal);
+    let a = along * (1.0 / size);
+    let b = beside * (1.0 / size);
+    let facing = a.cross(b);
+    let area = facing.length();
+    if area <= 1e-12 {
+        return ([Vec3::ZERO; 2], 0.0);
     }
-    unit_or(normal * area + back, normal)
+    let normal = facing * (1.0 / area);
+    let first = uvs[1] - uvs[0];
+    let second = uvs[2] - uvs[0];
+    let across = b.cross(normal);
+    let down = normal.cross(a);
+    let gradients = [across * first.x + down * second.x, across * first.y + down * second.y];
+    (gradients.map(|gradient| gradient * size), area * size * size)
+}
+
+/// The normal of what is shaded with `normal` and rises by `gradient`, a vector that points uphill and is as long as the
+/// slope: exact if it rises along its normal (Mikkelsen 2008, the surface gradient).
+pub fn raised_normal(gradient: Vec3, normal: Vec3) -> Vec3 {
+    unit_or(normal - (gradient - normal * gradient.dot(normal)), normal)
 }
 
 #[cfg(test)]
@@ -201,25 +213,34 @@ mod tests {
         assert_eq!(texel_length(&map, Vec2::ZERO, vec2(0.5, 0.0)), 128.0);
     }
 
+    #[test]
+    fn a_line_has_no_gradient() {
+        let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y];
+        for corners in [[Vec3::ZERO; 3], [Vec3::ZERO, Vec3::X, Vec3::X * 2.0]] {
+            assert_eq!(uv_gradients(corners, uvs), ([Vec3::ZERO; 2], 0.0));
+        }
+        assert_eq!(raised_normal(Vec3::ZERO, Vec3::Y), Vec3::Y);
+    }
+
     proptest! {
         #[test]
-        fn raised_normals_are_those_of_the_raised_plane(
+        fn raised_normals_are_those_of_the_raised_triangle(
             (ux, uy, uz) in (0.3f64..2.0, -1f64..1.0, -1f64..1.0),
             (vx, vy, vz) in (-0.2f64..0.2, 0.3f64..2.0, -1f64..1.0),
-            (rise_u, rise_v) in (-2f64..2.0, -2f64..2.0),
-            size in prop::sample::select(vec![1e-20, 1.0, 1e12]),
+            slopes in prop::array::uniform2(-2f64..2.0),
+            size in prop::sample::select(vec![1e-15, 1.0, 1e12]),
         ) {
-            let (u, v) = (DVec3::new(ux, uy, uz), DVec3::new(vx, vy, vz));
-            let normal = u.cross(v).normalize();
-            let rises = DVec2::new(rise_u, rise_v);
-            // The plane through the raised tangents, seen from the side of the normal and, in the file's other sense, from below.
-            let expected = (u + normal * rises.x).cross(v + normal * rises.y).normalize();
-            let scaled = [u, v].map(|tangent| (tangent * size).as_vec3());
-            let own = raised_normal(scaled, (rises * size).as_vec2(), normal.as_vec3());
-            prop_assert!(own.as_dvec3().distance(expected) < 1e-5, "{} {}", own, expected);
-            let below = (u - normal * rises.x).cross(v - normal * rises.y).normalize();
-            let own = raised_normal(scaled, (rises * size).as_vec2(), -normal.as_vec3());
-            prop_assert!(own.as_dvec3().distance(-below) < 1e-5, "{} {}", own, -below);
+            // A triangle with its own texture coordinates, over which a height changes by `slopes` a texture.
+            let corners = [DVec3::ZERO, DVec3::new(ux, uy, uz), DVec3::new(vx, vy, vz)].map(|corner| corner * size);
+            let uvs = [DVec2::new(0.1, 0.2), DVec2::new(0.9, 0.3), DVec2::new(0.2, 0.7)];
+            let normal = corners[1].cross(corners[2]).normalize();
+            let height = |uv: DVec2| uv.dot(DVec2::from(slopes)) * size;
+            let raised = [0, 1, 2].map(|k| corners[k] + normal * height(uvs[k]));
+            let expected = (raised[1] - raised[0]).cross(raised[2] - raised[0]).normalize();
+            let (gradients, area) = uv_gradients(corners.map(|corner| corner.as_vec3()), uvs.map(|uv| uv.as_vec2()));
+            let uphill = (gradients[0] * slopes[0] as f32 + gradients[1] * slopes[1] as f32) * (size as f32 / area);
+            let own = raised_normal(uphill, normal.as_vec3());
+            prop_assert!(own.as_dvec3().distance(expected) < 1e-4, "{} {}", own, expected);
         }
 
         #[test]

@@ -32,7 +32,7 @@ pub use cull::{
 };
 pub use displace::{
     Displacement, bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level,
-    texel_length,
+    texel_length, uv_gradients,
 };
 pub use domain::{domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, level};

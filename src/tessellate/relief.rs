@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::displace::{
-    Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length,
+    Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
 use super::error::{edge_sight, relief_factor};
 use super::mesh::{Inputs, Nets, Vertex};
@@ -40,6 +40,9 @@ pub struct Relief<'a> {
     dominance: Dominance,
     /// One for each point.
     directions: Vec<Vec3>,
+    /// How both texture coordinates change at each corner, over the triangles around it: what linear and quadratic normals
+    /// rise by, which bend over edges as they do.
+    frames: Vec<[Vec3; 2]>,
     /// How long each factor's edge is at most in its sides' maps, in px of level 0.
     texels: Vec<f32>,
     /// One for each factor, and for each point the finest of its edges'.
@@ -99,6 +102,7 @@ impl<'a> Relief<'a> {
             scale: height_units(heights, inputs),
             midlevel: inputs.midlevel,
             directions: directions(mesh, &dominance),
+            frames: frames(mesh, topology),
             texels: texel_lengths(heights, mesh, topology, &dominance),
             factor_levels: vec![0.0; dominance.sides.len()],
             point_levels: vec![0.0; dominance.corners.len()],
@@ -194,8 +198,7 @@ impl<'a> Relief<'a> {
             let (along_u, along_v) = (tangents[0] + direction * slopes.x, tangents[1] + direction * slopes.y);
             facing_or([along_u, along_v], normal)
         } else {
-            let (slopes, tangents) = self.slopes(nets, asked, offset);
-            raised_normal(tangents, slopes, normal)
+            raised_normal(self.uphill(asked), normal)
         };
         Vertex { position: moved.to_array(), normal: pack_normal(normal), ..vertex }
     }
@@ -267,6 +270,18 @@ impl<'a> Relief<'a> {
         self.scale * (height_at(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) - self.midlevel)
     }
 
+    /// Where heights rise, and how steeply, by the frames of a patch's corners.
+    fn uphill(&self, at: Lookup) -> Vec3 {
+        let Some(map) = self.map(at.patch) else { return Vec3::ZERO };
+        let level = at.level.min((map.levels - 1) as f32);
+        let rises = height_slopes(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) * self.scale;
+        let [a, b, c] = self.topology.patches[at.patch as usize].corners.map(|corner| self.frames[corner as usize]);
+        let [x, y, z] = [at.u, at.v, FIXED_ONE - at.u - at.v].map(|weight| weight as f32 * UNIT);
+        let along_u = a[0] * x + b[0] * y + c[0] * z;
+        let along_v = a[1] * x + b[1] * y + c[1] * z;
+        along_u * rises.x + along_v * rises.y
+    }
+
     /// How a patch's height changes with u and with v, and its tangents, moved by `offset` as a whole. Object units.
     fn slopes(&self, nets: &Nets, at: Lookup, offset: f32) -> (Vec2, [Vec3; 2]) {
         let uvs = self.uvs(at.patch);
@@ -283,6 +298,20 @@ impl<'a> Relief<'a> {
         let rises = height_slopes(map, level, linear_uv(uvs, at.u, at.v)) * self.scale;
         (Vec2::new(rises.dot(uvs[0] - uvs[2]), rises.dot(uvs[1] - uvs[2])), tangents)
     }
+}
+
+/// The mean of the gradients of both texture coordinates over the patches around each corner, by their areas.
+fn frames(mesh: &Mesh, topology: &Topology) -> Vec<[Vec3; 2]> {
+    let mut sums = vec![([Vec3::ZERO; 2], 0.0_f32); mesh.corners.len()];
+    for (index, patch) in (0..).zip(&topology.patches) {
+        let uvs = patch.corners.map(|corner| mesh.corners[corner as usize].uv);
+        let (gradients, area) = uv_gradients(topology.patch_positions(index), uvs);
+        for corner in patch.corners {
+            let sum = &mut sums[corner as usize];
+            *sum = ([sum.0[0] + gradients[0], sum.0[1] + gradients[1]], sum.1 + area);
+        }
+    }
+    sums.into_iter().map(|(sum, area)| if area > 0.0 { sum.map(|x| x * (1.0 / area)) } else { sum }).collect()
 }
 
 /// The mean of all normals at each point, by the angles that they stand for; its dominant corner's where they cancel.
