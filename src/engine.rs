@@ -67,7 +67,9 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     }
     if let Some(heights) = &preparation.heights {
         let heights = Arc::new(heights.load(&mesh)?);
-        Arc::make_mut(&mut mesh).heights = Some(heights);
+        let mesh = Arc::make_mut(&mut mesh);
+        mesh.warnings.extend(heights.warning(mesh));
+        mesh.heights = Some(heights);
     }
     Ok(Loaded {
         source: source.clone(),

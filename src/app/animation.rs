@@ -106,6 +106,11 @@ impl App {
     /// Only for a mesh that can move.
     pub(super) fn animation_section(&mut self, ui: &mut egui::Ui) {
         if self.clips().is_empty() {
+            let read = self.document.as_ref().map(|document| &document.loaded.read);
+            if read.is_some_and(|read| read.rig.is_some()) {
+                heading(ui, "Animation");
+                ui.weak("Not with a rim, which hangs on nothing that moves.");
+            }
             return;
         }
         heading(ui, "Animation");

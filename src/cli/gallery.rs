@@ -22,6 +22,12 @@ pub struct Args {
     /// What the exhibit of displacement is displaced by: an image, or `material`; without it, waves made in code
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
+    /// How far white is above black in that exhibit, in bounding radii, -1 to 1
+    #[arg(long, value_name = "S", default_value_t = 0.15, value_parser = options::height_scale, allow_hyphen_values = true)]
+    pub height_scale: f32,
+    /// The height that stays where it is, 0 to 1
+    #[arg(long, value_name = "H", default_value_t = 0.5, value_parser = options::fraction)]
+    pub midlevel: f32,
     /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64
     #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::factor)]
     pub factor: f32,
@@ -35,6 +41,8 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },
         factor: args.factor,
+        height_scale: args.height_scale,
+        midlevel: args.midlevel,
         azimuth: args.camera.azimuth,
         elevation: args.camera.elevation.clamp(-89.9, 89.9),
     };

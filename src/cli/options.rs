@@ -361,7 +361,7 @@ fn alpha(text: &str) -> Result<f32, String> {
     within(text, ALPHA_RANGE)
 }
 
-fn height_scale(text: &str) -> Result<f32, String> {
+pub fn height_scale(text: &str) -> Result<f32, String> {
     within(text, HEIGHT_RANGE)
 }
 

@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use crate::mesh::{HeightMap, Heights, Mesh, Shape};
 use crate::settings::{Overlays, Settings};
-use crate::tessellate::{Displacement, Edges, Normals, Partitioning, Surface};
+use crate::tessellate::{Displacement, Normals, Partitioning, Surface};
 
 /// One question, and a tile for every answer.
 #[derive(Clone, Debug)]
@@ -71,7 +71,6 @@ fn surfaces() -> Exhibit {
 
 fn creases() -> Exhibit {
     let of = |surface| Tile::of(surface, Settings { surface, ..settings() });
-    let published = Settings { edges: Edges::AsPublished, ..settings() };
     let rim = Tile { rim: 0.02, ..of(Surface::Pn) };
     Exhibit {
         name: "creases",
@@ -86,10 +85,6 @@ fn creases() -> Exhibit {
             rim.named("pn --rim 0.02", "A rim along creases, for PN triangles (Vlachos et al. 2001)."),
             of(Surface::PnCrease),
             of(Surface::PnAen),
-            Tile::of(Edges::AsPublished, published).named(
-                "pn-aen --edges as-published",
-                "PN-AEN as the white paper's shaders compute it: closed in real numbers, and torn in the last bits.",
-            ),
         ],
     }
 }
@@ -128,7 +123,7 @@ fn patterns() -> Exhibit {
 
 fn heights() -> Exhibit {
     let of = |displacement| {
-        let tile = Tile::of(displacement, Settings { displacement, height_scale: 0.15, ..settings() });
+        let tile = Tile::of(displacement, Settings { displacement, ..settings() });
         Tile { factor: Some(24.0), ..tile }
     };
     Exhibit {

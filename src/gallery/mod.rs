@@ -42,6 +42,9 @@ pub struct Look {
     pub preparation: Preparation,
     /// Tessellation factor.
     pub factor: f32,
+    /// How far white is above black, in bounding radii, and the height that stays.
+    pub height_scale: f32,
+    pub midlevel: f32,
     /// From the front to the right and upwards, in degrees.
     pub azimuth: f32,
     pub elevation: f32,
@@ -108,7 +111,9 @@ fn draw_tile(
     let framing = Camera::framing(&scene.bounds, target.viewport());
     let distance = AWAY * framing.distance;
     let camera = Camera { azimuth: look.azimuth, elevation: look.elevation, distance, ..framing };
-    let settings = Settings { overlays, factor: tile.factor.unwrap_or(look.factor), ..tile.settings };
+    let Look { height_scale, midlevel, factor, .. } = *look;
+    let factor = tile.factor.unwrap_or(factor);
+    let settings = Settings { overlays, factor, height_scale, midlevel, ..tile.settings };
     let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
     engine.count(scene, &inputs, &mut Timing::Off)?;
     let measured = engine.measure(scene)?;

@@ -233,6 +233,20 @@ impl Heights {
         Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail }
     }
 
+    /// What of a mesh these heights tell nothing of, in a sentence: triangles whose corners all have one texture coordinate.
+    pub fn warning(&self, mesh: &Mesh) -> Option<String> {
+        let mut count = 0;
+        for (material, _) in mesh.materials.iter().zip(&self.of_material).filter(|(_, map)| map.is_some()) {
+            let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
+            let is_point = |triangle: &&[u32; 3]| {
+                let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize].uv);
+                a == b && b == c
+            };
+            count += triangles.iter().filter(is_point).count();
+        }
+        (count > 0).then(|| format!("triangles without texture coordinates, which heights move as a whole: {count}."))
+    }
+
     /// How far anything is moved at most, in units of the scale.
     pub fn reach(&self, midlevel: f32) -> f32 {
         (self.range[0] - midlevel).abs().max((self.range[1] - midlevel).abs())
@@ -344,6 +358,15 @@ mod tests {
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
         let heights = Heights::of_materials(&mesh).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
+    }
+
+    #[test]
+    fn triangles_without_texture_coordinates_are_counted() {
+        let map = || HeightMap::new([1, 1], vec![0.5]);
+        let [with, without] = [Shape::Torus, Shape::Icosphere].map(Shape::build);
+        assert_eq!(Heights::everywhere(&with, map()).warning(&with), None);
+        let warning = Heights::everywhere(&without, map()).warning(&without).expect("80 triangles");
+        assert!(warning.ends_with("as a whole: 80."), "{warning}");
     }
 
     #[test]

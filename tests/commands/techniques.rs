@@ -80,7 +80,7 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
     sentence(&["render", "shape:torus", "-o", &out, "--height", &text], &["notes.txt", "height image"]);
     sentence(
         &["render", "shape:torus", "-o", &out, "--displacement", "on"],
-        &["no material has a base colour image; name a height image"],
+        &["no material has a base colour image"],
     );
     for wrong in [
         &["--height-scale", "2"][..],
