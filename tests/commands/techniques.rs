@@ -78,10 +78,7 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
     let render = |options: &[&'static str]| [&["render", "shape:torus", "-o", "unused.png"][..], options].concat();
     sentence(&["render", "shape:torus", "-o", &out, "--height", "nowhere.png"], &["nowhere.png", "height image"]);
     sentence(&["render", "shape:torus", "-o", &out, "--height", &text], &["notes.txt", "height image"]);
-    sentence(
-        &["render", "shape:torus", "-o", &out, "--displacement", "on"],
-        &["no material has a base colour image"],
-    );
+    sentence(&["render", "shape:torus", "-o", &out, "--displacement", "on"], &["no material has a base colour image"]);
     for wrong in [
         &["--height-scale", "2"][..],
         &["--height-scale", "nan"],

@@ -188,7 +188,8 @@ fn an_image_ends_at_its_border_where_coordinates_end_and_repeats_where_they_do_n
 #[test]
 fn factors_that_are_no_numbers_leave_no_hole_in_the_neighbours() {
     let (_, mut scene) = wavy(Shape::CubeSplit);
-    let given = |patch: usize| HullFactors { edges: [if patch % 2 == 0 { f32::NAN } else { 3.0 }; 3], inside: 3.0 };
+    let given =
+        |patch: usize| HullFactors { edges: [if patch.is_multiple_of(2) { f32::NAN } else { 3.0 }; 3], inside: 3.0 };
     let given: Vec<_> = (0..scene.tessellator.topology().patches.len()).map(given).collect();
     scene.tessellator.give(Some(given.clone())).expect("few patches");
     let settings = Settings { displacement: Displacement::On, ..Settings::default() };
