@@ -69,7 +69,8 @@ impl App {
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(
-            "What the surface is displaced by: black is 0 and white is 1. An image that is dropped on the window is taken too.",
+            "What the surface is displaced by: black is 0 and white is 1. An image that is dropped on the window is taken too \
+             (--height).",
         );
         ui.end_row();
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
@@ -93,7 +94,8 @@ impl App {
         let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
         let radius = heights.map_or(0.0, |heights| heights.radius);
         let settings = &mut self.settings;
-        let hover = "Whether the surface is displaced, and what its patches agree on where they meet (D).";
+        let hover =
+            "Whether the surface is displaced, and what its patches agree on where they meet (D; --displacement).";
         value_chooser(ui, "Displace", hover, &mut settings.displacement, &DISPLACEMENTS);
         let is_on = settings.displacement != Displacement::Off;
         let units = short(f64::from(settings.height_scale * radius));

@@ -128,8 +128,8 @@ impl App {
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
         let takes_factor = matches!(settings.used_lod(), Lod::Uniform | Lod::Distance);
-        value_chooser(ui, "Surface", "What each triangle becomes.", &mut settings.surface, &SURFACES);
-        let hover = "How strong Phong tessellation is, from 0, flat, to 1; its authors use 0.75.";
+        value_chooser(ui, "Surface", "What each triangle becomes (--surface).", &mut settings.surface, &SURFACES);
+        let hover = "How strong Phong tessellation is, from 0, flat, to 1; its authors use 0.75 (--alpha).";
         let label = ui.label("Alpha").on_hover_text(hover);
         let slider = egui::Slider::new(&mut settings.alpha, ALPHA_RANGE).max_decimals(2);
         ui.add_enabled(settings.surface.is_phong(), slider)
@@ -137,7 +137,13 @@ impl App {
             .on_hover_text(hover)
             .on_disabled_hover_text("Only Phong tessellation has a strength.");
         ui.end_row();
-        value_chooser(ui, "Shading", "Which normals the surface is shaded with.", &mut settings.normals, &NORMALS);
+        value_chooser(
+            ui,
+            "Shading",
+            "Which normals the surface is shaded with (--normals).",
+            &mut settings.normals,
+            &NORMALS,
+        );
         let hover = "Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -). Under LOD by distance, the \
                      largest.";
         let label = ui.label("Factor").on_hover_text(hover);
@@ -150,9 +156,21 @@ impl App {
             .on_hover_text(hover)
             .on_disabled_hover_text("Adaptive LOD computes a factor for every edge.");
         ui.end_row();
-        chooser(ui, "Partitioning", "How factors become segments.", &mut settings.partitioning, &PARTITIONINGS);
+        chooser(
+            ui,
+            "Partitioning",
+            "How factors become segments (--partitioning).",
+            &mut settings.partitioning,
+            &PARTITIONINGS,
+        );
         let mut edges = settings.edges;
-        value_chooser(ui, "Edges", "Who computes what the sides of an edge must agree on (E).", &mut edges, &EDGES);
+        value_chooser(
+            ui,
+            "Edges",
+            "Who computes what the sides of an edge must agree on (E; --edges).",
+            &mut edges,
+            &EDGES,
+        );
         settings.set_edges(edges);
     }
 
@@ -162,13 +180,13 @@ impl App {
             if settings.partitioning == Partitioning::Subtriangulation {
                 fixed(ui, "LOD", "Uniform", LOD_FIXED);
             } else {
-                value_chooser(ui, "LOD", "Where factors come from (L).", &mut settings.lod, &LODS);
+                value_chooser(ui, "LOD", "Where factors come from (L; --lod).", &mut settings.lod, &LODS);
             }
             lod_row(ui, settings);
             ui.end_row();
-            value_chooser(ui, "Clipping", "Which patches out of view are left out.", &mut settings.clip, &CLIPS);
+            value_chooser(ui, "Clipping", "Which patches out of view are left out (--clip).", &mut settings.clip, &CLIPS);
             let hover =
-                "Which edge each factor is for, and which corner each weight: what hull and domain shader agree on.";
+                "Which edge each factor is for, and which corner each weight: what hull and domain shader agree on (--convention).";
             value_chooser(ui, "Convention", hover, &mut settings.convention, &CONVENTIONS);
         });
         self.back_face_row(ui);

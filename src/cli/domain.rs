@@ -12,9 +12,8 @@ use crate::tessellate::{
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// How factors become segments: integer, pow2, fractional-odd or fractional-even; or subtriangulation, which takes four
-    /// equal factors F for ceil(F) x ceil(F) equal triangles, a level of detail of ceil(F) - 1
-    #[arg(long, value_name = "P")]
+    /// How factors become segments; subtriangulation takes four equal ones
+    #[arg(long, value_name = "P", value_parser = super::options::partitioning())]
     pub partitioning: Partitioning,
     /// Factors of the edges where u, v and w are 0, and inside; also nan, inf, 0 and negatives
     #[arg(

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser};
 use glam::Vec2;
 
@@ -36,9 +36,8 @@ pub struct SurfaceOptions {
     /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64
     #[arg(long, value_name = "F", default_value_t = Settings::default().factor, value_parser = factor)]
     pub factor: f32,
-    /// How factors become segments: integer, pow2, fractional-odd or fractional-even; or subtriangulation, under which
-    /// factor F cuts every patch into ceil(F) x ceil(F) equal triangles, a level of detail of ceil(F) - 1
-    #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning)]
+    /// How factors become segments
+    #[arg(long, value_name = "P", default_value_t = Settings::default().partitioning, value_parser = partitioning())]
     pub partitioning: Partitioning,
     /// Where factors come from: the same everywhere; the white paper's projected length of an edge's control polygon;
     /// that in a form that holds for edges near and behind the eye too; the error on screen; or the distance to the eye
@@ -132,6 +131,9 @@ impl SurfaceOptions {
         if !takes_heights && (self.height_scale != height_scale || self.midlevel != midlevel) {
             return Err(CliError::Usage("--height-scale and --midlevel need --height, or --displacement"));
         }
+        if !self.surface.is_phong() && self.alpha != Settings::default().alpha {
+            return Err(CliError::Usage("--alpha needs --surface phong or phong-aen, whose strength it is"));
+        }
         if self.max_triangles.is_some() && self.lod != Lod::Error {
             return Err(CliError::Usage("--max-triangles needs --lod error, whose tolerance it raises"));
         }
@@ -223,6 +225,15 @@ impl SurfaceOptions {
     pub fn viewport(&self) -> Vec2 {
         Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
     }
+}
+
+/// Reads a partitioning, and says what each is; HLSL's spelling with an underscore is one too.
+pub fn partitioning() -> impl TypedValueParser<Value = Partitioning> {
+    let value = |partitioning: Partitioning| {
+        let about = partitioning.about().trim_end_matches('.');
+        PossibleValue::new(partitioning.name()).help(about).alias(partitioning.name().replace('-', "_"))
+    };
+    PossibleValuesParser::new(Partitioning::ALL.map(value)).try_map(|name| name.parse::<Partitioning>())
 }
 
 /// Reads where to write a picture: not a name that says it is no PNG file.

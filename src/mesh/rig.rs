@@ -152,9 +152,12 @@ impl fmt::Display for Moved {
 pub const LARGEST_COORDINATE: f32 = 1e37;
 
 impl Rig {
-    /// The clip of this name; of several, the first.
+    /// The clip of this name; of several, the first. Without one, the only clip of this name but for its case.
     pub fn clip(&self, name: &str) -> Option<usize> {
-        self.clips.iter().position(|clip| clip.name == name)
+        let exact = self.clips.iter().position(|clip| clip.name == name);
+        let alike = |clip: &Clip| clip.name.to_lowercase() == name.to_lowercase();
+        let only = || self.clips.iter().filter(|clip| alike(clip)).count() == 1;
+        exact.or_else(|| self.clips.iter().position(alike).filter(|_| only()))
     }
 
     /// Where everything is at a moment. Before the first and after the last key a channel keeps its value. A pose in

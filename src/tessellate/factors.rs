@@ -59,10 +59,18 @@ impl Partitioning {
     /// What it does, in a sentence or two.
     pub const fn about(self) -> &'static str {
         match self {
-            Self::Integer => "Factors are rounded up: every segment is as long, and the pattern pops.",
-            Self::Pow2 => "Factors are rounded up to 1, 2, 4, 8, 16, 32 or 64: the pattern only halves.",
-            Self::FractionalOdd => "An odd number of segments, two of which grow from nothing: no pops.",
-            Self::FractionalEven => "An even number of segments, two of which grow from nothing; at least 2.",
+            Self::Integer => {
+                "Factors are rounded up: every segment is as long, and the pattern pops (Direct3D 11.3, section 11.7)."
+            }
+            Self::Pow2 => {
+                "Factors are rounded up to 1, 2, 4, 8, 16, 32 or 64: the pattern only halves (Direct3D 11.3, section 11.7)."
+            }
+            Self::FractionalOdd => {
+                "An odd number of segments, two of which grow from nothing: no pops (Direct3D 11.3, section 11.7)."
+            }
+            Self::FractionalEven => {
+                "An even number of segments, two of which grow from nothing; at least 2 (Direct3D 11.3, section 11.7)."
+            }
             Self::Subtriangulation => {
                 "The factor is rounded up to n, and every patch becomes n x n equal triangles: level of detail n - 1 of \
                  Vlachos et al. 2001, figure 4. Not Direct3D's; one factor for all, so LOD is uniform."

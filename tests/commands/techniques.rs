@@ -24,7 +24,8 @@ fn stats_name_what_was_drawn_as_the_options_do() {
     let normals = ["linear", "quadratic", "surface"];
     for (index, surface) in surfaces.into_iter().enumerate() {
         let normals = normals[index % 3];
-        let stats = stats(&["shape:cube-split", "--surface", surface, "--normals", normals, "--alpha", "0.5"]);
+        let strength: &[&str] = if surface.starts_with("phong") { &["--alpha", "0.5"] } else { &[] };
+        let stats = stats(&[&["shape:cube-split", "--surface", surface, "--normals", normals], strength].concat());
         assert_eq!((text(&stats, "/settings/surface"), text(&stats, "/settings/normals")), (surface, normals));
         let alpha = stats.pointer("/settings/alpha").and_then(Value::as_f64);
         assert_eq!(alpha, surface.starts_with("phong").then_some(0.5), "{surface}");
@@ -87,6 +88,7 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
         &["--normals", "flat"],
         &["--displacement", "maybe"],
         // Of what isn't there.
+        &["--alpha", "0.5"],
         &["--height-scale", "0.1"],
         &["--midlevel", "0.1"],
         &["--rim", "0.02", "--animation", "Walk"],
@@ -95,4 +97,24 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
         failure(&render(wrong), 2);
     }
     assert!(!std::path::Path::new(&out).exists());
+}
+
+#[test]
+fn help_says_of_every_technique_what_it_is_and_whose() {
+    let help = output(&["render", "--help"]);
+    let said = |name: &str, words: &[&str]| {
+        let line = help.lines().find(|line| line.trim_start().starts_with(&format!("- {name}:")));
+        let line = line.unwrap_or_else(|| panic!("{name} isn't explained"));
+        words.iter().for_each(|word| assert!(line.contains(word), "{line}"));
+    };
+    said("pn", &["Vlachos et al. 2001"]);
+    said("pn-aen", &["McDonald and Kilgard 2010"]);
+    said("pn-crease", &["Vlachos et al. 2001, section 3.4"]);
+    said("phong", &["Boubekeur and Alexa 2008"]);
+    said("nagata", &["2005"]);
+    said("quadratic", &["Vlachos et al. 2001, section 3.3"]);
+    said("on", &["McDonald 2011"]);
+    said("fractional-odd", &["Direct3D 11.3"]);
+    said("subtriangulation", &["Vlachos et al. 2001, figure 4"]);
+    said("error", &["Wang 1984", "Filip et al. 1986"]);
 }
