@@ -39,14 +39,9 @@ fn spot(u: u32, v: u32) -> Spot {
             return Spot(AT_CORNER, k, 0u);
         }
     }
-    if weights.z == 0u {
-        return Spot(ON_SIDE, 0u, v);
-    }
-    if u == 0u {
-        return Spot(ON_SIDE, 1u, weights.z);
-    }
-    if v == 0u {
-        return Spot(ON_SIDE, 2u, u);
+    let at = place(u, v);
+    if at.side < 3u {
+        return Spot(ON_SIDE, at.side, at.t);
     }
     return Spot(INSIDE, 0u, 0u);
 }

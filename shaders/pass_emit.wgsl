@@ -43,26 +43,6 @@ fn find_patch_in_workgroup(component: u32, item: u32, first_item: u32, last_item
     return find_patch(component, item, bounds[0], bounds[1] + 1u);
 }
 
-// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; side 3 is the inside.
-struct Place {
-    side: u32,
-    t: u32,
-}
-
-fn place(u: u32, v: u32) -> Place {
-    let w = FIXED_ONE - u - v;
-    if w == 0u {
-        return Place(0u, v);
-    }
-    if u == 0u {
-        return Place(1u, w);
-    }
-    if v == 0u {
-        return Place(2u, u);
-    }
-    return Place(3u, 0u);
-}
-
 // What the domain shader makes of one domain point.
 struct DomainVertex {
     position: vec3<f32>,

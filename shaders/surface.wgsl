@@ -92,3 +92,23 @@ fn linear_uv(uvs: array<vec2<f32>, 3>, u: u32, v: u32) -> vec2<f32> {
 fn edge_uv(a: vec2<f32>, b: vec2<f32>, t: u32) -> vec2<f32> {
     return a * (f32(FIXED_ONE - t) * UNIT) + b * (f32(t) * UNIT);
 }
+
+// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; side 3 is the inside.
+struct Place {
+    side: u32,
+    t: u32,
+}
+
+fn place(u: u32, v: u32) -> Place {
+    let w = FIXED_ONE - u - v;
+    if w == 0u {
+        return Place(0u, v);
+    }
+    if u == 0u {
+        return Place(1u, w);
+    }
+    if v == 0u {
+        return Place(2u, u);
+    }
+    return Place(3u, 0u);
+}

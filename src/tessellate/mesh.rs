@@ -10,7 +10,7 @@ use super::{
     Partitioning, PatchFactors, SEEN, SURFACE_SHARE, Solid, Surface, center_control_point, corner_weights,
     crease_control_point, distance_factor, domain_point, domain_triangle, edge_error_factor, edge_length_factor,
     edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, meet, pack_normal,
-    paper_edge_factor, patch_position, point_count, quadratic_edge_normal, quadratic_normal, round_pow2,
+    paper_edge_factor, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, round_pow2,
     side_control_points, surface_normal, triangle_count, unseen,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
@@ -391,20 +391,6 @@ impl<'a> Nets<'a> {
             Normals::Linear | Normals::Surface => edge_normal(at_a.normal, at_b.normal, t),
         };
         (position, normal, edge_uv(at_a.uv, at_b.uv, t))
-    }
-}
-
-/// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; `None` inside.
-fn place(u: u32, v: u32) -> Option<(usize, u32)> {
-    let w = FIXED_ONE - u - v;
-    if w == 0 {
-        Some((0, v))
-    } else if u == 0 {
-        Some((1, w))
-    } else if v == 0 {
-        Some((2, u))
-    } else {
-        None
     }
 }
 

@@ -57,4 +57,4 @@ pub use normal::{
 pub use posed::{Deformed, Posed, bounds_through, deform};
 pub use relief::{detail, displacing, height_units, reach, texel_lengths};
 pub use solid::{Solid, is_beyond_near};
-pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents};
+pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents, place};

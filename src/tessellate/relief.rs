@@ -8,7 +8,7 @@ use super::displace::{
 use super::error::{edge_sight, relief_factor};
 use super::mesh::{Inputs, Nets, Vertex};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
-use super::surface::{UNIT, linear_uv, patch_tangents};
+use super::surface::{UNIT, linear_uv, patch_tangents, place};
 use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, factor_side};
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
@@ -60,22 +60,17 @@ struct Lookup {
 }
 
 /// Where a point lies on its patch.
-enum Place {
+enum Spot {
     Corner(usize),
     /// A side, and the weight of its far end.
     Side(usize, u32),
     Inside,
 }
 
-fn place(u: u32, v: u32) -> Place {
-    let w = FIXED_ONE - u - v;
-    match [u, v, w].iter().position(|&weight| weight == FIXED_ONE) {
-        Some(corner) => Place::Corner(corner),
-        None if w == 0 => Place::Side(0, v),
-        None if u == 0 => Place::Side(1, w),
-        None if v == 0 => Place::Side(2, u),
-        None => Place::Inside,
-    }
+fn spot(u: u32, v: u32) -> Spot {
+    let corner = [u, v, FIXED_ONE - u - v].iter().position(|&weight| weight == FIXED_ONE);
+    let rim = || place(u, v).map_or(Spot::Inside, |(side, t)| Spot::Side(side, t));
+    corner.map_or_else(rim, Spot::Corner)
 }
 
 /// Weights of the point at `t` along a side.
@@ -205,12 +200,12 @@ impl<'a> Relief<'a> {
 
     /// Where a patch would look up its point's height by itself, and where it does if patches agree.
     fn lookups(&self, patch: u32, u: u32, v: u32, segments: f32) -> (Lookup, Lookup) {
-        match place(u, v) {
-            Place::Inside => {
+        match spot(u, v) {
+            Spot::Inside => {
                 let own = Lookup { patch, u, v, level: self.inside_level(patch, segments) };
                 (own, own)
             }
-            Place::Corner(k) => {
+            Spot::Corner(k) => {
                 let point = self.point(patch, k);
                 let level = self.point_levels[point as usize];
                 let dominant = self.dominance.corners[point as usize];
@@ -218,7 +213,7 @@ impl<'a> Relief<'a> {
                 let shared = Lookup { patch: dominant / 4, u: weight(0), v: weight(1), level };
                 (Lookup { patch, u, v, level }, shared)
             }
-            Place::Side(side, t) => {
+            Spot::Side(side, t) => {
                 let factor = self.factor(patch, side);
                 let level = self.factor_levels[factor as usize];
                 let dominant = self.dominance.sides[factor as usize];
@@ -242,16 +237,16 @@ impl<'a> Relief<'a> {
     /// dominant side's direction, so that all sides compute the same.
     fn direction(&self, patch: u32, u: u32, v: u32) -> Vec3 {
         let corners = self.corner_directions(patch);
-        match place(u, v) {
-            Place::Corner(k) => corners[k],
-            Place::Side(side, t) => {
+        match spot(u, v) {
+            Spot::Corner(k) => corners[k],
+            Spot::Side(side, t) => {
                 let dominant = self.dominance.sides[self.factor(patch, side) as usize];
                 let same_way = self.point(patch, side) == self.point(dominant / 4, dominant as usize % 4);
                 let (a, b) = (corners[side], corners[(side + 1) % 3]);
                 let (a, b, t) = if same_way { (a, b, t) } else { (b, a, FIXED_ONE - t) };
                 edge_normal(a, b, t)
             }
-            Place::Inside => linear_normal(corners, u, v),
+            Spot::Inside => linear_normal(corners, u, v),
         }
     }
 

@@ -132,6 +132,20 @@ pub fn edge_uv(a: Vec2, b: Vec2, t: u32) -> Vec2 {
     a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT)
 }
 
+/// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; `None` inside.
+pub fn place(u: u32, v: u32) -> Option<(usize, u32)> {
+    let w = FIXED_ONE - u - v;
+    if w == 0 {
+        Some((0, v))
+    } else if u == 0 {
+        Some((1, w))
+    } else if v == 0 {
+        Some((2, u))
+    } else {
+        None
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use glam::vec3;
