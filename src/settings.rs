@@ -1,6 +1,11 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
-use crate::tessellate::{Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface};
+use glam::{Mat4, Vec2};
+
+use crate::mesh::Mesh;
+use crate::tessellate::{
+    Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface, reach,
+};
 
 /// The smallest and largest tessellation factor.
 pub const FACTOR_RANGE: std::ops::RangeInclusive<f32> = 1.0..=64.0;
@@ -239,6 +244,11 @@ impl Settings {
     /// chosen; what is chosen is kept for other partitionings.
     pub fn used_lod(&self) -> Lod {
         if self.partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { self.lod }
+    }
+
+    /// How far heights move any point of a mesh at most, in object units.
+    pub fn reach(&self, mesh: &Mesh) -> f32 {
+        reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
     }
 
     /// What the tessellation depends on, seen from `view`.

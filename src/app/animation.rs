@@ -59,8 +59,13 @@ impl App {
     /// Shows a clip from its start on, not playing; or the mesh at rest.
     pub fn choose_clip(&mut self, clip: Option<usize>) {
         let clip = clip.filter(|&clip| clip < self.clips().len());
+        let was_framed = self.is_framed();
         self.playback = Playback { clip, speed: self.playback.speed, ..Playback::default() };
         self.frame_clip();
+        // Who looks at all of it goes on to, also where the clip goes far; who looks at a detail stays there.
+        if was_framed {
+            self.frame();
+        }
     }
 
     /// Takes what depends on the extent of what is shown from all of the clip.

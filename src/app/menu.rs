@@ -5,7 +5,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
 use crate::mesh::{Shape, Source};
-use crate::render::Standpoint;
+use crate::render::{Camera, Standpoint};
 use crate::settings::{FACTOR_RANGE, Overlay};
 use crate::tessellate::{Edges, Lod};
 
@@ -150,10 +150,22 @@ impl App {
         }
     }
 
-    fn frame(&mut self) {
-        if let Some(document) = &self.document {
-            self.camera.frame(&document.scene.bounds, self.viewport.size());
+    /// Shows all of the mesh: all through its clip, and as far as heights lift it.
+    pub(super) fn frame(&mut self) {
+        if let Some(camera) = self.framing() {
+            self.camera = camera;
         }
+    }
+
+    /// Whether the camera is where [`Self::frame`] puts it.
+    pub(super) fn is_framed(&self) -> bool {
+        self.framing() == Some(self.camera)
+    }
+
+    fn framing(&self) -> Option<Camera> {
+        let mut camera = self.camera;
+        camera.frame(&self.document.as_ref()?.scene.drawn_bounds(&self.settings), self.viewport.size());
+        Some(camera)
     }
 
     /// Opens the window that takes a path, with that of the open file in it.

@@ -251,8 +251,8 @@ impl App {
         self.load = None;
         match result {
             Ok(document) => {
+                let frames = !keep_view || self.is_framed();
                 if !keep_view {
-                    self.camera.frame(&document.scene.bounds, self.viewport.size());
                     self.frozen = None;
                 }
                 let title = format!("{} - pnaen", document.loaded.source.title());
@@ -263,6 +263,9 @@ impl App {
                 }
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
+                if frames {
+                    self.frame();
+                }
                 self.measuring = Measuring::default();
                 self.deselect();
             }

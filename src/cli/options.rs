@@ -10,8 +10,8 @@ use glam::Vec2;
 
 use super::{AnimationOption, CliError};
 use crate::engine::Preparation;
-use crate::mesh::rim::WIDEST;
 use crate::mesh::{Bounds, HeightSource, Source};
+use crate::mesh::{Mesh, rim::WIDEST};
 use crate::render::Camera;
 use crate::settings::{
     ALPHA_RANGE, ARENA_BYTES, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
@@ -212,8 +212,9 @@ impl SurfaceOptions {
         self.arena << 20
     }
 
-    pub fn camera(&self, bounds: &Bounds) -> Camera {
-        let mut camera = Camera::framing(bounds, self.viewport());
+    /// Looks at everything that is drawn of a mesh with these bounds; its distance is in their radii.
+    pub fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
+        let mut camera = Camera::framing(&bounds.grown(self.settings().reach(mesh)), self.viewport());
         (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
         if let Some(radii) = self.camera.distance {
             camera.distance = radii * bounds.radius();

@@ -95,7 +95,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     scene.frame_clip(moment.map(|moment| moment.clip));
     scene.set_moment(moment)?;
     let target = Target::new(&engine.gpu, args.surface.size.0)?;
-    let camera = args.surface.camera(&scene.bounds);
+    let camera = args.surface.camera(&loaded.mesh, &scene.bounds);
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let surface = args.surface.within_budget(|settings| {
         engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;

@@ -46,7 +46,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let given =
         args.given.read(mesh, topology, args.surface.convention, args.surface.partitioning)?.map(|given| given.factors);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
-    let view = args.surface.camera(&bounds).lod_view(args.surface.viewport(), &bounds);
+    let view = args.surface.camera(mesh, &bounds).lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {
         Device::Cpu => {
             let count = |settings: &Settings| Ok(tessellate::totals(mesh, topology, &settings.inputs(view)).1);

@@ -38,6 +38,11 @@ impl Bounds {
         self.min.as_dvec3().distance(self.max.as_dvec3()) as f32
     }
 
+    /// The same with room for everything in it to move by so many object units.
+    pub fn grown(&self, by: f32) -> Self {
+        Self { min: self.min - by, max: self.max + by, radius: self.radius + by }
+    }
+
     /// A length relative to the diagonal, in object units. In f64: the diagonal itself may leave f32.
     pub(super) fn part(&self, relative: f64) -> f64 {
         relative * self.min.as_dvec3().distance(self.max.as_dvec3())

@@ -136,7 +136,9 @@ impl Camera {
         let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
         let projection = if self.orthographic {
             let half = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
-            let depth = bounds.radius() + (bounds.center() - self.target).length() + self.distance;
+            // Surfaces bulge over the corners, and heights lift them by a radius at most.
+            let radius = 2.0 * bounds.radius();
+            let depth = radius + (bounds.center() - self.target).length() + self.distance;
             proj::orthographic(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
         } else {
             proj::perspective_infinite_reverse(FIELD_OF_VIEW.to_radians(), aspect, self.distance * 1e-3)
@@ -247,6 +249,9 @@ mod tests {
             let back = camera.axes()[2];
             let (near, far) = (depth(back), depth(-back));
             assert!((0.0..=1.0).contains(&far) && far < near && near <= 1.0, "{near} {far}");
+            // What heights lift by a radius, too.
+            let lifted = 2.0 * unit_bounds().radius() * back;
+            assert!((0.0..=1.0).contains(&depth(lifted)) && (0.0..=1.0).contains(&depth(-lifted)));
         }
     }
 }

@@ -12,6 +12,7 @@ use super::layout::{Material, linear};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::{ulp, ulp_at};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, Topology};
+use crate::settings::Settings;
 use crate::tessellate::bounds_through;
 
 /// One mesh on the device, its materials, and the lines drawn over it.
@@ -84,6 +85,11 @@ impl Scene {
         self.bounds = bounds_through(self.tessellator.mesh(), clip);
         let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
         self.ulp = if clip.is_some() { ulp_at(largest) } else { ulp(self.tessellator.topology()) } as f32;
+    }
+
+    /// The bounds with room for what heights do under these settings: what a picture of everything holds.
+    pub fn drawn_bounds(&self, settings: &Settings) -> Bounds {
+        self.bounds.grown(settings.reach(self.tessellator.mesh()))
     }
 
     /// Shows the mesh at a moment of one of its clips; at rest without one. Takes effect with the next tessellation.

@@ -51,6 +51,21 @@ fn an_image_displaces_any_surface_without_cracks() {
 }
 
 #[test]
+fn what_heights_lift_stays_in_the_picture() {
+    let folder = Folder::new("lifted");
+    let (white, out) = (folder.path("white.png"), folder.path("out.png"));
+    image::GrayImage::from_pixel(2, 2, image::Luma([255])).save(&white).expect("a folder of our own");
+    let lift = ["--displacement", "on", "--height", &white, "--height-scale", "1", "--midlevel", "0"];
+    output(&[&["render", "shape:icosphere", "-o", &out, "--size", "64x64"][..], &lift].concat());
+    let picture = image::open(&out).expect("a picture").to_rgba8();
+    let background = picture[(0, 0)];
+    let border = (0..64).flat_map(|i| [(i, 0), (i, 63), (0, i), (63, i)]);
+    // The lifted sphere touches it.
+    let covered = border.filter(|&(x, y)| picture[(x, y)] != background).count();
+    assert!(covered < 64 && picture[(32, 32)] != background, "{covered} of 256 px");
+}
+
+#[test]
 fn both_devices_write_the_same_displaced_mesh() {
     let folder = Folder::new("displaced");
     let (image, [gpu, cpu]) = (height_image(&folder), ["gpu.obj", "cpu.obj"].map(|name| folder.path(name)));

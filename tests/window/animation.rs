@@ -33,10 +33,11 @@ fn a_clip_is_chosen_and_scrubbed() {
     let (mut harness, path) = moving_window("scrub");
     harness.get_by_label("Animation");
     assert_eq!(harness.state().moment(), None, "it opens at rest");
-    let (rest, pictures) = (harness.state().camera().target, harness.state().pictures());
+    let (rest, pictures) = (*harness.state().camera(), harness.state().pictures());
+    choose(&mut harness, "Clip", CLIPS[2]);
+    assert!(harness.state().camera().distance > 1.2 * rest.distance, "all of the clip is in sight, as the mesh was");
     choose(&mut harness, "Clip", CLIPS[3]);
     assert_eq!(harness.state().moment(), Some(Moment { clip: 3, time: 0.0 }));
-    assert_eq!(harness.state().camera().target, rest, "nobody asked the camera to move");
     assert!(!harness.state().is_playing());
     assert!(harness.state().pictures() > pictures);
     let pictures = harness.state().pictures();
@@ -53,6 +54,14 @@ fn a_clip_is_chosen_and_scrubbed() {
     assert_eq!(harness.state().pictures(), pictures);
     choose(&mut harness, "Clip", "Rest pose");
     assert_eq!(harness.state().moment(), None);
+    assert_eq!(*harness.state().camera(), rest);
+    // A detail that one looks at stays in sight.
+    harness.key_press(egui::Key::PageUp);
+    settle(&mut harness);
+    let near = *harness.state().camera();
+    assert!(near.distance < rest.distance);
+    choose(&mut harness, "Clip", CLIPS[2]);
+    assert_eq!(*harness.state().camera(), near);
     let _ = std::fs::remove_file(path);
 }
 
