@@ -8,6 +8,7 @@ mod gallery;
 mod given;
 mod info;
 mod options;
+mod reference;
 mod render;
 mod stability;
 mod stats;

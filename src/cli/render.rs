@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use super::stats::{AnimationStats, Stats};
-use super::{CliError, GivenOption, SurfaceOptions, file_error, load, options, to_json, write_picture, write_text};
+use super::{CliError, GivenOption, SurfaceOptions, load, options, reference, to_json, write_picture, write_text};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::Timing;
-use crate::measure::{ScreenView, compare, patch_edges};
-use crate::mesh::{LoadError, Progress, Source, t_junctions};
-use crate::render::{Target, patch_lines, t_junction_lines};
+use crate::measure::{Measured, ScreenView, patch_edges};
+use crate::mesh::{LoadError, Moment, Progress, Source, t_junctions};
+use crate::render::{Camera, LineSegment, Scene, Target, patch_lines, t_junction_lines};
 use crate::settings::{Overlay, Overlays, Settings};
-use crate::tessellate::Lod;
+use crate::tessellate::{HullFactors, Lod};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -83,80 +83,113 @@ impl Args {
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     let overlays = args.overlays()?;
-    let reference = args.reference.as_deref().map(|path| read_reference(args, path)).transpose()?;
+    let reference = args.reference.as_deref().map(|path| reference::read(path, &args.output)).transpose()?;
     let loaded = load(&args.file, &args.surface.preparation())?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
-    let moment = args.surface.animation.moment(&loaded)?;
-    let engine = Engine::headless()?;
-    let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
-    scene.tessellator.give(given)?;
-    scene.frame_clip(moment.map(|moment| moment.clip));
-    scene.set_moment(moment)?;
-    let target = Target::new(&engine.gpu, args.surface.size.0)?;
-    let camera = args.surface.camera(&loaded.mesh, &scene.bounds);
-    let view = camera.lod_view(target.viewport(), &scene.bounds);
-    let surface = args.surface.within_budget(|settings| {
-        engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
-        Ok(scene.tessellator.totals().1)
-    })?;
-    let settings = Settings { overlays, split: args.split, background: args.background, ..surface };
-
-    let inputs = settings.inputs(view);
-    engine.count(&mut scene, &inputs, &mut Timing::Off)?;
-    let (at_rest, loaded) = (&loaded.topology, loaded.posed(moment));
-    let measured = if settings.overlays.cracks || selected.is_some() || args.stats.is_some() {
-        let measured = engine.measure(&mut scene)?;
-        Some(measured)
+    let mut shot = Shot::new(args, loaded, overlays, given)?;
+    let measured = if overlays.cracks || selected.is_some() || args.stats.is_some() {
+        Some(shot.engine.measure(&mut shot.scene)?)
     } else {
         None
     };
-    let mut lines = match &measured {
-        Some(measured) if settings.overlays.cracks => measured.crack_lines(&loaded.topology),
-        _ => Vec::new(),
-    };
-    if settings.overlays.t_junctions {
-        let junctions = t_junctions(at_rest, &Progress::default()).map_err(LoadError::from)?;
-        lines.extend(t_junction_lines(&loaded.topology, &junctions));
-    }
-    if let Some(patch) = selected {
-        let rims = measured.as_ref().map(|measured| &measured.rims);
-        lines.extend(patch_lines(&patch_edges(&loaded.topology, patch, rims, settings.convention)));
-    }
-    scene.set_lines(&engine.gpu, &lines);
-    engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;
-    let picture = target.read(&engine.gpu)?;
+    let lines = shot.lines(measured.as_ref(), selected)?;
+    shot.scene.set_lines(&shot.engine.gpu, &lines);
+    shot.engine.draw(&mut shot.scene, &shot.target, &shot.camera, &shot.settings, &mut Timing::Off)?;
+    let picture = shot.target.read(&shot.engine.gpu)?;
     write_picture(&args.output, &picture.clone().into())?;
+    if let Some((path, measured)) = args.stats.as_deref().zip(measured) {
+        let mut stats = shot.stats(args, &measured)?;
+        stats.factors_file = factors_file;
+        write_text(path, &to_json(&stats)?)?;
+    }
+    match args.reference.as_deref().zip(reference) {
+        Some((path, reference)) => reference::hold_against(&args.output, &picture, path, &reference, args.threshold),
+        None => Ok(()),
+    }
+}
 
-    if let (Some(path), Some(measured)) = (&args.stats, measured) {
-        let deviation = if args.measure_error { engine.deviation(&mut scene, &inputs)? } else { None };
-        let passes = engine.time(&mut scene, &target, &camera, &settings)?;
-        let leaks = engine.leaks(&mut scene, &measured, target.size, &camera)?;
-        let max_error_px = deviation.map(|worst| worst.px);
-        let mut factors_capped = engine.asked_factors(&scene)?.beyond(settings.partitioning);
+/// What is drawn, tessellated on its device.
+struct Shot {
+    /// At rest, and as it is drawn.
+    at_rest: Loaded,
+    loaded: Loaded,
+    moment: Option<Moment>,
+    engine: Engine,
+    scene: Scene,
+    target: Target,
+    camera: Camera,
+    settings: Settings,
+}
+
+impl Shot {
+    fn new(
+        args: &Args,
+        at_rest: Loaded,
+        overlays: Overlays,
+        given: Option<Vec<HullFactors>>,
+    ) -> Result<Self, CliError> {
+        let moment = args.surface.animation.moment(&at_rest)?;
+        let engine = Engine::headless()?;
+        let mut scene = engine.scene(&at_rest, args.surface.arena_bytes())?;
+        scene.tessellator.give(given)?;
+        scene.frame_clip(moment.map(|moment| moment.clip));
+        scene.set_moment(moment)?;
+        let target = Target::new(&engine.gpu, args.surface.size.0)?;
+        let camera = args.surface.camera(&at_rest.mesh, &scene.bounds);
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        let surface = args.surface.within_budget(|settings| {
+            engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
+            Ok(scene.tessellator.totals().1)
+        })?;
+        let settings = Settings { overlays, split: args.split, background: args.background, ..surface };
+        engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
+        let loaded = at_rest.posed(moment);
+        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings })
+    }
+
+    /// The overlays that are lines, and the outline of the selected patch.
+    fn lines(&self, measured: Option<&Measured>, selected: Option<u32>) -> Result<Vec<LineSegment>, CliError> {
+        let topology = &self.loaded.topology;
+        let mut lines = match measured {
+            Some(measured) if self.settings.overlays.cracks => measured.crack_lines(topology),
+            _ => Vec::new(),
+        };
+        if self.settings.overlays.t_junctions {
+            let junctions = t_junctions(&self.at_rest.topology, &Progress::default()).map_err(LoadError::from)?;
+            lines.extend(t_junction_lines(topology, &junctions));
+        }
+        if let Some(patch) = selected {
+            let rims = measured.map(|measured| &measured.rims);
+            lines.extend(patch_lines(&patch_edges(topology, patch, rims, self.settings.convention)));
+        }
+        Ok(lines)
+    }
+
+    fn stats(&mut self, args: &Args, measured: &Measured) -> Result<Stats, CliError> {
+        let Self { engine, scene, target, camera, settings, .. } = self;
+        let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+        let deviation = if args.measure_error { engine.deviation(scene, &inputs)? } else { None };
+        let passes = engine.time(scene, target, camera, settings)?;
+        let leaks = engine.leaks(scene, measured, target.size, camera)?;
+        let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.partitioning);
         if settings.used_lod() == Lod::Error {
             let written = scene.tessellator.hull_factors()?;
             factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
         }
         let viewport = target.viewport();
-        let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
-        let view = ScreenView { clip_from_object, viewport };
+        let view = ScreenView { clip_from_object: camera.clip_from_object(viewport, &scene.bounds), viewport };
         let name = args.surface.animation.animation.clone();
-        let sizes = engine.sizes(&mut scene, view)?;
-        let mut stats = Stats::new(&engine, &loaded, &scene, &measured, &settings, view, &passes);
+        let sizes = engine.sizes(scene, view)?;
+        let mut stats = Stats::new(engine, &self.loaded, scene, measured, settings, view, &passes);
         stats.triangles_in_view = sizes.in_view;
         stats.triangles_below_3_px = sizes.small;
         stats.leaks = leaks;
-        stats.max_error_px = max_error_px;
+        stats.max_error_px = deviation.map(|worst| worst.px);
         stats.factors_capped = factors_capped;
-        stats.factors_file = factors_file;
-        stats.animation = moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
-        write_text(path, &to_json(&stats)?)?;
-    }
-    match args.reference.as_deref().zip(reference) {
-        Some((path, reference)) => hold_against(args, &picture, path, &reference),
-        None => Ok(()),
+        stats.animation = self.moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
+        Ok(stats)
     }
 }
 
@@ -167,44 +200,4 @@ fn selected_patch(loaded: &Loaded, triangle: u32) -> Result<u32, CliError> {
         return Err(CliError::NoTriangle { file, last: count.saturating_sub(1), triangle });
     }
     loaded.topology.patch_of(triangle).ok_or(CliError::NoPatch { file, triangle })
-}
-
-/// Reads the reference before anything is drawn or written.
-fn read_reference(args: &Args, path: &Path) -> Result<image::RgbaImage, CliError> {
-    let reference = image::open(path).map_err(|error| file_error(path, "read", &error))?.to_rgba8();
-    // Neither path resolves if there is no such file yet.
-    if std::fs::canonicalize(path).ok() == std::fs::canonicalize(&args.output).ok() {
-        return Err(file_error(path, "kept", &"the picture would replace it: write the picture elsewhere"));
-    }
-    Ok(reference)
-}
-
-fn hold_against(
-    args: &Args,
-    picture: &image::RgbaImage,
-    path: &Path,
-    reference: &image::RgbaImage,
-) -> Result<(), CliError> {
-    let comparison = compare(picture, reference)
-        .map_err(|reason| CliError::Reference { reference: path.display().to_string(), reason })?;
-    if comparison.difference <= args.threshold {
-        return Ok(());
-    }
-    let mut name = args.output.file_stem().unwrap_or_default().to_owned();
-    name.push("-diff.png");
-    let diff = args.output.with_file_name(name);
-    // Beside a device or a pipe is no place for a picture.
-    let see = if args.output.is_file() {
-        write_picture(&diff, &comparison.map.into())?;
-        format!(": see {}, where the differences are bright", diff.display())
-    } else {
-        String::new()
-    };
-    Err(CliError::Different {
-        picture: args.output.display().to_string(),
-        reference: path.display().to_string(),
-        difference: comparison.difference,
-        threshold: args.threshold,
-        see,
-    })
 }
