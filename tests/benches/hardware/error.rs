@@ -6,7 +6,7 @@ use pnaen::settings::{Settings, TOLERANCE_RANGE};
 use pnaen::tessellate::{Clip, Lod, Partitioning};
 
 use super::Scale;
-use super::numbers::whole;
+use super::numbers::{or_none, ratio, table, whole};
 use super::ours::{OurTimes, Subject};
 use super::peer::Peer;
 use super::subjects::{subject, tori};
@@ -28,6 +28,39 @@ pub struct EqualError {
     /// Ours with the white paper's LOD, for comparison.
     pub ours_paper: OurTimes,
     pub peer: Option<PeerTimes>,
+}
+
+impl EqualError {
+    /// Theirs by ours, by the GPU's clock and by the host's.
+    pub fn faster(&self) -> Option<[f64; 2]> {
+        let ratios =
+            |peer: &PeerTimes| [peer.frame.median / self.ours.frame.median, peer.wall.median / self.ours.wall.median];
+        self.peer.as_ref().map(ratios)
+    }
+}
+
+pub fn table_of(scenes: &[EqualError]) -> String {
+    let row = |scene: &EqualError| {
+        let (ours, theirs) = (&scene.ours, scene.peer.as_ref());
+        vec![
+            scene.scene.clone(),
+            whole(scene.triangles[0]),
+            whole(scene.triangles[1]),
+            format!("{:.3}", scene.px[0]),
+            format!("{:.3}", scene.px[1]),
+            format!("{:.3}", scene.tolerance),
+            or_none(theirs.map(|peer| peer.frame.to_string())),
+            scene.ours_paper.frame.to_string(),
+            ours.frame.to_string(),
+            or_none(theirs.map(|peer| ratio(peer.frame.median, ours.frame.median))),
+            or_none(theirs.map(|peer| peer.wall.to_string())),
+            ours.wall.to_string(),
+            or_none(theirs.map(|peer| ratio(peer.wall.median, ours.wall.median))),
+        ]
+    };
+    let head = "scene | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px | theirs, GPU \
+                | ours with their LOD, GPU | ours, GPU | theirs / ours | theirs, host | ours, host | theirs / ours";
+    table(head, &scenes.iter().map(row).collect::<Vec<_>>())
 }
 
 /// # Errors

@@ -3,19 +3,18 @@
 use pnaen::engine::Engine;
 use pnaen::tessellate::Partitioning::FractionalOdd;
 
+use super::ours::Subject;
 use super::peer::Peer;
+use super::rows::Named;
 use super::subjects::{self, Factors};
 use super::versus::{BenchError, Versus};
 use super::{Scale, TRIANGLES_A_PATCH};
 
-/// The base of all growth, and then one thing doubled at a time.
-pub const STEPS: [&str; 4] = ["as it is", "patches x 2", "factors x 2", "output x 2"];
-
-/// One for each of [`STEPS`], from the smaller size that is compared.
+/// The smaller size that is compared, and then one thing doubled at a time.
 ///
 /// # Errors
 /// A device was lost, or has no memory.
-pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<Versus>, BenchError> {
+pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<Named>, BenchError> {
     let triangles = scale.triangles[1];
     let columns = subjects::columns(triangles / TRIANGLES_A_PATCH);
     // Patches are the square of the columns.
@@ -25,14 +24,20 @@ pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Ve
     let mut base = subject(columns)?;
     let found = factors.take_for(engine, &mut base, triangles)?;
     let greatest = base.settings.factor;
-    let mut all = vec![Versus::measure(engine, peer, &mut base, scale.effort)?];
+    let mut all = Vec::new();
+    let mut time = |name: &str, subject: &mut Subject| {
+        let versus = Versus::measure(engine, peer, subject, scale.effort)?;
+        all.push((name.to_owned(), versus));
+        Ok::<_, BenchError>(())
+    };
+    time("as it is", &mut base)?;
     let mut finer = subject(more_columns)?;
     factors.take(engine, &mut finer, greatest)?;
-    all.push(Versus::measure(engine, peer, &mut finer, scale.effort)?);
+    time("patches x 2", &mut finer)?;
     drop(finer);
     factors.take(engine, &mut base, 2.0 * greatest)?;
-    all.push(Versus::measure(engine, peer, &mut base, scale.effort)?);
+    time("factors x 2", &mut base)?;
     factors.take_for(engine, &mut base, 2 * found)?;
-    all.push(Versus::measure(engine, peer, &mut base, scale.effort)?);
+    time("output x 2", &mut base)?;
     Ok(all)
 }

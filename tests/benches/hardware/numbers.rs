@@ -56,10 +56,15 @@ pub fn ratio(whole: f64, part: f64) -> String {
     if ratio < 10.0 { format!("{ratio:.2}") } else { format!("{ratio:.1}") }
 }
 
-/// A table in Markdown; the first column is text, the others are numbers.
-pub fn table(head: &[&str], rows: &[Vec<String>]) -> String {
+/// A table in Markdown, its columns' names divided as there; the first column is text, the others are numbers.
+pub fn table(head: &str, rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
-    let rule: Vec<String> = (0..head.len()).map(|i| if i == 0 { "---" } else { "---:" }.to_owned()).collect();
-    let head: Vec<String> = head.iter().map(|&cell| cell.to_owned()).collect();
-    line(&head) + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
+    let columns = head.split(" | ").count();
+    let rule: Vec<String> = (0..columns).map(|i| if i == 0 { "---" } else { "---:" }.to_owned()).collect();
+    format!("| {head} |\n") + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
+}
+
+/// What stands where there is nothing to say.
+pub fn or_none(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "none".to_owned())
 }

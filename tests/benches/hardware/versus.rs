@@ -40,7 +40,11 @@ pub struct PeerTimes {
 /// Both.
 pub struct Versus {
     pub patches: u32,
+    pub vertices: u64,
     pub triangles: u64,
+    /// That our output took to go through the arena.
+    pub chunks: usize,
+    /// See [`Subject::compulsory_bytes`].
     pub bytes: u64,
     pub ours: OurTimes,
     pub peer: Option<PeerTimes>,
@@ -57,12 +61,13 @@ impl Versus {
         subject: &mut Subject,
         effort: Effort,
     ) -> Result<Self, BenchError> {
-        let (_, triangles) = subject.count(engine)?;
+        let (vertices, triangles) = subject.count(engine)?;
+        let chunks = subject.scene.tessellator.chunk_count();
         let bytes = subject.compulsory_bytes();
         let peer = peer.map(|peer| time_peer(engine, peer, subject, effort)).transpose()?;
         let ours = subject.time(engine, effort)?;
         let patches = subject.scene.tessellator.buffers().patch_count;
-        Ok(Self { patches, triangles, bytes, ours, peer })
+        Ok(Self { patches, vertices, triangles, chunks, bytes, ours, peer })
     }
 }
 
