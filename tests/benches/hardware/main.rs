@@ -52,7 +52,7 @@ impl Scale {
     fn of(engine: &Engine) -> Self {
         let effort = Effort::on(engine);
         if engine.gpu.is_software() {
-            let (triangles, size) = ([90_000, 30_000], [320, 180]);
+            let (triangles, size) = ([60_000, 20_000], [320, 180]);
             return Self { triangles, size, arena_bytes: ARENA_BYTES, copy_bytes: 32 << 20, field: 2, effort };
         }
         let (triangles, size) = ([28_000_000, 9_000_000], [1920, 1080]);

@@ -23,7 +23,7 @@ impl Effort {
     /// Ours: as much as numbers need, and what a software driver can be asked for.
     pub fn on(engine: &Engine) -> Self {
         if engine.gpu.is_software() {
-            return Self { runs: 5, warm_up: Duration::ZERO };
+            return Self { runs: 15, warm_up: Duration::ZERO };
         }
         Self { runs: 31, warm_up: Duration::from_millis(300) }
     }
