@@ -133,7 +133,10 @@ mod tests {
             let parsed = format!("shape:{shape}@1").parse::<Source>();
             assert_eq!(parsed.is_ok(), shape.has_levels(), "{shape}");
             let said = parsed.err().map_or(String::new(), |error| error.to_string());
-            assert!(shape.has_levels() || said.contains("no exact surface") && said.contains("icosphere, ellipsoid"), "{said}");
+            assert!(
+                shape.has_levels() || said.contains("no exact surface") && said.contains("icosphere, ellipsoid"),
+                "{said}"
+            );
         }
     }
 

@@ -67,7 +67,8 @@ pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
             normal(around(2 * i + 1, 2 * sides)),
             Vec2::new(fraction(2 * i + 1, 2 * sides), 0.0),
         );
-        let rest = (1..rows).flat_map(move |j| quad([slope(i, j + 1), slope(i + 1, j + 1), slope(i + 1, j), slope(i, j)]));
+        let rest =
+            (1..rows).flat_map(move |j| quad([slope(i, j + 1), slope(i + 1, j + 1), slope(i + 1, j), slope(i, j)]));
         std::iter::once([slope(i, 1), slope(i + 1, 1), apex]).chain(rest)
     };
     (0..sides).flat_map(side).chain(cap(-HALF_HEIGHT, level)).collect()
