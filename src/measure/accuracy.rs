@@ -174,7 +174,7 @@ impl<'a> Measurement<'a> {
         }
         let asked = (area * self.options.samples as f64 / self.truth.area()).sqrt().ceil();
         let n = (asked as u32).clamp(2, MAX_STEPS);
-        let n = if n % 3 == 0 { n + 1 } else { n };
+        let n = if n.is_multiple_of(3) { n + 1 } else { n };
         let (normals, patch) = (corners.map(normal), corners[0].patch());
         let mut take = |thirds: [u32; 2]| {
             let [u, v] = thirds.map(|x| f64::from(x) / f64::from(3 * n));
