@@ -15,6 +15,10 @@
 @group(2) @binding(0) var<uniform> slab: Slab;
 @group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
+// How far triangles are from the truth, from src/measure/field.rs: into how many steps their edges are cut, then the samples
+// of triangle after triangle. Below 0 where nothing is known.
+@group(3) @binding(0) var<storage, read> deviations: array<f32>;
+
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
     @location(0) position: vec3<f32>,
@@ -33,6 +37,8 @@ struct Varyings {
     @location(8) @interpolate(flat) low: u32,
     // Size of the drawn triangle in px.
     @location(9) @interpolate(flat) size: f32,
+    // Number of the drawn triangle in its chunk, or of the patch that is drawn as it came.
+    @location(10) @interpolate(flat) triangle: u32,
 }
 
 fn varyings(
@@ -145,6 +151,7 @@ fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let normal = unpack_normal(vertex.normal);
     var out = varyings(position, normal, vertex.uv, key_patch(key), key_uv(key), unit_corner(index % 3u));
     let first = index - index % 3u;
+    out.triangle = index / 3u;
     if (frame.overlays & OVERLAY_FOLDS) != 0u {
         let back = runs_back(vertex_domain(first), vertex_domain(first + 1u), vertex_domain(first + 2u));
         let a = vertex_position(first);
@@ -164,6 +171,7 @@ fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     let position = points[patches[index / 3u].points[k]].xyz;
     let domain = vec2<u32>(select(0u, FIXED_ONE, k == 0u), select(0u, FIXED_ONE, k == 1u));
     var out = varyings(position, corner.normal, corner.uv, index / 3u, domain, unit_corner(k));
+    out.triangle = index / 3u;
     if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
         let at = patches[index / 3u].points;
         out.size = size_px(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
@@ -246,6 +254,42 @@ fn factor_color(factors: vec4<f32>, to_edges: vec3<f32>, edge_heights: vec3<f32>
     return mix(scale_color(factors.w), scale_color(factors[nearest]), on_edge);
 }
 
+// Linear between the samples around a place. Below 0 where nothing is known.
+fn deviation_at(triangle: u32, corner: vec3<f32>) -> f32 {
+    let steps = u32(deviations[0]);
+    let count = (steps + 1u) * (steps + 2u) / 2u;
+    let first = 1u + triangle * count;
+    if first + count > arrayLength(&deviations) {
+        return -1.0;
+    }
+    if steps == 0u {
+        return deviations[first];
+    }
+    // At a triangle's rim a pixel's middle may lie beyond it.
+    let inside = max(corner, vec3<f32>(0.0));
+    let at = inside.yz / (inside.x + inside.y + inside.z) * f32(steps);
+    let i = min(u32(at.x), steps - 1u);
+    let j = min(u32(at.y), steps - 1u - i);
+    let rest = min(at - vec2<f32>(f32(i), f32(j)), vec2<f32>(1.0));
+    // Row i has steps + 1 - i samples.
+    let here = first + i * (steps + 1u) - i * (i - min(i, 1u)) / 2u + j;
+    let next = here + steps + 1u - i;
+    let along = deviations[here + 1u];
+    let across = deviations[next];
+    if rest.x + rest.y <= 1.0 || i + j + 2u > steps {
+        return deviations[here] + rest.x * (across - deviations[here]) + rest.y * (along - deviations[here]);
+    }
+    let beyond = deviations[next + 1u];
+    return beyond + (1.0 - rest.x) * (along - beyond) + (1.0 - rest.y) * (across - beyond);
+}
+
+fn deviation_color(in: Varyings) -> vec4<f32> {
+    let distance = deviation_at(in.triangle, in.corner);
+    let w = (frame.clip_from_object * vec4<f32>(in.position, 1.0)).w;
+    let number = select(distance, distance * frame.px_per_unit / w, frame.px_per_unit > 0.0);
+    return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
+}
+
 // What the surface's colours mean, where they aren't the material's: the colour, and 1 where there is one.
 fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
@@ -253,6 +297,9 @@ fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f
     }
     if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
         return vec4<f32>(select(scale_color(in.size), WASTE_COLOR, in.size < frame.scale_least), 1.0);
+    }
+    if (frame.overlays & OVERLAY_DEVIATION) != 0u {
+        return deviation_color(in);
     }
     return vec4<f32>(WASTE_COLOR, f32(in.low));
 }
@@ -266,7 +313,7 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     let to_sides = in.corner * side_heights;
     let texel = textureSample(base_texture, base_sampler, in.uv);
     var base = material.base_color.rgb * texel.rgb;
-    if (frame.overlays & OVERLAY_LOW_FACTORS) != 0u {
+    if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_DEVIATION)) != 0u {
         // The mesh's own colours could be the mark's.
         base = vec3<f32>(0.5);
     }

@@ -18,6 +18,8 @@ struct Frame {
     // The scale that the surface's colours are read against, if they are numbers.
     scale_least: f32,
     scale_most: f32,
+    // How many px a unit takes where w is 1, if distances are counted in px; else 0.
+    px_per_unit: f32,
     // sRGB, 0 to 1.
     scale: array<vec4<f32>, 7>,
 }
@@ -52,3 +54,4 @@ const OVERLAY_BACK_FACES: u32 = 32u;
 const OVERLAY_FACTORS: u32 = 64u;
 const OVERLAY_TRIANGLE_SIZE: u32 = 128u;
 const OVERLAY_LOW_FACTORS: u32 = 256u;
+const OVERLAY_DEVIATION: u32 = 512u;

@@ -4,11 +4,15 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
-use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
+use crate::measure::{
+    Accuracy, AccuracyOptions, AskedFactors, Deviant, Deviation, Field, Measured, Measurement, ScreenView, Sizes,
+    Survey, Yardstick,
+};
 use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
-use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
+use crate::tessellate::{Inputs, LodView, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
+use crate::truth::Truth;
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -236,6 +240,34 @@ impl Engine {
         let mut deviation = Deviation::new(&mesh, &topology, inputs);
         self.read_chunks(scene, true, |_, vertices, triangles| deviation.take(vertices, triangles, total))?;
         Ok(deviation.worst())
+    }
+
+    /// How far what is emitted is from what it should have been, all over. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn field(&self, scene: &mut Scene, yardstick: &Yardstick) -> Result<Field, GpuError> {
+        let (mesh, topology) = scene.tessellator.posed().deformed();
+        let mut field = Field::new(scene.tessellator.totals().1);
+        let wanted = Progress::new();
+        yardstick.with(&mesh, &topology, |against| {
+            self.read_chunks(scene, true, |_, vertices, triangles| {
+                // Nobody else knows of this progress, so that nobody cancels it.
+                let _ = field.take(against, vertices, triangles, &wanted);
+            })
+        })?;
+        Ok(field)
+    }
+
+    /// How far what is emitted is from a truth, both ways, and seen from `view`; none if nothing is emitted. The counts must
+    /// be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn accuracy(&self, scene: &mut Scene, truth: &Truth, view: &LodView) -> Result<Option<Accuracy>, GpuError> {
+        let mut measurement = Measurement::new(truth, Some(view), AccuracyOptions::default());
+        self.read_chunks(scene, true, |_, vertices, triangles| measurement.take(vertices, triangles))?;
+        Ok(measurement.finish())
     }
 
     /// How large what is emitted is on screen. The counts must be known.

@@ -55,6 +55,8 @@ pub struct Settings {
     /// The height that stays where it is, 0 to 1.
     pub midlevel: f32,
     pub overlays: Overlays,
+    /// What distances to the truth are coloured by.
+    pub deviation_in: DeviationUnit,
     /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
     pub split: Option<f32>,
     /// sRGB behind the mesh.
@@ -82,6 +84,7 @@ impl Default for Settings {
             height_scale: 0.05,
             midlevel: 0.5,
             overlays: Overlays::default(),
+            deviation_in: DeviationUnit::Units,
             split: None,
             background: [0x2b, 0x2e, 0x33],
         }
@@ -102,6 +105,18 @@ pub enum Colors {
     TriangleSize,
     /// Patches whose factors are all below 2.
     LowFactors,
+    /// How far every place is from what it should have been.
+    Deviation,
+}
+
+/// What a distance on the surface is counted in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum DeviationUnit {
+    /// Object units: the same from wherever one looks
+    #[default]
+    Units,
+    /// Px that the distance takes across the view, at its depth
+    Px,
 }
 
 /// What is drawn over the shaded surface; any of them together.
@@ -141,10 +156,11 @@ pub enum Overlay {
     TriangleSize,
     LowFactors,
     Normals,
+    Deviation,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Wireframe,
         Self::Patches,
         Self::Barycentric,
@@ -157,6 +173,7 @@ impl Overlay {
         Self::TriangleSize,
         Self::LowFactors,
         Self::Normals,
+        Self::Deviation,
     ];
 }
 
@@ -174,6 +191,7 @@ impl Overlays {
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
             Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),
             Overlay::LowFactors => return Control::Colors(&mut self.colors, Colors::LowFactors),
+            Overlay::Deviation => return Control::Colors(&mut self.colors, Colors::Deviation),
             Overlay::Wireframe => &mut self.wireframe,
             Overlay::Patches => &mut self.patches,
             Overlay::Adjacency => &mut self.adjacency,
@@ -289,7 +307,7 @@ mod tests {
             overlays.toggle(overlay);
             assert_ne!(overlays, Overlays::default(), "{overlay:?}");
         }
-        assert_eq!(overlays.colors, Colors::LowFactors, "the last one");
+        assert_eq!(overlays.colors, Colors::Deviation, "the last one");
         overlays.toggle(Overlay::Factors);
         assert_eq!(overlays.colors, Colors::Factors);
         overlays.toggle(Overlay::Factors);

@@ -2,6 +2,8 @@
 
 #[path = "window/animation.rs"]
 mod animation;
+#[path = "window/deviation.rs"]
+mod deviation;
 #[path = "window/lists.rs"]
 mod lists;
 #[path = "documents/moving.rs"]

@@ -1,5 +1,6 @@
 //! A mesh in the window, and its loading beside the window.
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::checks::Checks;
@@ -8,6 +9,7 @@ use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source};
 use crate::render::Scene;
 use crate::settings::ARENA_BYTES;
 use crate::tessellate::Deformed;
+use crate::truth::Truth;
 
 /// What is open.
 pub struct Document {
@@ -19,6 +21,8 @@ pub struct Document {
     pub checks: Checks,
     /// Of the mesh's bounds at rest, in object units.
     pub diagonal: f32,
+    /// What its shape is sampled from, if it is such a shape.
+    pub exact: Option<Arc<Truth>>,
     /// Tells one loaded document from the next, also of one file.
     pub generation: u64,
 }
@@ -108,5 +112,6 @@ fn load(
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
     let diagonal = scene.bounds.diagonal();
-    Ok(Document { loaded, scene, edges, moment: None, checks, diagonal, generation })
+    let exact = source.shape().and_then(Truth::of_shape).map(Arc::new);
+    Ok(Document { loaded, scene, edges, moment: None, checks, diagonal, exact, generation })
 }

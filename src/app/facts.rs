@@ -23,6 +23,7 @@ impl App {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             heading(ui, "Patch");
             self.patch_section(ui);
+            self.deviation_section(ui);
             heading(ui, "Cracks");
             self.crack_facts(ui);
             self.worst_edges(ui);

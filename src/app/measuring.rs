@@ -38,7 +38,7 @@ impl Drop for Comparing {
 }
 
 /// A readback under way. Its parts go to the comparing thread in order.
-struct Copying {
+pub(super) struct Copying {
     staging: wgpu::Buffer,
     part: PartKind,
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
@@ -48,11 +48,11 @@ struct Copying {
 }
 
 /// Parts that wait for the comparing thread at most: each is as large as the arena.
-const WAITING: usize = 1;
+pub(super) const WAITING: usize = 1;
 
 /// What a copy holds.
 #[derive(Clone, Copy)]
-enum PartKind {
+pub(super) enum PartKind {
     /// As many bytes of patches' factors, then of those that LOD gave.
     Factors { patch_bytes: usize, edges: Edges, convention: Convention },
     /// The output of patches from `first_patch` on: as many bytes of vertices, then indices.
@@ -60,7 +60,7 @@ enum PartKind {
 }
 
 /// A copy that the comparing thread can read.
-struct Part(PartKind, wgpu::Buffer);
+pub(super) struct Part(pub PartKind, pub wgpu::Buffer);
 
 impl Measuring {
     /// What is shown, once measured.
@@ -113,7 +113,7 @@ impl Measuring {
             *self = Self { of, found, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
         }
-        self.copy_on(gpu, scene)?;
+        copy_on(&mut self.copying, gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
             Some(Ok((found, sizes))) => {
                 self.comparing = None;
@@ -151,28 +151,28 @@ impl Measuring {
         let comparing = Some(Comparing { found, wanted });
         Self { copying, comparing, seen_from: Some(view), ..Self::default() }
     }
+}
 
-    /// Sends on what has been copied, and copies the next chunk.
-    fn copy_on(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<(), GpuError> {
-        let Some(copying) = &mut self.copying else { return Ok(()) };
-        if !copying.is_mapped {
-            match copying.mapped.try_recv() {
-                Err(TryRecvError::Empty) => return Ok(()),
-                Err(TryRecvError::Disconnected) => return Err(GpuError::Readback("a copy was dropped".into())),
-                Ok(Err(error)) => return Err(GpuError::Readback(error.to_string())),
-                Ok(Ok(())) => copying.is_mapped = true,
-            }
+/// Sends on what has been copied, and copies the next chunk.
+pub(super) fn copy_on(under_way: &mut Option<Copying>, gpu: &Gpu, scene: &mut Scene) -> Result<(), GpuError> {
+    let Some(copying) = under_way else { return Ok(()) };
+    if !copying.is_mapped {
+        match copying.mapped.try_recv() {
+            Err(TryRecvError::Empty) => return Ok(()),
+            Err(TryRecvError::Disconnected) => return Err(GpuError::Readback("a copy was dropped".into())),
+            Ok(Err(error)) => return Err(GpuError::Readback(error.to_string())),
+            Ok(Ok(())) => copying.is_mapped = true,
         }
-        if let Err(TrySendError::Full(_)) = copying.parts.try_send(Part(copying.part, copying.staging.clone())) {
-            return Ok(());
-        }
-        // The comparing thread ends early only when the measurement was replaced; without a sender it knows of the end.
-        let Some(copying) = self.copying.take() else { return Ok(()) };
-        if copying.next_chunk < scene.tessellator.chunk_count() {
-            self.copying = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
-        }
-        Ok(())
     }
+    if let Err(TrySendError::Full(_)) = copying.parts.try_send(Part(copying.part, copying.staging.clone())) {
+        return Ok(());
+    }
+    // The comparing thread ends early only when the measurement was replaced; without a sender it knows of the end.
+    let Some(copying) = under_way.take() else { return Ok(()) };
+    if copying.next_chunk < scene.tessellator.chunk_count() {
+        *under_way = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
+    }
+    Ok(())
 }
 
 fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
@@ -187,7 +187,7 @@ fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
     Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: 0, parts }
 }
 
-fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: SyncSender<Part>) -> Copying {
+pub(super) fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: SyncSender<Part>) -> Copying {
     let mut timing = Timing::Off;
     let mut recorder = Recorder::new(gpu, &mut timing);
     scene.tessellator.emit(&mut recorder, index);

@@ -14,7 +14,7 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 32] = [
+pub const KEYS: [(&str, &str); 33] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -35,6 +35,7 @@ pub const KEYS: [(&str, &str); 32] = [
     ("H", "colours: factors"),
     ("X", "colours: triangle size"),
     ("U", "colours: factors below 2"),
+    ("V", "colours: deviation"),
     ("N", "normals"),
     ("S", "split view"),
     ("E", "edges as published, or computed once"),
@@ -103,6 +104,21 @@ impl App {
         let reload = egui::Button::new("Reload").shortcut_text("R");
         if ui.add_enabled(self.document.is_some(), reload).clicked() {
             self.reload(ui.ctx());
+        }
+        ui.separator();
+        let hover = "Holds the mesh against what it should have been: the high-poly original, say.";
+        if ui.button("Truth…").on_hover_text(hover).clicked() && self.dialog.is_none() {
+            self.asks_for_truth = true;
+            self.dialog("Choose what the mesh should have been", "glTF", &["gltf", "glb"], ui.ctx());
+        }
+        if ui.button("Truth path…").on_hover_text(hover).clicked() {
+            self.type_path();
+            self.asks_for_truth = true;
+        }
+        let forget = egui::Button::new("No truth");
+        let hover = "Goes back to the surface that a shape is sampled from, or that the tessellation converges to.";
+        if ui.add_enabled(self.truth.is_some(), forget).on_hover_text(hover).clicked() {
+            self.forget_truth();
         }
         ui.separator();
         ui.menu_button("Shapes", |ui| {
@@ -174,10 +190,14 @@ impl App {
             Some(Source::File(path)) => path.display().to_string(),
             _ => String::new(),
         };
+        self.asks_for_truth = false;
         self.typed_path.get_or_insert(path);
     }
 
     fn open_dialog(&mut self, context: &egui::Context) {
+        if self.dialog.is_none() {
+            self.asks_for_truth = false;
+        }
         self.dialog("Open a mesh", "glTF", &["gltf", "glb"], context);
     }
 
@@ -220,6 +240,7 @@ impl App {
                 self.viewport.cancel();
             } else {
                 self.load = None;
+                self.truth_load = None;
                 self.error = None;
                 self.typed_path = None;
                 self.shows_keys = false;
@@ -259,7 +280,8 @@ impl App {
     }
 
     fn overlay_keys(&mut self, context: &egui::Context) {
-        let keys = [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T, Key::K, Key::H, Key::X, Key::U, Key::N];
+        let keys =
+            [Key::W, Key::P, Key::B, Key::A, Key::C, Key::O, Key::T, Key::K, Key::H, Key::X, Key::U, Key::N, Key::V];
         for (key, overlay) in keys.into_iter().zip(Overlay::ALL) {
             if pressed(context, key) {
                 self.settings.overlays.toggle(overlay);
@@ -319,9 +341,11 @@ impl App {
     fn path_window(&mut self, context: &egui::Context) {
         let Some(path) = &mut self.typed_path else { return };
         let (mut accepted, mut cancelled) = (false, false);
-        let window = egui::Window::new("Open path").resizable(false).collapsible(false);
+        let asks = if self.asks_for_truth { "Truth path" } else { "Open path" };
+        let kinds = if self.asks_for_truth { "" } else { ", or a height image (.png, .jpg)" };
+        let window = egui::Window::new(asks).resizable(false).collapsible(false);
         window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(context, |ui| {
-            let label = ui.label("A .gltf or .glb file, shape:NAME, or a height image (.png, .jpg)");
+            let label = ui.label(format!("A .gltf or .glb file, shape:NAME{kinds}"));
             let edit = egui::TextEdit::singleline(path).desired_width(420.0).hint_text("model.glb");
             let response = ui.add(edit).labelled_by(label.id);
             if !response.has_focus() && !response.lost_focus() {
@@ -344,6 +368,7 @@ impl App {
                 Ok(source) => {
                     self.typed_path = None;
                     match source {
+                        source if std::mem::take(&mut self.asks_for_truth) => self.open_truth(context, source),
                         Source::File(path) => self.open_path(context, path),
                         Source::Shape(_) | Source::FineShape(..) => self.open(context, source),
                     }

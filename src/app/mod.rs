@@ -2,6 +2,7 @@
 
 mod animation;
 mod checks;
+mod deviating;
 mod document;
 mod facts;
 mod heights;
@@ -18,6 +19,7 @@ mod picture;
 mod rim;
 mod status;
 mod text;
+mod truth;
 mod viewport;
 mod widgets;
 mod worst;
@@ -35,10 +37,12 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};
 
 use animation::Playback;
+use deviating::Deviating;
 use document::{Document, Load};
 use measuring::Measuring;
 use pick::Selection;
 use picture::Viewport;
+use truth::{Chosen, TruthLoad};
 use viewport::Marked;
 
 #[derive(Debug, Error)]
@@ -104,11 +108,17 @@ pub struct App {
     document: Option<Document>,
     load: Option<Load>,
     dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
+    /// Whether the dialog, or the window that takes a path, is for a truth.
+    asks_for_truth: bool,
+    /// What the mesh should have been, if that was chosen.
+    truth: Option<Chosen>,
+    truth_load: Option<TruthLoad>,
     /// The width of a rim that is being dragged.
     dragged_rim: Option<f32>,
     viewport: Viewport,
     playback: Playback,
     measuring: Measuring,
+    deviating: Deviating,
     /// What lines are over the mesh.
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
@@ -141,9 +151,13 @@ impl App {
             document: None,
             load: None,
             dialog: None,
+            asks_for_truth: false,
+            truth: None,
+            truth_load: None,
             dragged_rim: None,
             playback: Playback::default(),
             measuring: Measuring::default(),
+            deviating: Deviating::default(),
             marked: None,
             selected_edge: None,
             selection: Selection::default(),
@@ -232,7 +246,9 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        self.load.is_some() || self.viewport.is_busy() || self.measuring.is_busy() || self.selection.is_busy()
+        let loads = self.load.is_some() || self.truth_load.is_some();
+        let measures = self.measuring.is_busy() || self.deviating.is_busy();
+        loads || measures || self.viewport.is_busy() || self.selection.is_busy()
     }
 
     /// Whether the mesh is still being looked through: that doesn't change the picture by itself.
@@ -254,6 +270,7 @@ impl App {
                 let frames = !keep_view || self.is_framed();
                 if !keep_view {
                     self.frozen = None;
+                    self.forget_truth();
                 }
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
@@ -287,7 +304,11 @@ impl App {
                 Err(std::sync::mpsc::TryRecvError::Empty) => {}
                 Ok(Some(path)) => {
                     self.dialog = None;
-                    self.open_path(context, path);
+                    if std::mem::take(&mut self.asks_for_truth) {
+                        self.open_truth(context, Source::File(path));
+                    } else {
+                        self.open_path(context, path);
+                    }
                 }
                 Ok(None) | Err(_) => self.dialog = None,
             }
@@ -304,6 +325,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
         self.take_loaded(context);
+        self.take_truth();
         self.take_dialog(context);
         self.take_device_problem();
         let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());

@@ -4,7 +4,8 @@ use super::App;
 use super::text::short;
 use super::widgets::{chooser, fixed, heading, value_chooser};
 use crate::settings::{
-    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, DeviationUnit, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings,
+    TOLERANCE_RANGE,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
@@ -50,7 +51,7 @@ const PARTITIONINGS: [(Partitioning, &str, &str); 5] = [
 const LOD_FIXED: &str = "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD \
                          that was chosen.";
 /// Name and explanation of each meaning of colours, and overlay.
-const COLORS: [(Colors, &str, &str); 5] = [
+const COLORS: [(Colors, &str, &str); 6] = [
     (Colors::Material, "Material", "The mesh's own."),
     (
         Colors::Barycentric,
@@ -75,7 +76,14 @@ const COLORS: [(Colors, &str, &str); 5] = [
         "Patches whose factors are all below 2, edges and inside: drawing them untessellated would hardly show, and cost \
          less (U).",
     ),
+    (
+        Colors::Deviation,
+        "Deviation",
+        "How far every place of what is emitted is from what it should have been: the surface that a shape is sampled from, a \
+         truth chosen under File, or else the surface that the tessellation converges to (V).",
+    ),
 ];
+const DEVIATION_UNITS: [(DeviationUnit, &str); 2] = [(DeviationUnit::Units, "Object units"), (DeviationUnit::Px, "Px")];
 const OVERLAYS: [(Overlay, &str, &str); 8] = [
     (Overlay::Wireframe, "Wireframe", "Edges of the tessellated triangles (W)."),
     (Overlay::Patches, "Patch borders", "Borders of the input triangles (P)."),
@@ -111,9 +119,16 @@ impl App {
             });
             self.animation_section(ui);
             heading(ui, "Overlays");
-            let overlays = &mut self.settings.overlays;
+            let Settings { overlays, deviation_in: unit, .. } = &mut self.settings;
             egui::Grid::new("colors").num_columns(2).min_col_width(84.0).show(ui, |ui| {
                 chooser(ui, "Colours", "What the surface's colours mean.", &mut overlays.colors, &COLORS);
+                let hover = "What distances are coloured by (--deviation-in).";
+                if overlays.colors == Colors::Deviation {
+                    value_chooser(ui, "Distances in", hover, unit, &DEVIATION_UNITS);
+                } else {
+                    let shown = DEVIATION_UNITS.iter().find(|(choice, _)| choice == unit).map_or("", |(_, name)| name);
+                    fixed(ui, "Distances in", shown, "Only deviation colours distances.");
+                }
             });
             for (overlay, name, hover) in OVERLAYS {
                 if let Control::Switch(switch) = overlays.control(overlay) {

@@ -11,8 +11,8 @@ use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks, ScreenView};
 use crate::mesh::Moment;
-use crate::render::{Camera, Pixel, Renderer, Target};
-use crate::settings::Settings;
+use crate::render::{Camera, Pixel, Renderer, Scene, Target};
+use crate::settings::{Colors, Settings};
 use crate::tessellate::{Inputs, LodView};
 
 /// Everything that the picture is a function of.
@@ -21,6 +21,8 @@ pub struct Wanted {
     pub document: u64,
     pub moment: Option<Moment>,
     pub lines: u64,
+    /// Which distances to the truth are shown.
+    pub deviation: u64,
     pub camera: Camera,
     pub settings: Settings,
     pub inputs: Inputs,
@@ -185,7 +187,8 @@ impl Viewport {
         };
         self.drawing = self.drawing.take_if(&mut keeps_on);
         // What is selected meanwhile is no reason to draw after all.
-        let same = |cancelled: &Wanted| Wanted { lines: wanted.lines, ..*cancelled } == *wanted;
+        let same =
+            |cancelled: &Wanted| Wanted { lines: wanted.lines, deviation: wanted.deviation, ..*cancelled } == *wanted;
         self.cancelled = self.cancelled.filter(same);
         let under_way = self.drawing.as_ref().map(|drawing| drawing.wanted).or(self.counting);
         let wanted = under_way.unwrap_or(*wanted);
@@ -211,6 +214,9 @@ impl Viewport {
             return Ok(());
         }
         let scene = &mut document.scene;
+        if self.holds(scene, &wanted) {
+            return Ok(());
+        }
         let steps = Renderer::step_count(scene, &wanted.settings);
         let start = || Drawing { wanted, start: Instant::now(), given: 0, steps };
         let drawing = self.drawing.get_or_insert_with(start);
@@ -223,6 +229,16 @@ impl Viewport {
         recorder.submit();
         engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
         Ok(())
+    }
+
+    /// Whether the last picture stays until the distances are known that the new one shows: so from the same place, where
+    /// without them it would only flicker.
+    fn holds(&self, scene: &Scene, wanted: &Wanted) -> bool {
+        let from_here = |drawn: &Wanted| {
+            (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
+        };
+        let shows = wanted.settings.overlays.colors == Colors::Deviation;
+        shows && self.drawing.is_none() && !scene.knows_deviation() && self.drawn.as_ref().is_some_and(from_here)
     }
 
     /// Whether nothing is under way that a new pose would disturb.

@@ -33,6 +33,8 @@ pub struct Marked {
     t_junctions: bool,
     selected_edge: Option<u32>,
     outlined: Outlined,
+    /// The worst point, by the result that it is of; 0 for none.
+    worst: u64,
     /// If there are any; and whether it is known where they are then.
     moment: Option<(Moment, bool)>,
     /// Counts the times that they changed.
@@ -59,7 +61,7 @@ impl App {
         self.patch_labels(ui, rect);
         self.divider(ui, rect);
         self.viewport_notes(ui, rect);
-        legend(ui, rect, self.settings.overlays.colors);
+        legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
     }
 
     /// Lets everything beside the window go on, and draws what is wanted.
@@ -70,6 +72,7 @@ impl App {
         self.viewport.land(&self.engine);
         self.pose()?;
         self.mark();
+        let deviation = self.deviation_shown();
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
         let view = self.frozen.unwrap_or_else(|| self.camera.lod_view(viewport, &document.scene.bounds));
@@ -78,6 +81,7 @@ impl App {
             document: document.generation,
             moment: document.moment,
             lines: self.marked.map_or(0, |marked| marked.generation),
+            deviation,
             camera: self.camera,
             settings: self.settings,
             inputs,
@@ -95,6 +99,7 @@ impl App {
             let follows = self.settings.overlays.colors == Colors::TriangleSize;
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
         }
+        self.deviate(&inputs)?;
         if self.pick()? || self.is_busy() {
             context.request_repaint();
         }
@@ -117,6 +122,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let overlays = self.settings.overlays;
         let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
+        let worst = self.worst_mark();
         let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
         let is_marked = junctions.is_some() || is_selected;
         let posed = if is_marked { document.posed() } else { None };
@@ -127,6 +133,7 @@ impl App {
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge,
             outlined: self.outlined(),
+            worst: if worst.is_empty() { 0 } else { self.deviating.generation },
             moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
             generation: self.marked.map_or(0, |marked| marked.generation),
         };
@@ -140,6 +147,7 @@ impl App {
         if let Some(found) = self.measuring.found().filter(|_| overlays.cracks) {
             lines.extend(found.crack_lines(&document.loaded.topology));
         }
+        lines.extend(worst);
         // Over all else.
         if let Some((_, topology)) = &posed {
             lines.extend(self.patch_outline(topology));
@@ -237,6 +245,13 @@ impl App {
             let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what is open stays open.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.load = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if let Some(load) = &self.truth_load {
+            let title = format!("Loading the truth {}", load.source.title());
+            let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what the mesh is held against stays.");
+            if progress(ui, rect, &title, done, ("Cancel", hover)) {
+                self.truth_load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.cancelled.is_some() {

@@ -13,6 +13,7 @@ mod render;
 mod stability;
 mod stats;
 mod tessellate;
+mod truth;
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -25,6 +26,7 @@ use thiserror::Error;
 pub use animation::AnimationOption;
 pub use given::GivenOption;
 pub use options::{SurfaceOptions, WeldOption};
+pub use truth::TruthOption;
 
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
@@ -113,6 +115,8 @@ pub enum CliError {
     Indices { path: String, fault: crate::adjacency_file::Fault },
     #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
+    #[error("{file} can't be a truth: it has no triangles; choose the mesh that the other was made from")]
+    NoTruth { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
     #[error("the output could not be written: {0}")]

@@ -3,13 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use super::stats::{AnimationStats, Stats};
-use super::{CliError, GivenOption, SurfaceOptions, load, options, reference, to_json, write_picture, write_text};
+use super::truth::{AccuracyStats, DeviationStats, Held};
+use super::{
+    CliError, GivenOption, SurfaceOptions, TruthOption, load, options, reference, to_json, write_picture, write_text,
+};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::Timing;
-use crate::measure::{Measured, ScreenView, patch_edges};
+use crate::measure::{Field, Measured, ScreenView, patch_edges};
 use crate::mesh::{LoadError, Moment, Progress, Source, t_junctions};
-use crate::render::{Camera, LineSegment, Scene, Target, patch_lines, t_junction_lines};
-use crate::settings::{Overlay, Overlays, Settings};
+use crate::render::{Camera, LineSegment, Scene, Target, deviation_scale, patch_lines, t_junction_lines, worst_lines};
+use crate::settings::{Colors, Overlay, Overlays, Settings};
 use crate::tessellate::{HullFactors, Lod};
 
 #[derive(Debug, clap::Args)]
@@ -27,6 +30,8 @@ pub struct Args {
     /// What is drawn over the surface
     #[arg(long, value_enum, value_delimiter = ',', value_name = "OVERLAY,..")]
     pub overlay: Vec<Overlay>,
+    #[command(flatten)]
+    pub truth: TruthOption,
     /// Left of this fraction of the width, show the mesh untessellated
     #[arg(long, value_name = "FRACTION", value_parser = options::fraction)]
     pub split: Option<f32>,
@@ -61,6 +66,7 @@ impl Args {
             surface: SurfaceOptions { lod, partitioning, clip, cull_back_faces, ..SurfaceOptions::default() },
             given: GivenOption::default(),
             overlay: vec![Overlay::Wireframe],
+            truth: TruthOption::default(),
             split: None,
             select: None,
             background,
@@ -75,7 +81,7 @@ impl Args {
     /// Two overlays colour the surface.
     fn overlays(&self) -> Result<Overlays, CliError> {
         Overlays::of(&self.overlay).ok_or(CliError::Usage(
-            "--overlay takes one of barycentric, factors, triangle-size and low-factors: each colours the whole surface",
+            "--overlay takes one of barycentric, factors, triangle-size, low-factors and deviation: each colours the whole surface",
         ))
     }
 }
@@ -86,6 +92,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let reference = args.reference.as_deref().map(|path| reference::read(path, &args.output)).transpose()?;
     let loaded = load(&args.file, &args.surface.preparation())?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
+    let held = args.truth.held(&loaded, &args.surface, overlays.colors == Colors::Deviation)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
     let mut shot = Shot::new(args, loaded, overlays, given)?;
@@ -94,6 +101,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     } else {
         None
     };
+    shot.hold(held)?;
     let lines = shot.lines(measured.as_ref(), selected)?;
     shot.scene.set_lines(&shot.engine.gpu, &lines);
     shot.engine.draw(&mut shot.scene, &shot.target, &shot.camera, &shot.settings, &mut Timing::Off)?;
@@ -121,6 +129,9 @@ struct Shot {
     target: Target,
     camera: Camera,
     settings: Settings,
+    /// What it is held against, and how far from that it is where the overlay shows it.
+    held: Option<Held>,
+    field: Option<Field>,
 }
 
 impl Shot {
@@ -143,10 +154,25 @@ impl Shot {
             engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
             Ok(scene.tessellator.totals().1)
         })?;
-        let settings = Settings { overlays, split: args.split, background: args.background, ..surface };
+        let Args { split, background, .. } = *args;
+        let settings = Settings { overlays, split, background, deviation_in: args.truth.deviation_in, ..surface };
         engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
         let loaded = at_rest.posed(moment);
-        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings })
+        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, held: None, field: None })
+    }
+
+    /// Measures what the overlay shows.
+    fn hold(&mut self, held: Option<Held>) -> Result<(), CliError> {
+        let Self { engine, scene, target, camera, settings, .. } = self;
+        if let Some(held) = held.as_ref().filter(|_| settings.overlays.colors == Colors::Deviation) {
+            let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+            let field = engine.field(scene, &held.yardstick(&inputs))?;
+            let scale = deviation_scale(field.worst().map_or(0.0, |worst| worst.value), scene.ulp());
+            scene.set_deviation(&engine.gpu, Some((&field, scale)));
+            self.field = Some(field);
+        }
+        self.held = held;
+        Ok(())
     }
 
     /// The overlays that are lines, and the outline of the selected patch.
@@ -159,6 +185,9 @@ impl Shot {
         if self.settings.overlays.t_junctions {
             let junctions = t_junctions(&self.at_rest.topology, &Progress::default()).map_err(LoadError::from)?;
             lines.extend(t_junction_lines(topology, &junctions));
+        }
+        if let Some(worst) = self.field.as_ref().and_then(Field::worst) {
+            lines.extend(worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()));
         }
         if let Some(patch) = selected {
             let rims = measured.map(|measured| &measured.rims);
@@ -182,12 +211,21 @@ impl Shot {
         let view = ScreenView { clip_from_object: camera.clip_from_object(viewport, &scene.bounds), viewport };
         let name = args.surface.animation.animation.clone();
         let sizes = engine.sizes(scene, view)?;
+        let accuracy = match self.held.as_ref().and_then(Held::truth) {
+            Some((name, truth)) => {
+                let accuracy = engine.accuracy(scene, truth, &inputs.view)?;
+                accuracy.map(|accuracy| AccuracyStats::new(name, &accuracy, measured.culled.total() == 0))
+            }
+            None => None,
+        };
         let mut stats = Stats::new(engine, &self.loaded, scene, measured, settings, view, &passes);
         stats.triangles_in_view = sizes.in_view;
         stats.triangles_below_3_px = sizes.small;
         stats.leaks = leaks;
         stats.max_error_px = deviation.map(|worst| worst.px);
         stats.factors_capped = factors_capped;
+        stats.accuracy = accuracy;
+        stats.deviation = self.field.as_ref().map(|field| DeviationStats::new(field, self.scene.ulp()));
         stats.animation = self.moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
         Ok(stats)
     }

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use super::given::FactorsFile;
+use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
 use crate::measure::{Measured, ScreenView, ulp};
@@ -54,6 +55,10 @@ pub struct Stats {
     pub factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     pub factors_file: Option<FactorsFile>,
+    /// Against the truth, if there is one and it was asked for.
+    pub accuracy: Option<AccuracyStats>,
+    /// Of the overlay, if it is on.
+    pub deviation: Option<DeviationStats>,
     /// None at rest.
     pub animation: Option<AnimationStats>,
     ms: BTreeMap<&'static str, f64>,
@@ -192,6 +197,8 @@ impl Stats {
             max_error_px: None,
             factors_capped: 0,
             factors_file: None,
+            accuracy: None,
+            deviation: None,
             animation: None,
             ms,
         }

@@ -277,12 +277,12 @@ impl Sums {
 }
 
 /// The first of the largest.
-fn worse(a: Place, b: Place) -> Place {
+pub(super) fn worse(a: Place, b: Place) -> Place {
     if b.value > a.value { b } else { a }
 }
 
 /// What `work` makes of every block of `count` things, in order.
-fn blocks<T: Send>(count: usize, threads: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+pub(super) fn blocks<T: Send>(count: usize, threads: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
     let block_size = (count / BLOCKS).clamp(1, LARGEST_BLOCK);
     let next = AtomicUsize::new(0);
     let run = || {

@@ -28,7 +28,8 @@ pub struct Frame {
     /// The scale that the surface's colours are read against, if they are numbers.
     pub scale_least: f32,
     pub scale_most: f32,
-    pub _pad: f32,
+    /// How many px a unit takes where w is 1, if distances are counted in px; else 0.
+    pub px_per_unit: f32,
     /// sRGB, 0 to 1; the fourth is nothing.
     pub scale: [[f32; 4]; Scale::STOPS],
 }
@@ -71,6 +72,7 @@ pub fn overlay_bits(overlays: &Overlays) -> u32 {
         | u32::from(overlays.colors == Colors::Factors) << 6
         | u32::from(overlays.colors == Colors::TriangleSize) << 7
         | u32::from(overlays.colors == Colors::LowFactors) << 8
+        | u32::from(overlays.colors == Colors::Deviation) << 9
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
@@ -101,6 +103,9 @@ pub const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 /// sRGB colour of what tessellation is wasted on: triangles too small, patches whose factors are too low; `WASTE_COLOR` in
 /// `shaders/draw_surface.wgsl` has the same in linear light. Vermilion (Okabe and Ito 2008).
 pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
+
+/// sRGB colour of the place that is farthest from the truth: none of the scale's, and set off by [`OUTLINE_COLOR`].
+pub const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
 pub const NORMAL_COLOR: [u8; 3] = [60, 215, 255];

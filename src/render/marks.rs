@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::LineSegment;
-use super::layout::{FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR};
+use super::layout::{FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
 use crate::mesh::{TJunction, Topology};
 
 /// The open edges that T-junctions lie on, and a dot on each point.
@@ -15,6 +15,14 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
         [LineSegment::new(a, b, T_JUNCTION_COLOR), dot(at(junction.point))]
     });
     marks.collect()
+}
+
+/// The place that is farthest from the truth: a dot on it, and a line to the truth's point.
+pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
+    let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
+    let mark =
+        |color, wider: f32| [line(emitted, truth, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)];
+    [mark(OUTLINE_COLOR, 1.5), mark(WORST_COLOR, 0.0)].concat()
 }
 
 /// The outline of a selected patch: lines through the points of the edges that factors 0, 1 and 2 cut.

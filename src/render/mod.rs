@@ -1,6 +1,7 @@
 //! Pictures: a camera, a scene on the device, and one indirect draw a material into an offscreen texture.
 
 mod camera;
+mod deviation;
 pub mod layout;
 mod leaks;
 mod marks;
@@ -12,8 +13,9 @@ mod scene;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
+pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use leaks::LeakCounter;
-pub use marks::{patch_lines, t_junction_lines};
+pub use marks::{patch_lines, t_junction_lines, worst_lines};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::Renderer;
 pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};

@@ -17,6 +17,13 @@ pub fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
 }
 
+/// How far a chunk's triangles are from the truth.
+pub fn deviation_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries = [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT)];
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("deviation"), entries: &entries })
+}
+
 const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
 
 fn buffer_entry(

@@ -4,15 +4,15 @@ use std::ops::Range;
 
 use wgpu::util::DeviceExt;
 
+use super::deviation::{Deviations, scale_of};
 use super::layout::{Frame, linear, overlay_bits};
-use super::pipelines::{Layer, chunk_layout, material_layout, pipeline, scene_layout};
-use super::scale::{FACTOR_SCALE, Scale};
+use super::pipelines::{Layer, chunk_layout, deviation_layout, material_layout, pipeline, scene_layout};
 use super::scene::{LineSegment, upload};
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::Vertex;
 use crate::gpu::{ChunkBuffers, Gpu, Recorder};
 use crate::mesh::Texture;
-use crate::settings::{Colors, Overlays, Settings};
+use crate::settings::{Colors, DeviationUnit, Overlays, Settings};
 
 /// Long-lived: one for a device, whatever is loaded.
 pub struct Renderer {
@@ -20,6 +20,9 @@ pub struct Renderer {
     scene_layout: wgpu::BindGroupLayout,
     pub(super) material_layout: wgpu::BindGroupLayout,
     chunk_layout: wgpu::BindGroupLayout,
+    deviation_layout: wgpu::BindGroupLayout,
+    /// Where no distances are known.
+    unknown: wgpu::Buffer,
     pub(super) white: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
     /// Both sides, then fronts only.
@@ -45,15 +48,17 @@ impl Renderer {
         let scene_layout = scene_layout(gpu);
         let material_layout = material_layout(gpu);
         let chunk_layout = chunk_layout(gpu);
+        let deviation_layout = deviation_layout(gpu);
         let surface = crate::gpu::shader_module(gpu, "draw");
         let vertex = |step_mode| wgpu::VertexBufferLayout {
             array_stride: size_of::<Vertex>() as u64,
             step_mode,
             attributes: &VERTEX_ATTRIBUTES,
         };
-        let layouts = [Some(&scene_layout), Some(&material_layout), Some(&chunk_layout)];
-        let surface = |entry, groups: usize, buffers: &[_], layer| {
-            pipeline(gpu, &layouts[..groups], &surface, (entry, "surface_fragment"), buffers, layer)
+        let layouts = [Some(&scene_layout), Some(&material_layout), Some(&chunk_layout), Some(&deviation_layout)];
+        let as_it_came = [layouts[0], layouts[1], None, layouts[3]];
+        let surface = |entry, layouts: &[_], buffers: &[_], layer| {
+            pipeline(gpu, layouts, &surface, (entry, "surface_fragment"), buffers, layer)
         };
         let segment = wgpu::VertexBufferLayout {
             array_stride: size_of::<LineSegment>() as u64,
@@ -70,9 +75,9 @@ impl Renderer {
         let per_vertex = [Some(vertex(wgpu::VertexStepMode::Vertex))];
         Self {
             gpu: gpu.clone(),
-            indexed: SIDES.map(|layer| surface("indexed_vertex", 3, &per_vertex, layer)),
-            pulled: SIDES.map(|layer| surface("pulled_vertex", 3, &[], layer)),
-            source: surface("source_vertex", 2, &[], Layer::Surface),
+            indexed: SIDES.map(|layer| surface("indexed_vertex", &layouts, &per_vertex, layer)),
+            pulled: SIDES.map(|layer| surface("pulled_vertex", &layouts, &[], layer)),
+            source: surface("source_vertex", &as_it_came, &[], Layer::Surface),
             lines: lines("line_vertex", &layouts[..1], segment),
             normals: lines("normal_vertex", &with_chunk, vertex(wgpu::VertexStepMode::Instance)),
             white: upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] }),
@@ -88,6 +93,8 @@ impl Renderer {
             scene_layout,
             material_layout,
             chunk_layout,
+            deviation_layout,
+            unknown: Deviations::unknown(gpu),
         }
     }
 
@@ -143,6 +150,7 @@ impl Renderer {
                 }
                 match *step {
                     Step::Surface(chunk) => {
+                        pass.set_bind_group(3, &self.deviation_group(scene, Some(chunk)), &[]);
                         self.draw_chunk(pass, scene, right, (pipeline, pulled), &scene.tessellator.chunk(chunk));
                     }
                     Step::Normals(chunk) => self.draw_normals(pass, right, &scene.tessellator.chunk(chunk)),
@@ -165,7 +173,7 @@ impl Renderer {
     ) -> (&wgpu::RenderPipeline, bool) {
         // These look at whole triangles, and at backs.
         let Overlays { wireframe, folds, back_faces, colors, .. } = settings.overlays;
-        let pulled = wireframe || folds || colors == Colors::TriangleSize;
+        let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let both = if pulled { &self.pulled } else { &self.indexed };
@@ -176,7 +184,11 @@ impl Renderer {
         let viewport = target.viewport();
         let [right, up, back] = camera.axes();
         let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
-        let scale = Scale::of(settings.overlays.colors).unwrap_or(&FACTOR_SCALE);
+        let scale = scale_of(settings, scene.known_deviation());
+        // W is 1 all over an orthographic view, and the distance from the eye in another.
+        let px_where_w_is_1 =
+            (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
+        let in_px = settings.deviation_in == DeviationUnit::Px;
         Frame {
             clip_from_object: camera.clip_from_object(viewport, &scene.bounds).to_cols_array_2d(),
             key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
@@ -188,7 +200,7 @@ impl Renderer {
             convention: settings.convention as u32,
             scale_least: scale.least,
             scale_most: scale.most,
-            _pad: 0.0,
+            px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
             scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
         }
     }
@@ -199,6 +211,7 @@ impl Renderer {
         }
         pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(&self.source);
+        pass.set_bind_group(3, &self.deviation_group(scene, None), &[]);
         for (material, patches) in scene.materials.iter().zip(&scene.tessellator.topology().material_patches) {
             pass.set_bind_group(1, material, &[]);
             pass.draw(3 * patches.start..3 * patches.end, 0..1);
@@ -269,6 +282,12 @@ impl Renderer {
         let bound = [frame, &buffers.points, &buffers.corners, &buffers.patches, vertices, indices];
         let bound: Vec<_> = (0..).zip(bound).collect();
         crate::gpu::bind_group(&self.gpu, "scene", &self.scene_layout, &bound)
+    }
+
+    fn deviation_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
+        let known = scene.known_deviation().zip(chunk).and_then(|(deviation, chunk)| deviation.chunks.get(chunk));
+        let bound = [(0, known.unwrap_or(&self.unknown))];
+        crate::gpu::bind_group(&self.gpu, "deviation", &self.deviation_layout, &bound)
     }
 
     fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {

@@ -46,12 +46,12 @@ pub const SIZE_SCALE: Scale = Scale {
 impl Scale {
     pub const STOPS: usize = 7;
 
-    /// The scale that colours are read against, if they are numbers.
+    /// The scale that colours are read against, if they are numbers and it is always the same.
     pub fn of(colors: Colors) -> Option<&'static Self> {
         match colors {
             Colors::Factors => Some(&FACTOR_SCALE),
             Colors::TriangleSize => Some(&SIZE_SCALE),
-            Colors::Material | Colors::Barycentric | Colors::LowFactors => None,
+            Colors::Material | Colors::Barycentric | Colors::LowFactors | Colors::Deviation => None,
         }
     }
 
@@ -74,6 +74,7 @@ impl Scale {
 
 #[cfg(test)]
 mod tests {
+    use super::super::DEVIATION_PX_SCALE;
     use super::super::layout::linear;
     use super::*;
 
@@ -94,6 +95,8 @@ mod tests {
         };
         let steps = |scale: &Scale| scale.colors.map(luminance);
         assert!(steps(&FACTOR_SCALE).windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{:?}", steps(&FACTOR_SCALE));
+        let rising = steps(&DEVIATION_PX_SCALE);
+        assert!(rising.windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{rising:?}");
         assert!(steps(&SIZE_SCALE).windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{:?}", steps(&SIZE_SCALE));
     }
 }

@@ -8,9 +8,11 @@ use image::imageops::FilterType;
 use wgpu::util::DeviceExt;
 
 use super::Renderer;
+use super::Scale;
+use super::deviation::Deviations;
 use super::layout::{Material, linear};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
-use crate::measure::{ulp, ulp_at};
+use crate::measure::{Field, ulp, ulp_at};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, Topology};
 use crate::settings::Settings;
 use crate::tessellate::bounds_through;
@@ -24,6 +26,8 @@ pub struct Scene {
     pub(super) ulp: f32,
     pub(super) materials: Vec<wgpu::BindGroup>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
+    /// How far what was emitted is from the truth, once that is known.
+    deviation: Option<Deviations>,
 }
 
 /// A piece of a line drawn through everything; a dot where it starts and ends at one place.
@@ -76,7 +80,7 @@ impl Scene {
         });
         let materials = materials.collect();
         let ulp = ulp(tessellator.topology()) as f32;
-        Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None })
+        Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None, deviation: None })
     }
 
     /// Takes the bounds all through a clip, so that nothing that depends on them changes while it plays; those at rest
@@ -99,6 +103,27 @@ impl Scene {
     pub fn set_moment(&mut self, moment: Option<Moment>) -> Result<(), GpuError> {
         let rig = self.tessellator.mesh().rig.clone();
         self.tessellator.set_pose(moment.zip(rig).map(|(moment, rig)| Arc::new(rig.pose(moment))))
+    }
+
+    /// Takes how far what is emitted now is from the truth, and the scale that it is read against in object units; none
+    /// when that is no longer so.
+    pub fn set_deviation(&mut self, gpu: &Gpu, field: Option<(&Field, Scale)>) {
+        let of = self.tessellator.generation();
+        self.deviation = field.map(|(field, scale)| Deviations::new(gpu, field, scale, of));
+    }
+
+    /// Whether it is known how far what is emitted now is from the truth.
+    pub fn knows_deviation(&self) -> bool {
+        self.known_deviation().is_some()
+    }
+
+    pub(super) fn known_deviation(&self) -> Option<&Deviations> {
+        self.deviation.as_ref().filter(|known| known.of == self.tessellator.generation())
+    }
+
+    /// One unit in the last place of the mesh's largest coordinate, in object units.
+    pub fn ulp(&self) -> f32 {
+        self.ulp
     }
 
     /// Replaces the lines drawn over the mesh.

@@ -18,7 +18,7 @@ pub use exact::{Exact, of_shape};
 pub use reference::Reference;
 pub use triangles::{Closest, Triangles};
 
-use crate::mesh::{Mesh, Shape};
+use crate::mesh::{LoadError, Mesh, Progress, Shape, Source};
 
 /// The point of a surface that is nearest to some place. Where several are equally near it is one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +47,17 @@ impl Truth {
     /// The surface that a shape's corners are samples of; none for shapes that have none.
     pub fn of_shape(shape: Shape) -> Option<Self> {
         of_shape(shape).map(Self::Exact)
+    }
+
+    /// What a source stands for: the surface that a shape is sampled from; or the mesh. None if that has no triangle.
+    ///
+    /// # Errors
+    /// What the file holds can't be shown, or `progress` was cancelled.
+    pub fn load(source: &Source, progress: &Progress) -> Result<Option<Self>, LoadError> {
+        match source.shape().and_then(Self::of_shape) {
+            Some(exact) => Ok(Some(exact)),
+            None => Ok(Self::of_mesh(&source.load(progress)?)),
+        }
     }
 
     /// A mesh with its interpolated normals, which needn't be closed or manifold; none if it has no triangle.

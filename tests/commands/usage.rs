@@ -94,7 +94,7 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let folder = Folder::new("overlays");
     let picture = folder.path("out.png");
     let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
-    for list in ["barycentric,factors", "triangle-size,wireframe,low-factors"] {
+    for list in ["barycentric,factors", "triangle-size,wireframe,low-factors", "deviation,factors"] {
         let errors = failure(&overlays(list), 2);
         assert!(errors.contains("each colours the whole surface"), "{errors}");
         assert!(!Path::new(&picture).exists(), "before anything is drawn");

@@ -115,6 +115,7 @@ fn shared_structs_have_one_layout() {
         convention,
         scale_least,
         scale_most,
+        px_per_unit,
         scale,
     });
     same!(Material { base_color });

@@ -5,6 +5,7 @@
 mod conventions;
 mod culling;
 mod deforming;
+mod deviation;
 mod displacement;
 mod domain;
 mod error;

@@ -20,7 +20,7 @@ use crate::passes::sheet;
 use crate::stability::{case, seen};
 use crate::{engine, picture, scene};
 
-const SIZE: [u32; 2] = [200, 160];
+pub const SIZE: [u32; 2] = [200, 160];
 /// The software driver rasterises a little differently on other processors: a few px along edges. A wrong surface, a
 /// missing patch or overlay is a hundred times more (see the test below).
 const TOLERANCE: f64 = 0.004;
@@ -30,7 +30,7 @@ fn reference(name: &str) -> PathBuf {
 }
 
 /// Names of pictures that differ from their references, with how much.
-fn differing(pictures: Vec<(String, RgbaImage)>) -> Vec<String> {
+pub fn differing(pictures: Vec<(String, RgbaImage)>) -> Vec<String> {
     let update = std::env::var_os("PNAEN_UPDATE_IMAGES").is_some();
     assert!(engine().gpu.is_software() || !update, "references are made on the software driver");
     let mut differing = Vec::new();

@@ -1,0 +1,164 @@
+//! How far what is shown is from what it should have been, measured beside the window for the overlay.
+
+use std::sync::mpsc::{Receiver, TryRecvError, channel, sync_channel};
+
+use super::measuring::{Copying, Part, PartKind, WAITING, copy_chunk, copy_on};
+use crate::gpu::{Gpu, GpuError, mapped_bytes};
+use crate::measure::{Field, Place, Yardstick};
+use crate::mesh::Progress;
+use crate::render::{Scale, Scene, deviation_scale};
+use crate::tessellate::{Posed, Vertex};
+
+/// What is known about the distance to the truth.
+#[derive(Default)]
+pub struct Deviating {
+    /// What was last asked for.
+    of: Option<Of>,
+    /// Before the copying: dropped first, so that its thread doesn't take an end of parts for all of them.
+    comparing: Option<Comparing>,
+    copying: Option<Copying>,
+    found: Option<Found>,
+    /// Counts results.
+    pub generation: u64,
+}
+
+/// What a result is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Of {
+    pub document: u64,
+    pub tessellation: u64,
+    /// Tells one truth from the next.
+    pub truth: u64,
+}
+
+/// A result; the samples themselves are the scene's.
+#[derive(Clone, Copy)]
+pub struct Found {
+    of: Of,
+    /// None if nothing was emitted.
+    pub worst: Option<Place>,
+    /// Object units.
+    pub rms: f64,
+    pub scale: Scale,
+    /// Triangles without a colour, because there were too many.
+    pub left_out: u64,
+}
+
+/// The thread that compares; it gives up when this is dropped.
+struct Comparing {
+    found: Receiver<Field>,
+    wanted: Progress,
+}
+
+impl Drop for Comparing {
+    fn drop(&mut self) {
+        self.wanted.cancel();
+    }
+}
+
+impl Deviating {
+    /// The last result; of something else while that is measured which is wanted by now.
+    pub fn found(&self) -> Option<&Found> {
+        self.found.as_ref()
+    }
+
+    /// The result, if it is about this.
+    pub fn found_of(&self, of: Of) -> Option<&Found> {
+        self.found.as_ref().filter(|found| found.of == of)
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.comparing.is_some()
+    }
+
+    /// The part of all triangles that is measured, 0 to 1, while they are.
+    pub fn fraction(&self) -> Option<f32> {
+        self.comparing.as_ref().map(|comparing| comparing.wanted.fraction())
+    }
+
+    /// Stops what is under way; what is known stays known.
+    pub fn stop(&mut self) {
+        if self.comparing.take().is_some() {
+            self.copying = None;
+            self.of = None;
+        }
+    }
+
+    /// Goes on measuring, or starts over if that isn't what was asked for last; the scene, whose counts are known, gets
+    /// what comes of it.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn go_on(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut Scene,
+        of: Of,
+        yardstick: impl FnOnce() -> Yardstick,
+    ) -> Result<(), GpuError> {
+        if self.of != Some(of) {
+            self.start(gpu, scene, yardstick());
+            self.of = Some(of);
+            return Ok(());
+        }
+        copy_on(&mut self.copying, gpu, scene)?;
+        match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
+            Some(Ok(field)) => {
+                self.comparing = None;
+                let scale = deviation_scale(field.worst().map_or(0.0, |worst| worst.value), scene.ulp());
+                scene.set_deviation(gpu, Some((&field, scale)));
+                self.generation += 1;
+                let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);
+                self.found = Some(Found { of, worst, rms, scale, left_out });
+            }
+            Some(Err(TryRecvError::Disconnected)) => self.comparing = None,
+            Some(Err(TryRecvError::Empty)) | None => {}
+        }
+        Ok(())
+    }
+
+    fn start(&mut self, gpu: &Gpu, scene: &mut Scene, yardstick: Yardstick) {
+        self.comparing = None;
+        let (parts, received) = sync_channel(WAITING);
+        let (sender, found) = channel();
+        let wanted = Progress::default();
+        let (posed, still_wanted) = (scene.tessellator.posed().clone(), wanted.clone());
+        let (triangles, chunks) = (scene.tessellator.totals().1, scene.tessellator.chunk_count());
+        std::thread::spawn(move || {
+            let field = field(&received, &posed, &yardstick, triangles, &still_wanted);
+            if let Some(field) = field.filter(|field| field.chunks.len() == chunks) {
+                let _ = sender.send(field);
+            }
+        });
+        // Without a sender the thread knows of the end.
+        self.copying = (chunks > 0).then(|| copy_chunk(gpu, scene, 0, parts));
+        self.comparing = Some(Comparing { found, wanted });
+    }
+}
+
+/// Measures the parts as they come. `None` if no longer wanted, or the device was lost.
+fn field(
+    parts: &Receiver<Part>,
+    posed: &Posed,
+    yardstick: &Yardstick,
+    triangles: u64,
+    wanted: &Progress,
+) -> Option<Field> {
+    let (mesh, topology) = posed.deformed();
+    let mut field = Field::new(triangles);
+    let mut done = 0;
+    yardstick.with(&mesh, &topology, |against| {
+        for Part(part, staging) in parts {
+            let PartKind::Chunk { vertex_bytes, .. } = part else { continue };
+            let bytes = mapped_bytes(&staging).ok()?;
+            let (vertices, indices) = bytes.split_at(vertex_bytes);
+            let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
+            let indices = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
+            field.take(against, &vertices, &indices, wanted).ok()?;
+            done += indices.len();
+            wanted.set(done as f32 / triangles.max(1) as f32);
+        }
+        wanted.check().ok()
+    })?;
+    Some(field)
+}

@@ -1,0 +1,163 @@
+//! `--truth`: what a tessellation should have been, and what is said of the distance to it.
+
+use std::sync::Arc;
+
+use clap::Args;
+use glam::DVec3;
+use serde::Serialize;
+
+use super::{CliError, SurfaceOptions, options};
+use crate::engine::Loaded;
+use crate::measure::{Accuracy, Angles, Distances, Field, Yardstick};
+use crate::mesh::{Progress, Source};
+use crate::render::deviation_scale;
+use crate::settings::DeviationUnit;
+use crate::tessellate::{Displacement, Inputs};
+use crate::truth::Truth;
+
+#[derive(Clone, Debug, Default, Args)]
+pub struct TruthOption {
+    /// What the mesh should have been, for the deviation overlay and the stats: a .gltf or .glb file, such as the high-poly
+    /// original, or a shape. By default the surface that a shape is sampled from; else, for the overlay, the surface that
+    /// the tessellation converges to
+    #[arg(long, value_name = "FILE", value_parser = options::source())]
+    pub truth: Option<Source>,
+    /// What the deviation overlay counts distances in
+    #[arg(long, value_name = "UNIT", value_enum, default_value_t = DeviationUnit::Units)]
+    pub deviation_in: DeviationUnit,
+}
+
+/// What a picture is held against.
+pub enum Held {
+    /// With its name.
+    Truth(String, Arc<Truth>),
+    /// What the tessellation converges to.
+    Limit,
+}
+
+impl TruthOption {
+    /// What to hold the picture against: what was asked for; or for the overlay what there is.
+    ///
+    /// # Errors
+    /// The truth can't be read, or doesn't move as the mesh does.
+    pub fn held(&self, loaded: &Loaded, surface: &SurfaceOptions, is_shown: bool) -> Result<Option<Held>, CliError> {
+        let moves = surface.animation.animation.is_some();
+        if let Some(source) = &self.truth {
+            if moves {
+                return Err(CliError::Usage("--truth is at rest, and can't be held against an --animation"));
+            }
+            let none = || CliError::NoTruth { file: source.to_string() };
+            let truth = Truth::load(source, &Progress::new())?.ok_or_else(none)?;
+            return Ok(Some(Held::Truth(source.to_string(), Arc::new(truth))));
+        }
+        if !is_shown {
+            return Ok(None);
+        }
+        let is_plain = !moves && surface.settings().displacement == Displacement::Off;
+        let exact = loaded.source.shape().filter(|_| is_plain).and_then(Truth::of_shape);
+        let held = exact.map(|truth| Held::Truth(loaded.source.to_string(), Arc::new(truth)));
+        Ok(Some(held.unwrap_or(Held::Limit)))
+    }
+}
+
+impl Held {
+    /// For what was emitted with these inputs.
+    pub fn yardstick(&self, inputs: &Inputs) -> Yardstick {
+        match self {
+            Self::Truth(_, truth) => Yardstick::Truth(truth.clone()),
+            Self::Limit => Yardstick::Limit(Box::new(*inputs)),
+        }
+    }
+
+    /// The truth and its name, if it is more than what the tessellation converges to.
+    pub fn truth(&self) -> Option<(&str, &Truth)> {
+        match self {
+            Self::Truth(name, truth) => Some((name, truth)),
+            Self::Limit => None,
+        }
+    }
+}
+
+/// How far all that was emitted is from the truth, sampled.
+#[derive(Debug, Serialize)]
+pub struct AccuracyStats {
+    truth: String,
+    /// Of the truth's bounding box, in object units.
+    diagonal: f64,
+    /// From what was emitted to the truth's nearest points.
+    to_truth: DistanceStats,
+    /// From the truth to the nearest of what was emitted; none if patches were left out.
+    from_truth: Option<DistanceStats>,
+    /// The largest on screen, in px; none if nothing is in view.
+    max_px: Option<f64>,
+    /// Between shading normals and the truth's, in degrees.
+    normals: AngleStats,
+}
+
+/// In object units, and as parts of the truth's diagonal.
+#[derive(Debug, Serialize)]
+struct DistanceStats {
+    max: f64,
+    rms: f64,
+    max_of_diagonal: f64,
+    rms_of_diagonal: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct AngleStats {
+    max: f64,
+    rms: f64,
+}
+
+impl AccuracyStats {
+    /// `is_whole` says that no patch was left out.
+    pub fn new(truth: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
+        let distances = |distances: Distances| {
+            let (Distances { largest, rms }, relative) = (distances, accuracy.relative(distances));
+            DistanceStats { max: largest, rms, max_of_diagonal: relative.largest, rms_of_diagonal: relative.rms }
+        };
+        let Angles { largest, rms } = accuracy.normals;
+        Self {
+            truth: truth.to_owned(),
+            diagonal: accuracy.diagonal,
+            to_truth: distances(accuracy.to_truth),
+            from_truth: is_whole.then(|| distances(accuracy.from_truth)),
+            max_px: accuracy.worst_px.map(|worst| worst.value),
+            normals: AngleStats { max: largest, rms },
+        }
+    }
+}
+
+/// What the overlay shows, in object units.
+#[derive(Debug, Serialize)]
+pub struct DeviationStats {
+    max: f64,
+    rms: f64,
+    /// What the first and the last colour stand for, when distances are in object units; between them it is logarithmic.
+    scale: [f32; 2],
+    /// None if nothing was emitted.
+    worst: Option<WorstStats>,
+    /// Triangles without a colour, because there were too many.
+    triangles_left_out: u64,
+}
+
+/// Where the distance is largest.
+#[derive(Debug, Serialize)]
+struct WorstStats {
+    patch: u32,
+    emitted: [f64; 3],
+    truth: [f64; 3],
+}
+
+impl DeviationStats {
+    /// `ulp` is one unit in the last place, in object units.
+    pub fn new(field: &Field, ulp: f32) -> Self {
+        let max = field.worst().map_or(0.0, |worst| worst.value);
+        let scale = deviation_scale(max, ulp);
+        let worst = field.worst().map(|worst| {
+            let [emitted, truth] = [worst.emitted, worst.truth].map(|place: DVec3| place.to_array());
+            WorstStats { patch: worst.patch, emitted, truth }
+        });
+        Self { max, rms: field.rms(), scale: [scale.least, scale.most], worst, triangles_left_out: field.left_out }
+    }
+}

@@ -1,0 +1,69 @@
+//! `pnaen render --overlay deviation` and `--truth`: numbers against closed forms, and what can't be a truth.
+
+use serde_json::Value;
+
+use crate::{Folder, failure, number, output, sentence, stats};
+
+/// What the inscribed sphere of a regular icosahedron leaves of its circumscribed one, of radius 1.
+const GAP: f64 = 0.205_345_527;
+
+fn near(value: f64, expected: f64, tolerance: f64) -> bool {
+    (value - expected).abs() <= tolerance
+}
+
+#[test]
+fn a_flat_icosahedron_is_a_fifth_of_its_radius_off_the_sphere() {
+    let flat = ["shape:icosahedron", "--surface", "flat", "--factor", "1", "--overlay", "deviation,wireframe"];
+    let stats = stats(&flat);
+    for max in ["/accuracy/to_truth/max", "/accuracy/from_truth/max", "/deviation/max"] {
+        assert!(near(number(&stats, max), GAP, 2e-6), "{max}: {stats}");
+    }
+    let diagonal = 2.0 * 3.0_f64.sqrt();
+    assert!(near(number(&stats, "/accuracy/diagonal"), diagonal, 1e-9));
+    assert!(near(number(&stats, "/accuracy/to_truth/max_of_diagonal"), GAP / diagonal, 1e-6));
+    let rms = ["/accuracy/to_truth/rms", "/deviation/rms"].map(|rms| number(&stats, rms));
+    assert!(near(rms[0], rms[1], 1e-3) && rms[0] < GAP && rms[0] > 0.5 * GAP, "{rms:?}");
+    assert_eq!(stats["deviation"]["scale"], serde_json::json!([0.0025, 0.25]));
+    assert!(number(&stats, "/accuracy/max_px") > 10.0 && number(&stats, "/accuracy/normals/max") < 0.1, "{stats}");
+    assert_eq!(stats["accuracy"]["truth"], "shape:icosahedron");
+}
+
+#[test]
+fn another_mesh_is_a_truth_and_a_cube_is_held_against_what_it_converges_to() {
+    let folder = Folder::new("truth");
+    let high = folder.path("high.glb");
+    output(&["tessellate", "shape:cube-smooth", "--surface", "pn", "--factor", "16", "-o", &high]);
+    let against = |truth: &[&str]| {
+        let options = ["shape:cube-smooth", "--surface", "pn", "--factor", "4", "--overlay", "deviation"];
+        stats(&[&options[..], truth].concat())
+    };
+    let (mesh, limit) = (against(&["--truth", &high]), against(&[]));
+    assert_eq!(mesh["accuracy"]["truth"], high.as_str());
+    assert_eq!(limit["accuracy"], Value::Null, "it has no truth but itself");
+    let [mesh, limit] = [mesh, limit].map(|stats| number(&stats, "/deviation/max"));
+    // The nearest point is no farther than the one at the same place of the patch.
+    assert!(mesh > 1e-4 && mesh < 1.1 * limit, "{mesh} and {limit}");
+}
+
+#[test]
+fn nothing_is_said_about_a_truth_that_was_not_asked_for_nor_of_what_was_left_out() {
+    let plain = stats(&["shape:icosphere"]);
+    assert_eq!((&plain["accuracy"], &plain["deviation"]), (&Value::Null, &Value::Null));
+    let culled = stats(&["shape:icosphere", "--cull-back-faces", "--truth", "shape:icosphere"]);
+    assert!(number(&culled, "/patches_facing_away") > 0.0);
+    assert_eq!(culled["accuracy"]["from_truth"], Value::Null);
+    assert!(number(&culled, "/accuracy/to_truth/max") > 0.0);
+}
+
+#[test]
+fn a_truth_that_is_none_is_said_so() {
+    let folder = Folder::new("untruth");
+    let out = folder.path("out.png");
+    let with = |truth: &'static str| {
+        ["render", "shape:torus", "-o", &out, "--size", "60x40", "--truth", truth].map(str::to_owned)
+    };
+    let missing = with("nowhere.glb");
+    sentence(&missing.each_ref().map(String::as_str), &["nowhere.glb"]);
+    let unit = ["render", "shape:torus", "-o", &out, "--deviation-in", "miles"];
+    assert!(failure(&unit, 2).contains("units, px"), "clap lists them");
+}

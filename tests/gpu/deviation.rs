@@ -1,0 +1,152 @@
+//! The deviation overlay: colours against distances that are known in closed form.
+
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+use image::RgbaImage;
+use pnaen::gpu::Timing;
+use pnaen::measure::{Field, Yardstick};
+use pnaen::mesh::Shape;
+use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, project};
+use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings};
+use pnaen::tessellate::Surface;
+use pnaen::truth::Truth;
+
+use crate::engine;
+use crate::pictures::{SIZE, differing};
+
+fn settings(surface: Surface, factor: f32) -> Settings {
+    let overlays = Overlays { colors: Colors::Deviation, ..Overlays::default() };
+    Settings { surface, factor, overlays, ..Settings::default() }
+}
+
+/// Measures against the surface that a shape is sampled from, and draws.
+fn drawn(scene: &mut Scene, shape: Shape, camera: &Camera, target: &Target, settings: &Settings) -> (Field, RgbaImage) {
+    let engine = engine();
+    let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+    engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
+    let truth = Truth::of_shape(shape).expect("a shape that is sampled from a surface");
+    let field = engine.field(scene, &Yardstick::Truth(Arc::new(truth))).expect("a readback");
+    let scale = deviation_scale(field.worst().expect("something is emitted").value, scene.ulp());
+    scene.set_deviation(&engine.gpu, Some((&field, scale)));
+    engine.draw(scene, target, camera, settings, &mut Timing::Off).expect("a draw");
+    (field, target.read(&engine.gpu).expect("a readback"))
+}
+
+/// The place of the scale that has the colour at a place of the surface, and how far off it is there (sRGB, of 255). Shading
+/// takes at most 2 of 100 from what faces the eye.
+fn place_of(picture: &RgbaImage, camera: &Camera, scene: &Scene, at: Vec3, scale: &Scale) -> (f32, f32) {
+    let size = Vec2::new(picture.width() as f32, picture.height() as f32);
+    let px = project(camera.clip_from_object(size, &scene.bounds), size, at).expect("in front of the eye");
+    let shown = picture.get_pixel(px.x as u32, px.y as u32).0;
+    let off = |place: f32| {
+        let differences =
+            scale.color(place).iter().zip(shown).map(|(a, b)| f32::from(a.abs_diff(b))).collect::<Vec<_>>();
+        differences.into_iter().fold(0.0, f32::max)
+    };
+    let places = (0..=500).map(|i| i as f32 / 500.0);
+    let best = places.min_by(|a, b| off(*a).total_cmp(&off(*b))).expect("places");
+    (best, off(best))
+}
+
+/// A flat icosahedron, seen along the normal of its first face.
+fn face(target: &Target) -> (Scene, Camera, [Vec3; 3]) {
+    let (loaded, scene) = crate::scene(Shape::Icosahedron);
+    let corners = loaded.topology.patches[0].corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+    let mut camera = Camera::framing(&scene.bounds, target.viewport());
+    camera.frame_triangle(corners, &scene.bounds);
+    (scene, camera, corners)
+}
+
+/// A regular icosahedron's inscribed sphere leaves this of its circumscribed one.
+const GAP: f64 = 0.205_345_527;
+
+#[test]
+fn a_flat_face_is_far_in_its_middle_and_exact_in_its_corners() {
+    let target = Target::new(&engine().gpu, [400, 400]).expect("a small picture");
+    let (mut scene, camera, corners) = face(&target);
+    let (field, picture) = drawn(&mut scene, Shape::Icosahedron, &camera, &target, &settings(Surface::Flat, 1.0));
+    let worst = field.worst().expect("something is emitted");
+    assert!((worst.value - GAP).abs() < 1e-6, "{}", worst.value);
+    let scale = deviation_scale(worst.value, scene.ulp());
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    let (middle, off) = place_of(&picture, &camera, &scene, centroid, &scale);
+    assert!((middle - scale.place(GAP as f32)).abs() < 0.03 && middle > 0.9 && off < 8.0, "{middle}, off by {off}");
+    for corner in corners {
+        // A px or two from the corner, where the wedge is wider than a pixel.
+        let (place, off) = place_of(&picture, &camera, &scene, corner.lerp(centroid, 0.004), &scale);
+        assert!(place < 0.15 && off < 25.0, "{place}, off by {off}");
+    }
+    // Between the two, against the closed form.
+    for part in [0.05, 0.2, 0.5] {
+        let at = corners[1].lerp(centroid, part);
+        let (place, off) = place_of(&picture, &camera, &scene, at, &scale);
+        let expected = scale.place(1.0 - at.length());
+        assert!((place - expected).abs() < 0.05 && off < 14.0, "{part}: {place} for {expected}, off by {off}");
+    }
+}
+
+#[test]
+fn px_are_counted_at_the_depth_of_the_surface() {
+    let target = Target::new(&engine().gpu, [400, 400]).expect("a small picture");
+    let (mut scene, camera, corners) = face(&target);
+    let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
+    for orthographic in [false, true] {
+        let mut camera = Camera { orthographic, ..camera };
+        // So far off that the gap is a few px.
+        camera.distance *= 20.0;
+        let px = GAP as f32 / camera.units_per_pixel(400.0);
+        let in_px = Settings { deviation_in: DeviationUnit::Px, ..settings(Surface::Flat, 1.0) };
+        let (_, picture) = drawn(&mut scene, Shape::Icosahedron, &camera, &target, &in_px);
+        let (place, off) = place_of(&picture, &camera, &scene, centroid, &DEVIATION_PX_SCALE);
+        let expected = DEVIATION_PX_SCALE.place(px);
+        assert!((0.1..0.97).contains(&expected), "{px} px");
+        assert!((place - expected).abs() < 0.04 && off < 8.0, "{place} for {expected}, off by {off}");
+    }
+}
+
+#[test]
+fn chunks_have_their_own_distances() {
+    let loaded = crate::loaded(Shape::Torus);
+    let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
+    let [whole, pieces] = [ARENA_BYTES, 4 << 20].map(|arena| {
+        let mut scene = engine().scene(&loaded, arena).expect("shapes are small");
+        let camera = Camera::framing(&scene.bounds, target.viewport());
+        let (field, picture) = drawn(&mut scene, Shape::Torus, &camera, &target, &settings(Surface::Pn, 31.0));
+        assert_eq!(field.chunks.len(), scene.tessellator.chunk_count());
+        (field.chunks.len(), field.worst().map(|worst| worst.value), field.chunks.concat(), picture)
+    });
+    assert!(whole.0 == 1 && pieces.0 > 2, "{} and {} chunks", whole.0, pieces.0);
+    assert_eq!(whole.1, pieces.1);
+    assert!(whole.2 == pieces.2, "the same samples in the same order");
+    assert!(whole.3 == pieces.3, "the same picture");
+}
+
+#[test]
+fn the_limit_surface_is_what_a_fine_tessellation_comes_to() {
+    let (_, mut scene) = crate::scene(Shape::CubeSmooth);
+    let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let mut worst = |surface, factor| {
+        let inputs = settings(surface, factor).inputs(camera.lod_view(target.viewport(), &scene.bounds));
+        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+        let field = engine().field(&mut scene, &Yardstick::Limit(Box::new(inputs))).expect("a readback");
+        field.worst().expect("something is emitted").value
+    };
+    let [coarse, fine] = [3.0, 27.0].map(|factor| worst(Surface::PnAen, factor));
+    // The error falls with the square of the factor.
+    assert!(coarse > 1e-3 && fine < coarse / 40.0, "{coarse} and {fine}");
+    assert!(worst(Surface::Flat, 5.0) < 1e-6, "flat triangles are their own limit");
+}
+
+#[test]
+fn deviation_looks_as_it_did() {
+    let (_, mut scene) = crate::scene(Shape::Icosahedron);
+    let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let pictures = [("flat", Surface::Flat, 1.0), ("pn", Surface::Pn, 8.0)].map(|(name, surface, factor)| {
+        let (_, picture) = drawn(&mut scene, Shape::Icosahedron, &camera, &target, &settings(surface, factor));
+        (format!("deviation-{name}"), picture)
+    });
+    assert_eq!(differing(pictures.into()), Vec::<String>::new());
+}
