@@ -6,7 +6,7 @@ use super::measuring::{Copying, Part, PartKind, WAITING, copy_chunk, copy_on};
 use crate::gpu::{Gpu, GpuError, mapped_bytes};
 use crate::measure::{Field, Place, Yardstick};
 use crate::mesh::Progress;
-use crate::render::{Scale, Scene, deviation_scale};
+use crate::render::{DEVIATION_PX_SCALE, Scale, Scene, deviation_scale};
 use crate::tessellate::{Posed, Vertex};
 
 /// What is known about the distance to the truth.
@@ -111,7 +111,12 @@ impl Deviating {
                 let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);
                 self.found = Some(Found { of, worst, rms, scale, left_out });
             }
-            Some(Err(TryRecvError::Disconnected)) => self.comparing = None,
+            Some(Err(TryRecvError::Disconnected)) => {
+                // It failed: what waits for distances is drawn without.
+                self.comparing = None;
+                scene.set_deviation(gpu, Some((&Field::new(0), DEVIATION_PX_SCALE)));
+                self.generation += 1;
+            }
             Some(Err(TryRecvError::Empty)) | None => {}
         }
         Ok(())
@@ -146,7 +151,6 @@ fn field(
 ) -> Option<Field> {
     let (mesh, topology) = posed.deformed();
     let mut field = Field::new(triangles);
-    let mut done = 0;
     yardstick.with(&mesh, &topology, |against| {
         for Part(part, staging) in parts {
             let PartKind::Chunk { vertex_bytes, .. } = part else { continue };
@@ -155,8 +159,6 @@ fn field(
             let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
             let indices = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
             field.take(against, &vertices, &indices, wanted).ok()?;
-            done += indices.len();
-            wanted.set(done as f32 / triangles.max(1) as f32);
         }
         wanted.check().ok()
     })?;

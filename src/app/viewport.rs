@@ -100,8 +100,12 @@ impl App {
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
         }
         self.deviate(&inputs)?;
-        if self.pick()? || self.is_busy() {
+        let measures_only = self.deviating.is_busy() && self.viewport.is_free() && !self.measuring.is_busy();
+        if self.pick()? || (self.is_busy() && !measures_only) {
             context.request_repaint();
+        } else if measures_only {
+            // Drawing the window would only take time from it.
+            context.request_repaint_after(std::time::Duration::from_millis(30));
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! The distance from what was emitted to what it should have been, all over every triangle: what the overlay shows.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use glam::DVec3;
@@ -40,7 +41,7 @@ pub enum Against<'a> {
 /// triangle is mostly farthest from what it stands for; 0 is that sample alone.
 const STEPS: [u32; 5] = [24, 12, 6, 3, 0];
 /// Samples that are taken at most, where fewer a triangle will do.
-const SAMPLES: u64 = 2_000_000;
+const SAMPLES: u64 = 1_000_000;
 /// Triangles that are looked at: as many numbers as any adapter binds at once.
 pub const MOST_TRIANGLES: u64 = 1 << 24;
 
@@ -58,6 +59,8 @@ pub struct Field {
     /// Of distances, times area.
     squares: f64,
     room: u64,
+    /// Triangles in all.
+    total: u64,
 }
 
 /// How many samples a triangle has.
@@ -71,10 +74,10 @@ impl Field {
         let fits = |steps: &u32| triangles.saturating_mul(samples_of(*steps).into()) <= SAMPLES;
         let steps = STEPS.into_iter().find(fits).unwrap_or(0);
         let room = MOST_TRIANGLES;
-        Self { steps, chunks: Vec::new(), left_out: 0, worst: None, area: 0.0, squares: 0.0, room }
+        Self { steps, chunks: Vec::new(), left_out: 0, worst: None, area: 0.0, squares: 0.0, room, total: triangles }
     }
 
-    /// Takes the next chunk: triangles are indices into `vertices`.
+    /// Takes the next chunk: triangles are indices into `vertices`. Tells `wanted` how far all are.
     ///
     /// # Errors
     /// `wanted` was cancelled.
@@ -89,13 +92,15 @@ impl Field {
         self.room -= taken as u64;
         self.left_out += (triangles.len() - taken) as u64;
         let threads = thread::available_parallelism().map_or(1, |cores| cores.get());
-        let steps = self.steps;
+        let (steps, total) = (self.steps, self.total.clamp(1, MOST_TRIANGLES));
+        let finished = AtomicU64::new(MOST_TRIANGLES - self.room - taken as u64);
         let done = blocks(taken, threads, |range| {
-            let mut sums = Sums::default();
+            let (mut sums, count) = (Sums::default(), range.len() as u64);
             for triangle in &triangles[range] {
                 wanted.check()?;
                 sums.take(against, triangle.map(|index| &vertices[index as usize]), steps);
             }
+            wanted.set((finished.fetch_add(count, Ordering::Relaxed) + count) as f32 / total as f32);
             Ok(sums)
         });
         let mut samples = Vec::with_capacity(taken * samples_of(steps) as usize);
@@ -241,7 +246,7 @@ mod tests {
 
     #[test]
     fn many_triangles_have_fewer_samples_each_and_a_cancelled_field_stops() {
-        assert_eq!([1, 10_000, 50_000, 150_000, 1_000_000].map(|count| Field::new(count).steps), STEPS);
+        assert_eq!([1, 5_000, 20_000, 60_000, 1_000_000].map(|count| Field::new(count).steps), STEPS);
         let sphere = Truth::of_shape(Shape::Icosphere).expect("a sphere");
         let wanted = Progress::new();
         wanted.cancel();
