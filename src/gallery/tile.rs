@@ -6,7 +6,7 @@ use super::page::{CALM_COLOR, VISIBLE_PX};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{GpuError, PassTime, Timing};
 use crate::measure::{CrackedEdge, Measured};
-use crate::render::layout::CRACK_COLOR;
+use crate::render::layout::{CRACK_COLOR, linear};
 use crate::render::{Camera, LineSegment, Scene, Target};
 use crate::settings::{Overlays, Settings};
 use crate::tessellate::{Inputs, Lod};
@@ -14,7 +14,8 @@ use crate::tessellate::{Inputs, Lod};
 /// Triangles in a tile, about: a mesh of many gets lower factors, since no tile has px for more.
 const MOST_TRIANGLES: f32 = 2e6;
 
-/// Px to either side of a crack's line: thinner than in the window, as tiles are small.
+/// Px to either side of the line of a crack that can be seen, and of one that can't: thinner than in the window, as tiles are
+/// small.
 const HALF_WIDTHS: [f32; 2] = [1.25, 0.75];
 
 /// What an exhibit's tiles have in common.
@@ -89,11 +90,10 @@ pub fn draw_tile(
 
 /// Cracked edges in two classes, those that can be seen over those that can't.
 fn crack_lines(measured: &Measured, loaded: &Loaded, gap_px: impl Fn(&CrackedEdge) -> f64) -> Vec<LineSegment> {
-    // An edge whose gap isn't known is as wide as any.
     let is_calm = |crack: &CrackedEdge| gap_px(crack) < VISIBLE_PX;
-    let mut lines =
-        measured.crack_lines_in(&loaded.topology, |crack| if is_calm(crack) { CALM_COLOR } else { CRACK_COLOR });
-    let calm = LineSegment::new(glam::Vec3::ZERO, glam::Vec3::ZERO, CALM_COLOR).color;
+    let color = |crack: &CrackedEdge| if is_calm(crack) { CALM_COLOR } else { CRACK_COLOR };
+    let mut lines = measured.crack_lines_in(&loaded.topology, color);
+    let calm = linear(CALM_COLOR);
     lines.sort_by_key(|line| line.color != calm);
     let [seen, unseen] = HALF_WIDTHS;
     lines.iter_mut().for_each(|line| line.half_width = if line.color == calm { unseen } else { seen });
