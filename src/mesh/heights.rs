@@ -95,8 +95,8 @@ pub struct Heights {
     pub radius: f32,
     /// The sum of the angles, in radians, that triangles have at each of the mesh's corners, before anything moves them.
     pub angles: Vec<f32>,
-    /// How far level l of any map, linearly interpolated, is from level 0 at most.
-    pub detail: [f32; MAX_LEVELS],
+    /// How far level l of each map, linearly interpolated, is from its level 0 at most; no less for a coarser level.
+    pub detail: Vec<[f32; MAX_LEVELS]>,
 }
 
 impl HeightMap {
@@ -211,25 +211,13 @@ impl Heights {
             }
         }
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        let mut detail = [0.0_f32; MAX_LEVELS];
         for map in &maps {
             let [width, height] = map.size;
             for &own in &map.heights[..(width * height) as usize] {
                 range = [range[0].min(own), range[1].max(own)];
             }
-            // Beyond the last level nothing more is lost than there.
-            let lost = |level: usize| lost_detail(map, (level as u32).min(map.levels - 1));
-            std::thread::scope(|scope| {
-                let run = |level| scope.spawn(move || lost(level));
-                let levels: Vec<_> = (0..MAX_LEVELS).map(run).collect();
-                for (detail, lost) in detail.iter_mut().zip(levels) {
-                    *detail = detail.max(lost.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-                }
-            });
         }
-        for level in 1..MAX_LEVELS {
-            detail[level] = detail[level].max(detail[level - 1]);
-        }
+        let detail = maps.iter().map(map_detail).collect();
         Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail }
     }
 
@@ -268,6 +256,24 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
         }
     }
     angles
+}
+
+/// What each level of a map loses.
+fn map_detail(map: &HeightMap) -> [f32; MAX_LEVELS] {
+    // Beyond the last level nothing more is lost than there.
+    let lost = |level: usize| lost_detail(map, (level as u32).min(map.levels - 1));
+    let mut detail = [0.0_f32; MAX_LEVELS];
+    std::thread::scope(|scope| {
+        let run = |level| scope.spawn(move || lost(level));
+        let levels: Vec<_> = (0..MAX_LEVELS).map(run).collect();
+        for (detail, lost) in detail.iter_mut().zip(levels) {
+            *detail = lost.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        }
+    });
+    for level in 1..MAX_LEVELS {
+        detail[level] = detail[level].max(detail[level - 1]);
+    }
+    detail
 }
 
 /// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over a
@@ -342,11 +348,12 @@ mod tests {
         // A checkerboard is gone at once, a slope not at all inside.
         let board = HeightMap::new([8, 8], (0..64).map(|i| ((i + i / 8) % 2) as f32).collect());
         let heights = Heights::everywhere(&Shape::Torus.build(), board);
-        assert_eq!((heights.detail[0], heights.range), (0.0, [0.0, 1.0]));
-        assert!(heights.detail[1] > 0.4 && heights.detail[12] >= heights.detail[3]);
+        let detail = heights.detail[0];
+        assert_eq!((detail[0], heights.range), (0.0, [0.0, 1.0]));
+        assert!(detail[1] > 0.4 && detail[12] >= detail[3]);
         assert_eq!(heights.reach(0.25), 0.75);
         let flat = Heights::everywhere(&Shape::Torus.build(), HeightMap::new([8, 8], vec![0.5; 64]));
-        assert!(flat.detail.iter().all(|&lost| lost < 1e-6), "{:?}", flat.detail);
+        assert!(flat.detail[0].iter().all(|&lost| lost < 1e-6), "{:?}", flat.detail);
     }
 
     #[test]
