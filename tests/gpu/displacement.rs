@@ -317,7 +317,7 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
         ..mesh.materials[0].clone()
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
-    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh).expect("images")));
+    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &Progress::new()).expect("images")));
     on_device(Shape::Torus, mesh)
 }
 
