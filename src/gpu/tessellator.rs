@@ -279,6 +279,9 @@ impl Tessellator {
         if slab.slab.first_patch == 0 && self.given.is_none() {
             recorder.compute("factors", |pass| {
                 dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.factor_count));
+                if self.params.mixed == 1 {
+                    dispatch(pass, &pipelines.heights_inside, &groups.heights_inside, grid(self.buffers.patch_count));
+                }
             });
         }
         if slab.slab.first_patch == 0

@@ -4,7 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use clap::ValueEnum;
 use glam::{Vec2, Vec3};
 
-use super::relief::{Relief, displacing, reach};
+use super::relief::{Relief, reach};
+use super::spans::Maps;
 use super::{
     Clip, ControlNet, Convention, Displacement, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Meeting, Normals,
     Partitioning, PatchFactors, SEEN, SURFACE_SHARE, Solid, Surface, center_control_point, corner_weights,
@@ -119,8 +120,9 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs, relief.as_ref()), <[f32]>::to_vec);
     let culls_back = culls_back(mesh, topology, inputs);
     let relief = relief.map(|relief| relief.with_levels(&edge_factors));
-    let out = nets
-        .emit(inputs, relief.as_ref(), culls_back, |patch, net| nets.hull_factors(inputs, &edge_factors, patch, net));
+    let relief = relief.as_ref();
+    let written = |patch, net: &ControlNet| nets.hull_factors(inputs, relief, &edge_factors, patch, net);
+    let out = nets.emit(inputs, relief, culls_back, written);
     Tessellated { edge_factors, ..out }
 }
 
@@ -151,12 +153,13 @@ pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given
 pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref());
+    let relief = Relief::new(&nets, inputs);
+    let edge_factors = nets.edge_factors(inputs, relief.as_ref());
     let culls_back = culls_back(mesh, topology, inputs);
     let written = |patch| {
         let net = nets.patch(patch);
         match unseen(inputs.clip, culls_back, &inputs.view, &net) {
-            SEEN => nets.hull_factors(inputs, &edge_factors, patch, &net),
+            SEEN => nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &net),
             _ => HullFactors::default(),
         }
     };
@@ -167,9 +170,11 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref());
+    let relief = Relief::new(&nets, inputs);
+    let edge_factors = nets.edge_factors(inputs, relief.as_ref());
     let patches = 0..topology.patches.len() as u32;
-    let written = patches.map(|patch| nets.hull_factors(inputs, &edge_factors, patch, &nets.patch(patch)));
+    let written =
+        patches.map(|patch| nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &nets.patch(patch)));
     sums(written.map(|written| written.process(inputs.partitioning)))
 }
 
@@ -239,16 +244,6 @@ impl<'a> Nets<'a> {
         let largest = |form: fn(&Inputs, [Vec3; 4]) -> f32, curves: &[u32]| {
             (curves[0]..curves[1]).map(|c| asked(&form, c)).fold(1.0, f32::max)
         };
-        let share = if relief.is_some() { SURFACE_SHARE } else { 1.0 };
-        let heights = |factor: u32, curves: &[u32]| {
-            let asked = |relief: &Relief, curve: u32| {
-                let points = self.curves.curves[curve as usize].points;
-                let [a, b] = points.map(|p| self.topology.points[p as usize]);
-                let [ab, ba] = self.curve_nets[curve as usize];
-                relief.edge_factor(inputs, factor, points, [a, ab, ba, b])
-            };
-            relief.map_or(1.0, |relief| (curves[0]..curves[1]).map(|curve| asked(relief, curve)).fold(1.0, f32::max))
-        };
         let edge = |(index, curves): (u32, &[u32])| {
             let factor = match inputs.lod {
                 Lod::Uniform => inputs.factor,
@@ -258,36 +253,61 @@ impl<'a> Nets<'a> {
                     |Inputs { view, factor, near, far, .. }, net| distance_factor(view, *factor, *near, *far, net),
                     curves,
                 ),
-                Lod::Error if inputs.surface == Surface::Flat => heights(index, curves),
-                Lod::Error => {
-                    let tolerance = EDGE_SHARE * (inputs.tolerance * share);
-                    let asked = |curve| asked(&|inputs, net| edge_error_factor(&inputs.view, tolerance, net), curve);
-                    (curves[0]..curves[1]).map(asked).fold(heights(index, curves), f32::max)
-                }
+                Lod::Error => return self.error_factor(inputs, relief, index, Maps::All),
             };
-            match (inputs.lod, inputs.partitioning) {
-                (Lod::Error, partitioning) => level(partitioning, factor),
-                (_, Partitioning::Pow2) => round_pow2(factor),
-                _ => factor,
-            }
+            if inputs.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
         };
         (0..).zip(self.curves.factor_curves.windows(2)).map(edge).collect()
     }
 
+    /// What the error of an edge asks for, and the heights of these maps.
+    fn error_factor(&self, inputs: &Inputs, relief: Option<&Relief>, factor: u32, maps: Maps) -> f32 {
+        let share = if relief.is_some() { SURFACE_SHARE } else { 1.0 };
+        let tolerance = EDGE_SHARE * (inputs.tolerance * share);
+        let asked = |curve: u32| {
+            let points = self.curves.curves[curve as usize].points;
+            let [a, b] = points.map(|p| self.topology.points[p as usize]);
+            let [ab, ba] = self.curve_nets[curve as usize];
+            let net = [a, ab, ba, b];
+            let is_flat = inputs.surface == Surface::Flat;
+            let own = if is_flat { 1.0 } else { edge_error_factor(&inputs.view, tolerance, net) };
+            relief.map_or(own, |relief| own.max(relief.edge_factor(inputs, factor, maps, points, net)))
+        };
+        let curves = &self.curves.factor_curves[factor as usize..factor as usize + 2];
+        level(inputs.partitioning, (curves[0]..curves[1]).map(asked).fold(1.0, f32::max))
+    }
+
+    /// What heights ask for inside a patch: as much as on its edges, where its own map alone speaks for them.
+    fn heights_inside(&self, inputs: &Inputs, relief: &Relief, patch: u32, sides: [f32; 3]) -> f32 {
+        let own = |k: usize| {
+            let factor = self.curves.factor(self.topology, self.topology.patches[patch as usize].sides[k]);
+            let maps = relief.own_maps(patch, factor);
+            maps.map_or(sides[k], |maps| self.error_factor(inputs, Some(relief), factor, maps))
+        };
+        own(0).max(own(1)).max(own(2))
+    }
+
     /// The sides' factors in the order of the convention. Inside: the largest of the three, or what the error asks for,
     /// which takes edges by the corners that they are opposite, whatever the convention.
-    fn hull_factors(&self, inputs: &Inputs, edge_factors: &[f32], patch: u32, net: &ControlNet) -> HullFactors {
+    fn hull_factors(
+        &self,
+        inputs: &Inputs,
+        relief: Option<&Relief>,
+        edge_factors: &[f32],
+        patch: u32,
+        net: &ControlNet,
+    ) -> HullFactors {
         let Inputs { view, tolerance, partitioning, .. } = inputs;
         let sides = self.topology.patches[patch as usize].sides;
         let sides = sides.map(|side| edge_factors[self.curves.factor(self.topology, side) as usize]);
+        let by_heights = relief.filter(|_| inputs.lod == Lod::Error);
+        let by_heights = by_heights.map(|relief| self.heights_inside(inputs, relief, patch, sides));
         let inside = if inputs.lod == Lod::Error && inputs.surface != Surface::Flat {
-            let is_displaced = displacing(self.mesh, inputs).is_some();
-            let tolerance = tolerance * if is_displaced { SURFACE_SHARE } else { 1.0 };
+            let tolerance = tolerance * if by_heights.is_some() { SURFACE_SHARE } else { 1.0 };
             let own = inside_error_factor(view, tolerance, *partitioning, net, [sides[1], sides[2], sides[0]]);
-            // Heights are as fine inside as on the edges.
-            if is_displaced { own.max(sides[0]).max(sides[1]).max(sides[2]) } else { own }
+            by_heights.map_or(own, |heights| own.max(heights))
         } else {
-            sides[0].max(sides[1]).max(sides[2])
+            by_heights.unwrap_or(sides[0].max(sides[1]).max(sides[2]))
         };
         HullFactors::of_sides(inputs.convention, sides, inside)
     }

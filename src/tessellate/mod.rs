@@ -18,6 +18,7 @@ mod normal;
 mod posed;
 mod relief;
 mod solid;
+mod spans;
 mod subtriangulation;
 mod surface;
 
@@ -55,6 +56,7 @@ pub use normal::{
     surface_normal, unpack_normal,
 };
 pub use posed::{Deformed, Posed, bounds_through, deform};
-pub use relief::{detail, displacing, height_units, reach, texel_lengths};
+pub use relief::{displacing, height_units, reach};
 pub use solid::{Solid, is_beyond_near};
+pub use spans::{Span, is_mixed, map_number, spans};
 pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents, place};
