@@ -132,3 +132,21 @@ pub fn bind_group(
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
+
+/// Twin of `grid` in `shaders/types.wgsl`.
+pub fn grid(items: u32) -> [u32; 3] {
+    let workgroups = items.div_ceil(256);
+    [workgroups.min(32768), workgroups.div_ceil(32768), 1]
+}
+
+/// Runs one entry point over a grid.
+pub fn dispatch(
+    pass: &mut wgpu::ComputePass,
+    pipeline: &wgpu::ComputePipeline,
+    group: &wgpu::BindGroup,
+    [x, y, z]: [u32; 3],
+) {
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(x, y, z);
+}

@@ -3,9 +3,9 @@
 use super::buffers::filled;
 use super::layout::{HeightMap, Share};
 use super::pipelines::bind_group;
+use super::pipelines::{dispatch, grid};
 use super::recorder::Recorder;
 use super::slab::{SlabPasses, uniform_buffer};
-use super::tessellator::{dispatch, grid};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
 use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
 use crate::tessellate::{Span, map_number};
