@@ -95,6 +95,8 @@ pub struct App {
     render_state: egui_wgpu::RenderState,
     settings: Settings,
     camera: Camera,
+    /// As it was when it last framed the whole mesh.
+    framed: Option<Camera>,
     /// Where the split was when it was last on.
     last_split: f32,
     /// What displacement was before it was last switched.
@@ -135,6 +137,7 @@ impl App {
             render_state,
             settings: Settings::opening(),
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
+            framed: None,
             last_split: 0.5,
             last_displacement: Displacement::Off,
             frozen: None,

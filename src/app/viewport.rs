@@ -70,6 +70,7 @@ impl App {
         self.viewport.land(&self.engine);
         self.pose()?;
         self.mark();
+        let moment = self.moment();
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
         let view = self.frozen.unwrap_or_else(|| self.camera.lod_view(viewport, &document.scene.bounds));
@@ -86,7 +87,7 @@ impl App {
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
         self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
-        let is_posed = document.moment == self.playback.moment();
+        let is_posed = document.moment == moment;
         let shown = is_posed && self.viewport.drawn.as_ref() == Some(&wanted);
         self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
         let still = shown && !self.playback.is_playing();
@@ -104,10 +105,19 @@ impl App {
     /// Takes the moment that is wanted by now, unless a picture of another is under way: that is finished first, so that
     /// playing shows pictures however long one takes.
     fn pose(&mut self) -> Result<(), GpuError> {
-        let Some(document) = self.document.as_mut().filter(|_| self.viewport.is_free()) else { return Ok(()) };
-        if document.moment != self.playback.moment() {
-            document.moment = self.playback.moment();
-            document.scene.set_moment(document.moment)?;
+        if self.viewport.is_free() { self.pose_now() } else { Ok(()) }
+    }
+
+    /// Takes the moment that is wanted.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub(super) fn pose_now(&mut self) -> Result<(), GpuError> {
+        let wanted = self.moment();
+        let Some(document) = &mut self.document else { return Ok(()) };
+        if document.moment != wanted {
+            document.moment = wanted;
+            document.scene.set_moment(wanted)?;
         }
         Ok(())
     }

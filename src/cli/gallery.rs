@@ -40,6 +40,11 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    if args.camera.distance.is_some() {
+        return Err(CliError::Usage(
+            "--camera takes AZIMUTH,ELEVATION here: every tile is filled, from its own distance",
+        ));
+    }
     let look = Look {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },

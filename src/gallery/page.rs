@@ -16,10 +16,10 @@ pub(super) const CALM_COLOR: [u8; 3] = [120, 160, 205];
 /// What the columns and colours mean.
 const LEGEND: &str = "Red edges: their sides are half a px apart or more, in this view. Blue ones: less, if only by the last \
      bit of a coordinate.\n\n\
-     Error: the largest distance in px between what is drawn and the surface that it stands for; of what is displaced, the \
-     surface that each patch has by itself, whatever it agrees on with its neighbours. Points and normals: of edges, where \
+     Error: the largest distance in px between what is drawn and the surface that it stands for; none where patches agree \
+     on heights, since that surface is then no longer each patch's own. Points and normals: of edges, where \
      their sides differ in at least one bit. Gaps are in px and in object units. ms: the median of several runs, of all \
-     passes that tessellate and of the draw without marks. Factors are lower than asked for where a tile would have more \
+     passes that tessellate and of the draw without marks, which leaves out the backs of closed surfaces that nothing tears. Factors are lower than asked for where a tile would have more \
      than about 2,000,000 triangles.\n";
 
 const COLUMNS: [&str; 10] = [

@@ -9,7 +9,7 @@ use crate::measure::{CrackedEdge, Measured};
 use crate::render::layout::{CRACK_COLOR, linear};
 use crate::render::{Camera, LineSegment, Scene, Target};
 use crate::settings::{Overlays, Settings};
-use crate::tessellate::{Inputs, Lod};
+use crate::tessellate::{Displacement, Inputs, Lod};
 
 /// Triangles in a tile, about: a mesh of many gets lower factors, since no tile has px for more.
 const MOST_TRIANGLES: f32 = 2e6;
@@ -66,7 +66,9 @@ pub fn draw_tile(
     scene.set_lines(&engine.gpu, &[]);
     let passes = engine.time(scene, target, camera, &settings)?;
     let measured = engine.measure(scene)?;
-    let error_px = engine.deviation(scene, &inputs)?.map(|worst| worst.px);
+    // What patches agree on isn't on the surface that each has by itself, which the error is measured against.
+    let is_shared = matches!(settings.displacement, Displacement::On | Displacement::AsPublished);
+    let error_px = if is_shared { None } else { engine.deviation(scene, &inputs)?.map(|worst| worst.px) };
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
     if overlays.cracks {
         let gap_px = |crack: &CrackedEdge| crack.gap_px(clip_from_object, target.viewport());

@@ -1,6 +1,6 @@
 //! `pnaen gallery`.
 
-use crate::{Folder, output, sentence};
+use crate::{Folder, failure, output, sentence};
 
 #[test]
 fn a_page_and_a_picture_of_every_exhibit() {
@@ -25,6 +25,7 @@ fn a_page_and_a_picture_of_every_exhibit() {
     for torn in ["pn", "phong", "nagata", "as-published", "per-patch"] {
         assert!(cells(torn)[5..8].iter().all(|cell| cell != "0"), "{torn}");
     }
+    assert_eq!(cells("on")[4], "-", "no patch's own surface");
     assert_ne!(cells("surface")[8], "0", "normals of the surface have steps");
 }
 
@@ -40,4 +41,6 @@ fn what_is_no_mesh_or_image_is_a_sentence() {
         &["gallery", "shape:torus", "-o", &folder.path("out"), "--height", "material"],
         &["no image to displace by"],
     );
+    let usage = failure(&["gallery", "-o", &folder.path("out"), "--camera", "30,20,9"], 2);
+    assert!(usage.contains("AZIMUTH,ELEVATION"), "{usage}");
 }
