@@ -2,7 +2,7 @@
 //!
 //! The way through the crate: [`mesh`] (what a file becomes) -> [`tessellate`] (the mathematics, on the CPU: the
 //! reference) -> [`gpu`] (the same mathematics as compute passes) -> [`render`] (one indirect draw into a texture).
-//! [`measure`] looks at what came out, [`export`] writes it to files, [`engine`] puts them together. [`app`] (the
+//! [`measure`] looks at what came out, also against a [`truth`], [`export`] writes it to files, [`engine`] puts them together. [`app`] (the
 //! window) and [`cli`] (the commands) are two thin faces of all that, and hold no mathematics.
 
 pub mod adjacency_file;
@@ -20,3 +20,4 @@ pub mod render;
 pub mod settings;
 pub mod stability;
 pub mod tessellate;
+pub mod truth;

@@ -346,7 +346,7 @@ impl App {
                     self.typed_path = None;
                     match source {
                         Source::File(path) => self.open_path(context, path),
-                        Source::Shape(_) => self.open(context, source),
+                        Source::Shape(_) | Source::FineShape(..) => self.open(context, source),
                     }
                 }
                 Err(error) => self.error = Some(error.to_string()),

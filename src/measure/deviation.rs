@@ -5,15 +5,20 @@ use std::thread;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use crate::mesh::{Mesh, Topology};
-use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, Limit, Vertex};
+use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, Limit, LodView, Vertex};
 
 /// The largest distance on screen between a point of what was emitted and the surface's at the same place of its domain.
 /// That is no less than the distance to the nearest point of the surface, and is what bounds on the error speak of.
 pub struct Deviation<'a> {
     limit: Limit<'a>,
+    screen: Screen,
+    worst: Option<Deviant>,
+}
+
+/// A view that distances are measured in.
+pub(super) struct Screen {
     clip_from_object: DMat4,
     half_viewport: DVec2,
-    worst: Option<Deviant>,
 }
 
 /// Where a distance on screen is largest.
@@ -32,12 +37,7 @@ const FINE: usize = 100_000;
 impl<'a> Deviation<'a> {
     /// Nothing seen yet of a tessellation with these inputs, whose view is the one measured in.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        Self {
-            limit: Limit::new(mesh, topology, inputs),
-            clip_from_object: inputs.view.clip_from_object.as_dmat4(),
-            half_viewport: inputs.view.half_viewport.as_dvec2(),
-            worst: None,
-        }
+        Self { limit: Limit::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), worst: None }
     }
 
     /// Samples triangles (indices into `vertices`) with a grid that divides their edges; `total` is how many there are
@@ -96,15 +96,21 @@ impl<'a> Deviation<'a> {
                 let [u, v] = [0, 1].map(|k| (0..3).map(|c| weights[c] * domains[c][k]).sum());
                 let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
                 let limit = self.limit.position(patch, net, u, v);
-                let px = self.distance_px(emitted, limit);
+                let px = self.screen.distance_px(emitted, limit);
                 worst = worst.into_iter().chain(px.map(|px| Deviant { px, patch, emitted, limit })).reduce(worse);
             }
         }
         worst
     }
+}
+
+impl Screen {
+    pub(super) fn new(view: &LodView) -> Self {
+        Self { clip_from_object: view.clip_from_object.as_dmat4(), half_viewport: view.half_viewport.as_dvec2() }
+    }
 
     /// None where neither is in view, or one is cut off by the near plane.
-    fn distance_px(&self, a: DVec3, b: DVec3) -> Option<f64> {
+    pub(super) fn distance_px(&self, a: DVec3, b: DVec3) -> Option<f64> {
         let [a, b] = [a, b].map(|p| self.clip_from_object * p.extend(1.0));
         // Depth is reversed.
         let beyond_near = |clip: DVec4| clip.w > 0.0 && clip.z <= clip.w;

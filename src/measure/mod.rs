@@ -1,5 +1,6 @@
 //! What a tessellation did, measured on what was really emitted.
 
+mod accuracy;
 mod agreement;
 mod chart;
 mod cracks;
@@ -13,6 +14,7 @@ mod sizes;
 mod survey;
 mod sweep;
 
+pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, Measurement, Place};
 pub use agreement::{Agreement, Disagreement, Order};
 pub use chart::{CHART_RANGE, ChartError, sweep_chart};
 pub use cracks::{CrackedEdge, Cracks, ulp, ulp_at};

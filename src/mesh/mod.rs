@@ -43,7 +43,7 @@ pub use progress::{Cancelled, Progress, Stage};
 pub use repairs::Repairs;
 pub use rig::{Moment, Pose, Rig};
 pub use rim::{Rim, with_rim};
-pub use shapes::{Shape, UnknownShape};
+pub use shapes::{Shape, ShapeError};
 pub use source::Source;
 pub use t_junctions::{TJunction, t_junctions};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};

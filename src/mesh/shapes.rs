@@ -2,9 +2,10 @@
 //!
 //! All are about one unit in radius, centred, with +Y up, counter-clockwise seen from outside.
 
-mod polyhedra;
-mod revolved;
-mod sheets;
+pub(crate) mod bicubic;
+pub(crate) mod polyhedra;
+pub(crate) mod revolved;
+pub(crate) mod sheets;
 
 use std::fmt;
 use std::str::FromStr;
@@ -27,6 +28,8 @@ pub enum Shape {
     Icosahedron,
     /// 80 triangles with the sphere's own normals.
     Icosphere,
+    /// The icosphere stretched to three different radii, with the ellipsoid's own normals.
+    Ellipsoid,
     /// 16 by 8 quads with the torus's own normals; uv seams both ways round.
     Torus,
     /// 12 sides and two caps with a crease between.
@@ -35,28 +38,42 @@ pub enum Shape {
     Cone,
     /// The open patch y = (x^2 - z^2) / 2 over 6 by 6 quads.
     Saddle,
+    /// An open leaning vase of 5 by 3 bicubic patches, each sampled at 2 by 2 quads, with the surface's own normals.
+    Bicubic,
     /// A strip with half a twist: one side, one boundary, normals that flip at the join.
     Moebius,
 }
 
-/// There is no shape of that name.
+/// The finest level of a shape that has levels.
+pub const MAX_LEVEL: u32 = 6;
+
+/// Text names no shape that there is.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no shape \"{name}\"; choose one of {}", Shape::ALL.map(Shape::name).join(", "))]
-pub struct UnknownShape {
-    pub name: String,
+pub enum ShapeError {
+    #[error("there is no shape \"{name}\"; choose one of {}", Shape::ALL.map(Shape::name).join(", "))]
+    Unknown { name: String },
+    #[error("a shape's level is a whole number from 0 to {MAX_LEVEL}, as in shape:torus@2; \"{text}\" is none")]
+    Level { text: String },
+    #[error(
+        "{shape} has no exact surface to be sampled more finely, so it has no levels; leave out the @, or choose one of {}",
+        Shape::ALL.into_iter().filter(|shape| shape.has_levels()).map(Shape::name).collect::<Vec<_>>().join(", ")
+    )]
+    NoLevels { shape: Shape },
 }
 
 impl Shape {
     /// All shapes, in the order of a menu.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::CubeSplit,
         Self::CubeSmooth,
         Self::Icosahedron,
         Self::Icosphere,
+        Self::Ellipsoid,
         Self::Torus,
         Self::Cylinder,
         Self::Cone,
         Self::Saddle,
+        Self::Bicubic,
         Self::Moebius,
     ];
 
@@ -67,10 +84,12 @@ impl Shape {
             Self::CubeSmooth => "cube-smooth",
             Self::Icosahedron => "icosahedron",
             Self::Icosphere => "icosphere",
+            Self::Ellipsoid => "ellipsoid",
             Self::Torus => "torus",
             Self::Cylinder => "cylinder",
             Self::Cone => "cone",
             Self::Saddle => "saddle",
+            Self::Bicubic => "bicubic",
             Self::Moebius => "moebius",
         }
     }
@@ -82,25 +101,40 @@ impl Shape {
             Self::CubeSmooth => "Cube, smooth normals",
             Self::Icosahedron => "Icosahedron",
             Self::Icosphere => "Icosphere",
+            Self::Ellipsoid => "Ellipsoid",
             Self::Torus => "Torus",
             Self::Cylinder => "Cylinder with caps",
             Self::Cone => "Cone",
             Self::Saddle => "Saddle",
+            Self::Bicubic => "Bicubic patches",
             Self::Moebius => "Moebius strip",
         }
     }
 
+    /// Whether its corners are samples of a curved surface, of which there may be more.
+    pub fn has_levels(self) -> bool {
+        !matches!(self, Self::CubeSplit | Self::CubeSmooth | Self::Moebius)
+    }
+
     /// The mesh, the same every time.
     pub fn build(self) -> Mesh {
+        self.build_at(0)
+    }
+
+    /// The mesh with its segments doubled `level` times, all corners on the same surface with the surface's normals.
+    /// Shapes without levels stay what they are.
+    pub fn build_at(self, level: u32) -> Mesh {
         let triangles = match self {
             Self::CubeSplit => polyhedra::cube_split(),
             Self::CubeSmooth => polyhedra::cube_smooth(),
-            Self::Icosahedron => polyhedra::icosphere(0),
-            Self::Icosphere => polyhedra::icosphere(1),
-            Self::Torus => revolved::torus(),
-            Self::Cylinder => revolved::cylinder(),
-            Self::Cone => revolved::cone(),
-            Self::Saddle => sheets::saddle(),
+            Self::Icosahedron => polyhedra::icosphere(level),
+            Self::Icosphere => polyhedra::icosphere(1 + level),
+            Self::Ellipsoid => polyhedra::ellipsoid(1 + level),
+            Self::Torus => revolved::torus(level),
+            Self::Cylinder => revolved::cylinder(level),
+            Self::Cone => revolved::cone(level),
+            Self::Saddle => sheets::saddle(level),
+            Self::Bicubic => bicubic::vase(level),
             Self::Moebius => sheets::moebius(),
         };
         let mut builder = MeshBuilder::new();
@@ -109,7 +143,12 @@ impl Shape {
             builder.triangle(material, triangle.map(Into::into));
         }
         // Nobody else holds this handle, so nobody can cancel.
-        builder.finish(self.title().to_owned(), &Progress::new()).unwrap_or_default()
+        builder.finish(self.title_at(level), &Progress::new()).unwrap_or_default()
+    }
+
+    /// The title, with the level if it isn't 0.
+    pub fn title_at(self, level: u32) -> String {
+        if level == 0 { self.title().to_owned() } else { format!("{}, level {level}", self.title()) }
     }
 }
 
@@ -120,11 +159,11 @@ impl fmt::Display for Shape {
 }
 
 impl FromStr for Shape {
-    type Err = UnknownShape;
+    type Err = ShapeError;
 
-    fn from_str(name: &str) -> Result<Self, UnknownShape> {
+    fn from_str(name: &str) -> Result<Self, ShapeError> {
         let found = Self::ALL.into_iter().find(|shape| shape.name() == name);
-        found.ok_or_else(|| UnknownShape { name: name.to_owned() })
+        found.ok_or_else(|| ShapeError::Unknown { name: name.to_owned() })
     }
 }
 

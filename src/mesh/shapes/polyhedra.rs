@@ -1,4 +1,4 @@
-//! Cubes, the icosahedron and the icosphere.
+//! Cubes, the icosahedron, the icosphere and the ellipsoid.
 
 use std::collections::HashMap;
 
@@ -9,6 +9,8 @@ use crate::mesh::Corner;
 
 /// Half a cube's side; its corners lie about one unit from the centre.
 const HALF: f32 = 0.6;
+/// Radii of the ellipsoid along x, y and z.
+pub(crate) const ELLIPSOID: Vec3 = Vec3::new(1.0, 0.6, 0.8);
 
 pub(super) fn cube_split() -> Vec<[Corner; 3]> {
     cube(|position, normal| normal + 0.6 * position)
@@ -45,6 +47,12 @@ pub(super) fn icosphere(levels: u32) -> Vec<[Corner; 3]> {
     }
     let at = |i: usize| corner(points[i], points[i], Vec2::ZERO);
     triangles.into_iter().map(|triangle| triangle.map(at)).collect()
+}
+
+/// The icosphere stretched, with the normals of the ellipsoid that it lies on.
+pub(super) fn ellipsoid(levels: u32) -> Vec<[Corner; 3]> {
+    let stretched = |c: Corner| corner(c.position * ELLIPSOID, c.position / ELLIPSOID, c.uv);
+    icosphere(levels).into_iter().map(|triangle| triangle.map(stretched)).collect()
 }
 
 /// Four triangles for one. `middles` remembers each edge's middle point, so that neighbours share it.

@@ -7,11 +7,14 @@ use glam::{Vec2, Vec3};
 use super::{corner, quad};
 use crate::mesh::Corner;
 
-/// Sides of cylinder and cone.
+/// Sides of cylinder and cone at level 0, when slopes and caps are one row.
 const SIDES: usize = 12;
 /// Radius of cylinder and cone, and half their height.
-const RADIUS: f32 = 0.6;
-const HALF_HEIGHT: f32 = 0.75;
+pub(crate) const RADIUS: f32 = 0.6;
+pub(crate) const HALF_HEIGHT: f32 = 0.75;
+/// Radius of the circle in the middle of the torus's tube, and the tube's.
+pub(crate) const MAJOR: f32 = 0.7;
+pub(crate) const MINOR: f32 = 0.3;
 
 /// The direction of column i of n around Y, from +Z towards +X; column n is column 0 to the last bit.
 fn around(i: usize, n: usize) -> Vec3 {
@@ -23,58 +26,71 @@ fn fraction(i: usize, n: usize) -> f32 {
     i as f32 / n as f32
 }
 
-pub(super) fn torus() -> Vec<[Corner; 3]> {
-    const COLUMNS: usize = 16;
-    const ROWS: usize = 8;
+pub(super) fn torus(level: u32) -> Vec<[Corner; 3]> {
+    let (columns, rows) = (16 << level, 8 << level);
     let node = |i: usize, j: usize| {
-        let out = around(i, COLUMNS);
-        let (sin, cos) = (TAU * (j % ROWS) as f32 / ROWS as f32).sin_cos();
+        let out = around(i, columns);
+        let (sin, cos) = (TAU * (j % rows) as f32 / rows as f32).sin_cos();
         let normal = out * cos + Vec3::Y * sin;
-        let uv = Vec2::new(fraction(i, COLUMNS), 1.0 - fraction(j, ROWS));
-        corner(out * 0.7 + normal * 0.3, normal, uv)
+        let uv = Vec2::new(fraction(i, columns), 1.0 - fraction(j, rows));
+        corner(out * MAJOR + normal * MINOR, normal, uv)
     };
     let cell = |i, j| quad([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
-    (0..COLUMNS).flat_map(|i| (0..ROWS).flat_map(move |j| cell(i, j))).collect()
+    (0..columns).flat_map(|i| (0..rows).flat_map(move |j| cell(i, j))).collect()
 }
 
-pub(super) fn cylinder() -> Vec<[Corner; 3]> {
-    let wall = |i: usize, v: f32| {
-        let out = around(i, SIDES);
-        corner(rim(i, HALF_HEIGHT * (1.0 - 2.0 * v)), out, Vec2::new(fraction(i, SIDES), v))
+pub(super) fn cylinder(level: u32) -> Vec<[Corner; 3]> {
+    let (sides, rows) = (SIDES << level, 1 << level);
+    let wall = |i: usize, j: usize| {
+        let v = fraction(j, rows);
+        let position = ring(i, sides, RADIUS) + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
+        corner(position, around(i, sides), Vec2::new(fraction(i, sides), v))
     };
-    let walls = (0..SIDES).flat_map(|i| quad([wall(i, 1.0), wall(i + 1, 1.0), wall(i + 1, 0.0), wall(i, 0.0)]));
-    walls.chain(cap(HALF_HEIGHT)).chain(cap(-HALF_HEIGHT)).collect()
+    let cell = |i, j| quad([wall(i, j + 1), wall(i + 1, j + 1), wall(i + 1, j), wall(i, j)]);
+    let walls = (0..sides).flat_map(|i| (0..rows).flat_map(move |j| cell(i, j)));
+    walls.chain(cap(HALF_HEIGHT, level)).chain(cap(-HALF_HEIGHT, level)).collect()
 }
 
-pub(super) fn cone() -> Vec<[Corner; 3]> {
+pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
+    let (sides, rows) = (SIDES << level, 1 << level);
     // The slope's normal: perpendicular to the line from the apex to the rim.
     let normal = |out: Vec3| out * (2.0 * HALF_HEIGHT) + Vec3::Y * RADIUS;
-    let base = |i: usize| corner(rim(i, -HALF_HEIGHT), normal(around(i, SIDES)), Vec2::new(fraction(i, SIDES), 1.0));
+    let slope = |i: usize, j: usize| {
+        let v = fraction(j, rows);
+        let position = ring(i, sides, RADIUS * v) + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
+        corner(position, normal(around(i, sides)), Vec2::new(fraction(i, sides), v))
+    };
     let side = |i: usize| {
         // Seen from the apex a side has one direction: that of its middle, half a column on.
         let apex = corner(
             Vec3::Y * HALF_HEIGHT,
-            normal(around(2 * i + 1, 2 * SIDES)),
-            Vec2::new(fraction(2 * i + 1, 2 * SIDES), 0.0),
+            normal(around(2 * i + 1, 2 * sides)),
+            Vec2::new(fraction(2 * i + 1, 2 * sides), 0.0),
         );
-        [base(i), base(i + 1), apex]
+        let rest =
+            (1..rows).flat_map(move |j| quad([slope(i, j + 1), slope(i + 1, j + 1), slope(i + 1, j), slope(i, j)]));
+        std::iter::once([slope(i, 1), slope(i + 1, 1), apex]).chain(rest)
     };
-    (0..SIDES).map(side).chain(cap(-HALF_HEIGHT)).collect()
+    (0..sides).flat_map(side).chain(cap(-HALF_HEIGHT, level)).collect()
 }
 
-fn rim(i: usize, y: f32) -> Vec3 {
-    around(i, SIDES) * RADIUS + Vec3::Y * y
+/// Column i of `sides` on a circle around Y.
+fn ring(i: usize, sides: usize, radius: f32) -> Vec3 {
+    around(i, sides) * radius
 }
 
 /// A disc around a middle point, facing away from the shape's centre.
-fn cap(y: f32) -> impl Iterator<Item = [Corner; 3]> {
+fn cap(y: f32, level: u32) -> impl Iterator<Item = [Corner; 3]> {
+    let (sides, rows) = (SIDES << level, 1 << level);
     let normal = Vec3::Y * y;
     let at = move |position: Vec3| {
         let uv = Vec2::new(position.x, position.z) / (2.0 * RADIUS) + 0.5;
         corner(position, normal, uv)
     };
-    (0..SIDES).map(move |i| {
+    (0..sides).flat_map(move |i| {
         let (a, b) = if y > 0.0 { (i, i + 1) } else { (i + 1, i) };
-        [at(Vec3::Y * y), at(rim(a, y)), at(rim(b, y))]
+        let node = move |i: usize, j: usize| at(ring(i, sides, RADIUS * fraction(j, rows)) + Vec3::Y * y);
+        let rest = (1..rows).flat_map(move |j| quad([node(a, j), node(a, j + 1), node(b, j + 1), node(b, j)]));
+        std::iter::once([at(Vec3::Y * y), node(a, 1), node(b, 1)]).chain(rest)
     })
 }

@@ -7,19 +7,22 @@ use glam::{Vec2, Vec3};
 use super::{corner, quad};
 use crate::mesh::Corner;
 
-/// Quads along each side of the saddle.
+/// Quads along each side of the saddle at level 0.
 const CELLS: usize = 6;
+/// Half the side of the saddle's square.
+pub(crate) const SADDLE_HALF: f32 = 0.8;
 /// Quads along and across the Möbius strip.
 const LENGTH: usize = 24;
 const WIDTH: usize = 2;
 
-pub(super) fn saddle() -> Vec<[Corner; 3]> {
+pub(super) fn saddle(level: u32) -> Vec<[Corner; 3]> {
+    let cells = CELLS << level;
     let node = |i: usize, j: usize| {
-        let uv = Vec2::new(i as f32, j as f32) / CELLS as f32;
-        let (x, z) = (1.6 * uv.x - 0.8, 1.6 * uv.y - 0.8);
+        let uv = Vec2::new(i as f32, j as f32) / cells as f32;
+        let [x, z] = [uv.x, uv.y].map(|t| 2.0 * SADDLE_HALF * t - SADDLE_HALF);
         corner(Vec3::new(x, (x * x - z * z) / 2.0, z), Vec3::new(-x, 1.0, z), uv)
     };
-    grid(CELLS, CELLS, node)
+    grid(cells, cells, node)
 }
 
 pub(super) fn moebius() -> Vec<[Corner; 3]> {

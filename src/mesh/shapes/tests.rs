@@ -11,11 +11,12 @@ fn euler(topology: &Topology) -> i64 {
     topology.points.len() as i64 - topology.edges.len() as i64 + topology.patches.len() as i64
 }
 
-const CLOSED: [(Shape, i64); 7] = [
+const CLOSED: [(Shape, i64); 8] = [
     (Shape::CubeSplit, 2),
     (Shape::CubeSmooth, 2),
     (Shape::Icosahedron, 2),
     (Shape::Icosphere, 2),
+    (Shape::Ellipsoid, 2),
     (Shape::Torus, 0),
     (Shape::Cylinder, 2),
     (Shape::Cone, 2),
@@ -26,8 +27,8 @@ fn names_lead_back_to_shapes() {
     for shape in Shape::ALL {
         assert_eq!(shape.name().parse(), Ok(shape));
     }
-    let error = "sphere".parse::<Shape>().unwrap_err().to_string();
-    assert!(error.contains("\"sphere\"") && error.contains("icosphere, torus"), "{error}");
+    let error = "ball".parse::<Shape>().unwrap_err().to_string();
+    assert!(error.contains("\"ball\"") && error.contains("icosphere, ellipsoid, torus"), "{error}");
 }
 
 #[test]
@@ -65,7 +66,7 @@ fn normals_agree_with_the_faces() {
 
 #[test]
 fn sizes_are_as_said() {
-    let triangles = [12, 12, 20, 80, 256, 48, 24, 72, 96];
+    let triangles = [12, 12, 20, 80, 80, 256, 48, 24, 72, 120, 96];
     for (shape, triangles) in Shape::ALL.into_iter().zip(triangles) {
         let (mesh, _) = topology(shape);
         let bounds = mesh.bounds();

@@ -1,0 +1,204 @@
+use glam::{Mat4, Vec2, vec3};
+
+use super::*;
+use crate::mesh::{Mesh, Progress, Shape, Topology};
+use crate::settings::Settings;
+use crate::tessellate::{Partitioning, Surface, Tessellated, pack_key, pack_normal, tessellate};
+
+fn options(samples: usize) -> AccuracyOptions {
+    AccuracyOptions { samples, threads: 2 }
+}
+
+/// A mesh tessellated on the CPU with a uniform factor.
+fn emitted(mesh: &Mesh, surface: Surface, factor: f32) -> Tessellated {
+    let topology = Topology::build(mesh, &Progress::new()).unwrap();
+    let settings = Settings { surface, factor, partitioning: Partitioning::Integer, ..Settings::default() };
+    tessellate(mesh, &topology, &settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)), None)
+}
+
+fn measured(truth: &Truth, out: &Tessellated, samples: usize) -> Accuracy {
+    let mut measurement = Measurement::new(truth, None, options(samples));
+    measurement.take(&out.vertices, &out.triangles);
+    measurement.finish().unwrap()
+}
+
+/// A mesh's own corners and triangles, each a patch.
+fn as_it_is(mesh: &Mesh) -> Tessellated {
+    emitted(mesh, Surface::Flat, 1.0)
+}
+
+fn near(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() < tolerance, "{value} for {expected}");
+}
+
+/// A square of two triangles at a height, facing up.
+fn square(half: f32, y: f32) -> (Vec<Vertex>, Vec<[u32; 3]>) {
+    let vertex = |x: f32, z: f32| Vertex {
+        position: [x * half, y, z * half],
+        key: pack_key(7, [0, 0]),
+        normal: pack_normal(Vec3::Y),
+        uv: [0.0; 2],
+    };
+    (vec![vertex(-1.0, -1.0), vertex(-1.0, 1.0), vertex(1.0, 1.0), vertex(1.0, -1.0)], vec![[0, 1, 2], [0, 2, 3]])
+}
+
+fn square_truth(half: f32) -> Truth {
+    let (vertices, triangles) = square(half, 0.0);
+    let corner = |i: u32| crate::mesh::Corner {
+        position: vertices[i as usize].position.into(),
+        normal: Vec3::Y,
+        uv: Vec2::ZERO,
+    };
+    let mesh = Mesh { corners: (0..4).map(corner).collect(), triangles, ..Mesh::default() };
+    Truth::of_mesh(&mesh).unwrap()
+}
+
+#[test]
+fn the_icosahedron_is_a_fifth_of_the_radius_off_the_sphere() {
+    let truth = Truth::of_shape(Shape::Icosahedron).unwrap();
+    let accuracy = measured(&truth, &as_it_is(&Shape::Icosahedron.build()), 20_000);
+    let inradius = ((5.0 + 2.0 * 5.0_f64.sqrt()) / 15.0).sqrt();
+    // Corners are f32's. That of the samples which is nearest to a face's middle is not quite there.
+    near(accuracy.to_truth.largest, 1.0 - inradius, 1e-7);
+    near(accuracy.from_truth.largest, 1.0 - inradius, 1e-4);
+    near(accuracy.relative(accuracy.to_truth).largest, (1.0 - inradius) / 12.0_f64.sqrt(), 1e-7);
+    // From a face's middle to its corners, the mean of the squares of the radius short of 1.
+    let face = accuracy.worst_to_truth;
+    near(face.emitted.length(), inradius, 1e-7);
+    near(face.truth.length(), 1.0, 1e-12);
+    assert!(face.patch < 20);
+    near(accuracy.to_truth.rms, rms_of_a_face(inradius), 2e-4);
+    assert!(accuracy.normals.rms < accuracy.normals.largest && accuracy.normals.largest < 3.0, "{accuracy:?}");
+}
+
+/// The root mean square of what a face of a polyhedron of radius 1 is short of the sphere, by brute force.
+fn rms_of_a_face(inradius: f64) -> f64 {
+    let circumradius = (1.0 - inradius * inradius).sqrt();
+    let corners = [0.0_f64, 120.0, 240.0].map(|turn| DVec3::new(turn.to_radians().cos(), turn.to_radians().sin(), 0.0));
+    let n = 600;
+    let cells = (0..n).flat_map(|i| (0..n - i).map(move |j| [i, j].map(|x| (f64::from(x) + 1.0 / 3.0) / f64::from(n))));
+    let at = |[u, v]: [f64; 2]| corners[0] * (1.0 - u - v) + corners[1] * u + corners[2] * v;
+    let short = cells.map(|cell| 1.0 - (at(cell) * circumradius).length().hypot(inradius));
+    let (sum, count) = short.fold((0.0, 0), |(sum, count), short| (sum + short * short, count + 1));
+    (sum / f64::from(count)).sqrt()
+}
+
+#[test]
+fn parallel_squares_are_as_far_both_ways() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let mut measurement = Measurement::new(&truth, None, options(1000));
+    measurement.take(&vertices, &triangles);
+    let accuracy = measurement.finish().unwrap();
+    for distances in [accuracy.to_truth, accuracy.from_truth, accuracy.both_ways()] {
+        near(distances.largest, 0.25, 1e-12);
+        near(distances.rms, 0.25, 1e-12);
+    }
+    assert!(accuracy.normals.largest < 0.01 && accuracy.worst_px.is_none(), "{accuracy:?}");
+    near(accuracy.relative(accuracy.to_truth).rms, 0.25 / 8.0_f64.sqrt(), 1e-9);
+    assert_eq!(accuracy.worst_from_truth.patch, 7);
+}
+
+#[test]
+fn what_is_missing_shows_from_the_truth_alone() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(0.5, 0.0));
+    let mut measurement = Measurement::new(&truth, None, options(50_000));
+    measurement.take(&vertices, &triangles);
+    let accuracy = measurement.finish().unwrap();
+    assert!(accuracy.to_truth.largest < 1e-12, "{accuracy:?}");
+    near(accuracy.from_truth.largest, 0.5_f64.sqrt(), 0.01);
+    // Three parts: inside nothing, along sides the distance t, in corners the hypotenuse of two of them.
+    let squares = 4.0 * (0.125 / 3.0) + 4.0 * (0.25 * 0.5 / 3.0);
+    near(accuracy.from_truth.rms, (squares / 4.0_f64).sqrt(), 2e-3);
+    near(accuracy.both_ways().rms, accuracy.from_truth.rms / 2.0_f64.sqrt(), 1e-12);
+}
+
+#[test]
+fn a_shifted_sphere_is_off_by_the_shift() {
+    let truth = Truth::of_shape(Shape::Icosphere).unwrap();
+    let mut out = as_it_is(&Shape::Icosphere.build_at(4));
+    out.vertices.iter_mut().for_each(|vertex| vertex.position[0] += 0.01);
+    let accuracy = measured(&truth, &out, 5000);
+    // Along the normal it is the shift's cosine, whose mean square over the sphere is a third.
+    near(accuracy.to_truth.largest, 0.01, 7e-4);
+    near(accuracy.from_truth.largest, 0.01, 7e-4);
+    near(accuracy.both_ways().rms, 0.01 / 3.0_f64.sqrt(), 2e-4);
+    near(accuracy.normals.largest, 0.573, 0.01);
+}
+
+#[test]
+fn normals_that_lean_are_measured_in_degrees() {
+    let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.0));
+    let lean = 10.0_f32.to_radians();
+    vertices.iter_mut().for_each(|vertex| vertex.normal = pack_normal(vec3(lean.sin(), lean.cos(), 0.0)));
+    let mut measurement = Measurement::new(&truth, None, options(100));
+    measurement.take(&vertices, &triangles);
+    let accuracy = measurement.finish().unwrap();
+    near(accuracy.normals.rms, 10.0, 0.01);
+    near(accuracy.normals.largest, 10.0, 0.01);
+}
+
+#[test]
+fn distances_on_screen_are_in_px_of_what_is_in_view() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let px = |clip_from_object| {
+        let view = LodView::new(clip_from_object, Vec2::new(400.0, 300.0));
+        let mut measurement = Measurement::new(&truth, Some(&view), options(100));
+        measurement.take(&vertices, &triangles);
+        measurement.finish().unwrap().worst_px.map(|place| place.value)
+    };
+    // Seen from the side, y upwards: half the viewport's height is one unit.
+    near(px(Mat4::from_scale(Vec3::new(1.0, 1.0, 0.1))).unwrap(), 75.0, 1e-9);
+    assert_eq!(px(Mat4::from_translation(Vec3::X * 10.0)), None);
+}
+
+#[test]
+fn nothing_and_what_is_no_number_give_nothing() {
+    let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    assert_eq!(Measurement::new(&truth, None, options(10)).finish(), None);
+    let mut flat = Measurement::new(&truth, None, options(10));
+    flat.take(&vertices, &[[0, 0, 1]]);
+    assert_eq!(flat.finish(), None);
+    vertices[3].position[1] = f32::NAN;
+    let mut measurement = Measurement::new(&truth, None, options(1000));
+    measurement.take(&vertices, &triangles);
+    let accuracy = measurement.finish().unwrap();
+    assert_eq!(accuracy.not_finite, 1);
+    near(accuracy.to_truth.rms, 0.25, 1e-12);
+    assert!(accuracy.from_truth.largest.is_finite() && accuracy.from_truth.largest > 1.0);
+}
+
+#[test]
+fn threads_change_no_bit_and_chunks_nothing_else() {
+    let truth = Truth::of_shape(Shape::Bicubic).unwrap();
+    let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
+    let measure = |threads, chunks: usize| {
+        let mut measurement = Measurement::new(&truth, None, AccuracyOptions { samples: 3000, threads });
+        let size = out.triangles.len().div_ceil(chunks);
+        out.triangles.chunks(size).for_each(|triangles| measurement.take(&out.vertices, triangles));
+        measurement.finish().unwrap()
+    };
+    let once = measure(1, 1);
+    assert_eq!(once, measure(5, 1));
+    let chunked = measure(2, 3);
+    assert_eq!(once.to_truth.largest, chunked.to_truth.largest);
+    assert_eq!(once.from_truth, chunked.from_truth);
+    near(chunked.to_truth.rms, once.to_truth.rms, 1e-12);
+    near(chunked.normals.rms, once.normals.rms, 1e-9);
+}
+
+/// Halving the segments divides the distance by 2 to the order.
+#[test]
+fn distances_fall_with_the_level() {
+    for (surface, orders) in [(Surface::Flat, 1.7..2.3), (Surface::PnAen, 2.7..4.6)] {
+        for shape in [Shape::Icosphere, Shape::Ellipsoid, Shape::Torus] {
+            let truth = Truth::of_shape(shape).unwrap();
+            let rms = [1, 2].map(|level| {
+                let factor = if surface == Surface::Flat { 1.0 } else { 8.0 };
+                let accuracy = measured(&truth, &emitted(&shape.build_at(level), surface, factor), 4000);
+                accuracy.to_truth.rms
+            });
+            let order = (rms[0] / rms[1]).log2();
+            assert!(orders.contains(&order), "{shape}, {surface:?}: order {order}, {rms:?}");
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Exact surfaces, and which shapes are sampled from which.
+
+use glam::{DVec2, DVec3};
+
+use super::bicubic::Patches;
+use super::ellipsoid::Ellipsoid;
+use super::revolved::{Profile, Torus};
+use super::saddle::Saddle;
+use super::spread::{Spread, radical_inverse};
+use super::{Nearest, Sample};
+use crate::mesh::Shape;
+use crate::mesh::shapes::polyhedra::ELLIPSOID;
+use crate::mesh::shapes::revolved::{HALF_HEIGHT, MAJOR, MINOR, RADIUS};
+use crate::mesh::shapes::sheets::SADDLE_HALF;
+
+/// What each kind of surface knows about itself.
+pub(super) trait Surface: Send + Sync {
+    /// See [`super::Truth::closest_facing`].
+    fn closest(&self, p: DVec3, facing: DVec3) -> Nearest;
+
+    /// Least and greatest coordinates.
+    fn extent(&self) -> [DVec3; 2];
+
+    /// Unit squares that together cover the surface.
+    fn charts(&self) -> usize;
+
+    /// A chart's point at `s` and `t`, and how much area the surface has there for the square's.
+    fn at(&self, chart: usize, s: f64, t: f64) -> (Sample, f64);
+}
+
+/// A surface whose nearest points are computed to about 1e-12 of its size.
+pub struct Exact {
+    surface: Box<dyn Surface>,
+    spread: Spread,
+}
+
+/// The surface that a shape's corners are samples of: for those that have [levels](Shape::has_levels).
+pub fn of_shape(shape: Shape) -> Option<Exact> {
+    let [radius, half] = [RADIUS, HALF_HEIGHT].map(f64::from);
+    let (bottom, top) = (DVec2::new(0.0, -half), DVec2::new(0.0, half));
+    let rim = DVec2::new(radius, 0.0);
+    let surface: Box<dyn Surface> = match shape {
+        Shape::CubeSplit | Shape::CubeSmooth | Shape::Moebius => return None,
+        Shape::Icosahedron | Shape::Icosphere => Box::new(Ellipsoid { radii: DVec3::ONE }),
+        Shape::Ellipsoid => Box::new(Ellipsoid { radii: ELLIPSOID.as_dvec3() }),
+        Shape::Torus => Box::new(Torus { major: MAJOR.into(), minor: MINOR.into() }),
+        Shape::Cylinder => Box::new(Profile::new(&[bottom, rim + bottom, rim + top, top])),
+        Shape::Cone => Box::new(Profile::new(&[bottom, rim + bottom, top])),
+        Shape::Saddle => Box::new(Saddle { half: SADDLE_HALF.into() }),
+        Shape::Bicubic => Box::new(Patches::new(crate::mesh::shapes::bicubic::patches())),
+    };
+    Some(Exact::new(surface))
+}
+
+impl Exact {
+    fn new(surface: Box<dyn Surface>) -> Self {
+        Self { spread: Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1), surface }
+    }
+
+    /// The nearest point.
+    pub fn closest(&self, p: DVec3) -> Nearest {
+        self.closest_facing(p, DVec3::ZERO)
+    }
+
+    pub(super) fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
+        self.surface.closest(p, facing)
+    }
+
+    pub fn extent(&self) -> [DVec3; 2] {
+        self.surface.extent()
+    }
+
+    pub fn area(&self) -> f64 {
+        self.spread.area()
+    }
+
+    /// So many points, spread evenly by area: a Hammersley set.
+    pub fn samples(&self, count: usize) -> Vec<Sample> {
+        let sample = |i: usize| {
+            let (chart, s, t) = self.spread.place((i as f64 + 0.5) / count as f64, radical_inverse(2, i));
+            self.surface.at(chart, s, t).0
+        };
+        (0..count).map(sample).collect()
+    }
+}

@@ -1,0 +1,86 @@
+//! A mesh as the truth: the high-poly original, say.
+
+use glam::{DVec3, Vec3};
+
+use super::spread::{find, radical_inverse};
+use super::triangles::{Closest, Triangles};
+use super::{Nearest, ON_CREASE, Sample};
+use crate::mesh::Mesh;
+
+/// A mesh's triangles as they are, with their normals interpolated as they are shaded.
+pub struct Reference {
+    triangles: Triangles,
+    corners: Vec<[Vec3; 3]>,
+    normals: Vec<[Vec3; 3]>,
+    /// Area up to the end of each triangle.
+    areas: Vec<f64>,
+    diagonal: f64,
+}
+
+impl Reference {
+    /// None if there is no triangle.
+    pub fn new(mesh: &Mesh) -> Option<Self> {
+        let of = |triangle: &[u32; 3]| triangle.map(|corner| mesh.corners[corner as usize]);
+        let corners: Vec<_> =
+            mesh.triangles.iter().map(|triangle| of(triangle).map(|corner| corner.position)).collect();
+        let normals = mesh.triangles.iter().map(|triangle| of(triangle).map(|corner| corner.normal)).collect();
+        let triangles = Triangles::new(&corners)?;
+        let areas = corners.iter().scan(0.0, |sum, triangle| {
+            *sum += cross(triangle).length() / 2.0;
+            Some(*sum)
+        });
+        let (areas, [min, max]) = (areas.collect(), triangles.extent());
+        Some(Self { triangles, normals, areas, diagonal: min.distance(max), corners })
+    }
+
+    pub(super) fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
+        let nearest = |closest: &Closest| Nearest {
+            point: closest.point,
+            normal: self.normal(closest.triangle as usize, closest.weights),
+            distance: closest.distance,
+        };
+        let all = self.triangles.all_closest(p, ON_CREASE * self.diagonal);
+        // There is a triangle, so there is a nearest one; from places that are no numbers, none.
+        let nowhere = Nearest { point: p, normal: DVec3::Y, distance: f64::NAN };
+        let Some(first) = all.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return nowhere };
+        let found = nearest(first);
+        let normals = all.iter().map(|closest| nearest(closest).normal);
+        let normal =
+            normals.fold(found.normal, |best, other| if other.dot(facing) > best.dot(facing) { other } else { best });
+        Nearest { normal, ..found }
+    }
+
+    /// The shading normal; where that has no direction the face's, and of a face that has none a corner's.
+    fn normal(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
+        let normals = self.normals[triangle].map(Vec3::as_dvec3);
+        let sum: DVec3 = (0..3).map(|i| normals[i] * weights[i]).sum();
+        sum.try_normalize().or_else(|| cross(&self.corners[triangle]).try_normalize()).unwrap_or(normals[0])
+    }
+
+    /// So many points, spread evenly by area.
+    pub(super) fn samples(&self, count: usize) -> Vec<Sample> {
+        let sample = |i: usize| {
+            let (triangle, _) = find(&self.areas, (i as f64 + 0.5) / count as f64);
+            // The unit square folded onto the triangle, parts of the one on parts of the other.
+            let (x, y) = (radical_inverse(2, i), radical_inverse(3, i));
+            let (b, c) = if x + y > 1.0 { (1.0 - x, 1.0 - y) } else { (x, y) };
+            let weights = [1.0 - b - c, b, c];
+            let point = (0..3).map(|k| self.corners[triangle][k].as_dvec3() * weights[k]).sum();
+            Sample { point, normal: self.normal(triangle, weights) }
+        };
+        (0..count).map(sample).collect()
+    }
+
+    pub(super) fn area(&self) -> f64 {
+        self.areas.last().copied().unwrap_or(0.0)
+    }
+
+    pub(super) fn extent(&self) -> [DVec3; 2] {
+        self.triangles.extent()
+    }
+}
+
+fn cross(triangle: &[Vec3; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(Vec3::as_dvec3);
+    (b - a).cross(c - a)
+}

@@ -1,0 +1,143 @@
+//! Triangles, and which point of them is nearest to a place.
+
+use std::time::Duration;
+
+use glam::{DVec3, Vec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::{Boundable, BvhBuildParams};
+
+/// Triangles in a tree of boxes. Which those are is the crate's; distances are computed here, in f64.
+pub struct Triangles {
+    tree: Bvh2,
+    /// In the tree's order, scaled.
+    corners: Vec<[Vec3; 3]>,
+    /// A power of two that brings coordinates near 1, where boxes' areas stay within f32; it rounds nothing.
+    scale: f64,
+}
+
+/// A point of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// Which of those that were given.
+    pub triangle: u32,
+    /// Of its corners.
+    pub weights: [f64; 3],
+    /// Object units, as `distance`.
+    pub point: DVec3,
+    pub distance: f64,
+}
+
+struct Bounded([Vec3; 3]);
+
+impl Boundable for Bounded {
+    fn aabb(&self) -> Aabb {
+        let [a, b, c] = self.0;
+        Aabb { min: Vec3A::from(a.min(b).min(c)), max: Vec3A::from(a.max(b).max(c)) }
+    }
+}
+
+impl Triangles {
+    /// Corners of triangles; none if there is no triangle. Coordinates must be finite.
+    pub fn new(triangles: &[[Vec3; 3]]) -> Option<Self> {
+        if triangles.is_empty() {
+            return None;
+        }
+        let largest = triangles.iter().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);
+        let scale = if largest > 0.0 { f64::from(largest).log2().floor().exp2().recip() } else { 1.0 };
+        let scaled = |corner: Vec3| (corner.as_dvec3() * scale).as_vec3();
+        let bounded: Vec<Bounded> = triangles.iter().map(|triangle| Bounded(triangle.map(scaled))).collect();
+        let tree = build_bvh2(&bounded, BvhBuildParams::very_fast_build(), &mut Duration::default());
+        let corners = tree.primitive_indices.iter().map(|triangle| bounded[*triangle as usize].0).collect();
+        Some(Self { tree, corners, scale })
+    }
+
+    /// Least and greatest coordinates.
+    pub fn extent(&self) -> [DVec3; 2] {
+        let root = self.tree.nodes[0].aabb();
+        [root.min, root.max].map(|corner| Vec3::from(corner).as_dvec3() / self.scale)
+    }
+
+    /// The nearest point, if one is nearer than `within`.
+    pub fn closest(&self, p: DVec3, within: f64) -> Option<Closest> {
+        let mut best = None;
+        self.search(p, within, 0.0, |closest| best = Some(closest));
+        best
+    }
+
+    /// The nearest points of all triangles that come as near as the nearest does, to within `slack`.
+    pub fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
+        let mut all: Vec<Closest> = Vec::new();
+        self.search(p, f64::INFINITY, slack, |closest| all.push(closest));
+        let nearest = all.iter().map(|closest| closest.distance).fold(f64::INFINITY, f64::min);
+        all.retain(|closest| closest.distance <= nearest + slack);
+        all
+    }
+
+    /// Calls `take` with points that are nearer than `within` and all before, or farther than the nearest by no more than
+    /// `slack`.
+    fn search(&self, p: DVec3, within: f64, slack: f64, mut take: impl FnMut(Closest)) {
+        let (p, slack) = (p * self.scale, slack * self.scale);
+        let mut nearest = within * self.scale;
+        let mut limit = (nearest + slack) * (nearest + slack);
+        let to_box = |node: u32| {
+            let Aabb { min, max } = self.tree.nodes[node as usize].aabb();
+            let [min, max] = [*min, *max].map(|corner| Vec3::from(corner).as_dvec3());
+            p.distance_squared(p.clamp(min, max))
+        };
+        let mut open = Vec::with_capacity(64);
+        open.push((to_box(0), 0));
+        while let Some((distance, index)) = open.pop() {
+            if distance >= limit {
+                continue;
+            }
+            let node = &self.tree.nodes[index as usize];
+            if !node.is_leaf() {
+                let [a, b] = [node.first_index, node.first_index + 1].map(|child| (to_box(child), child));
+                open.extend(if a.0 < b.0 { [b, a] } else { [a, b] });
+                continue;
+            }
+            for place in node.first_index..node.first_index + node.prim_count {
+                let corners = self.corners[place as usize].map(Vec3::as_dvec3);
+                let (weights, point) = closest_on_triangle(corners, p);
+                let squared = p.distance_squared(point);
+                if squared >= limit {
+                    continue;
+                }
+                let distance = squared.sqrt();
+                if distance < nearest {
+                    nearest = distance;
+                    limit = (nearest + slack) * (nearest + slack);
+                }
+                let triangle = self.tree.primitive_indices[place as usize];
+                take(Closest { triangle, weights, point: point / self.scale, distance: distance / self.scale });
+            }
+        }
+    }
+}
+
+/// The weights of the point of a triangle that is nearest to p, and the point. Triangles may be segments or points.
+fn closest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> ([f64; 3], DVec3) {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let normal = ab.cross(ac);
+    let squared = normal.length_squared();
+    if squared > 0.0 {
+        let at_b = ap.cross(ac).dot(normal) / squared;
+        let at_c = ab.cross(ap).dot(normal) / squared;
+        if at_b >= 0.0 && at_c >= 0.0 && at_b + at_c <= 1.0 {
+            return ([1.0 - at_b - at_c, at_b, at_c], a + ab * at_b + ac * at_c);
+        }
+    }
+    let along = |from: DVec3, to: DVec3| {
+        let squared = from.distance_squared(to);
+        let t = if squared > 0.0 { ((p - from).dot(to - from) / squared).clamp(0.0, 1.0) } else { 0.0 };
+        (t, from.lerp(to, t))
+    };
+    let ((t, on_ab), (u, on_bc), (v, on_ca)) = (along(a, b), along(b, c), along(c, a));
+    let sides = [([1.0 - t, t, 0.0], on_ab), ([0.0, 1.0 - u, u], on_bc), ([v, 0.0, 1.0 - v], on_ca)];
+    let nearer = |x: ([f64; 3], DVec3), y: ([f64; 3], DVec3)| {
+        if p.distance_squared(y.1) < p.distance_squared(x.1) { y } else { x }
+    };
+    nearer(nearer(sides[0], sides[1]), sides[2])
+}
