@@ -1,0 +1,63 @@
+//! What the device's memory does at best: the measure that our passes' bytes are held against.
+
+use std::rc::Rc;
+
+use ash::vk;
+
+use super::memory::{Buffer, Owned};
+use super::numbers::Spread;
+use super::ours::Effort;
+use super::pipelines::{COPY, Layout, module};
+use super::vulkan::{Took, Vulkan, VulkanError};
+
+/// Bytes a second, read and written, of one large buffer into another.
+pub struct Copies {
+    pub bytes: u64,
+    /// By the command for it.
+    pub command: f64,
+    /// By a compute shader, 16 bytes an invocation.
+    pub shader: f64,
+}
+
+impl Copies {
+    /// # Errors
+    /// No memory, or a lost device.
+    pub fn measure(vulkan: &Rc<Vulkan>, bytes: u64, effort: Effort) -> Result<Self, VulkanError> {
+        let (from, to) = (Buffer::on_device(vulkan, bytes)?, Buffer::on_device(vulkan, bytes)?);
+        let rate = |took: Vec<Took>| {
+            let ms = Spread::of(took.iter().map(|took| took.gpu)).median;
+            2.0 * bytes as f64 / (ms * 1e-3)
+        };
+        let command = rate(effort.repeat(|_| to.copy_from(&from))?);
+        let layout = Layout::new(vulkan, vk::ShaderStageFlags::COMPUTE)?;
+        let bound = layout.bind(vulkan, [&from, &to])?;
+        let pipeline = pipeline(vulkan, &layout)?;
+        let workgroups = (bytes / 16).div_ceil(256) as u32;
+        let (width, compute) = (workgroups.min(32768), vk::PipelineBindPoint::COMPUTE);
+        let copy = |commands: vk::CommandBuffer| unsafe {
+            let device = &vulkan.device;
+            device.cmd_bind_pipeline(commands, compute, pipeline.handle);
+            device.cmd_bind_descriptor_sets(commands, compute, layout.pipeline.handle, 0, &[bound.set], &[]);
+            device.cmd_dispatch(commands, width, workgroups.div_ceil(width), 1);
+        };
+        let shader = rate(effort.repeat(|_| vulkan.run(copy))?);
+        Ok(Self { bytes, command, shader })
+    }
+
+    /// The better of the two.
+    pub fn best(&self) -> f64 {
+        self.command.max(self.shader)
+    }
+}
+
+fn pipeline(vulkan: &Rc<Vulkan>, layout: &Layout) -> Result<Owned<vk::Pipeline>, VulkanError> {
+    let module = module(vulkan, COPY)?;
+    let stage = vk::PipelineShaderStageCreateInfo::default()
+        .stage(vk::ShaderStageFlags::COMPUTE)
+        .module(module.handle)
+        .name(c"main");
+    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout.pipeline.handle);
+    let made = unsafe { vulkan.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None) };
+    let handle = made.map_err(|(_, error)| error)?[0];
+    Ok(Owned::new(vulkan, handle, |device, handle| unsafe { device.destroy_pipeline(handle, None) }))
+}

@@ -1,0 +1,135 @@
+//! Equal error on screen: our LOD by error and our culling against the peer with the white paper's LOD and clipping.
+
+use pnaen::engine::Engine;
+use pnaen::gpu::{GpuError, Timing};
+use pnaen::settings::{Settings, TOLERANCE_RANGE};
+use pnaen::tessellate::{Clip, Lod, Partitioning};
+
+use super::Scale;
+use super::numbers::{or_none, ratio, table, whole};
+use super::ours::{OurTimes, Subject};
+use super::peer::Peer;
+use super::subjects::{subject, tori};
+use super::versus::{BenchError, PeerTimes, Versus};
+
+/// Px a segment that the white paper's LOD is asked for.
+pub const PAPER_PIXELS: f32 = 8.0;
+/// Halvings of the range of tolerances, in ratios.
+const TRIES: u32 = 12;
+
+/// One scene by both.
+pub struct EqualError {
+    pub scene: String,
+    /// Triangles and the largest error in px: the white paper's, then ours.
+    pub triangles: [u64; 2],
+    pub px: [f64; 2],
+    pub tolerance: f32,
+    pub ours: OurTimes,
+    /// Ours with the white paper's LOD, for comparison.
+    pub ours_paper: OurTimes,
+    pub peer: Option<PeerTimes>,
+}
+
+impl EqualError {
+    /// Theirs by ours, by the GPU's clock and by the host's.
+    pub fn faster(&self) -> Option<[f64; 2]> {
+        let ratios =
+            |peer: &PeerTimes| [peer.frame.median / self.ours.frame.median, peer.wall.median / self.ours.wall.median];
+        self.peer.as_ref().map(ratios)
+    }
+}
+
+pub fn table_of(scenes: &[EqualError]) -> String {
+    let row = |scene: &EqualError| {
+        let (ours, theirs) = (&scene.ours, scene.peer.as_ref());
+        vec![
+            scene.scene.clone(),
+            whole(scene.triangles[0]),
+            whole(scene.triangles[1]),
+            format!("{:.3}", scene.px[0]),
+            format!("{:.3}", scene.px[1]),
+            format!("{:.3}", scene.tolerance),
+            or_none(theirs.map(|peer| peer.frame.to_string())),
+            scene.ours_paper.frame.to_string(),
+            ours.frame.to_string(),
+            or_none(theirs.map(|peer| ratio(peer.frame.median, ours.frame.median))),
+            or_none(theirs.map(|peer| peer.wall.to_string())),
+            ours.wall.to_string(),
+            or_none(theirs.map(|peer| ratio(peer.wall.median, ours.wall.median))),
+        ]
+    };
+    let head = "scene | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px | theirs, GPU \
+                | ours with their LOD, GPU | ours, GPU | theirs / ours | theirs, host | ours, host | theirs / ours";
+    table(head, &scenes.iter().map(row).collect::<Vec<_>>())
+}
+
+/// # Errors
+/// A device was lost, or has no memory.
+pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<EqualError>, BenchError> {
+    let mut all = Vec::new();
+    let field = scale.field;
+    for (name, columns, side, nearer) in
+        [("a torus", 16, 1, 1.0), ("a torus from near", 64, 1, 0.4), ("a field of tori", 16, field, 1.0)]
+    {
+        let mut subject = subject(engine, tori(columns, side), scale.size, scale.arena_bytes)?;
+        subject.camera.distance *= nearer;
+        let patches = u64::from(subject.scene.tessellator.buffers().patch_count);
+        let scene = format!("{name}, {} patches", whole(patches));
+        all.push(equal(engine, peer, scale, &mut subject, scene)?);
+    }
+    Ok(all)
+}
+
+fn equal(
+    engine: &Engine,
+    peer: Option<&Peer>,
+    scale: &Scale,
+    subject: &mut Subject,
+    scene: String,
+) -> Result<EqualError, BenchError> {
+    subject.settings = Settings { lod: Lod::Paper, pixels: PAPER_PIXELS, clip: Clip::Paper, ..Settings::default() };
+    let paper_px = deviation(engine, subject)?;
+    let paper = Versus::measure(engine, peer, subject, scale.effort)?;
+    subject.settings = Settings {
+        lod: Lod::Error,
+        partitioning: Partitioning::Integer,
+        clip: Clip::Frustum,
+        cull_back_faces: true,
+        ..Settings::default()
+    };
+    let (tolerance, px) = largest_tolerance(engine, subject, paper_px)?;
+    let ours = Versus::measure(engine, None, subject, scale.effort)?;
+    Ok(EqualError {
+        scene,
+        triangles: [paper.triangles, ours.triangles],
+        px: [paper_px, px],
+        tolerance,
+        ours: ours.ours,
+        ours_paper: paper.ours,
+        peer: paper.peer,
+    })
+}
+
+/// The largest tolerance whose largest error is no more than `most` px, with that error; the subject then has it. (Errors
+/// need not grow with every step of the tolerance: this is one that holds, not certainly the largest that does.)
+fn largest_tolerance(engine: &Engine, subject: &mut Subject, most: f64) -> Result<(f32, f64), GpuError> {
+    let (mut low, mut high) = TOLERANCE_RANGE.into_inner();
+    for _ in 0..TRIES {
+        subject.settings.tolerance = (low * high).sqrt();
+        if deviation(engine, subject)? <= most {
+            low = subject.settings.tolerance;
+        } else {
+            high = subject.settings.tolerance;
+        }
+    }
+    subject.settings.tolerance = low;
+    Ok((low, deviation(engine, subject)?))
+}
+
+/// The largest error of what is emitted, in px.
+fn deviation(engine: &Engine, subject: &mut Subject) -> Result<f64, GpuError> {
+    let view = subject.camera.lod_view(subject.target.viewport(), &subject.scene.bounds);
+    let inputs = subject.settings.inputs(view);
+    engine.count(&mut subject.scene, &inputs, &mut Timing::Off)?;
+    Ok(engine.deviation(&mut subject.scene, &inputs)?.map_or(0.0, |worst| worst.px))
+}

@@ -1,0 +1,173 @@
+//! Buffers and pictures in the peer's device memory.
+
+use std::rc::Rc;
+
+use ash::vk;
+
+use super::vulkan::{Vulkan, VulkanError};
+
+/// A buffer with memory of its own.
+pub struct Buffer {
+    vulkan: Rc<Vulkan>,
+    pub handle: vk::Buffer,
+    memory: vk::DeviceMemory,
+    pub bytes: u64,
+}
+
+impl Buffer {
+    /// On the device, for storage and copies.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn on_device(vulkan: &Rc<Vulkan>, bytes: u64) -> Result<Self, VulkanError> {
+        Self::new(vulkan, bytes, vk::MemoryPropertyFlags::DEVICE_LOCAL, "a buffer")
+    }
+
+    /// On the device, holding `items`.
+    ///
+    /// # Errors
+    /// No memory, or a lost device.
+    pub fn filled<T: bytemuck::NoUninit>(vulkan: &Rc<Vulkan>, items: &[T]) -> Result<Self, VulkanError> {
+        let contents: &[u8] = bytemuck::cast_slice(items);
+        let staging = Self::for_host(vulkan, contents.len() as u64)?;
+        staging.with_host(|to| to.copy_from_slice(contents))?;
+        let buffer = Self::on_device(vulkan, contents.len() as u64)?;
+        buffer.copy_from(&staging)?;
+        Ok(buffer)
+    }
+
+    /// Where the host reads and writes it.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn for_host(vulkan: &Rc<Vulkan>, bytes: u64) -> Result<Self, VulkanError> {
+        let flags = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+        Self::new(vulkan, bytes, flags, "reading back")
+    }
+
+    fn new(
+        vulkan: &Rc<Vulkan>,
+        bytes: u64,
+        flags: vk::MemoryPropertyFlags,
+        what: &'static str,
+    ) -> Result<Self, VulkanError> {
+        let usage = vk::BufferUsageFlags::STORAGE_BUFFER
+            | vk::BufferUsageFlags::TRANSFER_SRC
+            | vk::BufferUsageFlags::TRANSFER_DST;
+        unsafe {
+            let info = vk::BufferCreateInfo::default().size(bytes.max(4)).usage(usage);
+            let handle = vulkan.device.create_buffer(&info, None)?;
+            let memory = vulkan.allocate(vulkan.device.get_buffer_memory_requirements(handle), flags, what)?;
+            vulkan.device.bind_buffer_memory(handle, memory, 0)?;
+            Ok(Self { vulkan: vulkan.clone(), handle, memory, bytes })
+        }
+    }
+
+    /// Copies all of another buffer of the same size into this one, and waits.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn copy_from(&self, from: &Self) -> Result<super::vulkan::Took, VulkanError> {
+        let region = [vk::BufferCopy::default().size(self.bytes)];
+        self.vulkan.run(|commands| unsafe {
+            self.vulkan.device.cmd_copy_buffer(commands, from.handle, self.handle, &region);
+        })
+    }
+
+    /// The bytes of a buffer that the host sees.
+    ///
+    /// # Errors
+    /// It isn't one.
+    pub fn with_host<R>(&self, look: impl FnOnce(&mut [u8]) -> R) -> Result<R, VulkanError> {
+        unsafe {
+            let device = &self.vulkan.device;
+            let at = device.map_memory(self.memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?;
+            let looked = look(std::slice::from_raw_parts_mut(at.cast(), self.bytes as usize));
+            device.unmap_memory(self.memory);
+            Ok(looked)
+        }
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        unsafe {
+            self.vulkan.device.destroy_buffer(self.handle, None);
+            self.vulkan.device.free_memory(self.memory, None);
+        }
+    }
+}
+
+/// A picture that is drawn into, with memory and a view of its own.
+pub struct Picture {
+    vulkan: Rc<Vulkan>,
+    pub image: vk::Image,
+    pub view: vk::ImageView,
+    memory: vk::DeviceMemory,
+}
+
+impl Picture {
+    /// # Errors
+    /// No memory.
+    pub fn new(
+        vulkan: &Rc<Vulkan>,
+        [width, height]: [u32; 2],
+        format: vk::Format,
+        samples: vk::SampleCountFlags,
+        usage: vk::ImageUsageFlags,
+    ) -> Result<Self, VulkanError> {
+        let is_depth = usage.contains(vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT);
+        let aspect = if is_depth { vk::ImageAspectFlags::DEPTH } else { vk::ImageAspectFlags::COLOR };
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width, height, depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(samples)
+            .usage(usage);
+        let range = vk::ImageSubresourceRange::default().aspect_mask(aspect).level_count(1).layer_count(1);
+        unsafe {
+            let image = vulkan.device.create_image(&info, None)?;
+            let needs = vulkan.device.get_image_memory_requirements(image);
+            let memory = vulkan.allocate(needs, vk::MemoryPropertyFlags::DEVICE_LOCAL, "a picture")?;
+            vulkan.device.bind_image_memory(image, memory, 0)?;
+            let view = vk::ImageViewCreateInfo::default()
+                .image(image)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(format)
+                .subresource_range(range);
+            let view = vulkan.device.create_image_view(&view, None)?;
+            Ok(Self { vulkan: vulkan.clone(), image, view, memory })
+        }
+    }
+}
+
+impl Drop for Picture {
+    fn drop(&mut self) {
+        unsafe {
+            self.vulkan.device.destroy_image_view(self.view, None);
+            self.vulkan.device.destroy_image(self.image, None);
+            self.vulkan.device.free_memory(self.memory, None);
+        }
+    }
+}
+
+/// Any other handle of the device, and what ends it.
+pub struct Owned<T: Copy> {
+    vulkan: Rc<Vulkan>,
+    pub handle: T,
+    destroy: unsafe fn(&ash::Device, T),
+}
+
+impl<T: Copy> Owned<T> {
+    pub fn new(vulkan: &Rc<Vulkan>, handle: T, destroy: unsafe fn(&ash::Device, T)) -> Self {
+        Self { vulkan: vulkan.clone(), handle, destroy }
+    }
+}
+
+impl<T: Copy> Drop for Owned<T> {
+    fn drop(&mut self) {
+        unsafe { (self.destroy)(&self.vulkan.device, self.handle) };
+    }
+}

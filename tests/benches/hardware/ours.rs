@@ -1,0 +1,204 @@
+//! Our side: the passes timed many times over, and what the peer is given of them.
+
+use std::time::{Duration, Instant};
+
+use glam::Vec3;
+use pnaen::engine::Engine;
+use pnaen::gpu::layout::{CurveNet, Patch, Vertex};
+use pnaen::gpu::{GpuError, PassTime, Timing, read_buffer, take_times, wait};
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::Settings;
+
+use super::numbers::Spread;
+use super::peer::{Frame, NetCorner};
+
+/// Runs that medians are of, and how long a warm-up takes at least.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    pub runs: usize,
+    pub warm_up: Duration,
+}
+
+impl Effort {
+    /// Ours: as much as numbers need, and what a software driver can be asked for.
+    pub fn on(engine: &Engine) -> Self {
+        if engine.gpu.is_software() {
+            return Self { runs: 15, warm_up: Duration::ZERO };
+        }
+        Self { runs: 31, warm_up: Duration::from_millis(300) }
+    }
+
+    /// What `once` gives, after warming up.
+    ///
+    /// # Errors
+    /// As soon as `once` fails.
+    pub fn repeat<T, E>(self, mut once: impl FnMut(usize) -> Result<T, E>) -> Result<Vec<T>, E> {
+        let start = Instant::now();
+        let mut warm = 0;
+        while warm < 1 || start.elapsed() < self.warm_up {
+            once(warm)?;
+            warm += 1;
+        }
+        (warm..warm + self.runs).map(once).collect()
+    }
+}
+
+/// Passes that run whenever the view changes, but for the drawing.
+const TESSELLATING: [&str; 5] = ["factors", "counts", "scan", "chunks", "emit"];
+
+/// One run's times in ms.
+#[derive(Clone, Debug)]
+struct Run {
+    passes: Vec<PassTime>,
+}
+
+impl Run {
+    fn sum(&self, passes: &[&str]) -> f64 {
+        self.passes.iter().filter(|time| passes.contains(&time.pass)).map(|time| time.ms).sum()
+    }
+
+    fn is_whole(&self) -> bool {
+        ["counts", "scan", "chunks", "emit", "draw"].iter().all(|pass| self.sum(&[pass]) > 0.0)
+    }
+}
+
+/// What tessellating and drawing took, in ms.
+pub struct OurTimes {
+    /// All passes between the nets and the drawing.
+    pub tessellation: Spread,
+    pub draw: Spread,
+    /// Both.
+    pub frame: Spread,
+    /// From the first call to the last pixel, with the host's waiting for the counts.
+    pub wall: Spread,
+    /// Each pass's median.
+    pub passes: Vec<PassTime>,
+}
+
+/// What a picture is of, and how it is tessellated.
+pub struct Subject {
+    pub scene: Scene,
+    pub target: Target,
+    pub camera: Camera,
+    pub settings: Settings,
+}
+
+impl Subject {
+    /// Runs the passes up to the counts.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn count(&mut self, engine: &Engine) -> Result<(u64, u64), GpuError> {
+        let view = self.camera.lod_view(self.target.viewport(), &self.scene.bounds);
+        engine.count(&mut self.scene, &self.settings.inputs(view), &mut Timing::Off)?;
+        Ok(self.scene.tessellator.totals())
+    }
+
+    /// Draws once more as if the view had just changed: nets stay, all other passes run.
+    fn again(&mut self, engine: &Engine, run: usize, timing: &mut Timing) -> Result<(), GpuError> {
+        // No picture differs by this, but every parameter of the view does. Given factors know no view.
+        let nudge = if run.is_multiple_of(2) { 0.0 } else { 1e-3 };
+        if self.scene.tessellator.given().is_some() || self.settings.used_lod() == pnaen::tessellate::Lod::Uniform {
+            self.scene.tessellator.forget();
+        }
+        let camera = Camera { azimuth: self.camera.azimuth + nudge, ..self.camera };
+        engine.draw(&mut self.scene, &self.target, &camera, &self.settings, timing)?;
+        wait(&engine.gpu);
+        Ok(())
+    }
+
+    /// # Errors
+    /// The device was lost.
+    pub fn time(&mut self, engine: &Engine, effort: Effort) -> Result<OurTimes, GpuError> {
+        let mut timing = Timing::on(&engine.gpu);
+        let runs = effort.repeat(|run| {
+            self.again(engine, run, &mut timing)?;
+            Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
+        })?;
+        // A driver that withheld a timestamp would make a sum too small.
+        let runs: Vec<Run> = runs.into_iter().filter(Run::is_whole).collect();
+        let wall = effort.repeat(|run| {
+            let start = Instant::now();
+            self.again(engine, run, &mut Timing::Off)?;
+            Ok::<_, GpuError>(start.elapsed().as_secs_f64() * 1e3)
+        })?;
+        engine.gpu.check()?;
+        let spread = |passes: &[&str]| Spread::of(runs.iter().map(|run| run.sum(passes)));
+        let passes = pnaen::gpu::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
+        let frame = [&TESSELLATING[..], &["draw"]].concat();
+        Ok(OurTimes {
+            tessellation: spread(&TESSELLATING),
+            draw: spread(&["draw"]),
+            frame: spread(&frame),
+            wall: Spread::of(wall.into_iter()),
+            passes: passes.into_iter().filter(|time| time.ms > 0.0).collect(),
+        })
+    }
+
+    /// Bytes that our tessellation passes can't do without: what they emit; everything of the mesh that they read, once; and
+    /// what they hand from one to another, factors and offsets of patches and factors of edges, once written and once read.
+    /// What is read again, and what finds an invocation its patch, isn't counted.
+    pub fn compulsory_bytes(&self) -> u64 {
+        let (vertices, triangles) = self.scene.tessellator.totals();
+        let b = self.scene.tessellator.buffers();
+        let read = [&b.points, &b.corners, &b.patches, &b.curves, &b.factor_curves, &b.curve_nets, &b.edge_factors];
+        let read: u64 = read.iter().map(|buffer| buffer.size()).sum();
+        let handed = size_of::<pnaen::tessellate::PatchFactors>() + size_of::<[u32; 2]>();
+        vertices * size_of::<Vertex>() as u64
+            + triangles * size_of::<[u32; 3]>() as u64
+            + read
+            + b.edge_factors.size()
+            + 2 * u64::from(b.patch_count) * handed as u64
+    }
+
+    /// The control nets as the nets pass left them, with what else the peer's domain shader needs.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn nets(&self, engine: &Engine) -> Result<Vec<NetCorner>, GpuError> {
+        let b = self.scene.tessellator.buffers();
+        let read = |buffer: &wgpu::Buffer| read_buffer(&engine.gpu, buffer, 0, buffer.size());
+        let points: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read(&b.points)?);
+        let patches: Vec<Patch> = bytemuck::pod_collect_to_vec(&read(&b.patches)?);
+        let curves: Vec<CurveNet> = bytemuck::pod_collect_to_vec(&read(&b.curve_nets)?);
+        let mesh = self.scene.tessellator.mesh();
+        let corner = |index: usize, k: usize| {
+            let patch = &patches[index];
+            let (own, center) = (&mesh.corners[patch.corners[k] as usize], points[b.point_count as usize + index]);
+            let curve = &curves[(patch.curves[k] >> 1) as usize];
+            let [near, far] = if patch.curves[k] & 1 == 1 { [curve.ba, curve.ab] } else { [curve.ab, curve.ba] };
+            let with = |xyz: [f32; 3], w: f32| Vec3::from(xyz).extend(w).to_array();
+            let [x, y, z, _] = points[patch.points[k] as usize];
+            NetCorner {
+                position_u: [x, y, z, own.uv.x],
+                normal_v: own.normal.extend(own.uv.y).to_array(),
+                near_center: with(near, center[k]),
+                far: with(far, 0.0),
+            }
+        };
+        let corners = (0..b.patch_count as usize).flat_map(|index| [0, 1, 2].map(|k| corner(index, k)));
+        Ok(corners.collect())
+    }
+
+    /// The picture's constants, as src/render/renderer.rs has them.
+    pub fn frame(&self) -> Frame {
+        let [right, up, back] = self.camera.axes();
+        let base_color = self.scene.tessellator.mesh().materials.first().map_or([1.0; 4], |first| first.base_color);
+        Frame {
+            clip_from_object: self.clip_from_object().to_cols_array_2d(),
+            key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
+            fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
+            eye: self.camera.eye().extend(1.0).to_array(),
+            base_color,
+        }
+    }
+
+    /// Whether our draw leaves out what faces away.
+    pub fn fronts_only(&self) -> bool {
+        self.scene.tessellator.shows_fronts_only(self.clip_from_object())
+    }
+
+    fn clip_from_object(&self) -> glam::Mat4 {
+        self.camera.clip_from_object(self.target.viewport(), &self.scene.bounds)
+    }
+}

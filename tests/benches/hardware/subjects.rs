@@ -1,0 +1,145 @@
+//! What is measured: meshes made here, and settings that give as many triangles as asked for.
+
+use std::f32::consts::TAU;
+use std::sync::Arc;
+
+use glam::{Vec2, Vec3};
+use pnaen::engine::Engine;
+use pnaen::gpu::GpuError;
+use pnaen::mesh::merge::MeshBuilder;
+use pnaen::mesh::{Corner, Material, Mesh, Progress, Topology};
+use pnaen::render::{Camera, Target};
+use pnaen::settings::Settings;
+use pnaen::tessellate::{HullFactors, Lod, Partitioning};
+
+use super::ours::Subject;
+
+/// Tori of `columns` by `columns / 2` quads, a row of `side` along each axis.
+pub fn tori(columns: usize, side: usize) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("grey", [0.6, 0.6, 0.6, 1.0]));
+    let rows = columns / 2;
+    let ring = |i: usize, of: usize| (TAU * (i % of) as f32 / of as f32).sin_cos();
+    let node = |center: Vec3, i: usize, j: usize| {
+        let (sin, cos) = ring(i, columns);
+        let out = Vec3::new(sin, 0.0, cos);
+        let (sin, cos) = ring(j, rows);
+        let normal = (out * cos + Vec3::Y * sin).normalize();
+        let uv = Vec2::new(i as f32 / columns as f32, 1.0 - j as f32 / rows as f32);
+        Corner { position: center + out * 0.7 + normal * 0.3, normal, uv }
+    };
+    for place in 0..side * side * side {
+        // Far enough apart that none meets another.
+        let at = [place % side, place / side % side, place / (side * side)].map(|k| 2.5 * k as f32);
+        for cell in 0..columns * rows {
+            let (i, j) = (cell / rows, cell % rows);
+            let [a, b, c, d] =
+                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| node(Vec3::from(at), i, j));
+            builder.triangle(material, [a, b, c].map(Into::into));
+            builder.triangle(material, [a, c, d].map(Into::into));
+        }
+    }
+    // Nobody else holds this handle, so nobody can cancel.
+    builder.finish("tori".to_owned(), &Progress::new()).unwrap_or_default()
+}
+
+/// Columns of one torus of about so many patches.
+pub fn columns(patches: u64) -> usize {
+    ((patches as f64).sqrt().round() as usize).next_multiple_of(2).max(6)
+}
+
+/// Puts a mesh in front of a camera that sees all of it.
+///
+/// # Errors
+/// It is larger than the adapter binds.
+pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) -> Result<Subject, GpuError> {
+    let mesh = Arc::new(mesh);
+    let topology = Arc::new(Topology::build(&mesh, &Progress::new()).unwrap_or_default());
+    let scene = engine.scene_of(mesh, topology, arena_bytes)?;
+    let target = Target::new(&engine.gpu, size)?;
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    Ok(Subject { scene, target, camera, settings: Settings::default() })
+}
+
+/// How factors come about.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Factors {
+    /// From the eye's distance: the nearest patches have about four times the farthest's.
+    ByDistance(Partitioning),
+    /// A hash of each edge, from a quarter of the greatest factor up to it.
+    Hashed(Partitioning),
+    /// One everywhere.
+    Uniform(Partitioning),
+}
+
+impl Factors {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ByDistance(Partitioning::FractionalOdd) => "fractional, by distance",
+            Self::Hashed(Partitioning::FractionalOdd) => "fractional, hashed",
+            Self::ByDistance(_) => "integer, by distance",
+            Self::Hashed(_) => "integer, hashed",
+            Self::Uniform(_) => "uniform",
+        }
+    }
+
+    pub fn partitioning(self) -> Partitioning {
+        match self {
+            Self::ByDistance(partitioning) | Self::Hashed(partitioning) | Self::Uniform(partitioning) => partitioning,
+        }
+    }
+
+    /// Tessellates a subject with such factors, up to `greatest`; gives the triangles.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn take(self, engine: &Engine, subject: &mut Subject, greatest: f32) -> Result<u64, GpuError> {
+        let radius = subject.scene.bounds.radius();
+        let middle = subject.camera.distance / radius;
+        let lod = if matches!(self, Self::ByDistance(_)) { Lod::Distance } else { Lod::Uniform };
+        subject.settings = Settings {
+            lod,
+            factor: greatest,
+            partitioning: self.partitioning(),
+            near: middle - 1.0,
+            // One third beyond what is farthest: there, a quarter is left.
+            far: middle + 1.0 + 2.0 / 3.0,
+            ..Settings::default()
+        };
+        let given = matches!(self, Self::Hashed(_)).then(|| hashed(subject.scene.tessellator.topology(), greatest));
+        subject.scene.tessellator.give(given)?;
+        subject.count(engine).map(|(_, triangles)| triangles)
+    }
+
+    /// The same for the factors that give `triangles`, to within half a percent where factors are fractional.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn take_for(self, engine: &Engine, subject: &mut Subject, triangles: u64) -> Result<u64, GpuError> {
+        let (mut low, mut high) = (1.0f32, 64.0f32);
+        for _ in 0..16 {
+            let middle = (low * high).sqrt();
+            let found = self.take(engine, subject, middle)?;
+            if (found as f64 / triangles as f64 - 1.0).abs() < 0.005 {
+                return Ok(found);
+            }
+            if found < triangles { low = middle } else { high = middle }
+        }
+        self.take(engine, subject, high)
+    }
+}
+
+/// What a hull shader would write that hashed its edges: the same for all sides of an edge.
+fn hashed(topology: &Topology, greatest: f32) -> Vec<HullFactors> {
+    let factor = |edge: u32| {
+        let mixed = edge.wrapping_mul(0x9e37_79b9);
+        let mixed = (mixed ^ mixed >> 15).wrapping_mul(0x85eb_ca6b);
+        let part = (mixed >> 8) as f32 / (1 << 24) as f32;
+        (greatest * (0.25 + 0.75 * part)).max(1.0)
+    };
+    let patch = |patch: &pnaen::mesh::Patch| {
+        let sides = patch.sides.map(|side| factor(topology.sides[side as usize].edge));
+        HullFactors::of_sides(Default::default(), sides, sides[0].max(sides[1]).max(sides[2]))
+    };
+    topology.patches.iter().map(patch).collect()
+}

@@ -1,0 +1,115 @@
+//! One subject, by our passes and by the peer.
+
+use pnaen::engine::Engine;
+use pnaen::gpu::{GpuError, Timing};
+use pnaen::measure::{CompareError, compare};
+use pnaen::tessellate::Partitioning;
+use thiserror::Error;
+
+use super::numbers::Spread;
+use super::ours::{Effort, OurTimes, Subject};
+use super::peer::{Peer, Pipeline};
+use super::pipelines::{Kind, Nets};
+use super::vulkan::{Counted, Took, VulkanError};
+
+/// What ends a bench.
+#[derive(Debug, Error)]
+pub enum BenchError {
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Vulkan(#[from] VulkanError),
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+}
+
+/// What the peer took for a subject, in ms; of its two ways to read control nets the faster one, each time.
+pub struct PeerTimes {
+    /// Without the rasteriser.
+    pub tessellation: Spread,
+    /// The whole picture.
+    pub frame: Spread,
+    pub wall: Spread,
+    /// Medians of both ways, in the order of [`Nets::ALL`]: tessellation, then the picture.
+    pub ways: [[f64; 2]; 2],
+    pub counted: Option<Counted>,
+    /// How far its picture is from ours: 0 for the same, 1 for nothing in common.
+    pub difference: f64,
+}
+
+/// Both.
+pub struct Versus {
+    pub patches: u32,
+    pub vertices: u64,
+    pub triangles: u64,
+    /// That our output took to go through the arena.
+    pub chunks: usize,
+    /// See [`Subject::compulsory_bytes`].
+    pub bytes: u64,
+    pub ours: OurTimes,
+    pub peer: Option<PeerTimes>,
+}
+
+impl Versus {
+    /// Times a subject that was counted.
+    ///
+    /// # Errors
+    /// A device was lost, or has no memory.
+    pub fn measure(
+        engine: &Engine,
+        peer: Option<&Peer>,
+        subject: &mut Subject,
+        effort: Effort,
+    ) -> Result<Self, BenchError> {
+        let (vertices, triangles) = subject.count(engine)?;
+        let chunks = subject.scene.tessellator.chunk_count();
+        let bytes = subject.compulsory_bytes();
+        let peer = peer.map(|peer| time_peer(engine, peer, subject, effort)).transpose()?;
+        let ours = subject.time(engine, effort)?;
+        let patches = subject.scene.tessellator.buffers().patch_count;
+        Ok(Self { patches, vertices, triangles, chunks, bytes, ours, peer })
+    }
+}
+
+fn time_peer(engine: &Engine, peer: &Peer, subject: &mut Subject, effort: Effort) -> Result<PeerTimes, BenchError> {
+    let factors = subject.scene.tessellator.hull_factors()?;
+    let patches = peer.patches(&subject.nets(engine)?, &factors)?;
+    let frame = subject.frame();
+    let fronts_only = subject.fronts_only();
+    let pipeline = |nets: Nets, rasterises: bool| {
+        let partitioning = match subject.settings.partitioning {
+            Partitioning::FractionalOdd => Partitioning::FractionalOdd,
+            _ => Partitioning::Integer,
+        };
+        peer.pipeline(Kind { nets, partitioning, fronts_only, rasterises })
+    };
+    let time = |pipeline: &Pipeline| effort.repeat(|_| peer.draw(pipeline, &patches, &frame));
+    let gpu = |took: &[Took]| Spread::of(took.iter().map(|took| took.gpu));
+    let mut times = PeerTimes {
+        tessellation: Spread::default(),
+        frame: Spread::default(),
+        wall: Spread::default(),
+        ways: [[0.0; 2]; 2],
+        counted: None,
+        difference: 0.0,
+    };
+    for (way, nets) in times.ways.iter_mut().zip(Nets::ALL) {
+        let tessellation = gpu(&time(&pipeline(nets, false)?)?);
+        let whole = pipeline(nets, true)?;
+        let took = time(&whole)?;
+        *way = [tessellation.median, gpu(&took).median];
+        let is_first = nets == Nets::ALL[0];
+        if is_first || tessellation.median < times.tessellation.median {
+            times.tessellation = tessellation;
+        }
+        if is_first || gpu(&took).median < times.frame.median {
+            times.frame = gpu(&took);
+            times.wall = Spread::of(took.iter().map(|took| took.wall));
+        }
+        times.counted = peer.count(&whole, &patches, &frame)?;
+        engine.draw(&mut subject.scene, &subject.target, &subject.camera, &subject.settings, &mut Timing::Off)?;
+        let own = subject.target.read(&engine.gpu)?;
+        times.difference = times.difference.max(compare(&peer.picture()?, &own)?.difference);
+    }
+    Ok(times)
+}
