@@ -8,10 +8,10 @@ use super::relief::{Relief, displacing, reach};
 use super::{
     Clip, ControlNet, Convention, Displacement, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Meeting, Normals,
     Partitioning, PatchFactors, SEEN, SURFACE_SHARE, Solid, Surface, center_control_point, corner_weights,
-    crease_control_point, distance_factor, domain_point, domain_triangle, edge_error_factor, edge_length_factor,
-    edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, meet, pack_normal,
-    paper_edge_factor, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, round_pow2,
-    side_control_points, surface_normal, triangle_count, unseen,
+    crease_control_point, distance_factor, domain_plan, domain_point, domain_triangle, edge_error_factor,
+    edge_length_factor, edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv,
+    meet, pack_normal, paper_edge_factor, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal,
+    round_pow2, side_control_points, surface_normal, triangle_count, unseen,
 };
 use crate::mesh::{Curves, Mesh, Sharing, Topology};
 
@@ -307,14 +307,16 @@ impl<'a> Nets<'a> {
                 SEEN => written(patch, &net).process(inputs.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
+            let plan = domain_plan(factors);
             let vertex = |i| {
-                let uv = corner_weights(inputs.convention, domain_point(factors, i));
+                let uv = corner_weights(inputs.convention, domain_point(&plan, i));
                 let own = self.vertex(patch, &net, uv);
                 relief.map_or(own, |relief| relief.displaced(self, factors, own))
             };
             let base = out.vertices.len() as u32;
             out.vertices.extend((0..point_count(factors)).map(vertex));
-            out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
+            let triangles = (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t));
+            out.triangles.extend(triangles.map(|corners| corners.map(|i| base + i)));
             out.patch_factors.push(factors);
         }
         out
