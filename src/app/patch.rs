@@ -15,7 +15,7 @@ use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
 use crate::tessellate::{
-    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_side,
+    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_plan, domain_side,
     domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
 };
 

@@ -3,7 +3,9 @@ use std::collections::HashMap;
 use proptest::prelude::*;
 
 use super::*;
-use crate::tessellate::factors::{FACTOR_VALUE, Partitioning, patch_is_culled, point_count, process, triangle_count};
+use crate::tessellate::factors::{
+    FACTOR_VALUE, Partitioning, outer_count, patch_is_culled, point_count, process, triangle_count,
+};
 
 fn closed_form(f: PatchFactors) -> serial::Patch {
     let plan = domain_plan(f);
