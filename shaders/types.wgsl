@@ -120,10 +120,11 @@ struct Chunk {
     triangle_count: u32,
 }
 
-// Indirect arguments of a chunk's two emit dispatches.
+// Indirect arguments of a chunk's two emit dispatches, and of displacement, which takes a vertex an invocation.
 struct EmitArgs {
     vertices: array<u32, 3>,
     triangles: array<u32, 3>,
+    displaced: array<u32, 3>,
 }
 
 // Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices one corner at a time.
@@ -158,9 +159,15 @@ fn key_uv(key: vec2<u32>) -> vec2<u32> {
 
 const WORKGROUP: u32 = 256u;
 
+// Vertices, or triangles, that a workgroup of emission makes.
+const EMIT_ITEMS: u32 = 2048u;
+
 // Work of any size as a grid within 65,535 workgroups a dimension; the index of an invocation in such a grid.
 fn grid(items: u32) -> array<u32, 3> {
-    let workgroups = (items + WORKGROUP - 1u) / WORKGROUP;
+    return workgroup_grid((items + WORKGROUP - 1u) / WORKGROUP);
+}
+
+fn workgroup_grid(workgroups: u32) -> array<u32, 3> {
     let x = min(workgroups, 32768u);
     return array<u32, 3>(x, (workgroups + 32767u) / 32768u, 1u);
 }

@@ -159,6 +159,7 @@ pub struct Chunk {
 pub struct EmitArgs {
     pub vertices: [u32; 3],
     pub triangles: [u32; 3],
+    pub displaced: [u32; 3],
 }
 
 /// Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices.

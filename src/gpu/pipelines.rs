@@ -1,6 +1,7 @@
 //! Shader modules put together from their rooms, and the compute pipelines made of them.
 
 use super::Gpu;
+use crate::tessellate::Normals;
 
 /// Rooms of the tessellator itself, part of every module that tessellates.
 const DOMAIN: [&str; 3] = [
@@ -70,7 +71,8 @@ pub struct ComputePipelines {
     pub scan_sums: wgpu::ComputePipeline,
     pub scan_add: wgpu::ComputePipeline,
     pub chunks: wgpu::ComputePipeline,
-    pub emit_vertices: wgpu::ComputePipeline,
+    /// One for each of [`Normals`].
+    pub emit_vertices: [wgpu::ComputePipeline; 3],
     pub emit_triangles: wgpu::ComputePipeline,
     pub directions: wgpu::ComputePipeline,
     pub frames: wgpu::ComputePipeline,
@@ -96,7 +98,10 @@ impl ComputePipelines {
             scan_sums: compute_pipeline(gpu, &scan, "scan_sums_main"),
             scan_add: compute_pipeline(gpu, &scan, "scan_add_main"),
             chunks: compute_pipeline(gpu, &shader_module(gpu, "chunks"), "chunks_main"),
-            emit_vertices: compute_pipeline(gpu, &emit, "emit_vertices_main"),
+            emit_vertices: [Normals::Linear, Normals::Quadratic, Normals::Surface].map(|normals| {
+                let constants = [("EMIT_NORMALS", f64::from(normals as u32))];
+                specialised_pipeline(gpu, &emit, "emit_vertices_main", &constants)
+            }),
             emit_triangles: compute_pipeline(gpu, &emit, "emit_triangles_main"),
             directions: compute_pipeline(gpu, &levels, "directions_main"),
             frames: compute_pipeline(gpu, &levels, "frames_main"),
@@ -109,12 +114,22 @@ impl ComputePipelines {
 
 /// A pipeline whose layout is what the entry point uses.
 pub fn compute_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, entry_point: &str) -> wgpu::ComputePipeline {
+    specialised_pipeline(gpu, module, entry_point, &[])
+}
+
+/// The same with values for what the module lets a pipeline override.
+fn specialised_pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
     gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry_point),
         layout: None,
         module,
         entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
         cache: None,
     })
 }

@@ -33,7 +33,8 @@ pub struct SlabGroups {
     pub counts: wgpu::BindGroup,
     pub scan: [wgpu::BindGroup; 3],
     pub chunks: wgpu::BindGroup,
-    pub emit_vertices: wgpu::BindGroup,
+    /// One for each pipeline.
+    pub emit_vertices: [wgpu::BindGroup; 3],
     pub emit_triangles: wgpu::BindGroup,
 }
 
@@ -147,11 +148,9 @@ impl SlabPasses {
                     (5, &self.draw_args),
                 ],
             ),
-            emit_vertices: group(
-                "emit.vertices",
-                &pipelines.emit_vertices,
-                &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat(),
-            ),
+            emit_vertices: pipelines.emit_vertices.each_ref().map(|pipeline| {
+                group("emit.vertices", pipeline, &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat())
+            }),
             emit_triangles: group(
                 "emit.triangles",
                 &pipelines.emit_triangles,

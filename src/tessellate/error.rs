@@ -378,7 +378,7 @@ pub fn inside_error_factor(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tessellate::{domain_point, domain_triangle, process, triangle_count};
+    use crate::tessellate::{domain_plan, domain_point, domain_triangle, process, triangle_count};
     use glam::{Mat4, Vec4, vec3};
 
     const VIEW: LodView = LodView::new(Mat4::IDENTITY, Vec2::splat(100.0));
@@ -500,10 +500,11 @@ mod tests {
     /// How far the triangles of the row along U == 0 reach along it, in the longer of both rows' segments.
     fn reach(partitioning: Partitioning, factor: f32, inside: f32) -> f64 {
         let factors = process(partitioning, [factor, inside, inside], inside);
+        let plan = domain_plan(factors);
         let mut longest = 0.0f64;
         for triangle in 0..triangle_count(factors) {
             let corners =
-                domain_triangle(factors, triangle).map(|i| domain_point(factors, i).map(|x| f64::from(x) / 65536.0));
+                domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
             let beside = |[u, v]: [f64; 2]| u <= v + 1e-4 && u <= 1.0 - u - v + 1e-4;
             if corners.into_iter().all(beside) && corners.iter().any(|[u, _]| *u == 0.0) {
                 let along = corners.map(|[u, v]| v + u / 2.0);
@@ -517,10 +518,11 @@ mod tests {
     /// How far the sides across the row along U == 0 lean along it, as a part of the edge.
     fn slant(factor: f32, inside: f32) -> f64 {
         let factors = process(Partitioning::Integer, [factor, inside, inside], inside);
+        let plan = domain_plan(factors);
         let mut longest = 0.0f64;
         for triangle in 0..triangle_count(factors) {
             let corners =
-                domain_triangle(factors, triangle).map(|i| domain_point(factors, i).map(|x| f64::from(x) / 65536.0));
+                domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 let ([a, v], [b, w]) = (corners[a], corners[b]);
                 // Other edges' rows start at this one's ends.

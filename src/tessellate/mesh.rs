@@ -7,9 +7,9 @@ use super::nets::Nets;
 use super::relief::{Relief, reach};
 use super::{
     ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, Normals, PatchFactors, SEEN, Solid, corner_weights,
-    domain_point, domain_triangle, edge_normal, edge_position, edge_uv, linear_normal, linear_uv, pack_normal,
-    patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, surface_normal, triangle_count,
-    unseen,
+    domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv, linear_normal, linear_uv,
+    pack_normal, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, surface_normal,
+    triangle_count, unseen,
 };
 use crate::mesh::{Mesh, Topology};
 
@@ -155,14 +155,16 @@ impl Nets<'_> {
                 SEEN => written(patch, &net).process(inputs.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
+            let plan = domain_plan(factors);
             let vertex = |i| {
-                let uv = corner_weights(inputs.convention, domain_point(factors, i));
+                let uv = corner_weights(inputs.convention, domain_point(&plan, i));
                 let own = self.vertex(patch, &net, uv);
                 relief.map_or(own, |relief| relief.displaced(self, factors, own))
             };
             let base = out.vertices.len() as u32;
             out.vertices.extend((0..point_count(factors)).map(vertex));
-            out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
+            let triangles = (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t));
+            out.triangles.extend(triangles.map(|corners| corners.map(|i| base + i)));
             out.patch_factors.push(factors);
         }
         out

@@ -37,7 +37,7 @@ pub use displace::{
     Displacement, bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level,
     texel_length, uv_gradients,
 };
-pub use domain::{domain_point, domain_triangle};
+pub use domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
     FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled,

@@ -91,7 +91,7 @@ fn shared_structs_have_one_layout() {
     same!(CurveNet { ab, ba });
     same!(PatchFactors { outside, inside });
     same!(Chunk { first_patch, patch_end, first_vertex, first_triangle, vertex_count, triangle_count });
-    same!(EmitArgs { vertices, triangles });
+    same!(EmitArgs { vertices, triangles, displaced });
     same!(DrawArgs {
         index_count,
         instance_count,

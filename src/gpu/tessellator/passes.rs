@@ -80,8 +80,9 @@ impl Tessellator {
         let slab = &self.slabs[slab_index];
         let Some(groups) = &slab.groups else { return };
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
+        let normals = self.params.normals as usize;
         let halves = [
-            (&self.pipelines.emit_vertices, &groups.emit_vertices, args),
+            (&self.pipelines.emit_vertices[normals], &groups.emit_vertices[normals], args),
             (&self.pipelines.emit_triangles, &groups.emit_triangles, args + 12),
         ];
         let run = |pass: &mut wgpu::ComputePass, pipeline, group, args| {
@@ -95,7 +96,7 @@ impl Tessellator {
         });
         if let Some(relief) = self.relief.as_ref().filter(|_| self.is_displaced()) {
             let group = relief.displace(slab_index);
-            recorder.compute("displace", |pass| run(pass, &self.pipelines.displace, group, args));
+            recorder.compute("displace", |pass| run(pass, &self.pipelines.displace, group, args + 24));
         }
         self.emitted = Some((slab_index, chunk_index));
     }
