@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
 use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
-use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Topology, with_rim};
+use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
@@ -52,7 +52,9 @@ pub struct Preparation {
 /// What the file holds can't be shown, there is no such height image, or `progress` was cancelled.
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
-    let read = Arc::new(source.load(progress)?);
+    // Large images take longer than most meshes.
+    let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
+    let read = Arc::new(source.load(&of_mesh)?);
     let loaded = Instant::now();
     let mut topology = Topology::build_within(&read, preparation.weld, progress)?;
     let (mut mesh, mut made) = (read.clone(), Rim::default());
@@ -66,7 +68,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         (topology, made) = (with_rim.1, with_rim.2);
     }
     if let Some(heights) = &preparation.heights {
-        let heights = Arc::new(heights.load(&mesh)?);
+        progress.enter(Stage::Heights);
+        let heights = Arc::new(heights.load(&mesh, &progress.part(0.4, 1.0))?);
         let mesh = Arc::make_mut(&mut mesh);
         mesh.warnings.extend(heights.warning(mesh));
         mesh.heights = Some(heights);

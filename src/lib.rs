@@ -15,6 +15,7 @@ pub mod gallery;
 pub mod gpu;
 pub mod measure;
 pub mod mesh;
+pub mod numbers;
 pub mod render;
 pub mod settings;
 pub mod stability;

@@ -4,6 +4,7 @@ use egui::text::CCursor;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
+use super::heights::HEIGHT_IMAGE;
 use crate::mesh::{Shape, Source};
 use crate::render::{Camera, Standpoint};
 use crate::settings::{FACTOR_RANGE, Overlay};
@@ -99,6 +100,10 @@ impl App {
         }
         if entry(ui, "Open path…", &OPEN_PATH) {
             self.type_path();
+        }
+        let height_image = ui.add_enabled(self.document.is_some(), egui::Button::new("Height image…"));
+        if height_image.on_hover_text(HEIGHT_IMAGE).clicked() {
+            self.height_dialog(ui.ctx());
         }
         let reload = egui::Button::new("Reload").shortcut_text("R");
         if ui.add_enabled(self.document.is_some(), reload).clicked() {

@@ -12,7 +12,7 @@ use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
-use crate::mesh::Moment;
+use crate::mesh::{Moment, Stage};
 use crate::render::t_junction_lines;
 use crate::settings::Colors;
 
@@ -233,7 +233,10 @@ impl App {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(load) = &self.load {
-            let title = format!("Loading {}", load.source.title());
+            let title = match (load.progress.stage(), &load.preparation.heights) {
+                (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
+                _ => format!("Loading {}", load.source.title()),
+            };
             let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what is open stays open.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.load = None;

@@ -1,12 +1,14 @@
 //! `pnaen gallery`: every technique side by side.
 
+use std::io::Write;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{CliError, WeldOption, file_error, options, write_picture, write_text};
+use super::{CliError, WeldOption, file_error, options, warn, write_picture, write_text};
 use crate::engine::{Engine, Preparation};
-use crate::gallery::{Look, PAGE, draw, exhibits, page};
+use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
 use crate::mesh::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
@@ -28,7 +30,8 @@ pub struct Args {
     /// The height that stays where it is, 0 to 1
     #[arg(long, value_name = "H", default_value_t = 0.5, value_parser = options::fraction)]
     pub midlevel: f32,
-    /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64
+    /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64; lower where a tile would have more than
+    /// about 2,000,000 triangles
     #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::factor)]
     pub factor: f32,
     /// Degrees from the front to the right, and degrees upwards
@@ -48,12 +51,27 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     };
     let engine = Engine::headless()?;
     std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &error))?;
-    let mut all = Vec::new();
+    let mut gallery = Gallery::new(look, &engine);
+    warn(&gallery.warnings()?);
+    let (mut all, mut said) = (Vec::new(), Instant::now());
     for exhibit in exhibits() {
-        let (picture, shown) = draw(&exhibit, &look, &engine)?;
+        let (picture, shown) = gallery.draw(&exhibit, |tile| say(&exhibit, tile, &mut said))?;
         write_picture(&args.output.join(format!("{}.png", exhibit.name)), &picture.into())?;
         all.push((exhibit, shown));
     }
     let subject = args.file.as_ref().map(Source::title);
     write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))
+}
+
+/// How often one is told how far it is, at most.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// Says on standard error which tile is being drawn, unless something was said a moment ago.
+fn say(exhibit: &Exhibit, tile: usize, said: &mut Instant) {
+    if said.elapsed() < EVERY {
+        return;
+    }
+    *said = Instant::now();
+    let (number, count) = (tile + 1, exhibit.tiles.len());
+    let _ = writeln!(std::io::stderr(), "pnaen: {}, {number} of {count}: {}", exhibit.name, exhibit.tiles[tile].name);
 }

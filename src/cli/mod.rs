@@ -30,7 +30,7 @@ use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
 use crate::gpu::GpuError;
 use crate::measure::CompareError;
-use crate::mesh::{LoadError, Mesh, Progress, Source};
+use crate::mesh::{LoadError, Progress, Source};
 
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
@@ -207,12 +207,12 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = crate::engine::load(source, preparation, &Progress::default())?;
-    warn(&loaded.mesh);
+    warn(&loaded.mesh.warnings);
     Ok(loaded)
 }
 
-fn warn(mesh: &Mesh) {
-    for warning in &mesh.warnings {
+fn warn(warnings: &[String]) {
+    for warning in warnings {
         let _ = writeln!(std::io::stderr(), "pnaen: warning: {warning}");
     }
 }

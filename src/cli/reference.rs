@@ -48,7 +48,7 @@ pub fn hold_against(
         picture: output.display().to_string(),
         reference: path.display().to_string(),
         difference: comparison.difference,
-        threshold: threshold,
+        threshold,
         see,
     })
 }

@@ -64,6 +64,7 @@ pub struct ComputePipelines {
     pub curve_nets: wgpu::ComputePipeline,
     pub centers: wgpu::ComputePipeline,
     pub edge_factors: wgpu::ComputePipeline,
+    pub heights_inside: wgpu::ComputePipeline,
     pub counts: wgpu::ComputePipeline,
     pub scan_blocks: wgpu::ComputePipeline,
     pub scan_sums: wgpu::ComputePipeline,
@@ -81,14 +82,15 @@ pub struct ComputePipelines {
 impl ComputePipelines {
     pub fn new(gpu: &Gpu) -> Self {
         let (nets, scan, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "scan"), shader_module(gpu, "emit"));
-        let levels = shader_module(gpu, "levels");
+        let (factors, levels) = (shader_module(gpu, "factors"), shader_module(gpu, "levels"));
         let deform = shader_module(gpu, "deform");
         Self {
             deform_corners: compute_pipeline(gpu, &deform, "deform_corners_main"),
             deform_points: compute_pipeline(gpu, &deform, "deform_points_main"),
             curve_nets: compute_pipeline(gpu, &nets, "curve_nets_main"),
             centers: compute_pipeline(gpu, &nets, "centers_main"),
-            edge_factors: compute_pipeline(gpu, &shader_module(gpu, "factors"), "edge_factors_main"),
+            edge_factors: compute_pipeline(gpu, &factors, "edge_factors_main"),
+            heights_inside: compute_pipeline(gpu, &factors, "heights_inside_main"),
             counts: compute_pipeline(gpu, &shader_module(gpu, "counts"), "counts_main"),
             scan_blocks: compute_pipeline(gpu, &scan, "scan_blocks_main"),
             scan_sums: compute_pipeline(gpu, &scan, "scan_sums_main"),
@@ -129,4 +131,22 @@ pub fn bind_group(
         .map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// Twin of `grid` in `shaders/types.wgsl`.
+pub fn grid(items: u32) -> [u32; 3] {
+    let workgroups = items.div_ceil(256);
+    [workgroups.min(32768), workgroups.div_ceil(32768), 1]
+}
+
+/// Runs one entry point over a grid.
+pub fn dispatch(
+    pass: &mut wgpu::ComputePass,
+    pipeline: &wgpu::ComputePipeline,
+    group: &wgpu::BindGroup,
+    [x, y, z]: [u32; 3],
+) {
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(x, y, z);
 }

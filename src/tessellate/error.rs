@@ -13,6 +13,7 @@ use glam::{Vec2, Vec3};
 use super::factors::{Partitioning, round_pow2};
 use super::lod::{LodView, at_least_one, clip_row};
 use super::surface::ControlNet;
+use crate::mesh::MAX_LEVELS;
 
 /// How large differences between control points can look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,15 +179,24 @@ pub const SURFACE_SHARE: f32 = 0.5;
 pub const DETAIL_SHARE: f32 = 0.3;
 pub const TURN_SHARE: f32 = 0.2;
 
-/// The fewest segments that show an edge's heights: as fine as the coarsest level of the height images whose loss
-/// (`detail`, in object units) is within its share of the tolerance, and as the turn of the directions at its ends (the
-/// distance between them) asks for. An estimate: between its px an image may rise by more than its levels tell.
-pub fn relief_factor(view: &LodView, sight: Sight, tolerance: f32, texels: f32, turn: f32, detail: [f32; 16]) -> f32 {
+/// The fewest segments that show one image's heights over an edge, which is `texels` px long there: as fine as the image's
+/// coarsest level whose loss (`detail`, times `scale` in object units) is within its share of the tolerance, and as the turn
+/// of the directions at its ends (the distance between them) asks for. An estimate: between its px an image may rise by
+/// more than its levels tell.
+pub fn relief_factor(
+    view: &LodView,
+    sight: Sight,
+    tolerance: f32,
+    texels: f32,
+    turn: f32,
+    scale: f32,
+    detail: [f32; MAX_LEVELS],
+) -> f32 {
     // An arc's rise over its chord is an eighth of the angle's square, of which the distance is at least 2/3.
     let bend = seen_radius(view, sight, view.reach * 0.28125 * turn * turn);
     let mut segments = texels;
     for lost in &detail[1..] {
-        if seen_radius(view, sight, *lost) > DETAIL_SHARE * tolerance {
+        if seen_radius(view, sight, scale * lost) > DETAIL_SHARE * tolerance {
             break;
         }
         segments *= 0.5;

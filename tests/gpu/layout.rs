@@ -81,9 +81,9 @@ fn shared_structs_have_one_layout() {
         displacement,
         height_scale,
         midlevel,
-        detail,
+        mixed,
     });
-    same!(Share { direction, level, dominant, texels });
+    same!(Share { direction, level, dominant, texels, map, next });
     same!(HeightMap { size, levels, start, repeats });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
