@@ -3,7 +3,7 @@
 use image::{DynamicImage, RgbImage};
 
 use super::page::{CALM_COLOR, VISIBLE_PX};
-use crate::engine::{Engine, Loaded};
+use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::{GpuError, PassTime, Timing};
 use crate::measure::{CrackedEdge, Measured};
 use crate::render::layout::{CRACK_COLOR, linear};
@@ -64,7 +64,7 @@ pub fn draw_tile(
     let inputs = affordable(&settings.inputs(view), scene);
     let settings = Settings { factor: inputs.factor, ..settings };
     scene.set_lines(&engine.gpu, &[]);
-    let passes = engine.time(scene, target, camera, &settings)?;
+    let passes = engine.time(scene, target, camera, &settings, Runs::default())?;
     let measured = engine.measure(scene)?;
     let error_px = engine.deviation(scene, &inputs)?.map(|worst| worst.px);
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
