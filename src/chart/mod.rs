@@ -1,11 +1,18 @@
 //! Speed against accuracy: every method at many settings, timed and held against a truth, as rows and as a picture.
 
+mod axis;
 mod bench;
+mod labels;
+mod legend;
+mod look;
+mod pen;
+mod picture;
 mod race;
 mod setting;
 mod words;
 
 pub use bench::{Bench, Effort};
+pub use picture::{bitmap, svg};
 pub use race::{Race, Win, front};
 pub use setting::{LodKind, Method, Plan, Setting};
 

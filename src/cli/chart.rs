@@ -10,7 +10,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::options::{CameraOption, Size};
 use super::{CliError, SurfaceOptions, Telling, WeldOption, file_error, load, options, write_text};
-use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject};
+use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, svg};
 use crate::engine::{Engine, Loaded};
 use crate::measure::AccuracyOptions;
 use crate::mesh::Source;
@@ -232,6 +232,11 @@ impl Session {
 
 /// The picture, and its sentences, unless the table has standard output.
 fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
+    match &args.output {
+        Some(path) if is_svg(path) => write_text(path, &svg(subjects)?)?,
+        Some(path) => super::write_picture(path, &bitmap(subjects)?.into())?,
+        None => {}
+    }
     if args.csv.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }
