@@ -21,7 +21,7 @@ pub struct Effort {
 impl Default for Effort {
     fn default() -> Self {
         let runs = Runs { least: 3, most: 100, within: Duration::from_millis(200) };
-        Self { runs, accuracy: AccuracyOptions::default(), most_triangles: 1_000_000 }
+        Self { runs, accuracy: AccuracyOptions::default(), most_triangles: 500_000 }
     }
 }
 

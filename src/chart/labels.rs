@@ -48,23 +48,17 @@ impl Rect {
 /// From a point to its label, in px.
 const GAP: f64 = 6.0;
 
-/// How many lines may run under a label.
-const MOST_CROSSED: usize = 1;
-
-/// Places labels one after another, the first where it likes, inside `bounds`, over no point and no other label, and under
-/// as few lines as it can; none for a label that fits nowhere.
+/// Places labels one after another, the first where it likes, inside `bounds`, over no point, no line and no other label;
+/// none for a label that fits nowhere.
 pub fn place(wanted: &[Wanted], points: &[[f64; 2]], lines: &[[[f64; 2]; 2]], bounds: Rect) -> Vec<Option<Rect>> {
     let markers: Vec<Rect> = points.iter().map(|&point| Rect::around(point, 4.0)).collect();
     let mut placed: Vec<Option<Rect>> = Vec::new();
     for wish in wanted {
         let is_free = |rect: &Rect| {
             let taken = markers.iter().chain(placed.iter().flatten()).any(|other| rect.overlaps(other));
-            bounds.contains(rect) && !taken
+            bounds.contains(rect) && !taken && !lines.iter().any(|[a, b]| rect.is_crossed(*a, *b))
         };
-        let crossed = |rect: &Rect| lines.iter().filter(|[a, b]| rect.is_crossed(*a, *b)).count();
-        let free = places(wish).into_iter().filter(is_free).map(|rect| (crossed(&rect), rect));
-        let best = free.filter(|(count, _)| *count <= MOST_CROSSED).min_by_key(|(count, _)| *count);
-        placed.push(best.map(|(_, rect)| rect));
+        placed.push(places(wish).into_iter().find(is_free));
     }
     placed
 }

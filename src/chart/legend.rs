@@ -65,7 +65,7 @@ pub fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
         }
         add(&mut lods, Sample::Line(dash(method.lod)), name);
     }
-    add(&mut surfaces, Sample::Front, "nothing has less error for less".to_owned());
+    add(&mut surfaces, Sample::Front, "nothing has less error at less cost".to_owned());
     let mut lines = vec![surfaces, lods];
     for (index, method) in variants.iter().enumerate() {
         if index % IN_A_LINE == 0 {

@@ -64,7 +64,7 @@ struct Layout<'a> {
 }
 
 /// Letters that a line of text has room for: sentences are broken there.
-const LETTERS: usize = 132;
+const LETTERS: usize = 145;
 
 impl<'a> Layout<'a> {
     fn of(subjects: &'a [Subject]) -> Self {

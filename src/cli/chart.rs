@@ -220,8 +220,9 @@ impl Session {
             self.done = number;
         }
         if too_large > 0 {
-            let most = args.max_triangles;
-            let said = format!("{too_large} settings of {title} have more than {most} triangles and are left out.");
+            let (count, most) = (settings.len(), args.max_triangles);
+            let said =
+                format!("{title}: {too_large} of {count} settings are left out, for more than {most} triangles.");
             super::warn(&[said]);
         }
         let truth = truth.as_ref().map(|(_, words)| words.clone());
