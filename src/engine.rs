@@ -4,11 +4,14 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
-use crate::measure::{AskedFactors, Deviant, Deviation, Measured, ScreenView, Sizes, Survey};
+use crate::measure::{
+    Accuracy, AccuracyOptions, AskedFactors, Deviant, Deviation, Measured, Measurement, ScreenView, Sizes, Survey,
+};
 use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
-use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
+use crate::tessellate::{Inputs, LodView, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
+use crate::truth::Truth;
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -84,6 +87,21 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
     })
+}
+
+/// How often something is timed: as many times as fit `within`, but from `least` to `most`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Runs {
+    pub least: u32,
+    pub most: u32,
+    pub within: Duration,
+}
+
+impl Default for Runs {
+    /// For one picture, beside which nobody waits for long.
+    fn default() -> Self {
+        Self { least: 1, most: 5, within: Duration::from_secs(2) }
+    }
 }
 
 /// A device with every pipeline compiled. Cheap to clone; clones share everything.
@@ -241,6 +259,23 @@ impl Engine {
         Ok(deviation.worst())
     }
 
+    /// What is emitted held against a truth, in px as seen from `view`; none if nothing is emitted that has an area. All of
+    /// the mesh must be emitted, and the counts be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn accuracy(
+        &self,
+        scene: &mut Scene,
+        truth: &Truth,
+        view: &LodView,
+        options: AccuracyOptions,
+    ) -> Result<Option<Accuracy>, GpuError> {
+        let mut measurement = Measurement::new(truth, Some(view), options);
+        self.read_chunks(scene, true, |_, vertices, triangles| measurement.take(vertices, triangles))?;
+        Ok(measurement.finish())
+    }
+
     /// How large what is emitted is on screen. The counts must be known.
     ///
     /// # Errors
@@ -294,8 +329,7 @@ impl Engine {
         Ok(out)
     }
 
-    /// Median ms of every pass over complete recomputations, after one to warm up: five, or as many as fit two seconds,
-    /// but at least one.
+    /// Median ms of every pass over complete recomputations, after one to warm up.
     ///
     /// # Errors
     /// The device was lost.
@@ -305,12 +339,13 @@ impl Engine {
         target: &Target,
         camera: &Camera,
         settings: &Settings,
+        runs: Runs,
     ) -> Result<Vec<PassTime>, GpuError> {
         let mut timing = Timing::on(&self.gpu);
         let mut all: Vec<Vec<PassTime>> = Vec::new();
         let start = Instant::now();
-        for run in 0..=5 {
-            if run > 1 && start.elapsed() > Duration::from_secs(2) {
+        for run in 0..=runs.most {
+            if run > runs.least && start.elapsed() > runs.within {
                 break;
             }
             scene.tessellator.forget();

@@ -1,12 +1,10 @@
 //! `pnaen gallery`: every technique side by side.
 
-use std::io::Write;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{CliError, WeldOption, file_error, options, warn, write_picture, write_text};
+use super::{CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
 use crate::engine::{Engine, Preparation};
 use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
 use crate::mesh::{HeightSource, Source};
@@ -58,9 +56,9 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &error))?;
     let mut gallery = Gallery::new(look, &engine);
     warn(&gallery.warnings()?);
-    let (mut all, mut said) = (Vec::new(), Instant::now());
+    let (mut all, mut telling) = (Vec::new(), Telling::new());
     for exhibit in exhibits() {
-        let (picture, shown) = gallery.draw(&exhibit, |tile| say(&exhibit, tile, &mut said))?;
+        let (picture, shown) = gallery.draw(&exhibit, |tile| telling.say(|| place(&exhibit, tile)))?;
         write_picture(&args.output.join(format!("{}.png", exhibit.name)), &picture.into())?;
         all.push((exhibit, shown));
     }
@@ -68,15 +66,8 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))
 }
 
-/// How often one is told how far it is, at most.
-const EVERY: Duration = Duration::from_secs(1);
-
-/// Says on standard error which tile is being drawn, unless something was said a moment ago.
-fn say(exhibit: &Exhibit, tile: usize, said: &mut Instant) {
-    if said.elapsed() < EVERY {
-        return;
-    }
-    *said = Instant::now();
+/// Which tile is being drawn.
+fn place(exhibit: &Exhibit, tile: usize) -> String {
     let (number, count) = (tile + 1, exhibit.tiles.len());
-    let _ = writeln!(std::io::stderr(), "pnaen: {}, {number} of {count}: {}", exhibit.name, exhibit.tiles[tile].name);
+    format!("{}, {number} of {count}: {}", exhibit.name, exhibit.tiles[tile].name)
 }

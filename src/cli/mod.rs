@@ -2,6 +2,7 @@
 
 mod adjacency;
 mod animation;
+mod chart;
 mod domain;
 mod factors;
 mod gallery;
@@ -17,6 +18,7 @@ mod tessellate;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -66,6 +68,13 @@ pub enum Command {
     Stability(stability::Args),
     /// Draw every technique side by side, and a page that says what each is and whose
     Gallery(gallery::Args),
+    /// Time every method at many settings, hold what it emits against the truth, and chart error against time and triangles
+    ///
+    /// The truth is a shape's exact surface, or a mesh given with --truth. Without either, errors are px on screen between what
+    /// is emitted and the surface that it stands for, and surfaces are not compared with each other. Ctrl-C ends after the
+    /// setting under way: its rows are in the CSV, the picture is of what was done, and the exit code is 130. A second one ends
+    /// at once.
+    Chart(chart::Args),
     /// Say what a file holds, and what of it was left out
     Info(info::Args),
 }
@@ -115,6 +124,12 @@ pub enum CliError {
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
+    #[error("{truth} has no triangle to hold anything against: give another --truth")]
+    NoTruth { truth: String },
+    #[error("interrupted after {done} of {all} settings: what was done is written")]
+    Interrupted { done: usize, all: usize },
+    #[error(transparent)]
+    Chart(#[from] crate::plot::ChartError),
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }
@@ -129,6 +144,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Adjacency(args) => adjacency::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Gallery(args) => gallery::run(&args),
+        Command::Chart(args) => chart::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {
@@ -137,6 +153,10 @@ pub fn run(command: Command) -> ExitCode {
         Err(error @ CliError::Usage(_)) => {
             fail(&error);
             ExitCode::from(2)
+        }
+        Err(error @ CliError::Interrupted { .. }) => {
+            fail(&error);
+            ExitCode::from(chart::INTERRUPTED)
         }
         Err(error) => fail(&error),
     }
@@ -209,6 +229,24 @@ fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> 
     let loaded = crate::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.mesh.warnings);
     Ok(loaded)
+}
+
+/// Says on standard error how far a long command is, at most once a second.
+struct Telling(Instant);
+
+impl Telling {
+    const EVERY: Duration = Duration::from_secs(1);
+
+    fn new() -> Self {
+        Self(Instant::now())
+    }
+
+    fn say(&mut self, text: impl FnOnce() -> String) {
+        if self.0.elapsed() >= Self::EVERY {
+            self.0 = Instant::now();
+            let _ = writeln!(std::io::stderr(), "pnaen: {}", text());
+        }
+    }
 }
 
 fn warn(warnings: &[String]) {

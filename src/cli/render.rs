@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::stats::{AnimationStats, Stats};
 use super::{CliError, GivenOption, SurfaceOptions, load, options, reference, to_json, write_picture, write_text};
-use crate::engine::{Engine, Loaded};
+use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
 use crate::measure::{Measured, ScreenView, patch_edges};
 use crate::mesh::{LoadError, Moment, Progress, Source, t_junctions};
@@ -171,7 +171,7 @@ impl Shot {
         let Self { engine, scene, target, camera, settings, .. } = self;
         let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
         let deviation = if args.measure_error { engine.deviation(scene, &inputs)? } else { None };
-        let passes = engine.time(scene, target, camera, settings)?;
+        let passes = engine.time(scene, target, camera, settings, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.partitioning);
         if settings.used_lod() == Lod::Error {

@@ -16,8 +16,9 @@ pub use tile::Shown;
 
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
-use crate::measure::{ChartError, sheet};
+use crate::measure::sheet;
 use crate::mesh::{LoadError, Progress, Source};
+use crate::plot::ChartError;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Surface, reach};

@@ -3,7 +3,7 @@
 use image::{DynamicImage, RgbImage};
 
 use super::page::{CALM_COLOR, VISIBLE_PX};
-use crate::engine::{Engine, Loaded};
+use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::{GpuError, PassTime, Timing};
 use crate::measure::{CrackedEdge, Measured};
 use crate::render::layout::{CRACK_COLOR, linear};
@@ -64,7 +64,7 @@ pub fn draw_tile(
     let inputs = affordable(&settings.inputs(view), scene);
     let settings = Settings { factor: inputs.factor, ..settings };
     scene.set_lines(&engine.gpu, &[]);
-    let passes = engine.time(scene, target, camera, &settings)?;
+    let passes = engine.time(scene, target, camera, &settings, Runs::default())?;
     let measured = engine.measure(scene)?;
     // What patches agree on isn't on the surface that each has by itself, which the error is measured against.
     let is_shared = matches!(settings.displacement, Displacement::On | Displacement::AsPublished);

@@ -2,7 +2,7 @@
 
 use image::{Rgb, RgbImage, imageops};
 
-use super::chart::{ChartError, write_text};
+use crate::plot::{ChartError, write_text};
 
 /// Between pictures and around them, in px.
 const GAP: u32 = 4;

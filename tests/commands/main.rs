@@ -2,6 +2,7 @@
 
 mod adjacency;
 mod animation;
+mod chart;
 mod domain;
 mod factors;
 mod gallery;
