@@ -36,7 +36,7 @@ pub struct Inputs {
     pub near: f32,
     pub far: f32,
     pub clip: Clip,
-    /// Whether patches that show their backs only are left out, where [`Solid`] allows it.
+    /// Whether patches that show their backs only are left out, where [`super::Solid`] allows it.
     pub cull_back_faces: bool,
     pub convention: Convention,
     pub displacement: Displacement,

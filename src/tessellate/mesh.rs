@@ -56,7 +56,7 @@ pub struct Tessellated {
 }
 
 /// Tessellates the mesh. With `factors`, those are used in place of the ones that LOD gives: one for each edge, or as
-/// published one for each curve (see [`Curves::factor`]).
+/// published one for each curve (see [`crate::mesh::Curves::factor`]).
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
