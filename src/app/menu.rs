@@ -5,7 +5,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
 use super::heights::HEIGHT_IMAGE;
-use crate::mesh::{Bounds, Shape, Source};
+use crate::mesh::{Shape, Source};
 use crate::render::{Camera, Standpoint};
 use crate::settings::{FACTOR_RANGE, Overlay};
 use crate::tessellate::{Edges, Lod};
@@ -157,15 +157,10 @@ impl App {
 
     /// Shows all of the mesh: all through its clip, and as far as heights lift it.
     pub(super) fn frame(&mut self) {
-        if let Some(bounds) = self.drawn_bounds() {
-            self.camera.frame(&bounds, self.viewport.size());
+        if let Some(document) = &self.document {
+            self.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.size());
             self.framed = Some(self.camera);
         }
-    }
-
-    /// Where everything is that is drawn of the mesh.
-    pub(super) fn drawn_bounds(&self) -> Option<Bounds> {
-        self.document.as_ref().map(|document| document.scene.drawn_bounds(&self.settings))
     }
 
     /// Whether the camera still is where [`Self::frame`] last put it; it may have turned.

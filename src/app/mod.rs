@@ -254,8 +254,6 @@ impl App {
         self.load = None;
         match result {
             Ok(document) => {
-                // The same mesh loaded again stays where it is, unless all of it was in sight and it has grown.
-                let (was_framed, extent) = (self.is_framed(), self.drawn_bounds());
                 if !keep_view {
                     self.frozen = None;
                 }
@@ -267,7 +265,7 @@ impl App {
                 }
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
-                if !keep_view || (was_framed && self.drawn_bounds() != extent) {
+                if !keep_view {
                     self.frame();
                 }
                 self.measuring = Measuring::default();
