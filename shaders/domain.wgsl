@@ -13,7 +13,7 @@ struct DomainRow {
 }
 
 fn segment_length(segments: u32) -> u32 {
-    return (2u * FIXED_ONE + segments) / (2u * segments);
+    return u32((f32(2u * FIXED_ONE + segments) + 0.5) / f32(2u * segments));
 }
 
 fn drop_top_bit(value: u32) -> u32 {
@@ -59,31 +59,53 @@ fn rings_before(m: u32, area: u32) -> u32 {
     return u32((f32(m) - root) * 0.5 + 0.0078125);
 }
 
-fn domain_point(factors: PatchFactors, i: u32) -> vec2<u32> {
-    if patch_is_subtriangulated(factors) {
-        return subtriangulation_point(segments(factors.inside), i);
-    }
-    let outer = outer_count(factors);
-    if i < outer {
-        return outer_point(factors, i);
-    }
-    return inner_point(factors.inside, i - outer);
+const PATTERN_RINGS: u32 = 0u;
+const PATTERN_MINIMAL: u32 = 1u;
+const PATTERN_SUBTRIANGULATED: u32 = 2u;
+
+struct DomainPlan {
+    factors: PatchFactors,
+    kind: u32,
+    start1: u32,
+    start2: u32,
+    outer: u32,
+    n: u32,
+    row: DomainRow,
 }
 
-fn outer_point(factors: PatchFactors, i: u32) -> vec2<u32> {
+fn domain_plan(factors: PatchFactors) -> DomainPlan {
+    let row = domain_row(factors.inside);
     let start1 = segments(factors.outside.x);
     let start2 = start1 + segments(factors.outside.y);
+    let outer = start2 + segments(factors.outside.z);
+    if patch_is_subtriangulated(factors) {
+        return DomainPlan(factors, PATTERN_SUBTRIANGULATED, start1, start2, outer, segments(factors.inside), row);
+    }
+    let kind = select(PATTERN_RINGS, PATTERN_MINIMAL, patch_is_minimal(factors));
+    return DomainPlan(factors, kind, start1, start2, outer, inside_segments(factors.inside), row);
+}
+
+fn domain_point(plan: DomainPlan, i: u32) -> vec2<u32> {
+    if plan.kind == PATTERN_SUBTRIANGULATED {
+        return subtriangulation_point(plan.n, i);
+    }
+    if i < plan.outer {
+        return outer_point(plan, i);
+    }
+    return inner_point(plan.row, plan.n, i - plan.outer);
+}
+
+fn outer_point(plan: DomainPlan, i: u32) -> vec2<u32> {
     // One row, chosen first: on a GPU the points of three edges then take one path.
-    let side = u32(i >= start1) + u32(i >= start2);
-    let last = segments(factors.outside.z);
-    let word = select(select(factors.outside.x, factors.outside.y, side == 1u), factors.outside.z, side == 2u);
-    let p = select(select(start1 - i, i - start1, side == 1u), last - (i - start2), side == 2u);
+    let side = u32(i >= plan.start1) + u32(i >= plan.start2);
+    let edges = plan.factors.outside;
+    let word = select(select(edges.x, edges.y, side == 1u), edges.z, side == 2u);
+    let p = select(select(plan.start1 - i, i - plan.start1, side == 1u), plan.outer - i, side == 2u);
     let x = row_location(domain_row(word), p);
     return select(select(vec2<u32>(0u, x), vec2<u32>(x, 0u), side == 1u), vec2<u32>(x, FIXED_ONE - x), side == 2u);
 }
 
-fn inner_point(inside: u32, i: u32) -> vec2<u32> {
-    let n = inside_segments(inside);
+fn inner_point(row: DomainRow, n: u32, i: u32) -> vec2<u32> {
     let rings = rings_before(n - 1u, i / 3u);
     let ring = rings + 1u;
     let side_length = n - 2u * ring;
@@ -94,7 +116,6 @@ fn inner_point(inside: u32, i: u32) -> vec2<u32> {
     let side = u32(in_ring >= side_length) + u32(in_ring >= 2u * side_length);
     let p = in_ring - side * side_length;
 
-    let row = domain_row(inside);
     let across = (row_location(row, ring) * FIXED_TWO_THIRDS + FIXED_HALF) >> 16u;
     let along = row_location(row, select(n - ring - p, ring + p, side == 1u)) - ((across + 1u) >> 1u);
     let beside = select(vec2<u32>(across, along), vec2<u32>(along, across), side == 1u);
@@ -105,20 +126,18 @@ fn ring_point(start: u32, length: u32, p: u32) -> u32 {
     return start + select(p, 0u, p == length);
 }
 
-fn domain_triangle(factors: PatchFactors, t: u32) -> vec3<u32> {
-    if patch_is_minimal(factors) {
+fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
+    if plan.kind == PATTERN_MINIMAL {
         return vec3<u32>(0u, 1u, 2u);
     }
-    if patch_is_subtriangulated(factors) {
-        return subtriangulation_triangle(segments(factors.inside), t);
+    if plan.kind == PATTERN_SUBTRIANGULATED {
+        return subtriangulation_triangle(plan.n, t);
     }
-    let outer = outer_count(factors);
-    let n = inside_segments(factors.inside);
-    let transition = outer + 3u * (n - 2u);
+    let transition = plan.outer + 3u * (plan.n - 2u);
     if t < transition {
-        return transition_triangle(factors, t);
+        return transition_triangle(plan, t);
     }
-    return regular_triangle(outer, n, t - transition);
+    return regular_triangle(plan.outer, plan.n, t - transition);
 }
 
 struct TransitionStep {
@@ -172,17 +191,16 @@ fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Transit
     return TransitionStep(select(inner + inner_steps, inner, along_inner), first + outer, along_inner, along_inner);
 }
 
-fn transition_step(inside: u32, edge: u32, t: u32) -> TransitionStep {
-    let inner_half = half_segments(inside) - odd_parity(inside);
+fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
+    let inner_half = row.half - row.odd;
     let outer_half = half_segments(edge) - odd_parity(edge);
-    let inner_segments = inside_segments(inside) - 2u;
     let outer_segments = segments(edge);
     let total = inner_segments + outer_segments;
     let before = inner_half - 1u + outer_half;
     let after_middle = t + before >= total;
     if t >= before && !after_middle {
         // The middle: an odd inside's triangle, then an odd edge's.
-        let along_inner = t == before && odd_parity(inside) == 1u;
+        let along_inner = t == before && row.odd == 1u;
         return TransitionStep(inner_half - 1u + (t - before), outer_half, along_inner, true);
     }
     let step = transition_before_middle(inner_half, outer_half, select(t, total - 1u - t, after_middle));
@@ -197,16 +215,17 @@ fn transition_step(inside: u32, edge: u32, t: u32) -> TransitionStep {
     );
 }
 
-fn transition_triangle(factors: PatchFactors, t: u32) -> vec3<u32> {
-    let inner_segments = inside_segments(factors.inside) - 2u;
-    let start1 = segments(factors.outside.x);
-    let start2 = start1 + segments(factors.outside.y);
-    let outer = start2 + segments(factors.outside.z);
+fn transition_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
+    let inner_segments = plan.n - 2u;
+    let start1 = plan.start1;
+    let start2 = plan.start2;
+    let outer = plan.outer;
     let side = u32(t >= start1 + inner_segments) + u32(t >= start2 + 2u * inner_segments);
     let side_start = select(select(0u, start1, side == 1u), start2, side == 2u);
-    let edge = select(select(factors.outside.x, factors.outside.y, side == 1u), factors.outside.z, side == 2u);
+    let edges = plan.factors.outside;
+    let edge = select(select(edges.x, edges.y, side == 1u), edges.z, side == 2u);
 
-    let step = transition_step(factors.inside, edge, t - side_start - side * inner_segments);
+    let step = transition_step(plan.row, inner_segments, edge, t - side_start - side * inner_segments);
     let inner_start = side * inner_segments + step.inner;
     let outer_start = side_start + step.outer;
     let i = ring_point(outer, 3u * inner_segments, inner_start);

@@ -151,20 +151,21 @@ const SURFACE_SHARE: f32 = 0.5;
 const DETAIL_SHARE: f32 = 0.3;
 const TURN_SHARE: f32 = 0.2;
 
-// As fine as the coarsest level of the height images whose loss is within the tolerance, and as the turn asks for.
+// As fine as the coarsest level of a height image whose loss is within the tolerance, and as the turn asks for.
 fn relief_factor(
     view: LodView,
     sight: Sight,
     tolerance: f32,
     texels: f32,
     turn: f32,
+    scale: f32,
     detail: array<vec4<f32>, 4>,
 ) -> f32 {
     let bend = seen_radius(view, sight, view.reach * 0.28125 * turn * turn);
     var segments = texels;
     var losses = detail;
-    for (var level = 1u; level < 16u; level++) {
-        if seen_radius(view, sight, losses[level / 4u][level % 4u]) > DETAIL_SHARE * tolerance {
+    for (var level = 1u; level < MAX_LEVELS; level++) {
+        if seen_radius(view, sight, scale * losses[level / 4u][level % 4u]) > DETAIL_SHARE * tolerance {
             break;
         }
         segments *= 0.5;

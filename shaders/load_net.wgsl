@@ -1,16 +1,25 @@
 // A patch's control net from the buffers of the module that includes this: points, patches, curve_nets.
 // Its centre is what `centers_main` of the nets pass has put behind the points.
+// Written out side by side: where loops stay loops, arrays that they index live in memory.
 
 fn load_net(patch_index: u32) -> ControlNet {
+    let own = patches[patch_index];
+    let curves = array<CurveNet, 3>(
+        curve_nets[own.curves[0] >> 1u],
+        curve_nets[own.curves[1] >> 1u],
+        curve_nets[own.curves[2] >> 1u],
+    );
+    let reversed = vec3<bool>((own.curves[0] & 1u) == 1u, (own.curves[1] & 1u) == 1u, (own.curves[2] & 1u) == 1u);
     var net: ControlNet;
-    for (var k = 0u; k < 3u; k++) {
-        let curve = patches[patch_index].curves[k];
-        let curve_net = curve_nets[curve >> 1u];
-        let reversed = (curve & 1u) == 1u;
-        net.corners[k] = points[patches[patch_index].points[k]].xyz;
-        net.edges[2u * k] = select(curve_net.ab, curve_net.ba, reversed);
-        net.edges[2u * k + 1u] = select(curve_net.ba, curve_net.ab, reversed);
-    }
+    net.corners[0] = points[own.points[0]].xyz;
+    net.corners[1] = points[own.points[1]].xyz;
+    net.corners[2] = points[own.points[2]].xyz;
+    net.edges[0] = select(curves[0].ab, curves[0].ba, reversed.x);
+    net.edges[1] = select(curves[0].ba, curves[0].ab, reversed.x);
+    net.edges[2] = select(curves[1].ab, curves[1].ba, reversed.y);
+    net.edges[3] = select(curves[1].ba, curves[1].ab, reversed.y);
+    net.edges[4] = select(curves[2].ab, curves[2].ba, reversed.z);
+    net.edges[5] = select(curves[2].ba, curves[2].ab, reversed.z);
     net.center = points[params.point_count + patch_index].xyz;
     return net;
 }

@@ -9,7 +9,7 @@ const CANCELLED: f32 = 1e-6;
 // A weighted sum of normals at unit length, or the one with the greatest weight where they cancel.
 fn unit_or(sum: vec3<f32>, nearest: vec3<f32>) -> vec3<f32> {
     let length_squared = dot(sum, sum);
-    return select(nearest, sum * (1.0 / sqrt(length_squared)), length_squared > CANCELLED * CANCELLED);
+    return select(nearest, sum * inverseSqrt(length_squared), length_squared > CANCELLED * CANCELLED);
 }
 
 fn linear_normal(normals: array<vec3<f32>, 3>, u: u32, v: u32) -> vec3<f32> {
@@ -74,7 +74,7 @@ fn surface_normal(surface: u32, net: ControlNet, u: u32, v: u32, otherwise: vec3
 
 // Octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
 fn pack_normal(normal: vec3<f32>) -> u32 {
-    let flat = normal / (abs(normal.x) + abs(normal.y) + abs(normal.z));
+    let flat = normal * (1.0 / (abs(normal.x) + abs(normal.y) + abs(normal.z)));
     let folded = (1.0 - abs(flat.yx)) * vec2<f32>(toward(flat.x), toward(flat.y));
     return pack2x16snorm(select(flat.xy, folded, flat.z < 0.0));
 }

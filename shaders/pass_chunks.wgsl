@@ -28,7 +28,8 @@ fn write_chunk(index: u32, first: u32, end: u32) {
     let base = offsets[first];
     let size = offsets[end] - base;
     chunks[index] = Chunk(slab.first_patch + first, slab.first_patch + end, base.x, base.y, size.x, size.y);
-    emit_args[index] = EmitArgs(grid(size.x), grid(size.y));
+    let workgroups = (size + EMIT_ITEMS - 1u) / EMIT_ITEMS;
+    emit_args[index] = EmitArgs(workgroup_grid(workgroups.x), workgroup_grid(workgroups.y), grid(size.x));
 }
 
 fn write_draw(chunk_index: u32, material: u32) {

@@ -6,6 +6,7 @@
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
+// Of edges; then where images are mixed what heights ask for inside patches.
 @group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
 @group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;
@@ -39,11 +40,14 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     for (var k = 0u; k < 3u; k++) {
         sides[k] = edge_factors[patches[patch_index].factors[k] >> 3u];
     }
+    // Heights are as fine inside as on the edges, where the patch's own image alone speaks for them.
     var inside = max(max(sides.x, sides.y), sides.z);
+    if params.mixed == 1u {
+        inside = edge_factors[params.factor_count + patch_index];
+    }
     if params.lod == LOD_ERROR && params.surface != SURFACE_FLAT {
         let tolerance = params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
         let own = inside_error_factor(params.view, tolerance, params.partitioning, net, sides.yzx);
-        // Heights are as fine inside as on the edges.
         inside = select(own, max(own, inside), params.displacement != 0u);
     }
     return vec4<f32>(

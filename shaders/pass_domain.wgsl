@@ -32,10 +32,10 @@ fn domain_main(@builtin(global_invocation_id) invocation: vec3<u32>) {
         domain_counts[case_index] = vec2<u32>(points, triangles);
     }
     if index < points {
-        domain_points[case_index * DOMAIN_POINTS + index] = domain_point(factors, index);
+        domain_points[case_index * DOMAIN_POINTS + index] = domain_point(domain_plan(factors), index);
     }
     if index < triangles {
-        let triangle = domain_triangle(factors, index);
+        let triangle = domain_triangle(domain_plan(factors), index);
         let first = 3u * (case_index * DOMAIN_TRIANGLES + index);
         domain_triangles[first] = triangle.x;
         domain_triangles[first + 1u] = triangle.y;

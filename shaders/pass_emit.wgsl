@@ -1,4 +1,5 @@
-// The domain shader and the tessellator's output of one chunk: a vertex an invocation, a triangle an invocation.
+// The domain shader and the tessellator's output of one chunk. A workgroup makes EMIT_ITEMS vertices, or triangles, that
+// follow each other, and each of its invocations several: finding out once which patches they are of is then little work.
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
@@ -9,9 +10,28 @@
 @group(0) @binding(6) var<storage, read> patches: array<Patch>;
 @group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(8) var<storage, read> corners: array<Corner>;
-@group(0) @binding(9) var<storage, read_write> vertices: array<Vertex>;
+// Vertices by halves: position and first key, the rest. So they are stored in two pieces of 16 bytes, not in eight.
+@group(0) @binding(9) var<storage, read_write> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> indices: array<u32>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
+
+// Normals that vertices get, NORMALS_*: a pipeline each, in which what the others need takes no registers.
+override EMIT_NORMALS: u32 = 0u;
+
+const NO_PATCH: u32 = 0xffffffffu;
+// Items an invocation makes.
+const EMIT_RUN: u32 = EMIT_ITEMS / WORKGROUP;
+// Invocations that run in step on most devices: these have items side by side, and mostly of one patch.
+const LANES: u32 = 32u;
+
+fn emit_first(workgroup: vec3<u32>, workgroups: vec3<u32>) -> u32 {
+    return (workgroup.y * workgroups.x + workgroup.x) * EMIT_ITEMS;
+}
+
+// The item that invocation `local` makes in its turn `turn`, from the workgroup's first on.
+fn emit_item(local: u32, turn: u32) -> u32 {
+    return (local / LANES) * (LANES * EMIT_RUN) + turn * LANES + local % LANES;
+}
 
 // Entry of `offsets` (from the slab's start) whose patch emits item `item`, in [low, high). Component 0 counts
 // vertices, 1 triangles. Patches that emit nothing are skipped.
@@ -29,18 +49,61 @@ fn find_patch(component: u32, item: u32, first: u32, end: u32) -> u32 {
     return low;
 }
 
-// The patches of a workgroup's first and last item bound every other item's search.
-var<workgroup> bounds: array<u32, 2>;
+// The patches whose items a workgroup makes: the first, and how many begin after its first item.
+struct PatchRun {
+    first: u32,
+    count: u32,
+}
 
-fn find_patch_in_workgroup(component: u32, item: u32, first_item: u32, last_item: u32, local: u32) -> u32 {
+var<workgroup> run_first: u32;
+var<workgroup> run_count: u32;
+// Where the patches after the first begin.
+var<workgroup> run_starts: array<u32, EMIT_ITEMS>;
+
+// All invocations look for the first item's patch together: each round leaves one part in 256.
+fn find_run(component: u32, first_item: u32, last_item: u32, local: u32) -> PatchRun {
     let chunk = chunks[chunk_index];
-    let first = chunk.first_patch - slab.first_patch;
     let end = chunk.patch_end - slab.first_patch;
-    if local < 2u {
-        bounds[local] = find_patch(component, select(first_item, last_item, local == 1u), first, end);
+    var low = chunk.first_patch - slab.first_patch;
+    var high = end;
+    while low + 1u < high {
+        let stride = (high - low + WORKGROUP - 1u) / WORKGROUP;
+        let at = low + local * stride;
+        let next = at + stride;
+        if at < high && offsets[at][component] <= first_item && (next >= high || offsets[next][component] > first_item) {
+            run_first = at;
+        }
+        low = workgroupUniformLoad(&run_first);
+        high = min(low + stride, high);
+    }
+    if local == 0u {
+        run_count = 0u;
     }
     workgroupBarrier();
-    return find_patch(component, item, bounds[0], bounds[1] + 1u);
+    for (var i = local; i < EMIT_ITEMS; i += WORKGROUP) {
+        let entry = low + 1u + i;
+        let start = offsets[min(entry, end)][component];
+        run_starts[i] = start;
+        let is_last = i == EMIT_ITEMS - 1u || entry + 1u >= end || offsets[min(entry + 1u, end)][component] > last_item;
+        if entry < end && start <= last_item && is_last {
+            run_count = i + 1u;
+        }
+    }
+    return PatchRun(low, workgroupUniformLoad(&run_count));
+}
+
+// Of the run's patches, counted from its first, the one whose item this is; `before` is that of an earlier item.
+fn run_patch(run: PatchRun, component: u32, item: u32, before: u32) -> u32 {
+    var patch_index = before;
+    while patch_index < run.count && run_starts[patch_index] <= item {
+        patch_index += 1u;
+    }
+    if patch_index < EMIT_ITEMS {
+        return patch_index;
+    }
+    // So many begin here only where most are empty.
+    let chunk = chunks[chunk_index];
+    return find_patch(component, item, run.first + EMIT_ITEMS, chunk.patch_end - slab.first_patch) - run.first;
 }
 
 // What the domain shader makes of one domain point.
@@ -71,7 +134,7 @@ fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
         position = b;
     }
     var normal: vec3<f32>;
-    if params.normals == NORMALS_QUADRATIC {
+    if EMIT_NORMALS == NORMALS_QUADRATIC {
         normal = quadratic_edge_normal(a, b, at_a.normal, at_b.normal, t);
     } else {
         normal = edge_normal(at_a.normal, at_b.normal, t);
@@ -86,13 +149,30 @@ fn patch_vertex(patch_index: u32, u: u32, v: u32) -> DomainVertex {
     let net = load_net(patch_index);
     let normals = array<vec3<f32>, 3>(a.normal, b.normal, c.normal);
     var normal: vec3<f32>;
-    if params.normals == NORMALS_QUADRATIC {
+    if EMIT_NORMALS == NORMALS_QUADRATIC {
         normal = quadratic_normal(net.corners, normals, u, v);
     } else {
         normal = linear_normal(normals, u, v);
     }
     let position = patch_position(params.surface, net, u, v);
     return DomainVertex(position, normal, linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v));
+}
+
+fn store_vertex(index: u32, patch_index: u32, uv: vec2<u32>) {
+    let at = place(uv.x, uv.y);
+    var made: DomainVertex;
+    if at.side == 3u || params.edges == EDGES_AS_PUBLISHED {
+        made = patch_vertex(patch_index, uv.x, uv.y);
+    } else {
+        made = rim_vertex(patch_index, at.side, at.t);
+    }
+    if EMIT_NORMALS == NORMALS_SURFACE {
+        // Every patch's own, also on its rim, where its neighbours' differ.
+        made.normal = surface_normal(params.surface, load_net(patch_index), uv.x, uv.y, made.normal);
+    }
+    let key = pack_key(patch_index, uv.x, uv.y);
+    vertex_halves[2u * index] = vec4<u32>(bitcast<vec3<u32>>(made.position), key.x);
+    vertex_halves[2u * index + 1u] = vec4<u32>(key.y, pack_normal(made.normal), bitcast<vec2<u32>>(made.uv));
 }
 
 @compute @workgroup_size(256)
@@ -102,30 +182,29 @@ fn emit_vertices_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let chunk = chunks[chunk_index];
-    let first = grid_index(workgroup, workgroups, 0u);
-    let index = first + local;
-    let item = chunk.first_vertex + index;
-    let last = chunk.first_vertex + min(first + WORKGROUP, chunk.vertex_count) - 1u;
-    let entry = find_patch_in_workgroup(0u, min(item, last), chunk.first_vertex + first, last, local);
-    if index >= chunk.vertex_count {
-        return;
+    let first = emit_first(workgroup, workgroups);
+    let last = chunk.first_vertex + min(first + EMIT_ITEMS, chunk.vertex_count) - 1u;
+    let run = find_run(0u, chunk.first_vertex + first, last, local);
+    var known = NO_PATCH;
+    var in_run = 0u;
+    var start = 0u;
+    var plan: DomainPlan;
+    for (var turn = 0u; turn < EMIT_RUN; turn++) {
+        let index = first + emit_item(local, turn);
+        if index >= chunk.vertex_count {
+            return;
+        }
+        let item = chunk.first_vertex + index;
+        in_run = run_patch(run, 0u, item, in_run);
+        let entry = run.first + in_run;
+        if entry != known {
+            known = entry;
+            start = offsets[entry].x;
+            plan = domain_plan(patch_factors[entry]);
+        }
+        let uv = corner_weights(params.convention, domain_point(plan, item - start));
+        store_vertex(index, slab.first_patch + entry, uv);
     }
-    let patch_index = slab.first_patch + entry;
-    let uv = corner_weights(params.convention, domain_point(patch_factors[entry], item - offsets[entry].x));
-    let at = place(uv.x, uv.y);
-    var made: DomainVertex;
-    if at.side == 3u || params.edges == EDGES_AS_PUBLISHED {
-        made = patch_vertex(patch_index, uv.x, uv.y);
-    } else {
-        made = rim_vertex(patch_index, at.side, at.t);
-    }
-    if params.normals == NORMALS_SURFACE {
-        // Every patch's own, also on its rim, where its neighbours' differ.
-        made.normal = surface_normal(params.surface, load_net(patch_index), uv.x, uv.y, made.normal);
-    }
-    let key = pack_key(patch_index, uv.x, uv.y);
-    let p = made.position;
-    vertices[index] = Vertex(p.x, p.y, p.z, key.x, key.y, pack_normal(made.normal), made.uv);
 }
 
 @compute @workgroup_size(256)
@@ -135,17 +214,30 @@ fn emit_triangles_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let chunk = chunks[chunk_index];
-    let first = grid_index(workgroup, workgroups, 0u);
-    let index = first + local;
-    let item = chunk.first_triangle + index;
-    let last = chunk.first_triangle + min(first + WORKGROUP, chunk.triangle_count) - 1u;
-    let entry = find_patch_in_workgroup(1u, min(item, last), chunk.first_triangle + first, last, local);
-    if index >= chunk.triangle_count {
-        return;
+    let first = emit_first(workgroup, workgroups);
+    let last = chunk.first_triangle + min(first + EMIT_ITEMS, chunk.triangle_count) - 1u;
+    let run = find_run(1u, chunk.first_triangle + first, last, local);
+    var known = NO_PATCH;
+    var in_run = 0u;
+    var start = vec2<u32>(0u);
+    var plan: DomainPlan;
+    for (var turn = 0u; turn < EMIT_RUN; turn++) {
+        let index = first + emit_item(local, turn);
+        if index >= chunk.triangle_count {
+            return;
+        }
+        let item = chunk.first_triangle + index;
+        in_run = run_patch(run, 1u, item, in_run);
+        let entry = run.first + in_run;
+        if entry != known {
+            known = entry;
+            start = offsets[entry];
+            plan = domain_plan(patch_factors[entry]);
+        }
+        let corners = domain_triangle(plan, item - start.y);
+        let base = start.x - chunk.first_vertex;
+        indices[3u * index] = base + corners.x;
+        indices[3u * index + 1u] = base + corners.y;
+        indices[3u * index + 2u] = base + corners.z;
     }
-    let corners = domain_triangle(patch_factors[entry], item - offsets[entry].y);
-    let base = offsets[entry].x - chunk.first_vertex;
-    indices[3u * index] = base + corners.x;
-    indices[3u * index + 1u] = base + corners.y;
-    indices[3u * index + 2u] = base + corners.z;
 }

@@ -10,6 +10,12 @@
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<f32>;
 // Of what is displaced.
 @group(0) @binding(6) var<storage, read> shares: array<Share>;
+@group(0) @binding(7) var<storage, read> patches: array<Patch>;
+// How far level l of each height image is from its level 0 at most, four levels an element.
+@group(0) @binding(22) var<uniform> details: array<array<vec4<f32>, 4>, 256>;
+
+// In place of one image.
+const ALL_MAPS: u32 = 0xffffffffu;
 
 fn curve_factor(index: u32) -> f32 {
     let curve = curves[index];
@@ -32,16 +38,47 @@ fn curve_factor(index: u32) -> f32 {
     return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
 }
 
-// What the heights over a curve ask for.
-fn relief_of(index: u32, curve_index: u32) -> f32 {
+// What the heights over a curve ask for: one image's, or those of all its edge's sides.
+fn relief_of(index: u32, curve_index: u32, map: u32) -> f32 {
     let curve = curves[curve_index];
     let a = points[curve.points[0]].xyz;
     let b = points[curve.points[1]].xyz;
     let net = curve_nets[curve_index];
     let sight = edge_sight(params.view, a, net.ab, net.ba, b);
     let turn = distance(shares[curve.points[0]].direction, shares[curve.points[1]].direction);
-    let texels = shares[params.point_count + index].texels;
-    return relief_factor(params.view, sight, params.tolerance, texels, turn, params.detail);
+    let scale = abs(params.height_scale);
+    var factor = 1.0;
+    var at = params.point_count + index;
+    loop {
+        let own = shares[at];
+        if own.map > 0u && (map == ALL_MAPS || map == own.map) {
+            let detail = details[own.map - 1u];
+            factor = max(factor, relief_factor(params.view, sight, params.tolerance, own.texels, turn, scale, detail));
+        }
+        at = own.next;
+        if at == 0u {
+            break;
+        }
+    }
+    return factor;
+}
+
+// What LOD makes of an edge, where it is displaced by error: by one image, or by those of all its sides.
+fn lod_factor(index: u32, map: u32) -> f32 {
+    var factor = params.factor;
+    if params.lod != LOD_UNIFORM {
+        factor = 1.0;
+        for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
+            factor = max(factor, curve_factor(curve));
+            if params.lod == LOD_ERROR && params.displacement != 0u {
+                factor = max(factor, relief_of(index, curve, map));
+            }
+        }
+    }
+    if params.lod == LOD_ERROR {
+        return level(params.partitioning, factor);
+    }
+    return select(factor, round_pow2(factor), params.partitioning == PARTITIONING_POW2);
 }
 
 @compute @workgroup_size(256)
@@ -54,20 +91,35 @@ fn edge_factors_main(
     if index >= params.factor_count {
         return;
     }
-    var factor = params.factor;
-    if params.lod != LOD_UNIFORM {
-        factor = 1.0;
-        for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
-            factor = max(factor, curve_factor(curve));
-            if params.lod == LOD_ERROR && params.displacement != 0u {
-                factor = max(factor, relief_of(index, curve));
-            }
+    edge_factors[index] = lod_factor(index, ALL_MAPS);
+}
+
+// Whether other images than a patch's own speak for an edge.
+fn has_others(index: u32, own: u32) -> bool {
+    let first = shares[params.point_count + index];
+    return first.next > 0u || first.map != own;
+}
+
+// Where edges' sides have different images: what a patch's own asks for inside it, behind the edges' factors.
+@compute @workgroup_size(256)
+fn heights_inside_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index >= params.patch_count {
+        return;
+    }
+    let own = u32(points[params.point_count + index].w);
+    var inside = 1.0;
+    for (var k = 0u; k < 3u; k++) {
+        let factor = patches[index].factors[k] >> 3u;
+        if has_others(factor, own) {
+            inside = max(inside, lod_factor(factor, own));
+        } else {
+            inside = max(inside, edge_factors[factor]);
         }
     }
-    if params.lod == LOD_ERROR {
-        factor = level(params.partitioning, factor);
-    } else if params.partitioning == PARTITIONING_POW2 {
-        factor = round_pow2(factor);
-    }
-    edge_factors[index] = factor;
+    edge_factors[params.factor_count + index] = inside;
 }

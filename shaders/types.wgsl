@@ -27,8 +27,8 @@ struct Params {
     // Object units.
     height_scale: f32,
     midlevel: f32,
-    // How far level l of any height map is from level 0 at most, in object units: four levels an element.
-    detail: array<vec4<f32>, 4>,
+    // 1 where some edge's sides have different height images, and factors are by error: patches have factors of their own.
+    mixed: u32,
 }
 
 // In place of a LOD: factors are given patch by patch.
@@ -74,15 +74,21 @@ struct CurveNet {
 
 // What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
 // corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, and its dominant
-// side likewise, and its length. Of a corner, behind the factors: how its texture coordinates change, one after the other,
-// as directions.
+// side likewise, and one of its sides' images. Of a corner, behind the factors: how its texture coordinates change, one
+// after the other, as directions. Behind the corners: further images of edges' sides.
 struct Share {
     direction: vec3<f32>,
     level: f32,
     dominant: u32,
-    // How long the edge is at most in its sides' height images, in px of level 0.
+    // How long the edge is at most in a height image, in px of level 0; that image, 1 for the first, 0 for none; and where
+    // the next of its sides' images stands here, 0 for nowhere.
     texels: f32,
+    map: u32,
+    next: u32,
 }
+
+// Levels that a height image has at most.
+const MAX_LEVELS: u32 = 13u;
 
 // One of the height images: width and height of level 0 in px, and where it starts among all heights.
 struct HeightMap {
@@ -114,10 +120,11 @@ struct Chunk {
     triangle_count: u32,
 }
 
-// Indirect arguments of a chunk's two emit dispatches.
+// Indirect arguments of a chunk's two emit dispatches, and of displacement, which takes a vertex an invocation.
 struct EmitArgs {
     vertices: array<u32, 3>,
     triangles: array<u32, 3>,
+    displaced: array<u32, 3>,
 }
 
 // Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices one corner at a time.
@@ -152,9 +159,15 @@ fn key_uv(key: vec2<u32>) -> vec2<u32> {
 
 const WORKGROUP: u32 = 256u;
 
+// Vertices, or triangles, that a workgroup of emission makes.
+const EMIT_ITEMS: u32 = 2048u;
+
 // Work of any size as a grid within 65,535 workgroups a dimension; the index of an invocation in such a grid.
 fn grid(items: u32) -> array<u32, 3> {
-    let workgroups = (items + WORKGROUP - 1u) / WORKGROUP;
+    return workgroup_grid((items + WORKGROUP - 1u) / WORKGROUP);
+}
+
+fn workgroup_grid(workgroups: u32) -> array<u32, 3> {
     let x = min(workgroups, 32768u);
     return array<u32, 3>(x, (workgroups + 32767u) / 32768u, 1u);
 }

@@ -8,7 +8,7 @@ use crate::measure::{
     Accuracy, AccuracyOptions, AskedFactors, Deviant, Deviation, Field, Measured, Measurement, ScreenView, Sizes,
     Survey, Yardstick,
 };
-use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Topology, with_rim};
+use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::Settings;
 use crate::tessellate::{Inputs, LodView, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
@@ -56,7 +56,9 @@ pub struct Preparation {
 /// What the file holds can't be shown, there is no such height image, or `progress` was cancelled.
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
-    let read = Arc::new(source.load(progress)?);
+    // Large images take longer than most meshes.
+    let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
+    let read = Arc::new(source.load(&of_mesh)?);
     let loaded = Instant::now();
     let mut topology = Topology::build_within(&read, preparation.weld, progress)?;
     let (mut mesh, mut made) = (read.clone(), Rim::default());
@@ -70,7 +72,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         (topology, made) = (with_rim.1, with_rim.2);
     }
     if let Some(heights) = &preparation.heights {
-        let heights = Arc::new(heights.load(&mesh)?);
+        progress.enter(Stage::Heights);
+        let heights = Arc::new(heights.load(&mesh, &progress.part(0.4, 1.0))?);
         let mesh = Arc::make_mut(&mut mesh);
         mesh.warnings.extend(heights.warning(mesh));
         mesh.heights = Some(heights);
@@ -85,6 +88,21 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
     })
+}
+
+/// How often something is timed: as many times as fit `within`, but from `least` to `most`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Runs {
+    pub least: u32,
+    pub most: u32,
+    pub within: Duration,
+}
+
+impl Default for Runs {
+    /// For one picture, beside which nobody waits for long.
+    fn default() -> Self {
+        Self { least: 1, most: 5, within: Duration::from_secs(2) }
+    }
 }
 
 /// A device with every pipeline compiled. Cheap to clone; clones share everything.
@@ -259,13 +277,19 @@ impl Engine {
         Ok(field)
     }
 
-    /// How far what is emitted is from a truth, both ways, and seen from `view`; none if nothing is emitted. The counts must
-    /// be known.
+    /// What is emitted held against a truth, in px as seen from `view`; none if nothing is emitted that has an area. All of
+    /// the mesh must be emitted, and the counts be known.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn accuracy(&self, scene: &mut Scene, truth: &Truth, view: &LodView) -> Result<Option<Accuracy>, GpuError> {
-        let mut measurement = Measurement::new(truth, Some(view), AccuracyOptions::default());
+    pub fn accuracy(
+        &self,
+        scene: &mut Scene,
+        truth: &Truth,
+        view: &LodView,
+        options: AccuracyOptions,
+    ) -> Result<Option<Accuracy>, GpuError> {
+        let mut measurement = Measurement::new(truth, Some(view), options);
         self.read_chunks(scene, true, |_, vertices, triangles| measurement.take(vertices, triangles))?;
         Ok(measurement.finish())
     }
@@ -323,8 +347,7 @@ impl Engine {
         Ok(out)
     }
 
-    /// Median ms of every pass over complete recomputations, after one to warm up: five, or as many as fit two seconds,
-    /// but at least one.
+    /// Median ms of every pass over complete recomputations, after one to warm up.
     ///
     /// # Errors
     /// The device was lost.
@@ -334,12 +357,13 @@ impl Engine {
         target: &Target,
         camera: &Camera,
         settings: &Settings,
+        runs: Runs,
     ) -> Result<Vec<PassTime>, GpuError> {
         let mut timing = Timing::on(&self.gpu);
         let mut all: Vec<Vec<PassTime>> = Vec::new();
         let start = Instant::now();
-        for run in 0..=5 {
-            if run > 1 && start.elapsed() > Duration::from_secs(2) {
+        for run in 0..=runs.most {
+            if run > runs.least && start.elapsed() > runs.within {
                 break;
             }
             scene.tessellator.forget();

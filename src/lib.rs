@@ -7,6 +7,7 @@
 
 pub mod adjacency_file;
 pub mod app;
+pub mod chart;
 pub mod cli;
 pub mod engine;
 pub mod export;
@@ -15,6 +16,8 @@ pub mod gallery;
 pub mod gpu;
 pub mod measure;
 pub mod mesh;
+pub mod numbers;
+pub mod plot;
 pub mod render;
 pub mod settings;
 pub mod stability;

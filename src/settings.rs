@@ -1,5 +1,6 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
+use clap::ValueEnum;
 use glam::{Mat4, Vec2};
 
 use crate::mesh::Mesh;
@@ -294,6 +295,11 @@ impl Settings {
             view,
         }
     }
+}
+
+/// What a value is called on the command line, and wherever settings are written down.
+pub fn option_name(value: impl ValueEnum) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 #[cfg(test)]

@@ -40,9 +40,9 @@ impl Playback {
 }
 
 impl App {
-    /// Clip and time that are wanted; none at rest.
+    /// Clip and time that are wanted; none at rest, and while a rim keeps the mesh from moving.
     pub fn moment(&self) -> Option<Moment> {
-        self.playback.moment()
+        self.playback.moment().filter(|moment| moment.clip < self.clips().len())
     }
 
     /// Whether a clip is playing.
@@ -70,19 +70,29 @@ impl App {
 
     /// Takes what depends on the extent of what is shown from all of the clip.
     pub(super) fn frame_clip(&mut self) {
+        let clip = self.moment().map(|moment| moment.clip);
         if let Some(document) = &mut self.document {
-            document.scene.frame_clip(self.playback.clip);
+            document.scene.frame_clip(clip);
         }
     }
 
-    /// Keeps clip and time for a document that is the same mesh loaded again; forgets them for another.
+    /// Keeps clip and time for a document that is the same mesh loaded again, also through a rim, with which it doesn't move;
+    /// forgets them for another.
     pub(super) fn keep_playback(&mut self, is_same: bool) {
-        let is_there = self.playback.clip.is_none_or(|clip| clip < self.clips().len());
-        if !is_same || !is_there {
+        let count = self.clips().len();
+        if !is_same {
             self.playback = Playback::default();
+        } else if count == 0 {
+            self.playback.playing = None;
+        } else if self.playback.clip.is_some_and(|clip| clip >= count) {
+            self.playback = Playback { speed: self.playback.speed, ..Playback::default() };
         }
         if self.playback.clip.is_some() {
             self.frame_clip();
+        }
+        // Before anything is drawn of it.
+        if let Err(error) = self.pose_now() {
+            self.error = Some(error.to_string());
         }
     }
 

@@ -16,6 +16,10 @@ const DISPLACEMENTS: [(Displacement, &str); 4] = [
     (Displacement::PerPatch, "Per patch"),
 ];
 
+/// What an image of one's own does.
+pub(super) const HEIGHT_IMAGE: &str =
+    "Displaces the mesh by a PNG or JPEG image over all materials, its brightness as stored.";
+
 /// Whether a path names an image rather than a mesh.
 fn is_image(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
@@ -30,6 +34,11 @@ impl App {
         } else {
             self.open(context, Source::File(path));
         }
+    }
+
+    /// Asks for an image to displace the mesh by.
+    pub(super) fn height_dialog(&mut self, context: &egui::Context) {
+        self.dialog("Open a height image", "Images", &["png", "jpg", "jpeg"], context);
     }
 
     /// Loads the same mesh again with other heights, which displace it once they are there.
@@ -64,8 +73,8 @@ impl App {
                 chosen = Some(Some(HeightSource::Materials));
             }
             let is_file = matches!(heights, Some(HeightSource::File(_)));
-            if entry("Image file…", is_file, "A PNG or JPEG image over all materials, its brightness as stored.") {
-                self.dialog("Open a height image", "Images", &["png", "jpg", "jpeg"], ui.ctx());
+            if entry("Image file…", is_file, HEIGHT_IMAGE) {
+                self.height_dialog(ui.ctx());
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(

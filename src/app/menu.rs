@@ -4,6 +4,7 @@ use egui::text::CCursor;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
+use super::heights::HEIGHT_IMAGE;
 use crate::mesh::{Shape, Source};
 use crate::render::{Camera, Standpoint};
 use crate::settings::{FACTOR_RANGE, Overlay};
@@ -101,6 +102,10 @@ impl App {
         if entry(ui, "Open path…", &OPEN_PATH) {
             self.type_path();
         }
+        let height_image = ui.add_enabled(self.document.is_some(), egui::Button::new("Height image…"));
+        if height_image.on_hover_text(HEIGHT_IMAGE).clicked() {
+            self.height_dialog(ui.ctx());
+        }
         let reload = egui::Button::new("Reload").shortcut_text("R");
         if ui.add_enabled(self.document.is_some(), reload).clicked() {
             self.reload(ui.ctx());
@@ -168,20 +173,16 @@ impl App {
 
     /// Shows all of the mesh: all through its clip, and as far as heights lift it.
     pub(super) fn frame(&mut self) {
-        if let Some(camera) = self.framing() {
-            self.camera = camera;
+        if let Some(document) = &self.document {
+            self.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.size());
+            self.framed = Some(self.camera);
         }
     }
 
-    /// Whether the camera is where [`Self::frame`] puts it.
+    /// Whether the camera still is where [`Self::frame`] last put it; it may have turned.
     pub(super) fn is_framed(&self) -> bool {
-        self.framing() == Some(self.camera)
-    }
-
-    fn framing(&self) -> Option<Camera> {
-        let mut camera = self.camera;
-        camera.frame(&self.document.as_ref()?.scene.drawn_bounds(&self.settings), self.viewport.size());
-        Some(camera)
+        let place = |camera: &Camera| (camera.target, camera.distance);
+        self.framed.as_ref().map(place) == Some(place(&self.camera))
     }
 
     /// Opens the window that takes a path, with that of the open file in it.
@@ -224,16 +225,6 @@ impl App {
 
     /// Keys that work wherever the pointer is, unless text is being typed.
     pub(super) fn shortcuts(&mut self, context: &egui::Context) {
-        let taken = |shortcut| context.input_mut(|input| input.consume_shortcut(shortcut));
-        if taken(&OPEN) {
-            self.open_dialog(context);
-        }
-        if taken(&OPEN_PATH) {
-            self.type_path();
-        }
-        if taken(&QUIT) {
-            context.send_viewport_cmd(egui::ViewportCommand::Close);
-        }
         // A list that is open takes the key for itself.
         if context.input(|input| input.key_pressed(Key::Escape)) && !egui::Popup::is_any_open(context) {
             if self.load.is_none() && self.viewport.is_long() {
@@ -246,6 +237,16 @@ impl App {
                 self.shows_keys = false;
                 self.deselect();
             }
+        }
+        let taken = |shortcut| context.input_mut(|input| input.consume_shortcut(shortcut));
+        if taken(&OPEN) {
+            self.open_dialog(context);
+        }
+        if taken(&OPEN_PATH) {
+            self.type_path();
+        }
+        if taken(&QUIT) {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         if context.egui_wants_keyboard_input() {
             return;

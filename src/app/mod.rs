@@ -99,6 +99,8 @@ pub struct App {
     render_state: egui_wgpu::RenderState,
     settings: Settings,
     camera: Camera,
+    /// As it was when it last framed the whole mesh.
+    framed: Option<Camera>,
     /// Where the split was when it was last on.
     last_split: f32,
     /// What displacement was before it was last switched.
@@ -145,6 +147,7 @@ impl App {
             render_state,
             settings: Settings::opening(),
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
+            framed: None,
             last_split: 0.5,
             last_displacement: Displacement::Off,
             frozen: None,
@@ -267,7 +270,6 @@ impl App {
         self.load = None;
         match result {
             Ok(document) => {
-                let frames = !keep_view || self.is_framed();
                 if !keep_view {
                     self.frozen = None;
                     self.forget_truth();
@@ -280,7 +282,7 @@ impl App {
                 }
                 self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
                 self.keep_playback(keep_view);
-                if frames {
+                if !keep_view {
                     self.frame();
                 }
                 self.measuring = Measuring::default();

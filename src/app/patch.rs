@@ -15,7 +15,7 @@ use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
 use crate::tessellate::{
-    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_side,
+    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_plan, domain_side,
     domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
 };
 
@@ -270,7 +270,7 @@ impl Shown<'_> {
         ui.label(dense(format!("{:<5}{:>9}{:>9}{:>9}", "point", "u", "v", "w")).weak());
         // A triangle of a tessellation that isn't measured yet has no numbers.
         let points = self.factors.filter(|&factors| hit.number < triangle_count(factors));
-        let points = points.map(|factors| domain_triangle(factors, hit.number));
+        let points = points.map(|factors| domain_triangle(&domain_plan(factors), hit.number));
         for (k, vertex) in hit.vertices.iter().enumerate() {
             let point = points.map_or_else(|| "…".into(), |points| points[k].to_string());
             let [fixed, decimals] = weights_text(self.convention.domain_weights(Vertex::domain(vertex)));

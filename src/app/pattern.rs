@@ -4,7 +4,9 @@ use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 use super::widgets::rgb;
 use crate::render::layout::FACTOR_COLORS;
-use crate::tessellate::{FIXED_ONE, PatchFactors, domain_point, domain_triangle, point_count, triangle_count};
+use crate::tessellate::{
+    FIXED_ONE, PatchFactors, domain_plan, domain_point, domain_triangle, point_count, triangle_count,
+};
 
 /// Width and height of the plot, in points.
 const SIZE: Vec2 = vec2(250.0, 244.0);
@@ -33,7 +35,8 @@ pub fn pattern_plot(
 ) -> Response {
     let (rect, response) = ui.allocate_exact_size(SIZE, Sense::hover());
     let points: Vec<Pos2> = factors.map_or_else(Vec::new, |factors| {
-        (0..point_count(factors)).map(|i| place(rect, domain_point(factors, i))).collect()
+        let plan = domain_plan(factors);
+        (0..point_count(factors)).map(|i| place(rect, domain_point(&plan, i))).collect()
     });
     if let Some(factors) = factors {
         draw_triangles(ui, factors, &points, hit.filter(|&hit| hit < triangle_count(factors)));
@@ -63,14 +66,15 @@ fn place(rect: Rect, [u, v]: [u32; 2]) -> Pos2 {
 
 fn draw_triangles(ui: &Ui, factors: PatchFactors, points: &[Pos2], hit: Option<u32>) {
     let painter = ui.painter();
+    let plan = domain_plan(factors);
     let at = |i: u32| points[i as usize];
     if let Some(hit) = hit {
-        let corners = domain_triangle(factors, hit).map(at).to_vec();
+        let corners = domain_triangle(&plan, hit).map(at).to_vec();
         painter.add(Shape::convex_polygon(corners, ui.visuals().selection.bg_fill, Stroke::NONE));
     }
     let stroke = Stroke::new(if points.len() > 600 { 0.5 } else { 1.0 }, ui.visuals().weak_text_color());
     let edges = (0..triangle_count(factors)).flat_map(|t| {
-        let [a, b, c] = domain_triangle(factors, t);
+        let [a, b, c] = domain_triangle(&plan, t);
         [(a, b), (b, c), (c, a)]
     });
     // Two triangles share an edge and run it in opposite directions; the outline is drawn by itself.
@@ -112,7 +116,7 @@ fn hover(ui: &Ui, response: Response, factors: PatchFactors, points: &[Pos2]) ->
         return response;
     }
     ui.painter().circle_stroke(points[i as usize], 4.0, ui.visuals().selection.stroke);
-    let [fixed, decimals] = weights_text(domain_point(factors, i));
+    let [fixed, decimals] = weights_text(domain_point(&domain_plan(factors), i));
     response.on_hover_ui_at_pointer(|ui| {
         ui.label(format!("Point {i}"));
         for text in [format!("{:>9}{:>9}{:>9}", "u", "v", "w"), fixed, decimals] {

@@ -12,7 +12,7 @@ use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
-use crate::mesh::Moment;
+use crate::mesh::{Moment, Stage};
 use crate::render::t_junction_lines;
 use crate::settings::Colors;
 
@@ -73,6 +73,7 @@ impl App {
         self.pose()?;
         self.mark();
         let deviation = self.deviation_shown();
+        let moment = self.moment();
         let Some(document) = &mut self.document else { return Ok(()) };
         let viewport = vec2(size[0] as f32, size[1] as f32);
         let view = self.frozen.unwrap_or_else(|| self.camera.lod_view(viewport, &document.scene.bounds));
@@ -90,7 +91,7 @@ impl App {
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
         self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
-        let is_posed = document.moment == self.playback.moment();
+        let is_posed = document.moment == moment;
         let shown = is_posed && self.viewport.drawn.as_ref() == Some(&wanted);
         self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
         let still = shown && !self.playback.is_playing();
@@ -113,10 +114,19 @@ impl App {
     /// Takes the moment that is wanted by now, unless a picture of another is under way: that is finished first, so that
     /// playing shows pictures however long one takes.
     fn pose(&mut self) -> Result<(), GpuError> {
-        let Some(document) = self.document.as_mut().filter(|_| self.viewport.is_free()) else { return Ok(()) };
-        if document.moment != self.playback.moment() {
-            document.moment = self.playback.moment();
-            document.scene.set_moment(document.moment)?;
+        if self.viewport.is_free() { self.pose_now() } else { Ok(()) }
+    }
+
+    /// Takes the moment that is wanted.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub(super) fn pose_now(&mut self) -> Result<(), GpuError> {
+        let wanted = self.moment();
+        let Some(document) = &mut self.document else { return Ok(()) };
+        if document.moment != wanted {
+            document.moment = wanted;
+            document.scene.set_moment(wanted)?;
         }
         Ok(())
     }
@@ -245,7 +255,10 @@ impl App {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(load) = &self.load {
-            let title = format!("Loading {}", load.source.title());
+            let title = match (load.progress.stage(), &load.preparation.heights) {
+                (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
+                _ => format!("Loading {}", load.source.title()),
+            };
             let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what is open stays open.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.load = None;

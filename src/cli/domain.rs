@@ -7,7 +7,7 @@ use super::tessellate::Device;
 use super::{CliError, read_text};
 use crate::gpu::{DomainPass, DomainPattern, Gpu};
 use crate::tessellate::{
-    HullFactors, Partitioning, domain_point, domain_triangle, point_count, process, triangle_count,
+    HullFactors, Partitioning, domain_plan, domain_point, domain_triangle, point_count, process, triangle_count,
 };
 
 #[derive(Debug, clap::Args)]
@@ -75,9 +75,10 @@ fn is_taken(partitioning: Partitioning, [e0, e1, e2, inside]: FactorSet) -> bool
 
 fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &FactorSet) -> DomainPattern {
     let factors = process(partitioning, [e0, e1, e2], inside);
+    let plan = domain_plan(factors);
     DomainPattern {
-        points: (0..point_count(factors)).map(|i| domain_point(factors, i)).collect(),
-        triangles: (0..triangle_count(factors)).map(|t| domain_triangle(factors, t)).collect(),
+        points: (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect(),
+        triangles: (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect(),
     }
 }
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{CliError, WeldOption, file_error, options, write_picture, write_text};
+use super::{CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
 use crate::engine::{Engine, Preparation};
-use crate::gallery::{Look, PAGE, draw, exhibits, page};
+use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
 use crate::mesh::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
@@ -28,7 +28,8 @@ pub struct Args {
     /// The height that stays where it is, 0 to 1
     #[arg(long, value_name = "H", default_value_t = 0.5, value_parser = options::fraction)]
     pub midlevel: f32,
-    /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64
+    /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64; lower where a tile would have more than
+    /// about 2,000,000 triangles
     #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::factor)]
     pub factor: f32,
     /// Degrees from the front to the right, and degrees upwards
@@ -37,6 +38,11 @@ pub struct Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    if args.camera.distance.is_some() {
+        return Err(CliError::Usage(
+            "--camera takes AZIMUTH,ELEVATION here: every tile is filled, from its own distance",
+        ));
+    }
     let look = Look {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },
@@ -48,12 +54,20 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     };
     let engine = Engine::headless()?;
     std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &error))?;
-    let mut all = Vec::new();
+    let mut gallery = Gallery::new(look, &engine);
+    warn(&gallery.warnings()?);
+    let (mut all, mut telling) = (Vec::new(), Telling::new());
     for exhibit in exhibits() {
-        let (picture, shown) = draw(&exhibit, &look, &engine)?;
+        let (picture, shown) = gallery.draw(&exhibit, |tile| telling.say(|| place(&exhibit, tile)))?;
         write_picture(&args.output.join(format!("{}.png", exhibit.name)), &picture.into())?;
         all.push((exhibit, shown));
     }
     let subject = args.file.as_ref().map(Source::title);
     write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))
+}
+
+/// Which tile is being drawn.
+fn place(exhibit: &Exhibit, tile: usize) -> String {
+    let (number, count) = (tile + 1, exhibit.tiles.len());
+    format!("{}, {number} of {count}: {}", exhibit.name, exhibit.tiles[tile].name)
 }

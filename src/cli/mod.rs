@@ -2,6 +2,7 @@
 
 mod adjacency;
 mod animation;
+mod chart;
 mod domain;
 mod factors;
 mod gallery;
@@ -18,6 +19,7 @@ mod truth;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::{Duration, Instant};
 
 use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -32,7 +34,7 @@ use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
 use crate::gpu::GpuError;
 use crate::measure::CompareError;
-use crate::mesh::{LoadError, Mesh, Progress, Source};
+use crate::mesh::{LoadError, Progress, Source};
 
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
@@ -68,6 +70,13 @@ pub enum Command {
     Stability(stability::Args),
     /// Draw every technique side by side, and a page that says what each is and whose
     Gallery(gallery::Args),
+    /// Time every method at many settings, hold what it emits against the truth, and chart error against time and triangles
+    ///
+    /// The truth is a shape's exact surface, or a mesh given with --truth. Without either, errors are px on screen between what
+    /// is emitted and the surface that it stands for, and surfaces are not compared with each other. Ctrl-C ends after the
+    /// setting under way: its rows are in the CSV, the picture is of what was done, and the exit code is 130. A second one ends
+    /// at once.
+    Chart(chart::Args),
     /// Say what a file holds, and what of it was left out
     Info(info::Args),
 }
@@ -119,6 +128,10 @@ pub enum CliError {
     NoTruth { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
+    #[error("interrupted after {done} of {all} settings: what was done is written")]
+    Interrupted { done: usize, all: usize },
+    #[error(transparent)]
+    Chart(#[from] crate::plot::ChartError),
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
 }
@@ -133,6 +146,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Adjacency(args) => adjacency::run(&args),
         Command::Stability(args) => stability::run(&args),
         Command::Gallery(args) => gallery::run(&args),
+        Command::Chart(args) => chart::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match result {
@@ -141,6 +155,10 @@ pub fn run(command: Command) -> ExitCode {
         Err(error @ CliError::Usage(_)) => {
             fail(&error);
             ExitCode::from(2)
+        }
+        Err(error @ CliError::Interrupted { .. }) => {
+            fail(&error);
+            ExitCode::from(chart::INTERRUPTED)
         }
         Err(error) => fail(&error),
     }
@@ -211,12 +229,30 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = crate::engine::load(source, preparation, &Progress::default())?;
-    warn(&loaded.mesh);
+    warn(&loaded.mesh.warnings);
     Ok(loaded)
 }
 
-fn warn(mesh: &Mesh) {
-    for warning in &mesh.warnings {
+/// Says on standard error how far a long command is, at most once a second.
+struct Telling(Instant);
+
+impl Telling {
+    const EVERY: Duration = Duration::from_secs(1);
+
+    fn new() -> Self {
+        Self(Instant::now())
+    }
+
+    fn say(&mut self, text: impl FnOnce() -> String) {
+        if self.0.elapsed() >= Self::EVERY {
+            self.0 = Instant::now();
+            let _ = writeln!(std::io::stderr(), "pnaen: {}", text());
+        }
+    }
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
         let _ = writeln!(std::io::stderr(), "pnaen: warning: {warning}");
     }
 }

@@ -377,11 +377,11 @@ pub fn height_scale(text: &str) -> Result<f32, String> {
     within(text, HEIGHT_RANGE)
 }
 
-fn pixels(text: &str) -> Result<f32, String> {
+pub fn pixels(text: &str) -> Result<f32, String> {
     within(text, PIXELS_RANGE)
 }
 
-fn tolerance(text: &str) -> Result<f32, String> {
+pub fn tolerance(text: &str) -> Result<f32, String> {
     within(text, TOLERANCE_RANGE)
 }
 

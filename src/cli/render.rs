@@ -7,9 +7,9 @@ use super::truth::{AccuracyStats, DeviationStats, Held};
 use super::{
     CliError, GivenOption, SurfaceOptions, TruthOption, load, options, reference, to_json, write_picture, write_text,
 };
-use crate::engine::{Engine, Loaded};
+use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
-use crate::measure::{Field, Measured, ScreenView, patch_edges};
+use crate::measure::{AccuracyOptions, Field, Measured, ScreenView, patch_edges};
 use crate::mesh::{LoadError, Moment, Progress, Source, t_junctions};
 use crate::render::{Camera, LineSegment, Scene, Target, deviation_scale, patch_lines, t_junction_lines, worst_lines};
 use crate::settings::{Colors, Overlay, Overlays, Settings};
@@ -200,7 +200,7 @@ impl Shot {
         let Self { engine, scene, target, camera, settings, .. } = self;
         let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
         let deviation = if args.measure_error { engine.deviation(scene, &inputs)? } else { None };
-        let passes = engine.time(scene, target, camera, settings)?;
+        let passes = engine.time(scene, target, camera, settings, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.partitioning);
         if settings.used_lod() == Lod::Error {
@@ -213,7 +213,7 @@ impl Shot {
         let sizes = engine.sizes(scene, view)?;
         let accuracy = match self.held.as_ref().and_then(Held::truth) {
             Some((name, truth)) => {
-                let accuracy = engine.accuracy(scene, truth, &inputs.view)?;
+                let accuracy = engine.accuracy(scene, truth, &inputs.view, AccuracyOptions::default())?;
                 accuracy.map(|accuracy| AccuracyStats::new(name, &accuracy, measured.culled.total() == 0))
             }
             None => None,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use clap::ValueEnum;
 use serde::Serialize;
 
 use super::given::FactorsFile;
@@ -12,7 +11,7 @@ use crate::gpu::PassTime;
 use crate::measure::{Measured, ScreenView, ulp};
 use crate::mesh::EdgeCounts;
 use crate::render::Scene;
-use crate::settings::Settings;
+use crate::settings::{Settings, option_name};
 use crate::tessellate::Displacement;
 
 /// What was done and what it cost. Times are medians in ms.
@@ -102,11 +101,6 @@ impl SettingsStats {
             midlevel: is_displaced.then_some(settings.midlevel),
         }
     }
-}
-
-/// What a value is called on the command line.
-fn option_name(value: impl ValueEnum) -> String {
-    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 #[derive(Debug, Serialize)]

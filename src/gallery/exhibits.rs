@@ -105,7 +105,7 @@ fn normals() -> Exhibit {
 
 fn patterns() -> Exhibit {
     let of = |partitioning: Partitioning| Tile {
-        name: format!("{partitioning}, factor 5.4"),
+        name: partitioning.to_string(),
         about: partitioning.about().to_owned(),
         settings: Settings { partitioning, ..settings() },
         factor: Some(5.4),

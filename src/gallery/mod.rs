@@ -2,20 +2,27 @@
 
 mod exhibits;
 mod page;
+mod tile;
 
-use image::{DynamicImage, RgbImage};
+use std::sync::Arc;
+
+use glam::Vec3;
+use image::RgbImage;
 use thiserror::Error;
 
 pub use exhibits::{Exhibit, Tile, exhibits};
 pub use page::{PAGE, page};
+pub use tile::Shown;
 
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
-use crate::measure::{ChartError, sheet};
+use crate::measure::sheet;
 use crate::mesh::{LoadError, Progress, Source};
+use crate::plot::ChartError;
 use crate::render::{Camera, Scene, Target};
-use crate::settings::{ARENA_BYTES, Overlays, Settings};
-use crate::tessellate::Displacement;
+use crate::settings::{ARENA_BYTES, Settings};
+use crate::tessellate::{Displacement, Surface, reach};
+use tile::{Wall, draw_tile};
 
 /// Why there is no gallery.
 #[derive(Debug, Error)]
@@ -31,8 +38,15 @@ pub enum GalleryError {
 /// Width and height of one tile, in px.
 const TILE: [u32; 2] = [300, 240];
 
-/// How much farther away than what shows the mesh: surfaces and heights stand out.
-const AWAY: f32 = 1.15;
+/// Px that captions are high: pages show four tiles in a row at two thirds of their size.
+const TEXT: u32 = 24;
+
+/// The factor at which it is looked where a surface goes, before anything is drawn.
+const LOOK_FACTOR: f32 = 4.0;
+
+/// A surface that goes farther from the mesh's middle, in bounding radii, isn't stepped back for: patches that fly away
+/// leave the picture, and what everybody came to see stays.
+const FARTHEST: f32 = 1.1;
 
 /// What is looked at, and how.
 #[derive(Clone, Debug)]
@@ -50,82 +64,137 @@ pub struct Look {
     pub elevation: f32,
 }
 
-/// What one tile showed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
-    pub triangles: u64,
-    /// Edge points whose positions differ in at least one bit, and the widest gap in object units.
-    pub different_bits: u64,
-    pub max_gap: f64,
-    /// Edge points whose normals differ though the mesh's agree.
-    pub different_normals: u64,
-    pub folds: u64,
+/// The room in which exhibits are hung.
+pub struct Gallery<'a> {
+    look: Look,
+    engine: &'a Engine,
+    /// What was loaded already: a mesh of one's own is in every exhibit.
+    loaded: Vec<Loaded>,
 }
 
-/// Draws an exhibit: its tiles in rows, and what each showed, in their order.
-///
-/// # Errors
-/// [`GalleryError`].
-pub fn draw(exhibit: &Exhibit, look: &Look, engine: &Engine) -> Result<(RgbImage, Vec<Shown>), GalleryError> {
-    let target = Target::new(&engine.gpu, TILE)?;
-    let (mut parts, mut all) = (Vec::new(), Vec::new());
-    let mut known: Option<(f32, Loaded, Scene)> = None;
-    for tile in &exhibit.tiles {
-        if known.as_ref().is_none_or(|(rim, ..)| *rim != tile.rim) {
-            let loaded = prepared(exhibit, look, tile.rim)?;
-            let scene = engine.scene(&loaded, ARENA_BYTES)?;
-            known = Some((tile.rim, loaded, scene));
+impl<'a> Gallery<'a> {
+    pub fn new(look: Look, engine: &'a Engine) -> Self {
+        Self { look, engine, loaded: Vec::new() }
+    }
+
+    /// Draws an exhibit: its tiles in rows, and what each showed, in their order. `starting` is told each tile's number before
+    /// it is drawn.
+    ///
+    /// # Errors
+    /// [`GalleryError`].
+    pub fn draw(
+        &mut self,
+        exhibit: &Exhibit,
+        mut starting: impl FnMut(usize),
+    ) -> Result<(RgbImage, Vec<Shown>), GalleryError> {
+        let engine = self.engine;
+        let target = Target::new(&engine.gpu, TILE)?;
+        let camera = self.camera(exhibit, &target)?;
+        let (mut parts, mut all) = (Vec::new(), Vec::new());
+        let mut hung: Option<(f32, Loaded, Scene)> = None;
+        for (index, tile) in exhibit.tiles.iter().enumerate() {
+            starting(index);
+            if hung.as_ref().is_none_or(|(rim, ..)| *rim != tile.rim) {
+                let loaded = self.prepared(exhibit, tile.rim)?;
+                let scene = engine.scene(&loaded, ARENA_BYTES)?;
+                hung = Some((tile.rim, loaded, scene));
+            }
+            let Some((_, loaded, scene)) = &mut hung else { continue };
+            let settings = self.settings(tile);
+            let wall = Wall { engine, target: &target, camera: &camera, overlays: exhibit.overlays };
+            let (picture, shown) = draw_tile(&wall, settings, loaded, scene)?;
+            parts.push((tile.name.clone(), picture));
+            all.push(shown);
         }
-        let Some((_, loaded, scene)) = &mut known else { continue };
-        let (picture, shown) = draw_tile(tile, exhibit.overlays, look, engine, &target, loaded, scene)?;
-        parts.push((tile.name.clone(), picture));
-        all.push(shown);
+        let columns = if parts.len() % 4 == 0 { 4 } else { 3 };
+        Ok((sheet(&parts, columns, TEXT)?, all))
     }
-    let columns = if parts.len() % 4 == 0 { 4 } else { 3 };
-    Ok((sheet(&parts, columns)?, all))
-}
 
-/// The exhibit's mesh; with the heights that suit a shape made in code where it is to be displaced and nobody named others.
-fn prepared(exhibit: &Exhibit, look: &Look, rim: f32) -> Result<Loaded, LoadError> {
-    let source = look.source.clone().unwrap_or(Source::Shape(exhibit.shape));
-    let preparation = Preparation { rim, ..look.preparation.clone() };
-    let mut loaded = load(&source, &preparation, &Progress::new())?;
-    let displaced = exhibit.tiles.iter().any(|tile| tile.settings.displacement != Displacement::Off);
-    if displaced && loaded.mesh.heights.is_none() {
-        let mut mesh = (*loaded.mesh).clone();
-        mesh.heights = Some(std::sync::Arc::new(exhibits::waves(&mesh)));
-        loaded.mesh = std::sync::Arc::new(mesh);
+    /// What a mesh of one's own has to be said of: see [`crate::mesh::Mesh::warnings`].
+    ///
+    /// # Errors
+    /// It can't be loaded.
+    pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
+        match self.look.source.clone() {
+            Some(source) => Ok(self.load(source, 0.0)?.mesh.warnings.clone()),
+            None => Ok(Vec::new()),
+        }
     }
-    Ok(loaded)
-}
 
-fn draw_tile(
-    tile: &Tile,
-    overlays: Overlays,
-    look: &Look,
-    engine: &Engine,
-    target: &Target,
-    loaded: &Loaded,
-    scene: &mut Scene,
-) -> Result<(RgbImage, Shown), GpuError> {
-    let framing = Camera::framing(&scene.bounds, target.viewport());
-    let distance = AWAY * framing.distance;
-    let camera = Camera { azimuth: look.azimuth, elevation: look.elevation, distance, ..framing };
-    let Look { height_scale, midlevel, factor, .. } = *look;
-    let factor = tile.factor.unwrap_or(factor);
-    let settings = Settings { overlays, factor, height_scale, midlevel, ..tile.settings };
-    let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
-    engine.count(scene, &inputs, &mut Timing::Off)?;
-    let measured = engine.measure(scene)?;
-    let lines = if overlays.cracks { measured.crack_lines(&loaded.topology) } else { Vec::new() };
-    scene.set_lines(&engine.gpu, &lines);
-    engine.draw(scene, target, &camera, &settings, &mut Timing::Off)?;
-    let shown = Shown {
-        triangles: scene.tessellator.totals().1,
-        different_bits: measured.cracks.different_bits,
-        max_gap: measured.cracks.max_gap(),
-        different_normals: measured.cracks.different_normals,
-        folds: measured.folds,
-    };
-    Ok((DynamicImage::from(target.read(&engine.gpu)?).to_rgb8(), shown))
+    /// One camera for all tiles of an exhibit, so that they can be compared: filled by the mesh under all of its surfaces, and
+    /// by as far as anything is displaced.
+    fn camera(&mut self, exhibit: &Exhibit, target: &Target) -> Result<Camera, GalleryError> {
+        let loaded = self.prepared(exhibit, 0.0)?;
+        let mut scene = self.engine.scene(&loaded, ARENA_BYTES)?;
+        let framing = Camera::framing(&scene.bounds, target.viewport());
+        let mut camera = Camera { azimuth: self.look.azimuth, elevation: self.look.elevation, ..framing };
+        let view = camera.lod_view(target.viewport(), &scene.bounds);
+        let mut places: Vec<Vec3> = loaded.mesh.corners.iter().map(|corner| corner.position).collect();
+        let (mut seen, mut farthest): (Vec<Surface>, f32) = (Vec::new(), 0.0);
+        for tile in &exhibit.tiles {
+            let settings = self.settings(tile);
+            farthest = farthest.max(reach(&loaded.mesh, &settings.inputs(view)));
+            if seen.contains(&settings.surface) {
+                continue;
+            }
+            seen.push(settings.surface);
+            let plain = Settings { displacement: Displacement::Off, factor: LOOK_FACTOR, ..settings };
+            places.extend(self.places(&mut scene, plain, &camera, target)?);
+        }
+        camera.fit(places.into_iter(), farthest, target.viewport());
+        Ok(camera)
+    }
+
+    /// Where a surface goes; nowhere, if it flies away.
+    fn places(
+        &self,
+        scene: &mut Scene,
+        settings: Settings,
+        camera: &Camera,
+        target: &Target,
+    ) -> Result<Vec<Vec3>, GpuError> {
+        let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+        self.engine.count(scene, &tile::affordable(&inputs, scene), &mut Timing::Off)?;
+        let mut places: Vec<Vec3> = Vec::new();
+        self.engine.read_chunks(scene, false, |_, vertices, _| {
+            places.extend(vertices.iter().map(|vertex| Vec3::from(vertex.position)));
+        })?;
+        let (center, most) = (scene.bounds.center(), FARTHEST * scene.bounds.radius());
+        // Divided first: squares of very small or large lengths leave f32.
+        let near = |place: &Vec3| place.is_finite() && ((*place - center) / most).length() <= 1.0;
+        Ok(if places.iter().all(near) { places } else { Vec::new() })
+    }
+
+    /// What a tile is drawn with.
+    fn settings(&self, tile: &Tile) -> Settings {
+        let Look { height_scale, midlevel, factor, .. } = self.look;
+        Settings { factor: tile.factor.unwrap_or(factor), height_scale, midlevel, ..tile.settings }
+    }
+
+    /// The exhibit's mesh; with the heights that suit a shape made in code where it is to be displaced and nobody named
+    /// others.
+    fn prepared(&mut self, exhibit: &Exhibit, rim: f32) -> Result<Loaded, LoadError> {
+        let source = self.look.source.clone().unwrap_or(Source::Shape(exhibit.shape));
+        let mut loaded = self.load(source, rim)?.clone();
+        let displaced = exhibit.tiles.iter().any(|tile| tile.settings.displacement != Displacement::Off);
+        if displaced && loaded.mesh.heights.is_none() {
+            let mut mesh = (*loaded.mesh).clone();
+            mesh.heights = Some(Arc::new(exhibits::waves(&mesh)));
+            loaded.mesh = Arc::new(mesh);
+        }
+        Ok(loaded)
+    }
+
+    fn load(&mut self, source: Source, rim: f32) -> Result<&Loaded, LoadError> {
+        let preparation = Preparation { rim, ..self.look.preparation.clone() };
+        let known = |loaded: &Loaded| loaded.source == source && loaded.preparation == preparation;
+        let index = match self.loaded.iter().position(known) {
+            Some(index) => index,
+            None => {
+                self.loaded.push(load(&source, &preparation, &Progress::new())?);
+                self.loaded.len() - 1
+            }
+        };
+        Ok(&self.loaded[index])
+    }
 }

@@ -4,9 +4,10 @@ use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 
 use super::layout::{Corner, Curve, CurveNet, Patch};
-use super::relief::{ReliefBuffers, patch_maps, shares};
+use super::relief::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
 use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
+use crate::tessellate::{is_mixed, spans};
 
 /// What a mesh is on the device: its topology, and room for its control nets.
 pub struct MeshBuffers {
@@ -19,9 +20,14 @@ pub struct MeshBuffers {
     pub factor_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
+    /// Of a mesh that [`Self::is_mixed`] followed by what heights ask for inside every patch.
     pub edge_factors: wgpu::Buffer,
     /// What displacement shares, of points, then of factors, then of corners; empty without heights.
     pub shares: wgpu::Buffer,
+    /// What each level of each height image loses.
+    pub details: wgpu::Buffer,
+    /// Whether some edge's sides have different height images.
+    pub is_mixed: bool,
     /// Of a mesh with heights.
     pub relief: Option<ReliefBuffers>,
     pub sharing: Sharing,
@@ -39,14 +45,20 @@ impl MeshBuffers {
     /// A buffer would be larger than the adapter binds.
     pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Result<Self, GpuError> {
         let grouped = Curves::build(mesh, topology, sharing);
-        let mut points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
-        points.extend(patch_maps(mesh.heights.as_deref(), topology).into_iter().map(|map| [0.0, 0.0, 0.0, map]));
-        let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
         let heights = mesh.heights.as_deref();
+        let mut points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
+        points.extend(patch_maps(heights, topology).into_iter().map(|map| [0.0, 0.0, 0.0, map]));
+        let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
         let dominance = heights.map(|heights| Dominance::new(topology, &grouped, &heights.angles));
         let relief =
             dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
-        let shares = dominance.map(|dominance| shares(mesh, topology, &dominance)).unwrap_or_default();
+        let (mut all_shares, mut mixed) = (Vec::new(), false);
+        if let Some((heights, dominance)) = heights.zip(dominance.as_ref()) {
+            let spans = spans(heights, mesh, topology, dominance);
+            all_shares = shares(mesh, dominance, &spans);
+            mixed = is_mixed(&spans, heights, topology, dominance);
+        }
+        let factor_room = grouped.factor_count() as usize + if mixed { topology.patches.len() } else { 0 };
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,
@@ -57,8 +69,10 @@ impl MeshBuffers {
             factor_curves: filled(gpu, "edges", &grouped.factor_curves)?,
             material_patches: filled(gpu, "materials", &material_patches)?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
-            edge_factors: empty::<f32>(gpu, "edge factors", grouped.factor_count() as usize)?,
-            shares: filled(gpu, "shares", &shares)?,
+            edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
+            shares: filled(gpu, "shares", &all_shares)?,
+            details: details(gpu, heights),
+            is_mixed: mixed,
             relief,
             sharing,
             point_count: topology.points.len() as u32,

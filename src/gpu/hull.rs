@@ -2,8 +2,8 @@
 
 use super::buffers::empty;
 use super::pipelines::{bind_group, compute_pipeline, shader_module};
+use super::pipelines::{dispatch, grid};
 use super::recorder::read_buffer;
-use super::tessellator::{dispatch, grid};
 use super::{Gpu, GpuError, MeshBuffers};
 use crate::tessellate::HullFactors;
 

@@ -53,9 +53,9 @@ pub struct Params {
     /// Object units.
     pub height_scale: f32,
     pub midlevel: f32,
-    pub _pad: [u32; 3],
-    /// How far level l of any height map is from level 0 at most, in object units.
-    pub detail: [[f32; 4]; 4],
+    /// 1 where some edge's sides have different height images, and factors are by error: patches have factors of their own.
+    pub mixed: u32,
+    pub _pad: [u32; 2],
 }
 
 /// The run of patches that one scan covers, and what the arena holds.
@@ -114,17 +114,19 @@ pub struct CurveNet {
 
 /// What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
 /// corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, its dominant
-/// side likewise, and its length. Of a corner, behind the factors: how its texture coordinates change, one after the
-/// other, as directions.
+/// side likewise, and one of its sides' images. Of a corner, behind the factors: how its texture coordinates change, one
+/// after the other, as directions. Behind the corners: further images of edges' sides.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Share {
     pub direction: [f32; 3],
     pub level: f32,
     pub dominant: u32,
-    /// How long the edge is at most in its sides' height images, in px of level 0.
+    /// How long the edge is at most in a height image, in px of level 0; that image, 1 for the first, 0 for none; and where
+    /// the next of its sides' images stands here, 0 for nowhere.
     pub texels: f32,
-    pub _pad: [u32; 2],
+    pub map: u32,
+    pub next: u32,
 }
 
 /// One of the height images: width and height of level 0 in px, and where it starts among all heights.
@@ -157,6 +159,7 @@ pub struct Chunk {
 pub struct EmitArgs {
     pub vertices: [u32; 3],
     pub triangles: [u32; 3],
+    pub displaced: [u32; 3],
 }
 
 /// Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices.

@@ -22,7 +22,6 @@ pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: 
         radius: inputs.view.radius,
     };
     let heights = tessellate::displacing(mesh, inputs);
-    let detail = heights.filter(|_| by_error).map_or([0.0; 16], |heights| tessellate::detail(heights, inputs));
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
         factor: if by_distance || lod == Some(Lod::Uniform) { inputs.factor } else { 0.0 },
@@ -46,7 +45,7 @@ pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: 
         displacement: heights.map_or(0, |_| inputs.displacement as u32),
         height_scale: heights.map_or(0.0, |heights| tessellate::height_units(heights, inputs)),
         midlevel: heights.map_or(0.0, |_| inputs.midlevel),
-        _pad: [0; 3],
-        detail: detail.as_chunks().0.try_into().unwrap_or_default(),
+        mixed: u32::from(by_error && heights.is_some() && buffers.is_mixed),
+        _pad: [0; 2],
     }
 }

@@ -1,6 +1,7 @@
 //! Shader modules put together from their rooms, and the compute pipelines made of them.
 
 use super::Gpu;
+use crate::tessellate::Normals;
 
 /// Rooms of the tessellator itself, part of every module that tessellates.
 const DOMAIN: [&str; 3] = [
@@ -64,12 +65,14 @@ pub struct ComputePipelines {
     pub curve_nets: wgpu::ComputePipeline,
     pub centers: wgpu::ComputePipeline,
     pub edge_factors: wgpu::ComputePipeline,
+    pub heights_inside: wgpu::ComputePipeline,
     pub counts: wgpu::ComputePipeline,
     pub scan_blocks: wgpu::ComputePipeline,
     pub scan_sums: wgpu::ComputePipeline,
     pub scan_add: wgpu::ComputePipeline,
     pub chunks: wgpu::ComputePipeline,
-    pub emit_vertices: wgpu::ComputePipeline,
+    /// One for each of [`Normals`].
+    pub emit_vertices: [wgpu::ComputePipeline; 3],
     pub emit_triangles: wgpu::ComputePipeline,
     pub directions: wgpu::ComputePipeline,
     pub frames: wgpu::ComputePipeline,
@@ -81,20 +84,24 @@ pub struct ComputePipelines {
 impl ComputePipelines {
     pub fn new(gpu: &Gpu) -> Self {
         let (nets, scan, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "scan"), shader_module(gpu, "emit"));
-        let levels = shader_module(gpu, "levels");
+        let (factors, levels) = (shader_module(gpu, "factors"), shader_module(gpu, "levels"));
         let deform = shader_module(gpu, "deform");
         Self {
             deform_corners: compute_pipeline(gpu, &deform, "deform_corners_main"),
             deform_points: compute_pipeline(gpu, &deform, "deform_points_main"),
             curve_nets: compute_pipeline(gpu, &nets, "curve_nets_main"),
             centers: compute_pipeline(gpu, &nets, "centers_main"),
-            edge_factors: compute_pipeline(gpu, &shader_module(gpu, "factors"), "edge_factors_main"),
+            edge_factors: compute_pipeline(gpu, &factors, "edge_factors_main"),
+            heights_inside: compute_pipeline(gpu, &factors, "heights_inside_main"),
             counts: compute_pipeline(gpu, &shader_module(gpu, "counts"), "counts_main"),
             scan_blocks: compute_pipeline(gpu, &scan, "scan_blocks_main"),
             scan_sums: compute_pipeline(gpu, &scan, "scan_sums_main"),
             scan_add: compute_pipeline(gpu, &scan, "scan_add_main"),
             chunks: compute_pipeline(gpu, &shader_module(gpu, "chunks"), "chunks_main"),
-            emit_vertices: compute_pipeline(gpu, &emit, "emit_vertices_main"),
+            emit_vertices: [Normals::Linear, Normals::Quadratic, Normals::Surface].map(|normals| {
+                let constants = [("EMIT_NORMALS", f64::from(normals as u32))];
+                specialised_pipeline(gpu, &emit, "emit_vertices_main", &constants)
+            }),
             emit_triangles: compute_pipeline(gpu, &emit, "emit_triangles_main"),
             directions: compute_pipeline(gpu, &levels, "directions_main"),
             frames: compute_pipeline(gpu, &levels, "frames_main"),
@@ -107,12 +114,22 @@ impl ComputePipelines {
 
 /// A pipeline whose layout is what the entry point uses.
 pub fn compute_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, entry_point: &str) -> wgpu::ComputePipeline {
+    specialised_pipeline(gpu, module, entry_point, &[])
+}
+
+/// The same with values for what the module lets a pipeline override.
+fn specialised_pipeline(
+    gpu: &Gpu,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
     gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(entry_point),
         layout: None,
         module,
         entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
         cache: None,
     })
 }
@@ -129,4 +146,22 @@ pub fn bind_group(
         .map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// Twin of `grid` in `shaders/types.wgsl`.
+pub fn grid(items: u32) -> [u32; 3] {
+    let workgroups = items.div_ceil(256);
+    [workgroups.min(32768), workgroups.div_ceil(32768), 1]
+}
+
+/// Runs one entry point over a grid.
+pub fn dispatch(
+    pass: &mut wgpu::ComputePass,
+    pipeline: &wgpu::ComputePipeline,
+    group: &wgpu::BindGroup,
+    [x, y, z]: [u32; 3],
+) {
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.dispatch_workgroups(x, y, z);
 }

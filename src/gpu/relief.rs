@@ -3,12 +3,12 @@
 use super::buffers::filled;
 use super::layout::{HeightMap, Share};
 use super::pipelines::bind_group;
+use super::pipelines::{dispatch, grid};
 use super::recorder::Recorder;
 use super::slab::{SlabPasses, uniform_buffer};
-use super::tessellator::{dispatch, grid};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
-use crate::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
-use crate::tessellate::texel_lengths;
+use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
+use crate::tessellate::{Span, map_number};
 
 /// Twin of `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
 const HEIGHTS_ACROSS: u32 = 4096;
@@ -104,15 +104,29 @@ impl ReliefBuffers {
     }
 }
 
-/// What points, then factors, then corners share, as far as it never changes.
-pub fn shares(mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Vec<Share> {
-    let lengths = mesh.heights.as_deref().map(|heights| texel_lengths(heights, mesh, topology, dominance));
-    let lengths = lengths.unwrap_or_default();
-    let share = |dominant, texels| Share { dominant, texels, ..bytemuck::Zeroable::zeroed() };
-    let points = dominance.corners.iter().map(|&dominant| share(dominant, 0.0));
-    let factors = dominance.sides.iter().zip(lengths).map(|(&dominant, texels)| share(dominant, texels));
-    let corners = std::iter::repeat_n(share(0, 0.0), 2 * mesh.corners.len());
-    points.chain(factors).chain(corners).collect()
+/// What points, then factors, then corners share, as far as it never changes; then the further spans of factors.
+pub fn shares(mesh: &Mesh, dominance: &Dominance, spans: &[Span]) -> Vec<Share> {
+    let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
+    let behind = (point_count + 2 * mesh.corners.len()) as u32;
+    let share = |dominant, span: Span| {
+        let next = if span.next > 0 { behind + span.next } else { 0 };
+        Share { dominant, texels: span.texels, map: span.map, next, ..bytemuck::Zeroable::zeroed() }
+    };
+    let (own, further) = spans.split_at(factor_count);
+    let points = dominance.corners.iter().map(|&dominant| share(dominant, Span::default()));
+    let factors = dominance.sides.iter().zip(own).map(|(&dominant, &span)| share(dominant, span));
+    let corners = std::iter::repeat_n(share(0, Span::default()), 2 * mesh.corners.len());
+    let further = further.iter().map(|&span| share(0, span));
+    points.chain(factors).chain(corners).chain(further).collect()
+}
+
+/// What each level of each height image loses, four levels an element; zeros without heights.
+pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
+    let mut table = [[0.0_f32; 16]; MAX_MAPS];
+    for (entry, detail) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.detail)) {
+        entry[..MAX_LEVELS].copy_from_slice(detail);
+    }
+    uniform_buffer(gpu, "height details", bytemuck::cast_slice(&table))
 }
 
 /// Where each corner's run of patches starts, and where the last ends; and the patches.
@@ -134,9 +148,9 @@ fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) 
 /// A patch's height map, as it stands behind its centre among the points: 1 for the first, 0 for none.
 pub fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
     let mut maps = vec![0.0; topology.patches.len()];
-    for (material, patches) in topology.material_patches.iter().enumerate() {
-        let map = heights.and_then(|heights| heights.of_material.get(material).copied().flatten());
-        maps[patches.start as usize..patches.end as usize].fill(map.map_or(0.0, |map| map as f32 + 1.0));
+    for patches in topology.material_patches.iter().filter(|patches| !patches.is_empty()) {
+        let map = heights.map_or(0, |heights| map_number(heights, topology, patches.start));
+        maps[patches.start as usize..patches.end as usize].fill(map as f32);
     }
     maps
 }

@@ -2,7 +2,7 @@
 
 use super::buffers::filled;
 use super::pipelines::bind_group;
-use super::tessellator::{dispatch, grid};
+use super::pipelines::{dispatch, grid};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
 use crate::mesh::{Pose, Rig, Topology};
 

@@ -29,10 +29,12 @@ pub struct SlabPasses {
 
 pub struct SlabGroups {
     pub edge_factors: wgpu::BindGroup,
+    pub heights_inside: wgpu::BindGroup,
     pub counts: wgpu::BindGroup,
     pub scan: [wgpu::BindGroup; 3],
     pub chunks: wgpu::BindGroup,
-    pub emit_vertices: wgpu::BindGroup,
+    /// One for each pipeline.
+    pub emit_vertices: [wgpu::BindGroup; 3],
     pub emit_triangles: wgpu::BindGroup,
 }
 
@@ -100,20 +102,20 @@ impl SlabPasses {
         let scan = [(0, slab), (1, &self.offsets), (2, &self.block_sums)];
         let emit = [(1, slab), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)];
         let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.corners)];
+        let factors = [
+            (0, params),
+            (1, &b.points),
+            (2, &b.curves),
+            (3, &b.curve_nets),
+            (4, &b.factor_curves),
+            (5, &b.edge_factors),
+            (6, &b.shares),
+            (22, &b.details),
+        ];
+        let heights_inside = [&factors[..], &[(7, &b.patches)]].concat();
         SlabGroups {
-            edge_factors: group(
-                "factors",
-                &pipelines.edge_factors,
-                &[
-                    (0, params),
-                    (1, &b.points),
-                    (2, &b.curves),
-                    (3, &b.curve_nets),
-                    (4, &b.factor_curves),
-                    (5, &b.edge_factors),
-                    (6, &b.shares),
-                ],
-            ),
+            edge_factors: group("factors", &pipelines.edge_factors, &factors),
+            heights_inside: group("factors.inside", &pipelines.heights_inside, &heights_inside),
             counts: group(
                 "counts",
                 &pipelines.counts,
@@ -146,11 +148,9 @@ impl SlabPasses {
                     (5, &self.draw_args),
                 ],
             ),
-            emit_vertices: group(
-                "emit.vertices",
-                &pipelines.emit_vertices,
-                &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat(),
-            ),
+            emit_vertices: pipelines.emit_vertices.each_ref().map(|pipeline| {
+                group("emit.vertices", pipeline, &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat())
+            }),
             emit_triangles: group(
                 "emit.triangles",
                 &pipelines.emit_triangles,

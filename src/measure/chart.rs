@@ -1,34 +1,19 @@
 //! Factor sweeps as a picture.
-//!
-//! It is drawn at twice its size and then halved, which smooths edges that the plotting library leaves jagged.
 
 use std::ops::Range;
 
-use image::imageops::{self, FilterType};
-use image::{ImageBuffer, RgbImage};
+use image::RgbImage;
 use plotters::backend::BitMapBackend;
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::combinators::LogCoord;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
-use plotters::style::{FontStyle, register_font};
-use thiserror::Error;
 
 use super::{Sweep, SweepStep};
+use crate::plot::{self, BLUE, BLUISH_GREEN, CHART_RANGE, ChartError, DENSITY, INK, REDDISH_PURPLE, VERMILION};
 use crate::settings::FACTOR_RANGE;
 use crate::tessellate::Partitioning;
-
-/// The smallest and largest side of a chart, in px.
-pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
-
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum ChartError {
-    #[error("a chart of {0} x {1} px: each side must be {min} to {max} px", min = CHART_RANGE.start(), max = CHART_RANGE.end())]
-    Size(u32, u32),
-    #[error("the chart could not be drawn: {0}")]
-    Failed(String),
-}
 
 type Picture<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
@@ -46,39 +31,8 @@ pub fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -
     if !(CHART_RANGE.contains(&width) && CHART_RANGE.contains(&height)) {
         return Err(ChartError::Size(width, height));
     }
-    let failed = |reason: &dyn ToString| ChartError::Failed(reason.to_string());
-    let size = (width * DENSITY, height * DENSITY);
-    register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
-        .map_err(|_| failed(&"its font is bad"))?;
-    let mut drawn: RgbImage = ImageBuffer::new(size.0, size.1);
-    {
-        let picture = BitMapBackend::with_buffer(&mut drawn, size).into_drawing_area();
-        draw(&picture, sweeps, diagonal).map_err(|error| failed(&error))?;
-        picture.present().map_err(|error| failed(&error))?;
-    }
-    Ok(imageops::resize(&drawn, width, height, FilterType::Triangle))
+    plot::bitmap([width, height], |picture| draw(picture, sweeps, diagonal))
 }
-
-/// Writes a line of text in dark ink, `size` px high, its top left at `at` (px), into a picture.
-///
-/// # Errors
-/// The font can't be used.
-pub fn write_text(picture: &mut RgbImage, at: [i32; 2], size: u32, text: &str) -> Result<(), ChartError> {
-    let failed = |reason: &dyn ToString| ChartError::Failed(reason.to_string());
-    register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
-        .map_err(|_| failed(&"its font is bad"))?;
-    let dimensions = picture.dimensions();
-    let area = BitMapBackend::with_buffer(picture, dimensions).into_drawing_area();
-    let style = (FONT, size as i32).into_font().color(&INK);
-    area.draw_text(text, &style, (at[0], at[1])).map_err(|error| failed(&error))?;
-    area.present().map_err(|error| failed(&error))
-}
-
-/// Drawn px a px of the chart, along each side.
-const DENSITY: u32 = 2;
-/// The name that the plotting library looks for where it isn't told another.
-const FONT: &str = "sans-serif";
-const INK: RGBColor = RGBColor(40, 40, 40);
 
 /// Px of the chart as px drawn.
 const fn px(length: i32) -> i32 {
@@ -86,7 +40,7 @@ const fn px(length: i32) -> i32 {
 }
 
 fn font(size: i32) -> TextStyle<'static> {
-    (FONT, px(size)).into_font().color(&INK)
+    plot::font(px(size))
 }
 
 fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
@@ -170,7 +124,7 @@ fn legend_text(sweep: &Sweep, diagonal: f64) -> String {
     }
 }
 
-/// How a partitioning is told from the others: by shape, and by colour (Okabe and Ito 2008).
+/// How a partitioning is told from the others: by shape, and by colour.
 #[derive(Clone, Copy)]
 struct Look {
     color: RGBColor,
@@ -192,11 +146,11 @@ enum Shape {
 impl Look {
     fn of(partitioning: Partitioning) -> Self {
         let (color, shape) = match partitioning {
-            Partitioning::Integer => (RGBColor(213, 94, 0), Shape::Discs),
-            Partitioning::Pow2 => (RGBColor(0, 114, 178), Shape::Crosses),
-            Partitioning::FractionalOdd => (RGBColor(0, 158, 115), Shape::Line),
-            Partitioning::FractionalEven => (RGBColor(0, 0, 0), Shape::Dashes),
-            Partitioning::Subtriangulation => (RGBColor(204, 121, 167), Shape::Triangles),
+            Partitioning::Integer => (VERMILION, Shape::Discs),
+            Partitioning::Pow2 => (BLUE, Shape::Crosses),
+            Partitioning::FractionalOdd => (BLUISH_GREEN, Shape::Line),
+            Partitioning::FractionalEven => (BLACK, Shape::Dashes),
+            Partitioning::Subtriangulation => (REDDISH_PURPLE, Shape::Triangles),
         };
         Self { color, shape }
     }

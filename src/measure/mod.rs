@@ -17,7 +17,7 @@ mod sweep;
 
 pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, Measurement, Place};
 pub use agreement::{Agreement, Disagreement, Order};
-pub use chart::{CHART_RANGE, ChartError, sweep_chart};
+pub use chart::sweep_chart;
 pub use cracks::{CrackedEdge, Cracks, ulp, ulp_at};
 pub use deviation::{Deviant, Deviation};
 pub use field::{Against, Field, MOST_TRIANGLES, Yardstick};

@@ -2,26 +2,26 @@
 
 use image::{Rgb, RgbImage, imageops};
 
-use super::chart::{ChartError, write_text};
+use crate::plot::{ChartError, write_text};
 
-/// Between pictures and around them, and room for a line of text, in px.
+/// Between pictures and around them, in px.
 const GAP: u32 = 4;
-const CAPTION: u32 = 24;
-const TEXT: u32 = 18;
 
-/// Pictures of one size in rows, each under its caption, on white.
+/// Pictures of one size in rows, each under its caption, on white. `text` is how high captions are, in px: larger where the
+/// whole is shown smaller.
 ///
 /// # Errors
 /// The captions' font can't be used.
-pub fn sheet(parts: &[(String, RgbImage)], columns: u32) -> Result<RgbImage, ChartError> {
+pub fn sheet(parts: &[(String, RgbImage)], columns: u32, text: u32) -> Result<RgbImage, ChartError> {
     let (width, height) = parts.first().map_or((0, 0), |(_, part)| part.dimensions());
-    let (across, down) = (width + GAP, height + GAP + CAPTION);
+    let room = text + text / 3;
+    let (across, down) = (width + GAP, height + GAP + room);
     let rows = (parts.len() as u32).div_ceil(columns);
     let mut all = RgbImage::from_pixel(columns * across + GAP, rows * down + GAP, Rgb([255; 3]));
     for (index, (caption, part)) in (0..).zip(parts) {
         let (left, top) = (GAP + index % columns * across, GAP + index / columns * down);
-        imageops::replace(&mut all, part, left.into(), (top + CAPTION).into());
-        write_text(&mut all, [left as i32 + 2, top as i32 + 2], TEXT, caption)?;
+        imageops::replace(&mut all, part, left.into(), (top + room).into());
+        write_text(&mut all, [left as i32 + 2, top as i32 + 2], text, caption)?;
     }
     Ok(all)
 }
@@ -34,7 +34,7 @@ mod tests {
     fn parts_stand_in_rows_under_their_captions() {
         let part = |shade: u8| RgbImage::from_pixel(40, 30, Rgb([shade; 3]));
         let parts = [("one", 10), ("two", 20), ("three", 30)].map(|(name, shade)| (name.to_owned(), part(shade)));
-        let all = sheet(&parts, 2).expect("a font");
+        let all = sheet(&parts, 2, 18).expect("a font");
         assert_eq!(all.dimensions(), (2 * 44 + 4, 2 * 58 + 4));
         let at = |x, y| all.get_pixel(x, y).0[0];
         assert_eq!([at(20, 40), at(64, 40), at(20, 98), at(64, 98)], [10, 20, 30, 255]);

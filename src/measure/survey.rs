@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::cracks::{Cracks, ulp};
+use super::cracks::{CrackedEdge, Cracks, ulp};
 use super::folds;
 use super::rims::{AskedFactors, Rims};
 use crate::mesh::{Mesh, Topology};
@@ -115,11 +115,19 @@ impl Measured {
 
     /// Every side of every cracked edge, as lines.
     pub fn crack_lines(&self, topology: &Topology) -> Vec<LineSegment> {
-        let sides = self.cracks.cracked().flat_map(|edge| self.rims.edge(topology, edge.edge));
-        let lines = sides.flat_map(|side| {
-            let points: Vec<_> = side.positions().collect();
-            points.windows(2).map(|ends| LineSegment::new(ends[0], ends[1], CRACK_COLOR)).collect::<Vec<_>>()
-        });
-        lines.collect()
+        self.crack_lines_in(topology, |_| CRACK_COLOR)
+    }
+
+    /// The same in a colour (sRGB) that is each edge's.
+    pub fn crack_lines_in(&self, topology: &Topology, color: impl Fn(&CrackedEdge) -> [u8; 3]) -> Vec<LineSegment> {
+        let mut lines = Vec::new();
+        for edge in self.cracks.cracked() {
+            let color = color(edge);
+            for side in self.rims.edge(topology, edge.edge) {
+                let points: Vec<_> = side.positions().collect();
+                lines.extend(points.windows(2).map(|ends| LineSegment::new(ends[0], ends[1], color)));
+            }
+        }
+        lines
     }
 }

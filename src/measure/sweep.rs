@@ -242,7 +242,9 @@ mod tests {
     use super::*;
     use crate::mesh::Shape;
     use crate::settings::Settings;
-    use crate::tessellate::{LodView, Surface, domain_point, domain_triangle, point_count, triangle_count};
+    use crate::tessellate::{
+        LodView, Surface, domain_plan, domain_point, domain_triangle, point_count, triangle_count,
+    };
     use Partitioning::{FractionalEven, FractionalOdd, Integer, Pow2, Subtriangulation};
 
     /// Sweeps the first face of the cube with split normals: two patches, and the diagonal between them.
@@ -338,8 +340,9 @@ mod tests {
             // Also where triangles have no area yet.
             for factor in [1.0, 1.0001, 2.0, 3.00002, 5.3, 12.00002, 30.0001, 64.0] {
                 let factors = process(partitioning, [factor; 3], factor);
-                let points: Vec<_> = (0..point_count(factors)).map(|i| domain_point(factors, i)).collect();
-                let triangles: Vec<_> = (0..triangle_count(factors)).map(|t| domain_triangle(factors, t)).collect();
+                let plan = domain_plan(factors);
+                let points: Vec<_> = (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect();
+                let triangles: Vec<_> = (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect();
                 for (place, spot) in places.places.iter().zip(places.locate(&points, &triangles)) {
                     let spot = spot.expect("the triangles cover the domain");
                     for axis in 0..2 {

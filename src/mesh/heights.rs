@@ -1,12 +1,15 @@
 //! Height images, for displacement: each a pyramid of ever smaller ones, so that what is sampled fits what is drawn.
 
+mod pyramid;
+mod reading;
+
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use glam::Vec2;
-use image::imageops::{self, FilterType};
-use image::{DynamicImage, ImageBuffer, ImageError, ImageReader, Limits, Luma};
+use image::ColorType;
 
+use super::progress::{Cancelled, Progress};
 use super::{Mesh, Texture};
 
 /// The largest width and height of an image that is read, in px.
@@ -24,8 +27,21 @@ pub const MAX_MAPS: usize = 256;
 /// Why an image is no height map.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightError {
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     #[error("{} can't be read as a height image: {reason}", path.display())]
     Image { path: PathBuf, reason: String },
+    #[error(
+        "{} is {} x {} px large, and at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
+        path.display(), size[0], size[1]
+    )]
+    TooLarge { path: PathBuf, size: [u32; 2] },
+    #[error(
+        "{} is {} x {} px large, and reading it takes {mebibytes} MiB of memory, more than there is; scale it to {MAX_KEPT} px \
+         a side or less",
+        path.display(), size[0], size[1]
+    )]
+    NoMemory { path: PathBuf, size: [u32; 2], mebibytes: u64 },
     #[error(
         "{name} has no image to displace by: no material has a base colour image that can be read; name a height image"
     )]
@@ -44,15 +60,18 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// Reads heights for a mesh.
+    /// Reads heights for a mesh; `progress` goes from 0 to 1 meanwhile.
     ///
     /// # Errors
     /// [`HeightError`].
-    pub fn load(&self, mesh: &Mesh) -> Result<Heights, HeightError> {
-        match self {
-            Self::Materials => Heights::of_materials(mesh),
-            Self::File(path) => Heights::read(path, mesh),
-        }
+    pub fn load(&self, mesh: &Mesh, progress: &Progress) -> Result<Heights, HeightError> {
+        progress.set(0.0);
+        let heights = match self {
+            Self::Materials => Heights::of_materials(mesh, progress)?,
+            Self::File(path) => Heights::read(path, mesh, progress)?,
+        };
+        progress.set(1.0);
+        Ok(heights)
     }
 
     /// A name for the window: the file's without its folder.
@@ -95,113 +114,70 @@ pub struct Heights {
     pub radius: f32,
     /// The sum of the angles, in radians, that triangles have at each of the mesh's corners, before anything moves them.
     pub angles: Vec<f32>,
-    /// How far level l of any map, linearly interpolated, is from level 0 at most.
-    pub detail: [f32; MAX_LEVELS],
+    /// How far level l of each map, linearly interpolated, is from its level 0 at most; no less for a coarser level.
+    pub detail: Vec<[f32; MAX_LEVELS]>,
 }
 
 impl HeightMap {
-    /// Of rows from the top. Sides of more than 4,096 px are made smaller first.
-    pub fn new(size: [u32; 2], heights: Vec<f32>) -> Self {
-        let [width, height] = size;
-        let base: Level = ImageBuffer::from_raw(width, height, heights)
-            .filter(|base| base.width() > 0 && base.height() > 0)
-            .unwrap_or_else(|| ImageBuffer::from_pixel(1, 1, Luma([0.0])));
-        let fitted = [base.width(), base.height()].map(|side| side.min(MAX_KEPT));
-        let mut level = if fitted == [base.width(), base.height()] { base } else { resized(&base, fitted) };
-        let mut all = level.as_raw().clone();
-        let mut levels = 1;
-        while level.width() > 1 || level.height() > 1 {
-            level = resized(&level, [level.width(), level.height()].map(|side| (side / 2).max(1)));
-            all.extend_from_slice(level.as_raw());
-            levels += 1;
-        }
-        Self { size: fitted, levels, repeats: false, heights: all }
-    }
-
-    /// The brightness of an image's px as they are stored: the weights of Rec. 709, and no transfer function, since heights
-    /// are no light. Gray images give their gray, in all its bits.
-    pub fn from_image(image: &DynamicImage) -> Self {
-        let size = [image.width(), image.height()];
-        let gray = match image {
-            DynamicImage::ImageLuma8(_) | DynamicImage::ImageLuma16(_) => image.to_luma32f().into_raw(),
-            _ => image.to_rgb32f().pixels().map(|px| brightness(px.0)).collect(),
-        };
-        Self::new(size, gray)
-    }
-
-    fn from_texture(texture: &Texture) -> Self {
-        let gray = |px: &[u8]| brightness([px[0], px[1], px[2]].map(|x| f32::from(x) / 255.0));
-        Self::new(texture.size, texture.rgba.chunks_exact(4).map(gray).collect())
-    }
-
     /// Width and height of a level, in px.
     pub fn level_size(&self, level: u32) -> [u32; 2] {
         self.size.map(|side| (side >> level).max(1))
     }
 }
 
-type Level = ImageBuffer<Luma<f32>, Vec<f32>>;
-
-fn resized(level: &Level, [width, height]: [u32; 2]) -> Level {
-    imageops::resize(level, width, height, FilterType::Triangle)
-}
-
-fn brightness([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
-}
-
 impl Heights {
     /// One map for all of a mesh's materials.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
-        Self::new(mesh, vec![map], vec![Some(0); mesh.materials.len()])
+        Self::all_over(mesh, map, &Progress::new()).expect("nobody cancels")
+    }
+
+    fn all_over(mesh: &Mesh, map: HeightMap, progress: &Progress) -> Result<Self, Cancelled> {
+        Self::new(mesh, vec![map], vec![Some(0); mesh.materials.len()], progress)
     }
 
     /// Reads a PNG or JPEG image and lays it over all materials.
-    ///
-    /// # Errors
-    /// [`HeightError::Image`].
-    pub fn read(path: &Path, mesh: &Mesh) -> Result<Self, HeightError> {
-        let fail = |reason: String| HeightError::Image { path: path.to_owned(), reason };
-        let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
-        let mut reader = reader.map_err(|error| fail(error.to_string()))?;
-        let mut limits = Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIZE), Some(MAX_SIZE));
-        reader.limits(limits);
-        let image = reader.decode().map_err(|error| match error {
-            ImageError::Unsupported(_) => fail("choose a PNG or JPEG image".to_owned()),
-            error => fail(error.to_string()),
-        })?;
-        Ok(Self::everywhere(mesh, HeightMap::from_image(&image)))
+    fn read(path: &Path, mesh: &Mesh, progress: &Progress) -> Result<Self, HeightError> {
+        let map = HeightMap::read(path, &progress.part(0.0, 0.8))?;
+        Ok(Self::all_over(mesh, map, &progress.part(0.8, 1.0))?)
     }
 
     /// The brightness of every material's base colour image, each image once.
     ///
     /// # Errors
     /// [`HeightError::NoImage`].
-    pub fn of_materials(mesh: &Mesh) -> Result<Self, HeightError> {
-        let mut known: Vec<*const Texture> = Vec::new();
-        let mut maps = Vec::new();
+    pub fn of_materials(mesh: &Mesh, progress: &Progress) -> Result<Self, HeightError> {
+        let mut known: Vec<&Texture> = Vec::new();
         let of_material = mesh.materials.iter().map(|material| {
-            let texture = material.texture.as_ref()?;
-            let key = std::sync::Arc::as_ptr(texture);
-            let index = known.iter().position(|&known| known == key).unwrap_or_else(|| {
-                known.push(key);
-                maps.push(HeightMap::from_texture(texture));
-                maps.len() - 1
+            let texture = material.texture.as_deref()?;
+            let index = known.iter().position(|&known| std::ptr::eq(known, texture)).unwrap_or_else(|| {
+                known.push(texture);
+                known.len() - 1
             });
             Some(index as u32)
         });
         let of_material = of_material.collect();
-        if maps.is_empty() {
+        let count = known.len();
+        if count == 0 {
             return Err(HeightError::NoImage { name: mesh.name.clone() });
         }
-        if maps.len() > MAX_MAPS {
-            return Err(HeightError::TooMany { name: mesh.name.clone(), count: maps.len() });
+        if count > MAX_MAPS {
+            return Err(HeightError::TooMany { name: mesh.name.clone(), count });
         }
-        Ok(Self::new(mesh, maps, of_material))
+        let part = |index: usize| 0.7 * index as f32 / count as f32;
+        let of = |(index, texture): (usize, &&Texture)| {
+            let progress = progress.part(part(index), part(index + 1));
+            HeightMap::of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)
+        };
+        let maps = known.iter().enumerate().map(of).collect::<Result<_, _>>()?;
+        Ok(Self::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?)
     }
 
-    fn new(mesh: &Mesh, mut maps: Vec<HeightMap>, of_material: Vec<Option<u32>>) -> Self {
+    fn new(
+        mesh: &Mesh,
+        mut maps: Vec<HeightMap>,
+        of_material: Vec<Option<u32>>,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         for (material, map) in mesh.materials.iter().zip(&of_material) {
             let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
             let uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
@@ -211,26 +187,16 @@ impl Heights {
             }
         }
         let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        let mut detail = [0.0_f32; MAX_LEVELS];
         for map in &maps {
             let [width, height] = map.size;
             for &own in &map.heights[..(width * height) as usize] {
                 range = [range[0].min(own), range[1].max(own)];
             }
-            // Beyond the last level nothing more is lost than there.
-            let lost = |level: usize| lost_detail(map, (level as u32).min(map.levels - 1));
-            std::thread::scope(|scope| {
-                let run = |level| scope.spawn(move || lost(level));
-                let levels: Vec<_> = (0..MAX_LEVELS).map(run).collect();
-                for (detail, lost) in detail.iter_mut().zip(levels) {
-                    *detail = detail.max(lost.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-                }
-            });
         }
-        for level in 1..MAX_LEVELS {
-            detail[level] = detail[level].max(detail[level - 1]);
-        }
-        Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail }
+        let part = |index: usize| index as f32 / maps.len() as f32;
+        let lost = |(index, map): (usize, &HeightMap)| map.detail(&progress.part(part(index), part(index + 1)));
+        let detail = maps.iter().enumerate().map(lost).collect::<Result<_, _>>()?;
+        Ok(Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail })
     }
 
     /// What of a mesh these heights tell nothing of, in a sentence: triangles whose corners all have one texture coordinate.
@@ -270,93 +236,32 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
     angles
 }
 
-/// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over a
-/// repeating image's border it says nothing: many don't quite meet there.
-fn lost_detail(map: &HeightMap, level: u32) -> f32 {
-    let [width, height] = map.size.map(|side| side as usize);
-    let [across, down] = map.level_size(level).map(|side| side as usize);
-    let start = (0..level).map(|l| map.level_size(l)).map(|[x, y]| (x * y) as usize).sum::<usize>();
-    let (columns, rows) = (places(width, across, map.repeats), places(height, down, map.repeats));
-    let own = &map.heights[start..start + across * down];
-    let mut lost = 0.0_f32;
-    for (y, row) in rows.iter().enumerate() {
-        let Some((upper, lower, below)) = *row else { continue };
-        for (x, column) in columns.iter().enumerate() {
-            let Some((left, right, beside)) = *column else { continue };
-            let line = |row: usize| {
-                let (a, b) = (own[row * across + left], own[row * across + right]);
-                a + (b - a) * beside
-            };
-            let (above, under) = (line(upper), line(lower));
-            lost = lost.max((map.heights[y * width + x] - (above + (under - above) * below)).abs());
-        }
-    }
-    lost
-}
-
-/// For each of `count` px of level 0 along one side, between which two of a level's `own` it lies, and how far from the
-/// first; none beyond the last of a repeating one.
-fn places(count: usize, own: usize, repeats: bool) -> Vec<Option<(usize, usize, f32)>> {
-    let place = |i: usize| {
-        let at = (i as f32 + 0.5) / count as f32 * own as f32 - 0.5;
-        let inside = at.clamp(0.0, (own - 1) as f32);
-        let first = inside as usize;
-        (!repeats || at == inside).then(|| (first, (first + 1).min(own - 1), inside - first as f32))
-    };
-    (0..count).map(place).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::mesh::Shape;
 
     #[test]
-    fn levels_halve_down_to_one_pixel() {
-        let map = HeightMap::new([5, 2], (0..10).map(|i| i as f32 / 9.0).collect());
-        assert_eq!((map.size, map.levels), ([5, 2], 3));
-        assert_eq!([0, 1, 2].map(|level| map.level_size(level)), [[5, 2], [2, 1], [1, 1]]);
-        assert_eq!(map.heights.len(), 10 + 2 + 1);
-        // The last is about the mean.
-        assert!((map.heights[12] - 0.5).abs() < 0.1, "{}", map.heights[12]);
-    }
-
-    #[test]
-    fn what_is_no_image_is_one_black_pixel() {
-        for bad in [HeightMap::new([0, 0], Vec::new()), HeightMap::new([3, 3], vec![1.0; 4])] {
-            assert_eq!((bad.size, bad.heights.as_slice()), ([1, 1], &[0.0][..]));
-        }
-    }
-
-    #[test]
-    fn gray_images_keep_sixteen_bits_and_colours_become_brightness() {
-        let gray: ImageBuffer<Luma<u16>, _> = ImageBuffer::from_raw(2, 1, vec![1_u16, 65535]).expect("two px");
-        let map = HeightMap::from_image(&gray.into());
-        assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0]);
-        let green = image::RgbImage::from_pixel(1, 1, image::Rgb([0, 255, 0]));
-        assert_eq!(HeightMap::from_image(&green.into()).heights, [0.7152]);
-    }
-
-    #[test]
     fn detail_is_lost_level_by_level() {
         // A checkerboard is gone at once, a slope not at all inside.
         let board = HeightMap::new([8, 8], (0..64).map(|i| ((i + i / 8) % 2) as f32).collect());
         let heights = Heights::everywhere(&Shape::Torus.build(), board);
-        assert_eq!((heights.detail[0], heights.range), (0.0, [0.0, 1.0]));
-        assert!(heights.detail[1] > 0.4 && heights.detail[12] >= heights.detail[3]);
+        let detail = heights.detail[0];
+        assert_eq!((detail[0], heights.range), (0.0, [0.0, 1.0]));
+        assert!(detail[1] > 0.4 && detail[12] >= detail[3]);
         assert_eq!(heights.reach(0.25), 0.75);
         let flat = Heights::everywhere(&Shape::Torus.build(), HeightMap::new([8, 8], vec![0.5; 64]));
-        assert!(flat.detail.iter().all(|&lost| lost < 1e-6), "{:?}", flat.detail);
+        assert!(flat.detail[0].iter().all(|&lost| lost < 1e-6), "{:?}", flat.detail);
     }
 
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        assert!(matches!(Heights::of_materials(&mesh), Err(HeightError::NoImage { .. })));
+        assert!(matches!(Heights::of_materials(&mesh, &Progress::new()), Err(HeightError::NoImage { .. })));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = crate::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
-        let heights = Heights::of_materials(&mesh).expect("an image");
+        let heights = Heights::of_materials(&mesh, &Progress::new()).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
     }
 
@@ -372,7 +277,7 @@ mod tests {
     #[test]
     fn a_file_that_is_no_image_is_a_sentence() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
-        let error = Heights::read(path, &Mesh::default()).expect_err("no image").to_string();
+        let error = Heights::read(path, &Mesh::default(), &Progress::new()).expect_err("no image").to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }
 }

@@ -22,9 +22,18 @@ pub enum LoadError {
     #[error("{}: {problem}", path.display())]
     Gltf { path: PathBuf, problem: Box<Problem> },
     #[error(transparent)]
-    Heights(#[from] HeightError),
+    Heights(HeightError),
     #[error("{} has no triangles to show: {holds}", path.display())]
     Empty { path: PathBuf, holds: String },
+}
+
+impl From<HeightError> for LoadError {
+    fn from(error: HeightError) -> Self {
+        match error {
+            HeightError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::Heights(error),
+        }
+    }
 }
 
 /// Reads a file: glTF 2.0, as `.gltf` or `.glb` (in either case).

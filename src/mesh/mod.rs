@@ -39,7 +39,7 @@ pub use info::Info;
 pub use joins::{Joins, joins};
 pub use load::{LoadError, load};
 pub use normal_faults::NormalFaults;
-pub use progress::{Cancelled, Progress};
+pub use progress::{Cancelled, Progress, Stage};
 pub use repairs::Repairs;
 pub use rig::{Moment, Pose, Rig};
 pub use rim::{Rim, with_rim};

@@ -8,10 +8,26 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 #[error("cancelled; nothing was changed")]
 pub struct Cancelled;
 
+/// What a job is at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stage {
+    #[default]
+    Mesh,
+    Heights,
+}
+
 /// A handle on one job. Clones share their state, so the waiting side keeps one and the job gets another.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Progress {
     shared: Arc<Shared>,
+    /// The part of the whole that this handle's 0 to 1 is.
+    part: [f32; 2],
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self { shared: Arc::default(), part: [0.0, 1.0] }
+    }
 }
 
 #[derive(Debug, Default)]
@@ -19,6 +35,7 @@ struct Shared {
     cancelled: AtomicBool,
     /// The bits of an f32: there is no atomic float.
     fraction: AtomicU32,
+    reads_heights: AtomicBool,
 }
 
 impl Progress {
@@ -45,7 +62,24 @@ impl Progress {
     /// For the job: how much is done, 0 to 1 (other values are clamped, NaN counts as 0).
     pub fn set(&self, fraction: f32) {
         let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
-        self.shared.fraction.store(fraction.to_bits(), Ordering::Relaxed);
+        let [start, end] = self.part;
+        self.shared.fraction.store((start + (end - start) * fraction).to_bits(), Ordering::Relaxed);
+    }
+
+    /// A handle on the same job for a part of it, from `start` to `end` of this one's 0 to 1: who gets it may go from 0 to 1
+    /// without knowing of the rest.
+    pub fn part(&self, start: f32, end: f32) -> Self {
+        let length = self.part[1] - self.part[0];
+        Self { shared: self.shared.clone(), part: [start, end].map(|at| self.part[0] + length * at) }
+    }
+
+    /// For the job: what it is at from now on.
+    pub fn enter(&self, stage: Stage) {
+        self.shared.reads_heights.store(stage == Stage::Heights, Ordering::Relaxed);
+    }
+
+    pub fn stage(&self) -> Stage {
+        if self.shared.reads_heights.load(Ordering::Relaxed) { Stage::Heights } else { Stage::Mesh }
     }
 
     /// How much is done, 0 to 1.
@@ -78,5 +112,19 @@ mod tests {
             progress.set(given);
             assert_eq!(progress.fraction(), kept);
         }
+    }
+
+    #[test]
+    fn a_part_of_a_part_is_in_its_place_and_shares_the_rest() {
+        let whole = Progress::new();
+        let part = whole.part(0.5, 1.0).part(0.0, 0.5);
+        for (own, of_whole) in [(0.0, 0.5), (0.5, 0.625), (1.0, 0.75)] {
+            part.set(own);
+            assert_eq!(whole.fraction(), of_whole);
+        }
+        part.enter(Stage::Heights);
+        assert_eq!(whole.stage(), Stage::Heights);
+        whole.cancel();
+        assert_eq!(part.check(), Err(Cancelled));
     }
 }

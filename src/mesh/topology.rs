@@ -100,12 +100,13 @@ impl EdgeCounts {
     }
 }
 
-/// A patch's side on its way to an edge: `low` and `high` are its points.
-#[derive(Clone, Copy, Debug, Default)]
+/// A patch's side on its way to an edge, among those with the same lower point.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 struct Half {
-    low: u32,
+    /// The higher point.
     high: u32,
-    side: Side,
+    /// Three times the patch, plus which of its sides.
+    number: u32,
 }
 
 impl Topology {
@@ -119,8 +120,8 @@ impl Topology {
 
     /// Welds the corners within a tolerance (see [`super::weld::weld_within`]) and finds the edges. The tolerance is relative to the
     /// mesh's bounding diagonal; 0 joins only exactly equal positions. Triangles whose corners it brings together are
-    /// degenerate. Corners that a clip moves apart stay apart. Linear in triangles, whatever the number of patches around a
-    /// point.
+    /// degenerate. Corners that a clip moves apart stay apart. Linear in triangles, but for a logarithm of the most patches
+    /// around a point.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
@@ -133,10 +134,7 @@ impl Topology {
         progress.check()?;
         let patches = patches(mesh, &corner_points);
         progress.check()?;
-        // Two stable counting sorts, the higher point first: no bucket is ever searched, so a cone's apex costs no more.
-        let halves = sorted(halves(&patches, &corner_points), points.len(), |half| half.high);
-        progress.check()?;
-        let halves = sorted(halves, points.len(), |half| half.low);
+        let halves = halves(&patches, &corner_points, points.len());
         progress.check()?;
         let mut topology = Self {
             point_corners: first_corners(&corner_points, points.len()),
@@ -148,6 +146,7 @@ impl Topology {
             ..Self::default()
         };
         topology.connect(&halves, &mesh.corners);
+        progress.check()?;
         Ok(topology)
     }
 
@@ -226,20 +225,34 @@ impl Topology {
         sum.normalize_or_zero().as_vec3()
     }
 
-    /// Makes edges, and tells patches and sides of each other, from halves ordered by their points.
-    fn connect(&mut self, halves: &[Half], corners: &[Corner]) {
-        self.sides.reserve(halves.len());
-        for run in halves.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
-            let start = self.sides.len() as u32;
-            for half in run {
-                let side = Side { edge: self.edges.len() as u32, ..half.side };
-                self.patches[side.patch as usize].sides[side.index as usize] = self.sides.len() as u32;
-                self.sides.push(side);
+    /// Makes edges, and tells patches and sides of each other.
+    fn connect(&mut self, halves: &Halves, corners: &[Corner]) {
+        self.sides.reserve(halves.sorted.len());
+        self.edges.reserve(halves.sorted.len() / 2);
+        for (low, ends) in (0..).zip(halves.starts.windows(2)) {
+            let around = &halves.sorted[ends[0] as usize..ends[1] as usize];
+            for run in around.chunk_by(|a, b| a.high == b.high) {
+                let start = self.sides.len() as u32;
+                for half in run {
+                    let side = self.side(half.number, low);
+                    self.patches[side.patch as usize].sides[side.index as usize] = self.sides.len() as u32;
+                    self.sides.push(side);
+                }
+                let sides = start..self.sides.len() as u32;
+                let kind = kind(&self.sides[start as usize..], corners);
+                self.edges.push(Edge { points: [low, run[0].high], sides, kind });
             }
-            let sides = start..self.sides.len() as u32;
-            let kind = kind(&self.sides[start as usize..], corners);
-            self.edges.push(Edge { points: [run[0].low, run[0].high], sides, kind });
         }
+    }
+
+    /// The side of a half whose lower point is `low`, as one of the next edge's.
+    fn side(&self, number: u32, low: u32) -> Side {
+        let (patch, index) = (number / 3, (number % 3) as u8);
+        let own = self.patches[patch as usize].corners;
+        let [a, b] = [own[usize::from(index)], own[usize::from(index + 1) % 3]];
+        let reversed = self.corner_points[a as usize] != low;
+        let corners = if reversed { [b, a] } else { [a, b] };
+        Side { patch, index, reversed, edge: self.edges.len() as u32, corners }
     }
 }
 
@@ -253,40 +266,41 @@ fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
     triangles.map(|(i, &corners)| Patch { corners, sides: [0; 3], triangle: i as u32 }).collect()
 }
 
-fn halves(patches: &[Patch], corner_points: &[u32]) -> Vec<Half> {
-    let mut halves = Vec::with_capacity(3 * patches.len());
-    for (i, patch) in patches.iter().enumerate() {
-        for k in 0..3 {
-            let mut corners = [patch.corners[k], patch.corners[(k + 1) % 3]];
-            let mut points = corners.map(|corner| corner_points[corner as usize]);
-            let reversed = points[0] > points[1];
-            if reversed {
-                corners.reverse();
-                points.reverse();
-            }
-            let side = Side { patch: i as u32, index: k as u8, reversed, edge: 0, corners };
-            halves.push(Half { low: points[0], high: points[1], side });
-        }
-    }
-    halves
+/// The sides of all patches by their lower points, and those of each by their higher points and numbers.
+struct Halves {
+    /// Those of point p: `starts[p]..starts[p + 1]`.
+    starts: Vec<u32>,
+    sorted: Vec<Half>,
 }
 
-/// The halves ordered by one of their points; those with the same point keep their order (a counting sort).
-fn sorted(halves: Vec<Half>, points: usize, key: impl Fn(&Half) -> u32) -> Vec<Half> {
-    let mut next = vec![0_u32; points + 1];
-    for half in &halves {
-        next[key(half) as usize + 1] += 1;
+fn halves(patches: &[Patch], corner_points: &[u32], points: usize) -> Halves {
+    let ends = |patch: &Patch, k: usize| {
+        let [a, b] = [patch.corners[k], patch.corners[(k + 1) % 3]].map(|corner| corner_points[corner as usize]);
+        (a.min(b), a.max(b))
+    };
+    let mut starts = vec![0_u32; points + 1];
+    for patch in patches {
+        for k in 0..3 {
+            starts[ends(patch, k).0 as usize + 1] += 1;
+        }
     }
     for point in 0..points {
-        next[point + 1] += next[point];
+        starts[point + 1] += starts[point];
     }
-    let mut sorted = vec![Half::default(); halves.len()];
-    for half in halves {
-        let place = &mut next[key(&half) as usize];
-        sorted[*place as usize] = half;
-        *place += 1;
+    let mut next = starts.clone();
+    let mut sorted = vec![Half::default(); 3 * patches.len()];
+    for (patch, number) in patches.iter().zip((0_u32..).step_by(3)) {
+        for k in 0..3 {
+            let (low, high) = ends(patch, k);
+            let place = &mut next[low as usize];
+            sorted[*place as usize] = Half { high, number: number + k as u32 };
+            *place += 1;
+        }
     }
-    sorted
+    for ends in starts.windows(2) {
+        sorted[ends[0] as usize..ends[1] as usize].sort_unstable();
+    }
+    Halves { starts, sorted }
 }
 
 fn kind(sides: &[Side], corners: &[Corner]) -> EdgeKind {

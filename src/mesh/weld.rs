@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use foldhash::fast::RandomState;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::grid::Grid;
@@ -17,7 +18,8 @@ pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) 
 
 /// As [`weld`], of positions with a number each, which must be equal too.
 fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
-    let mut ids: HashMap<[u32; 4], u32> = HashMap::new();
+    let mut ids: HashMap<[u32; 4], u32, RandomState> =
+        HashMap::with_capacity_and_hasher(positions.size_hint().0, RandomState::default());
     let mut points = Vec::new();
     let point_of = positions
         .map(|(position, number)| {

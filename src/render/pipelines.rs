@@ -2,11 +2,12 @@
 
 use crate::gpu::{COLOR_FORMAT, DEPTH_FORMAT, Gpu};
 
-/// The frame, points, corners, patches, and the arena's vertices and indices.
+/// The frame, points, corners, patches, the arena's vertices and indices, and the frame again as a uniform.
 pub fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
     let mut entries = vec![buffer_entry(0, READ, both)];
     entries.extend((1..6).map(|binding| buffer_entry(binding, READ, wgpu::ShaderStages::VERTEX)));
+    entries.push(buffer_entry(6, wgpu::BufferBindingType::Uniform, both));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
 }
 

@@ -25,7 +25,8 @@ pub struct Renderer {
     unknown: wgpu::Buffer,
     pub(super) white: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
-    /// Both sides, then fronts only.
+    /// Both sides, then fronts only. Without anything on the surface.
+    plain: [wgpu::RenderPipeline; 2],
     indexed: [wgpu::RenderPipeline; 2],
     pulled: [wgpu::RenderPipeline; 2],
     source: wgpu::RenderPipeline,
@@ -43,6 +44,13 @@ const SIDES: [Layer; 2] = [Layer::Surface, Layer::Fronts];
 const VERTEX_ATTRIBUTES: [wgpu::VertexAttribute; 4] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2];
 
+/// The same without what tells patches apart.
+const PLAIN_ATTRIBUTES: [wgpu::VertexAttribute; 3] = [
+    wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 0 },
+    wgpu::VertexAttribute { format: wgpu::VertexFormat::Uint32, offset: 20, shader_location: 1 },
+    wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x2, offset: 24, shader_location: 2 },
+];
+
 impl Renderer {
     pub fn new(gpu: &Gpu) -> Self {
         let scene_layout = scene_layout(gpu);
@@ -50,13 +58,14 @@ impl Renderer {
         let chunk_layout = chunk_layout(gpu);
         let deviation_layout = deviation_layout(gpu);
         let surface = crate::gpu::shader_module(gpu, "draw");
-        let vertex = |step_mode| wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
-            step_mode,
-            attributes: &VERTEX_ATTRIBUTES,
-        };
         let layouts = [Some(&scene_layout), Some(&material_layout), Some(&chunk_layout), Some(&deviation_layout)];
         let as_it_came = [layouts[0], layouts[1], None, layouts[3]];
+        let array_stride = size_of::<Vertex>() as u64;
+        let vertex = |step_mode| wgpu::VertexBufferLayout { array_stride, step_mode, attributes: &VERTEX_ATTRIBUTES };
+        let step_mode = wgpu::VertexStepMode::Vertex;
+        let plain = [Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes: &PLAIN_ATTRIBUTES })];
+        let plain = SIDES
+            .map(|layer| pipeline(gpu, &layouts[..2], &surface, ("plain_vertex", "plain_fragment"), &plain, layer));
         let surface = |entry, layouts: &[_], buffers: &[_], layer| {
             pipeline(gpu, layouts, &surface, (entry, "surface_fragment"), buffers, layer)
         };
@@ -75,6 +84,7 @@ impl Renderer {
         let per_vertex = [Some(vertex(wgpu::VertexStepMode::Vertex))];
         Self {
             gpu: gpu.clone(),
+            plain,
             indexed: SIDES.map(|layer| surface("indexed_vertex", &layouts, &per_vertex, layer)),
             pulled: SIDES.map(|layer| surface("pulled_vertex", &layouts, &[], layer)),
             source: surface("source_vertex", &as_it_came, &[], Layer::Surface),
@@ -131,7 +141,7 @@ impl Renderer {
         let frame = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("frame"),
             contents: bytemuck::bytes_of(&frame),
-            usage: wgpu::BufferUsages::STORAGE,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
         });
         let (pipeline, pulled) = self.surface_pipeline(scene, target, camera, settings);
         let steps = steps(scene.tessellator.chunk_count(), settings.overlays.normals);
@@ -176,7 +186,11 @@ impl Renderer {
         let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
-        let both = if pulled { &self.pulled } else { &self.indexed };
+        let both = match pulled {
+            true => &self.pulled,
+            false if overlay_bits(&settings.overlays) == 0 => &self.plain,
+            false => &self.indexed,
+        };
         (&both[usize::from(fronts)], pulled)
     }
 
@@ -279,7 +293,7 @@ impl Renderer {
     fn scene_group(&self, scene: &Scene, frame: &wgpu::Buffer) -> wgpu::BindGroup {
         let buffers = scene.tessellator.buffers();
         let (vertices, indices) = scene.tessellator.arena();
-        let bound = [frame, &buffers.points, &buffers.corners, &buffers.patches, vertices, indices];
+        let bound = [frame, &buffers.points, &buffers.corners, &buffers.patches, vertices, indices, frame];
         let bound: Vec<_> = (0..).zip(bound).collect();
         crate::gpu::bind_group(&self.gpu, "scene", &self.scene_layout, &bound)
     }

@@ -9,8 +9,9 @@ use thiserror::Error;
 use super::{Method, Probe, Subject, views};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Timing};
-use crate::measure::{ChartError, SWEEP_STEP, sheet, sweep, sweep_chart};
+use crate::measure::{SWEEP_STEP, sheet, sweep, sweep_chart};
 use crate::mesh::{Moment, Progress, Topology, t_junctions};
+use crate::plot::ChartError;
 use crate::render::{LineSegment, Target, t_junction_lines};
 use crate::settings::{ARENA_BYTES, Overlays, Settings};
 use crate::tessellate::{LodView, Partitioning};
@@ -28,6 +29,8 @@ pub enum PictureError {
 const PART: [u32; 2] = [300, 240];
 /// Parts in a row.
 const COLUMNS: u32 = 3;
+/// Px that captions are high.
+const TEXT: u32 = 18;
 
 /// Draws the methods in rows of three, each under its name: 916 by 808 px. A sweep is its chart, 960 by 600 px, under
 /// PN-AEN.
@@ -40,7 +43,7 @@ pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImag
     }
     let names = Method::ALL.map(|method| method.name().to_owned());
     let parts: Vec<_> = names.into_iter().zip(parts(case, engine)?).collect();
-    Ok(sheet(&parts, COLUMNS)?)
+    Ok(sheet(&parts, COLUMNS, TEXT)?)
 }
 
 fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {

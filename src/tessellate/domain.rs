@@ -9,8 +9,8 @@
 //! Source: D3D11.3 Functional Specification, sections 11.7.5 to 11.7.14. Coordinates are 16.16 fixed point.
 
 use super::factors::{
-    FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity, outer_count,
-    patch_is_minimal, patch_is_subtriangulated, segments,
+    FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity, patch_is_minimal,
+    patch_is_subtriangulated, segments,
 };
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
@@ -31,9 +31,12 @@ pub struct DomainRow {
     fine_step: u32,
 }
 
-/// The length of one of `segments` equal segments: 1 / segments, rounded half up.
+/// The length of one of `segments` equal segments, of which there are 128 at most: 1 / segments, rounded half up.
+///
+/// The whole part of a quotient of whole numbers, in f32, which GPUs divide many times faster. The half that is added keeps
+/// it further from whole numbers than the 2.5 ULP by which WGSL lets a quotient be off.
 fn segment_length(segments: u32) -> u32 {
-    (2 * FIXED_ONE + segments) / (2 * segments)
+    (((2 * FIXED_ONE + segments) as f32 + 0.5) / (2 * segments) as f32) as u32
 }
 
 /// Clears the highest set bit of a number that is not zero.
@@ -88,25 +91,70 @@ fn rings_before(m: u32, area: u32) -> u32 {
     ((m as f32 - root) * 0.5 + 0.0078125) as u32
 }
 
-/// (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
-pub fn domain_point(factors: PatchFactors, i: u32) -> [u32; 2] {
+/// How a patch is cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PatternKind {
+    /// An outline, and rings inside.
+    Rings,
+    /// One triangle.
+    Minimal,
+    Subtriangulated,
+}
+
+/// A patch's factors, made ready for asking for its points and triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct DomainPlan {
+    factors: PatchFactors,
+    kind: PatternKind,
+    /// The numbers of the second and the third edge's first points.
+    start1: u32,
+    start2: u32,
+    /// Points on the outline.
+    outer: u32,
+    /// Segments inside.
+    n: u32,
+    /// The row that the rings are cut from.
+    row: DomainRow,
+}
+
+/// Prepares the pattern of a patch that isn't culled.
+pub fn domain_plan(factors: PatchFactors) -> DomainPlan {
+    let row = domain_row(factors.inside);
+    let start1 = segments(factors.outside[0]);
+    let start2 = start1 + segments(factors.outside[1]);
+    let outer = start2 + segments(factors.outside[2]);
+    let rings = DomainPlan {
+        factors,
+        kind: PatternKind::Rings,
+        start1,
+        start2,
+        outer,
+        n: inside_segments(factors.inside),
+        row,
+    };
     if patch_is_subtriangulated(factors) {
-        return subtriangulation_point(segments(factors.inside), i);
+        return DomainPlan { kind: PatternKind::Subtriangulated, n: segments(factors.inside), ..rings };
     }
-    let outer = outer_count(factors);
-    if i < outer { outer_point(factors, i) } else { inner_point(factors.inside, i - outer) }
+    if patch_is_minimal(factors) { DomainPlan { kind: PatternKind::Minimal, ..rings } } else { rings }
+}
+
+/// (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
+pub fn domain_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
+    if plan.kind == PatternKind::Subtriangulated {
+        return subtriangulation_point(plan.n, i);
+    }
+    if i < plan.outer { outer_point(plan, i) } else { inner_point(plan.row, plan.n, i - plan.outer) }
 }
 
 /// Point `i` of the outline. It starts at V == 1 with the edge U == 0, and leaves out each edge's last point.
-fn outer_point(factors: PatchFactors, i: u32) -> [u32; 2] {
-    let start1 = segments(factors.outside[0]);
-    let start2 = start1 + segments(factors.outside[1]);
+fn outer_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     // One row, chosen first: on a GPU the points of three edges then take one path.
-    let side = u32::from(i >= start1) + u32::from(i >= start2);
-    let (word, p) = match side {
-        0 => (factors.outside[0], start1 - i),
-        1 => (factors.outside[1], i - start1),
-        _ => (factors.outside[2], segments(factors.outside[2]) - (i - start2)),
+    let side = u32::from(i >= plan.start1) + u32::from(i >= plan.start2);
+    let word = plan.factors.outside[side as usize];
+    let p = match side {
+        0 => plan.start1 - i,
+        1 => i - plan.start1,
+        _ => plan.outer - i,
     };
     let x = row_location(domain_row(word), p);
     match side {
@@ -116,9 +164,8 @@ fn outer_point(factors: PatchFactors, i: u32) -> [u32; 2] {
     }
 }
 
-/// Point `i` of the rings inside.
-fn inner_point(inside: u32, i: u32) -> [u32; 2] {
-    let n = inside_segments(inside);
+/// Point `i` of the rings inside, which are cut from `row` with `n` segments.
+fn inner_point(row: DomainRow, n: u32, i: u32) -> [u32; 2] {
     let rings = rings_before(n - 1, i / 3);
     let ring = rings + 1;
     let side_length = n - 2 * ring;
@@ -129,7 +176,6 @@ fn inner_point(inside: u32, i: u32) -> [u32; 2] {
     let side = u32::from(in_ring >= side_length) + u32::from(in_ring >= 2 * side_length);
     let p = in_ring - side * side_length;
 
-    let row = domain_row(inside);
     let across = (row_location(row, ring) * FIXED_TWO_THIRDS + FIXED_HALF) >> 16;
     let along = row_location(row, if side == 1 { ring + p } else { n - ring - p }) - ((across + 1) >> 1);
     match side {
@@ -145,17 +191,14 @@ fn ring_point(start: u32, length: u32, p: u32) -> u32 {
 }
 
 /// The corners of triangle `t`, below `triangle_count(factors)`, as point numbers, clockwise.
-pub fn domain_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
-    if patch_is_minimal(factors) {
-        return [0, 1, 2];
+pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
+    match plan.kind {
+        PatternKind::Minimal => return [0, 1, 2],
+        PatternKind::Subtriangulated => return subtriangulation_triangle(plan.n, t),
+        PatternKind::Rings => {}
     }
-    if patch_is_subtriangulated(factors) {
-        return subtriangulation_triangle(segments(factors.inside), t);
-    }
-    let outer = outer_count(factors);
-    let n = inside_segments(factors.inside);
-    let transition = outer + 3 * (n - 2);
-    if t < transition { transition_triangle(factors, t) } else { regular_triangle(outer, n, t - transition) }
+    let transition = plan.outer + 3 * (plan.n - 2);
+    if t < transition { transition_triangle(plan, t) } else { regular_triangle(plan.outer, plan.n, t - transition) }
 }
 
 /// One triangle between an edge and the side inside it. It has point `inner` of the inner side, point `outer` of the edge,
@@ -229,17 +272,16 @@ fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Transit
 }
 
 /// Triangle `t` between the inside's first ring and an edge. After its middle a side mirrors what came before it.
-fn transition_step(inside: u32, edge: u32, t: u32) -> TransitionStep {
-    let inner_half = half_segments(inside) - odd_parity(inside);
+fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
+    let inner_half = row.half - row.odd;
     let outer_half = half_segments(edge) - odd_parity(edge);
-    let inner_segments = inside_segments(inside) - 2;
     let outer_segments = segments(edge);
     let total = inner_segments + outer_segments;
     let before = inner_half - 1 + outer_half;
     let after_middle = t + before >= total;
     if t >= before && !after_middle {
         // The middle: an odd inside's triangle, then an odd edge's.
-        let along_inner = t == before && odd_parity(inside) == 1;
+        let along_inner = t == before && row.odd == 1;
         return TransitionStep {
             inner: inner_half - 1 + (t - before),
             outer: outer_half,
@@ -260,20 +302,18 @@ fn transition_step(inside: u32, edge: u32, t: u32) -> TransitionStep {
 }
 
 /// Triangle `t` of those between the outline and the first ring, where the numbers of segments differ.
-fn transition_triangle(factors: PatchFactors, t: u32) -> [u32; 3] {
-    let inner_segments = inside_segments(factors.inside) - 2;
-    let start1 = segments(factors.outside[0]);
-    let start2 = start1 + segments(factors.outside[1]);
-    let outer = start2 + segments(factors.outside[2]);
+fn transition_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
+    let inner_segments = plan.n - 2;
+    let (start1, start2, outer) = (plan.start1, plan.start2, plan.outer);
     let side = u32::from(t >= start1 + inner_segments) + u32::from(t >= start2 + 2 * inner_segments);
     let side_start = match side {
         0 => 0,
         1 => start1,
         _ => start2,
     };
-    let edge = factors.outside[side as usize];
+    let edge = plan.factors.outside[side as usize];
 
-    let step = transition_step(factors.inside, edge, t - side_start - side * inner_segments);
+    let step = transition_step(plan.row, inner_segments, edge, t - side_start - side * inner_segments);
     let inner_start = side * inner_segments + step.inner;
     let outer_start = side_start + step.outer;
     let i = ring_point(outer, 3 * inner_segments, inner_start);

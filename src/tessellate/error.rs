@@ -13,6 +13,7 @@ use glam::{Vec2, Vec3};
 use super::factors::{Partitioning, round_pow2};
 use super::lod::{LodView, at_least_one, clip_row};
 use super::surface::ControlNet;
+use crate::mesh::MAX_LEVELS;
 
 /// How large differences between control points can look.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,15 +179,24 @@ pub const SURFACE_SHARE: f32 = 0.5;
 pub const DETAIL_SHARE: f32 = 0.3;
 pub const TURN_SHARE: f32 = 0.2;
 
-/// The fewest segments that show an edge's heights: as fine as the coarsest level of the height images whose loss
-/// (`detail`, in object units) is within its share of the tolerance, and as the turn of the directions at its ends (the
-/// distance between them) asks for. An estimate: between its px an image may rise by more than its levels tell.
-pub fn relief_factor(view: &LodView, sight: Sight, tolerance: f32, texels: f32, turn: f32, detail: [f32; 16]) -> f32 {
+/// The fewest segments that show one image's heights over an edge, which is `texels` px long there: as fine as the image's
+/// coarsest level whose loss (`detail`, times `scale` in object units) is within its share of the tolerance, and as the turn
+/// of the directions at its ends (the distance between them) asks for. An estimate: between its px an image may rise by
+/// more than its levels tell.
+pub fn relief_factor(
+    view: &LodView,
+    sight: Sight,
+    tolerance: f32,
+    texels: f32,
+    turn: f32,
+    scale: f32,
+    detail: [f32; MAX_LEVELS],
+) -> f32 {
     // An arc's rise over its chord is an eighth of the angle's square, of which the distance is at least 2/3.
     let bend = seen_radius(view, sight, view.reach * 0.28125 * turn * turn);
     let mut segments = texels;
     for lost in &detail[1..] {
-        if seen_radius(view, sight, *lost) > DETAIL_SHARE * tolerance {
+        if seen_radius(view, sight, scale * lost) > DETAIL_SHARE * tolerance {
             break;
         }
         segments *= 0.5;
@@ -368,7 +378,7 @@ pub fn inside_error_factor(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tessellate::{domain_point, domain_triangle, process, triangle_count};
+    use crate::tessellate::{domain_plan, domain_point, domain_triangle, process, triangle_count};
     use glam::{Mat4, Vec4, vec3};
 
     const VIEW: LodView = LodView::new(Mat4::IDENTITY, Vec2::splat(100.0));
@@ -490,10 +500,11 @@ mod tests {
     /// How far the triangles of the row along U == 0 reach along it, in the longer of both rows' segments.
     fn reach(partitioning: Partitioning, factor: f32, inside: f32) -> f64 {
         let factors = process(partitioning, [factor, inside, inside], inside);
+        let plan = domain_plan(factors);
         let mut longest = 0.0f64;
         for triangle in 0..triangle_count(factors) {
             let corners =
-                domain_triangle(factors, triangle).map(|i| domain_point(factors, i).map(|x| f64::from(x) / 65536.0));
+                domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
             let beside = |[u, v]: [f64; 2]| u <= v + 1e-4 && u <= 1.0 - u - v + 1e-4;
             if corners.into_iter().all(beside) && corners.iter().any(|[u, _]| *u == 0.0) {
                 let along = corners.map(|[u, v]| v + u / 2.0);
@@ -507,10 +518,11 @@ mod tests {
     /// How far the sides across the row along U == 0 lean along it, as a part of the edge.
     fn slant(factor: f32, inside: f32) -> f64 {
         let factors = process(Partitioning::Integer, [factor, inside, inside], inside);
+        let plan = domain_plan(factors);
         let mut longest = 0.0f64;
         for triangle in 0..triangle_count(factors) {
             let corners =
-                domain_triangle(factors, triangle).map(|i| domain_point(factors, i).map(|x| f64::from(x) / 65536.0));
+                domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
             for (a, b) in [(0, 1), (1, 2), (2, 0)] {
                 let ([a, v], [b, w]) = (corners[a], corners[b]);
                 // Other edges' rows start at this one's ends.

@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::mesh::{Inputs, Nets};
+use super::Inputs;
+use super::nets::Nets;
 use super::relief::Relief;
 use super::{ControlNet, Surface};
 use crate::mesh::{Mesh, Topology};

@@ -1,61 +1,17 @@
 //! A whole mesh, tessellated on the CPU: what the passes do, in the same order, one patch after another.
 
 use bytemuck::{Pod, Zeroable};
-use clap::ValueEnum;
 use glam::{Vec2, Vec3};
 
-use super::relief::{Relief, displacing, reach};
+use super::nets::Nets;
+use super::relief::{Relief, reach};
 use super::{
-    Clip, ControlNet, Convention, Displacement, EDGE_SHARE, FIXED_ONE, HullFactors, Lod, LodView, Meeting, Normals,
-    Partitioning, PatchFactors, SEEN, SURFACE_SHARE, Solid, Surface, center_control_point, corner_weights,
-    crease_control_point, distance_factor, domain_point, domain_triangle, edge_error_factor, edge_length_factor,
-    edge_normal, edge_position, edge_uv, inside_error_factor, level, linear_normal, linear_uv, meet, pack_normal,
-    paper_edge_factor, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, round_pow2,
-    side_control_points, surface_normal, triangle_count, unseen,
+    ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, Normals, PatchFactors, SEEN, Solid, corner_weights,
+    domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv, linear_normal, linear_uv,
+    pack_normal, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, surface_normal,
+    triangle_count, unseen,
 };
-use crate::mesh::{Curves, Mesh, Sharing, Topology};
-
-/// Who computes what the sides of an edge must agree on: control points, factor, positions and normals along it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
-#[repr(u32)]
-pub enum Edges {
-    /// The edge itself, once, in its own direction: all sides get the same bits, and nothing cracks.
-    PerEdge = 0,
-    /// Every patch for itself, in its own direction, as the white paper's shaders do (McDonald and Kilgard 2010): the
-    /// same but for rounding, so that edges crack in their last bits. In the window, LOD by length and clipping switch to
-    /// the white paper's form too.
-    AsPublished = 1,
-}
-
-/// What a tessellation is a function of, besides the mesh.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inputs {
-    pub surface: Surface,
-    /// How strong Phong tessellation is, 0 (flat) to 1.
-    pub alpha: f32,
-    pub normals: Normals,
-    pub edges: Edges,
-    pub factor: f32,
-    pub partitioning: Partitioning,
-    pub lod: Lod,
-    /// Px a segment, for adaptive LOD.
-    pub pixels: f32,
-    /// Under LOD by error: the distance in px that what is emitted keeps to the surface.
-    pub tolerance: f32,
-    /// Under LOD by distance: up to which the factor is `factor`, and from which on it is 1, in bounding radii.
-    pub near: f32,
-    pub far: f32,
-    pub clip: Clip,
-    /// Whether patches that show their backs only are left out, where [`Solid`] allows it.
-    pub cull_back_faces: bool,
-    pub convention: Convention,
-    pub displacement: Displacement,
-    /// How far white is above black, in bounding radii of the mesh at rest.
-    pub height_scale: f32,
-    /// The height that stays where it is, 0 to 1.
-    pub midlevel: f32,
-    pub view: LodView,
-}
+use crate::mesh::{Mesh, Topology};
 
 /// An emitted vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -99,19 +55,8 @@ pub struct Tessellated {
     pub edge_factors: Vec<f32>,
 }
 
-/// Which sides share a curve under a surface.
-pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
-    let alone = surface.tears() || surface == Surface::Flat;
-    match edges {
-        Edges::PerEdge if surface.tears() => Sharing::EqualNormals,
-        Edges::PerEdge => Sharing::AllSides,
-        Edges::AsPublished if alone => Sharing::None,
-        Edges::AsPublished => Sharing::NoneAveraged,
-    }
-}
-
 /// Tessellates the mesh. With `factors`, those are used in place of the ones that LOD gives: one for each edge, or as
-/// published one for each curve (see [`Curves::factor`]).
+/// published one for each curve (see [`crate::mesh::Curves::factor`]).
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
@@ -119,8 +64,9 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs, relief.as_ref()), <[f32]>::to_vec);
     let culls_back = culls_back(mesh, topology, inputs);
     let relief = relief.map(|relief| relief.with_levels(&edge_factors));
-    let out = nets
-        .emit(inputs, relief.as_ref(), culls_back, |patch, net| nets.hull_factors(inputs, &edge_factors, patch, net));
+    let relief = relief.as_ref();
+    let written = |patch, net: &ControlNet| nets.hull_factors(inputs, relief, &edge_factors, patch, net);
+    let out = nets.emit(inputs, relief, culls_back, written);
     Tessellated { edge_factors, ..out }
 }
 
@@ -151,12 +97,13 @@ pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given
 pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref());
+    let relief = Relief::new(&nets, inputs);
+    let edge_factors = nets.edge_factors(inputs, relief.as_ref());
     let culls_back = culls_back(mesh, topology, inputs);
     let written = |patch| {
         let net = nets.patch(patch);
         match unseen(inputs.clip, culls_back, &inputs.view, &net) {
-            SEEN => nets.hull_factors(inputs, &edge_factors, patch, &net),
+            SEEN => nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &net),
             _ => HullFactors::default(),
         }
     };
@@ -167,9 +114,11 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref());
+    let relief = Relief::new(&nets, inputs);
+    let edge_factors = nets.edge_factors(inputs, relief.as_ref());
     let patches = 0..topology.patches.len() as u32;
-    let written = patches.map(|patch| nets.hull_factors(inputs, &edge_factors, patch, &nets.patch(patch)));
+    let written =
+        patches.map(|patch| nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &nets.patch(patch)));
     sums(written.map(|written| written.process(inputs.partitioning)))
 }
 
@@ -190,108 +139,7 @@ pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f3
     nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref())
 }
 
-/// Control nets of a mesh: two control points a curve, one a patch.
-pub(super) struct Nets<'a> {
-    pub(super) mesh: &'a Mesh,
-    pub(super) topology: &'a Topology,
-    pub(super) surface: Surface,
-    normals: Normals,
-    edges: Edges,
-    pub(super) curves: Curves,
-    curve_nets: Vec<[Vec3; 2]>,
-}
-
-impl<'a> Nets<'a> {
-    pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        let Inputs { surface, alpha, normals, edges, .. } = *inputs;
-        let curves = Curves::build(mesh, topology, sharing(surface, edges));
-        let net = |curve: &crate::mesh::Curve| {
-            let [a, b] = curve.points.map(|p| topology.points[p as usize]);
-            let sides = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];
-            let (mut ab, mut ba) = (Vec3::ZERO, Vec3::ZERO);
-            let (mut around_a, mut around_b) = (Meeting::default(), Meeting::default());
-            for side in sides {
-                let [at_a, at_b] = side.map(|corner| mesh.corners[corner as usize].normal);
-                let proposed = side_control_points(surface, alpha, a, b, at_a, at_b);
-                ab += proposed[0];
-                ba += proposed[1];
-                around_a = meet(around_a, at_a);
-                around_b = meet(around_b, at_b);
-            }
-            let share = 1.0 / curve.side_count as f32;
-            let (ab, ba) = (ab * share, ba * share);
-            if surface == Surface::PnCrease {
-                return [crease_control_point(a, b, around_a, ab), crease_control_point(b, a, around_b, ba)];
-            }
-            [ab, ba]
-        };
-        let curve_nets = curves.curves.iter().map(net).collect();
-        Self { mesh, topology, surface, normals, edges, curves, curve_nets }
-    }
-
-    /// The largest factor that any of an edge's curves asks for; as published, what each curve asks for.
-    fn edge_factors(&self, inputs: &Inputs, relief: Option<&Relief>) -> Vec<f32> {
-        let asked = |form: &dyn Fn(&Inputs, [Vec3; 4]) -> f32, curve: u32| {
-            let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
-            let [ab, ba] = self.curve_nets[curve as usize];
-            form(inputs, [a, ab, ba, b])
-        };
-        let largest = |form: fn(&Inputs, [Vec3; 4]) -> f32, curves: &[u32]| {
-            (curves[0]..curves[1]).map(|c| asked(&form, c)).fold(1.0, f32::max)
-        };
-        let share = if relief.is_some() { SURFACE_SHARE } else { 1.0 };
-        let heights = |factor: u32, curves: &[u32]| {
-            let asked = |relief: &Relief, curve: u32| {
-                let points = self.curves.curves[curve as usize].points;
-                let [a, b] = points.map(|p| self.topology.points[p as usize]);
-                let [ab, ba] = self.curve_nets[curve as usize];
-                relief.edge_factor(inputs, factor, points, [a, ab, ba, b])
-            };
-            relief.map_or(1.0, |relief| (curves[0]..curves[1]).map(|curve| asked(relief, curve)).fold(1.0, f32::max))
-        };
-        let edge = |(index, curves): (u32, &[u32])| {
-            let factor = match inputs.lod {
-                Lod::Uniform => inputs.factor,
-                Lod::Paper => largest(|inputs, net| paper_edge_factor(&inputs.view, inputs.pixels, net), curves),
-                Lod::EdgeLength => largest(|inputs, net| edge_length_factor(&inputs.view, inputs.pixels, net), curves),
-                Lod::Distance => largest(
-                    |Inputs { view, factor, near, far, .. }, net| distance_factor(view, *factor, *near, *far, net),
-                    curves,
-                ),
-                Lod::Error if inputs.surface == Surface::Flat => heights(index, curves),
-                Lod::Error => {
-                    let tolerance = EDGE_SHARE * (inputs.tolerance * share);
-                    let asked = |curve| asked(&|inputs, net| edge_error_factor(&inputs.view, tolerance, net), curve);
-                    (curves[0]..curves[1]).map(asked).fold(heights(index, curves), f32::max)
-                }
-            };
-            match (inputs.lod, inputs.partitioning) {
-                (Lod::Error, partitioning) => level(partitioning, factor),
-                (_, Partitioning::Pow2) => round_pow2(factor),
-                _ => factor,
-            }
-        };
-        (0..).zip(self.curves.factor_curves.windows(2)).map(edge).collect()
-    }
-
-    /// The sides' factors in the order of the convention. Inside: the largest of the three, or what the error asks for,
-    /// which takes edges by the corners that they are opposite, whatever the convention.
-    fn hull_factors(&self, inputs: &Inputs, edge_factors: &[f32], patch: u32, net: &ControlNet) -> HullFactors {
-        let Inputs { view, tolerance, partitioning, .. } = inputs;
-        let sides = self.topology.patches[patch as usize].sides;
-        let sides = sides.map(|side| edge_factors[self.curves.factor(self.topology, side) as usize]);
-        let inside = if inputs.lod == Lod::Error && inputs.surface != Surface::Flat {
-            let is_displaced = displacing(self.mesh, inputs).is_some();
-            let tolerance = tolerance * if is_displaced { SURFACE_SHARE } else { 1.0 };
-            let own = inside_error_factor(view, tolerance, *partitioning, net, [sides[1], sides[2], sides[0]]);
-            // Heights are as fine inside as on the edges.
-            if is_displaced { own.max(sides[0]).max(sides[1]).max(sides[2]) } else { own }
-        } else {
-            sides[0].max(sides[1]).max(sides[2])
-        };
-        HullFactors::of_sides(inputs.convention, sides, inside)
-    }
-
+impl Nets<'_> {
     /// Every patch's output, given what the hull shader writes for it.
     fn emit(
         &self,
@@ -307,39 +155,19 @@ impl<'a> Nets<'a> {
                 SEEN => written(patch, &net).process(inputs.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
+            let plan = domain_plan(factors);
             let vertex = |i| {
-                let uv = corner_weights(inputs.convention, domain_point(factors, i));
+                let uv = corner_weights(inputs.convention, domain_point(&plan, i));
                 let own = self.vertex(patch, &net, uv);
                 relief.map_or(own, |relief| relief.displaced(self, factors, own))
             };
             let base = out.vertices.len() as u32;
             out.vertices.extend((0..point_count(factors)).map(vertex));
-            out.triangles.extend((0..triangle_count(factors)).map(|t| domain_triangle(factors, t).map(|i| base + i)));
+            let triangles = (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t));
+            out.triangles.extend(triangles.map(|corners| corners.map(|i| base + i)));
             out.patch_factors.push(factors);
         }
         out
-    }
-
-    /// The curve of a patch's side, and whether the side runs against it.
-    fn curve(&self, patch: u32, side: usize) -> (usize, bool) {
-        let side = self.topology.patches[patch as usize].sides[side];
-        (self.curves.side_curves[side as usize] as usize, self.curves.runs_against(self.topology, side))
-    }
-
-    fn corner(&self, patch: u32, k: usize) -> Vec3 {
-        let corner = self.topology.patches[patch as usize].corners[k];
-        self.topology.points[self.topology.corner_points[corner as usize] as usize]
-    }
-
-    pub(super) fn patch(&self, patch: u32) -> ControlNet {
-        let corners = [0, 1, 2].map(|k| self.corner(patch, k));
-        let [[b210, b120], [b021, b012], [b102, b201]] = [0, 1, 2].map(|k| {
-            let (curve, reversed) = self.curve(patch, k);
-            let [ab, ba] = self.curve_nets[curve];
-            if reversed { [ba, ab] } else { [ab, ba] }
-        });
-        let edges = [b210, b120, b021, b012, b102, b201];
-        ControlNet { corners, edges, center: center_control_point(corners, edges) }
     }
 
     fn vertex(&self, patch: u32, net: &ControlNet, uv: [u32; 2]) -> Vertex {

@@ -11,13 +11,16 @@ pub mod domain;
 mod error;
 pub mod factors;
 mod hull;
+mod inputs;
 mod limit;
 mod lod;
 mod mesh;
+mod nets;
 mod normal;
 mod posed;
 mod relief;
 mod solid;
+mod spans;
 mod subtriangulation;
 mod surface;
 
@@ -34,27 +37,28 @@ pub use displace::{
     Displacement, bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level,
     texel_length, uv_gradients,
 };
-pub use domain::{domain_point, domain_triangle};
+pub use domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
     FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled,
     patch_is_low, point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull::HullFactors;
+pub use inputs::{Edges, Inputs, sharing};
 pub use limit::Limit;
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
     project_and_scale,
 };
 pub use mesh::{
-    Edges, Inputs, Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, sharing, tessellate,
-    tessellate_given, totals,
+    Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, tessellate, tessellate_given, totals,
 };
 pub use normal::{
     Normals, edge_normal, linear_normal, middle_normal, pack_normal, quadratic_edge_normal, quadratic_normal,
     surface_normal, unpack_normal,
 };
 pub use posed::{Deformed, Posed, bounds_through, deform};
-pub use relief::{detail, displacing, height_units, reach, texel_lengths};
+pub use relief::{displacing, height_units, reach};
 pub use solid::{Solid, is_beyond_near};
+pub use spans::{Span, is_mixed, map_number, spans};
 pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents, place};

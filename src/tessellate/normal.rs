@@ -107,7 +107,7 @@ pub fn surface_normal(surface: Surface, net: &ControlNet, u: u32, v: u32, otherw
 /// A unit normal in 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3). Off by
 /// less than 0.004 degrees.
 pub fn pack_normal(normal: Vec3) -> u32 {
-    let flat = normal / (normal.x.abs() + normal.y.abs() + normal.z.abs());
+    let flat = normal * (1.0 / (normal.x.abs() + normal.y.abs() + normal.z.abs()));
     let folded = (Vec2::ONE - vec2(flat.y.abs(), flat.x.abs())) * vec2(toward(flat.x), toward(flat.y));
     let [x, y] = if flat.z < 0.0 { folded } else { flat.truncate() }.to_array();
     let bits = |x: f32| u32::from((0.5 + 32767.0 * x.clamp(-1.0, 1.0)).floor() as i16 as u16);

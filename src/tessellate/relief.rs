@@ -6,10 +6,12 @@ use super::displace::{
     Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
 use super::error::{edge_sight, relief_factor};
-use super::mesh::{Inputs, Nets, Vertex};
+use super::nets::Nets;
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
+use super::spans::{Maps, Span, map_number, spans};
 use super::surface::{UNIT, linear_uv, patch_tangents, place};
 use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, factor_side};
+use super::{Inputs, Vertex};
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
 /// What displaces a mesh under these inputs, if anything does.
@@ -43,8 +45,8 @@ pub struct Relief<'a> {
     /// How both texture coordinates change at each corner, over the triangles around it: what linear and quadratic normals
     /// rise by, which bend over edges as they do.
     frames: Vec<[Vec3; 2]>,
-    /// How long each factor's edge is at most in its sides' maps, in px of level 0.
-    texels: Vec<f32>,
+    /// How long each factor's edge is in its sides' maps.
+    spans: Vec<Span>,
     /// One for each factor, and for each point the finest of its edges'.
     factor_levels: Vec<f32>,
     point_levels: Vec<f32>,
@@ -98,7 +100,7 @@ impl<'a> Relief<'a> {
             midlevel: inputs.midlevel,
             directions: directions(mesh, &dominance),
             frames: frames(mesh, topology),
-            texels: texel_lengths(heights, mesh, topology, &dominance),
+            spans: spans(heights, mesh, topology, &dominance),
             factor_levels: vec![0.0; dominance.sides.len()],
             point_levels: vec![0.0; dominance.corners.len()],
             dominance,
@@ -127,13 +129,35 @@ impl<'a> Relief<'a> {
         self.dominance.sides.iter().map(of).collect()
     }
 
-    /// The fewest segments that show the heights over a factor's curve, within the tolerance of `inputs`.
-    pub(super) fn edge_factor(&self, inputs: &Inputs, factor: u32, points: [u32; 2], curve: [Vec3; 4]) -> f32 {
+    /// The fewest segments that show the heights of these maps over a factor's curve, within the tolerance of `inputs`.
+    pub(super) fn edge_factor(
+        &self,
+        inputs: &Inputs,
+        factor: u32,
+        maps: Maps,
+        points: [u32; 2],
+        curve: [Vec3; 4],
+    ) -> f32 {
         let [a, b] = points.map(|point| self.directions[point as usize]);
-        let texels = self.texels[factor as usize];
-        let sight = edge_sight(&inputs.view, curve);
-        let lost = detail(self.heights, inputs);
-        relief_factor(&inputs.view, sight, inputs.tolerance, texels, a.distance(b), lost)
+        let (view, turn, scale) = (&inputs.view, a.distance(b), self.scale.abs());
+        let sight = edge_sight(view, curve);
+        let asked = |span: &Span| {
+            let detail = self.heights.detail[span.map as usize - 1];
+            relief_factor(view, sight, inputs.tolerance, span.texels, turn, scale, detail)
+        };
+        let counts = |span: &&Span| span.map > 0 && (maps == Maps::All || maps == Maps::Only(span.map));
+        self.spans_of(factor).filter(counts).map(asked).fold(1.0, f32::max)
+    }
+
+    /// The maps of a patch, if its side has others too: what its inside is then asked by.
+    pub(super) fn own_maps(&self, patch: u32, factor: u32) -> Option<Maps> {
+        let own = map_number(self.heights, self.topology, patch);
+        self.spans_of(factor).any(|span| span.map != own).then_some(Maps::Only(own))
+    }
+
+    fn spans_of(&self, factor: u32) -> impl Iterator<Item = &Span> {
+        let next = |span: &&Span| (span.next > 0).then(|| &self.spans[span.next as usize]);
+        std::iter::successors(self.spans.get(factor as usize), next)
     }
 
     /// How far and which way a place of a patch moves in the end, at full detail and in double precision, as the patch has it
@@ -318,25 +342,4 @@ fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
         unit_or(sum, parts.first().map_or(Vec3::Z, |&(corner, _)| normal(corner)))
     };
     dominance.part_starts.windows(2).map(of).collect()
-}
-
-/// How far level l of any map is from level 0 at most, in object units; more than anything beyond the last level.
-pub fn detail(heights: &Heights, inputs: &Inputs) -> [f32; 16] {
-    let own = heights.detail.map(|lost| lost * height_units(heights, inputs).abs());
-    std::array::from_fn(|level| own.get(level).copied().unwrap_or(f32::MAX))
-}
-
-/// How long the edge of each factor is at most in its sides' maps, in px of level 0.
-pub fn texel_lengths(heights: &Heights, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Vec<f32> {
-    let mut lengths = vec![0.0_f32; dominance.sides.len()];
-    for (index, patch) in (0..).zip(&topology.patches) {
-        let map = heights.of_material.get(topology.material_of(index)).copied().flatten();
-        let Some(map) = map.and_then(|map| heights.maps.get(map as usize)) else { continue };
-        let uvs = patch.corners.map(|corner| mesh.corners[corner as usize].uv);
-        for (side, factor) in dominance.patch_factors[index as usize].into_iter().enumerate() {
-            let longest = &mut lengths[factor as usize];
-            *longest = longest.max(texel_length(map, uvs[side], uvs[(side + 1) % 3]));
-        }
-    }
-    lengths
 }

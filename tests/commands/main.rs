@@ -2,6 +2,7 @@
 
 mod adjacency;
 mod animation;
+mod chart;
 mod deviation;
 mod domain;
 mod factors;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::{Loaded, Preparation, load};
+use pnaen::engine::{Loaded, Preparation, Runs, load};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::measure::ulp;
 use pnaen::mesh::{Mesh, Moment, Progress, Rig, Source};
@@ -145,7 +145,7 @@ fn the_pass_is_timed_where_something_is_deformed() {
     scene.set_moment(Some(Moment { clip: 0, time: 0.3 })).expect("a small rig");
     let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
-    let times = engine().time(&mut scene, &target, &camera, &Settings::default()).expect("a draw");
+    let times = engine().time(&mut scene, &target, &camera, &Settings::default(), Runs::default()).expect("a draw");
     let passes: Vec<_> = times.iter().map(|time| time.pass).collect();
     assert_eq!((passes[0], &passes[1..]), ("deform", &crate::passes::RIGID_PASSES[..]));
 }

@@ -3,17 +3,17 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use pnaen::engine::{Loaded, Preparation};
+use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::Timing;
 use pnaen::measure::{Measured, ulp};
 use pnaen::mesh::rim::Rim;
-use pnaen::mesh::{Corner, HeightMap, Heights, Mesh, Moment, Progress, Shape, Source, Topology};
+use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Progress, Shape, Source, Texture, Topology};
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::CASES;
 use pnaen::tessellate::{
-    Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, Surface, Vertex, deform, tessellate,
-    tessellate_given, unpack_normal,
+    Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Vertex, deform,
+    tessellate, tessellate_given, triangle_count, unpack_normal,
 };
 
 use crate::engine;
@@ -301,8 +301,66 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{time} s");
         let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
         let camera = pnaen::render::Camera::framing(&scene.bounds, target.viewport());
-        let times = engine().time(&mut scene, &target, &camera, &settings).expect("a draw");
+        let times = engine().time(&mut scene, &target, &camera, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();
     }
     assert_eq!(passes, pnaen::gpu::PASSES, "every pass has something to do");
+}
+
+/// A torus in two halves of a material each, under these images; a rim between the halves twice.
+fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
+    let mut mesh = Shape::Torus.build();
+    let count = mesh.triangles.len() as u32;
+    let half = |texture: &Arc<Texture>, triangles| Material {
+        texture: Some(texture.clone()),
+        triangles,
+        ..mesh.materials[0].clone()
+    };
+    mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
+    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &Progress::new()).expect("images")));
+    on_device(Shape::Torus, mesh)
+}
+
+#[test]
+fn a_noisy_image_refines_its_own_patches_alone() {
+    let image = |gray: &dyn Fn(u32) -> u32| {
+        let rgba = (0..256 * 256).flat_map(|i| [gray(i) as u8, gray(i) as u8, gray(i) as u8, 255]).collect();
+        Arc::new(Texture { size: [256, 256], rgba })
+    };
+    let slope = image(&|i| i % 256);
+    let noise = image(&|i| if i < 256 { i } else { i.wrapping_mul(2_654_435_769) >> 24 });
+    let own = Settings { displacement: Displacement::On, height_scale: 0.1, lod: Lod::Error, ..Settings::default() };
+    for (surface, edges) in [(Surface::PnAen, Edges::PerEdge), (Surface::Flat, Edges::AsPublished)] {
+        let settings = Settings { surface, edges, tolerance: 2.0, ..own };
+        let [(loaded, both), (_, smooth), (_, noisy)] =
+            [[&noise, &slope], [&slope, &slope], [&noise, &noise]].map(|images| {
+                let (loaded, mut scene) = halves(images);
+                let inputs = inputs(&loaded, &settings);
+                let device = on_gpu(&mut scene, &inputs);
+                let host = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+                assert!(device.patch_factors == host.patch_factors, "{surface:?}: CPU and GPU disagree");
+                (loaded, device.patch_factors)
+            });
+        let (mut alone, mut shared) = (0, 0);
+        for (index, patch) in loaded.topology.patches.iter().enumerate().skip(both.len() / 2) {
+            assert!(both[index].inside == smooth[index].inside, "{surface:?}: inside a patch of the smooth image");
+            let is_rim = |&side: &u32| {
+                let edge = loaded.topology.sides[side as usize].edge;
+                let others = loaded.topology.patches[..both.len() / 2].iter().flat_map(|patch| patch.sides);
+                others.into_iter().any(|other| loaded.topology.sides[other as usize].edge == edge)
+            };
+            match patch.sides.iter().any(is_rim) {
+                true => shared += 1,
+                false => alone += u32::from(both[index] == smooth[index]),
+            }
+        }
+        assert_eq!(alone + shared, both.len() as u32 / 2, "{surface:?}: as few as under the smooth image alone");
+        assert!(shared > 0 && alone > 0, "{surface:?}: {shared} patches with a rim, {alone} without");
+        for index in 0..both.len() / 2 {
+            assert!(both[index] == noisy[index], "{surface:?}: as many as under the noisy image alone");
+        }
+        let triangles = |all: &[PatchFactors]| all.iter().map(|&own| u64::from(triangle_count(own))).sum::<u64>();
+        let (noise_asks, slope_asks) = (triangles(&noisy), triangles(&smooth));
+        assert!(noise_asks > 2 * slope_asks, "{surface:?}: {noise_asks} and {slope_asks}");
+    }
 }

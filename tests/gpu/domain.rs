@@ -1,7 +1,7 @@
 //! The tessellator on the GPU against its twin on the CPU: factors, counts, every point and every triangle.
 
 use bytemuck::{Pod, Zeroable};
-use pnaen::tessellate::domain::{domain_point, domain_triangle};
+use pnaen::tessellate::domain::{domain_plan, domain_point, domain_triangle};
 use pnaen::tessellate::factors::{Partitioning, PatchFactors, point_count, process, round_pow2, triangle_count};
 use wgpu::util::DeviceExt;
 
@@ -40,10 +40,10 @@ fn main(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
         results[group.x] = Result(factors, point_total, triangle_total, power, 0u);
     }
     for (var i = lane; i < point_total; i += 64u) {
-        points[case_.first_point + i] = domain_point(factors, i);
+        points[case_.first_point + i] = domain_point(domain_plan(factors), i);
     }
     for (var t = lane; t < triangle_total; t += 64u) {
-        let corners = domain_triangle(factors, t);
+        let corners = domain_triangle(domain_plan(factors), t);
         let at = 3u * (case_.first_triangle + t);
         triangles[at] = corners.x;
         triangles[at + 1u] = corners.y;
@@ -93,12 +93,13 @@ struct CaseResult {
 fn on_cpu(f: Factors) -> Patch {
     let factors = process(f.partitioning, f.edges, f.inside);
     let counts = [point_count(factors), triangle_count(factors)];
+    let plan = domain_plan(factors);
     Patch {
         factors,
         counts,
         inside_power: round_pow2(f.inside).to_bits(),
-        points: (0..counts[0]).map(|i| domain_point(factors, i)).collect(),
-        triangles: (0..counts[1]).map(|t| domain_triangle(factors, t)).collect(),
+        points: (0..counts[0]).map(|i| domain_point(&plan, i)).collect(),
+        triangles: (0..counts[1]).map(|t| domain_triangle(&plan, t)).collect(),
     }
 }
 

@@ -81,9 +81,9 @@ fn shared_structs_have_one_layout() {
         displacement,
         height_scale,
         midlevel,
-        detail,
+        mixed,
     });
-    same!(Share { direction, level, dominant, texels });
+    same!(Share { direction, level, dominant, texels, map, next });
     same!(HeightMap { size, levels, start, repeats });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
@@ -91,7 +91,7 @@ fn shared_structs_have_one_layout() {
     same!(CurveNet { ab, ba });
     same!(PatchFactors { outside, inside });
     same!(Chunk { first_patch, patch_end, first_vertex, first_triangle, vertex_count, triangle_count });
-    same!(EmitArgs { vertices, triangles });
+    same!(EmitArgs { vertices, triangles, displaced });
     same!(DrawArgs {
         index_count,
         instance_count,

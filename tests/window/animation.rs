@@ -33,6 +33,8 @@ fn a_clip_is_chosen_and_scrubbed() {
     let (mut harness, path) = moving_window("scrub");
     harness.get_by_label("Animation");
     assert_eq!(harness.state().moment(), None, "it opens at rest");
+    // Framed in the viewport as it is by now.
+    press(&mut harness, Key::F);
     let (rest, pictures) = (*harness.state().camera(), harness.state().pictures());
     choose(&mut harness, "Clip", CLIPS[2]);
     assert!(harness.state().camera().distance > 1.2 * rest.distance, "all of the clip is in sight, as the mesh was");
@@ -147,6 +149,13 @@ fn a_mesh_loaded_again_keeps_its_place_and_another_rests() {
     harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
     settle(&mut harness);
     press(&mut harness, Key::R);
+    assert_eq!(harness.state().moment(), Some(Moment { clip: 1, time: 0.5 }));
+    // With a rim it doesn't move, and without it goes on where it was.
+    harness.get_by_role_and_label(Role::SpinButton, "Rim").set_value_accesskit(1.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().moment(), None);
+    harness.get_by_role_and_label(Role::SpinButton, "Rim").set_value_accesskit(0.0);
+    settle(&mut harness);
     assert_eq!(harness.state().moment(), Some(Moment { clip: 1, time: 0.5 }));
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::Torus));

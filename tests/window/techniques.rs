@@ -91,3 +91,19 @@ fn heights_that_are_not_there_are_a_sentence_and_change_nothing() {
     assert_eq!(harness.state().settings().displacement, Displacement::Off, "every setting as it was");
     assert!(harness.state().pictures() >= pictures);
 }
+
+#[test]
+fn a_height_image_can_be_chosen_from_the_file_menu() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    harness.get_by_label("File").click();
+    settle(&mut harness);
+    let entry = harness.get_by_label("Height image…");
+    assert_eq!((entry.accesskit_node().role(), entry.accesskit_node().is_disabled()), (Role::Button, false));
+    let (open, own, reload) = ("Open path… Ctrl+L", entry.rect(), harness.get_by_label("Reload R").rect());
+    let above = harness.get_by_label(open).rect();
+    assert!(above.bottom() <= own.top() && own.bottom() <= reload.top(), "{above} {own} {reload}");
+    entry.hover();
+    // A hover text comes after a while.
+    harness.run_steps(60);
+    harness.get_by_label_contains("Displaces the mesh by a PNG or JPEG image");
+}

@@ -3,12 +3,15 @@ use std::collections::HashMap;
 use proptest::prelude::*;
 
 use super::*;
-use crate::tessellate::factors::{FACTOR_VALUE, Partitioning, patch_is_culled, point_count, process, triangle_count};
+use crate::tessellate::factors::{
+    FACTOR_VALUE, Partitioning, outer_count, patch_is_culled, point_count, process, triangle_count,
+};
 
 fn closed_form(f: PatchFactors) -> serial::Patch {
+    let plan = domain_plan(f);
     serial::Patch {
-        points: (0..point_count(f)).map(|i| domain_point(f, i)).collect(),
-        triangles: (0..triangle_count(f)).map(|t| domain_triangle(f, t)).collect(),
+        points: (0..point_count(f)).map(|i| domain_point(&plan, i)).collect(),
+        triangles: (0..triangle_count(f)).map(|t| domain_triangle(&plan, t)).collect(),
     }
 }
 
@@ -176,12 +179,25 @@ fn triangles_are_a_disc() {
 }
 
 #[test]
+fn a_segments_length_is_rounded_half_up() {
+    for segments in 1..=128 {
+        assert_eq!(segment_length(segments), (2 * FIXED_ONE + segments) / (2 * segments), "{segments}");
+        // As far off as a GPU may be.
+        for off in [1.0 - 3e-7, 1.0 + 3e-7] {
+            let quotient = ((2 * FIXED_ONE + segments) as f32 + 0.5) / (2 * segments) as f32 * off;
+            assert_eq!(quotient as u32, segment_length(segments), "{segments}");
+        }
+    }
+}
+
+#[test]
 fn an_edge_depends_on_its_own_factor_only() {
     for p in Partitioning::DIRECT3D {
         let edge = |others: f32, inside: f32| {
             let f = process(p, [others, 7.3, others], inside);
             let start = segments(f.outside[0]);
-            (start..start + segments(f.outside[1])).map(|i| domain_point(f, i)).collect::<Vec<_>>()
+            let plan = domain_plan(f);
+            (start..start + segments(f.outside[1])).map(|i| domain_point(&plan, i)).collect::<Vec<_>>()
         };
         assert_eq!(edge(2.2, 1.0), edge(50.0, 33.3));
     }

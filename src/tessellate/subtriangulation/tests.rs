@@ -5,12 +5,13 @@ use crate::tessellate::factors::{
     FACTOR_VALUE, Partitioning, PatchFactors, SUBTRIANGULATED, outer_count, patch_is_culled, patch_is_minimal,
     patch_is_subtriangulated, point_count, process, segments, triangle_count,
 };
-use crate::tessellate::{domain_point, domain_triangle};
+use crate::tessellate::{domain_plan, domain_point, domain_triangle};
 
 /// What a factor makes of a patch: points and triangles.
 fn pattern(factors: PatchFactors) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
-    let points = (0..point_count(factors)).map(|i| domain_point(factors, i)).collect();
-    (points, (0..triangle_count(factors)).map(|t| domain_triangle(factors, t)).collect())
+    let plan = domain_plan(factors);
+    let points = (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect();
+    (points, (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect())
 }
 
 fn uniform(factor: f32) -> PatchFactors {

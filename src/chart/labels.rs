@@ -1,0 +1,82 @@
+//! Words beside points, as many as fit without one covering another.
+
+/// A box in px: least and greatest coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    pub min: [f64; 2],
+    pub max: [f64; 2],
+}
+
+/// A point that is to have a label of this size, in px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    pub at: [f64; 2],
+    pub size: [f64; 2],
+}
+
+impl Rect {
+    pub fn around([x, y]: [f64; 2], half: f64) -> Self {
+        Self { min: [x - half, y - half], max: [x + half, y + half] }
+    }
+
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..2).all(|k| self.min[k] < other.max[k] && other.min[k] < self.max[k])
+    }
+
+    pub fn contains(&self, other: &Self) -> bool {
+        (0..2).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
+    }
+
+    /// Whether a line from `a` to `b` comes inside.
+    fn is_crossed(&self, a: [f64; 2], b: [f64; 2]) -> bool {
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        for k in 0..2 {
+            let along = b[k] - a[k];
+            if along == 0.0 {
+                if a[k] <= self.min[k] || a[k] >= self.max[k] {
+                    return false;
+                }
+                continue;
+            }
+            let [p, q] = [(self.min[k] - a[k]) / along, (self.max[k] - a[k]) / along];
+            (enter, leave) = (enter.max(p.min(q)), leave.min(p.max(q)));
+        }
+        enter < leave
+    }
+}
+
+/// From a point to its label, in px.
+const GAP: f64 = 6.0;
+
+/// Places labels one after another, the first where it likes, inside `bounds`, over no point, no line and no other label;
+/// none for a label that fits nowhere.
+pub fn place(wanted: &[Wanted], points: &[[f64; 2]], lines: &[[[f64; 2]; 2]], bounds: Rect) -> Vec<Option<Rect>> {
+    let markers: Vec<Rect> = points.iter().map(|&point| Rect::around(point, 4.0)).collect();
+    let mut placed: Vec<Option<Rect>> = Vec::new();
+    for wish in wanted {
+        let is_free = |rect: &Rect| {
+            let taken = markers.iter().chain(placed.iter().flatten()).any(|other| rect.overlaps(other));
+            bounds.contains(rect) && !taken && !lines.iter().any(|[a, b]| rect.is_crossed(*a, *b))
+        };
+        placed.push(places(wish).into_iter().find(is_free));
+    }
+    placed
+}
+
+/// Around a point, the best first.
+fn places(&Wanted { at: [x, y], size: [width, height] }: &Wanted) -> [Rect; 8] {
+    let slant = GAP * 0.6;
+    let (left, middle, right) = (x - width, x - width / 2.0, x);
+    let (above, level, below) = (y - height, y - height / 2.0, y);
+    [
+        [right + slant, above - slant],
+        [left - slant, below + slant],
+        [left - slant, above - slant],
+        [right + slant, below + slant],
+        [right + GAP, level],
+        [left - GAP, level],
+        [middle, above - GAP],
+        [middle, below + GAP],
+    ]
+    .map(|min| Rect { min, max: [min[0] + width, min[1] + height] })
+}

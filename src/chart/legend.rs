@@ -1,0 +1,110 @@
+//! What every method looks like, and the lines that say so.
+
+use plotters::prelude::*;
+
+use super::look::{Fill, Look, Shape, dash};
+use super::pen::{Drawn, FRONT, LEFT, Pen};
+use super::{LodKind, Method, Subject};
+use crate::plot::INK;
+use crate::settings::option_name;
+
+/// What something looks like, and what it is.
+pub struct Entry {
+    sample: Sample,
+    name: String,
+}
+
+enum Sample {
+    Marker(Look),
+    Line(Option<[f64; 2]>),
+    Front,
+}
+
+/// Entries in a line where there is one for each partitioning and normals.
+const IN_A_LINE: usize = 3;
+
+/// Every method with its look.
+pub fn looks(subject: &Subject) -> Vec<(Method, Look)> {
+    let methods = subject.methods();
+    let variants = variants(&methods);
+    let variant = |method: &Method| variants.iter().position(|other| same(other, method)).unwrap_or(0);
+    methods.iter().map(|method| (*method, Look::of(*method, variant(method)))).collect()
+}
+
+/// A method for each pair of partitioning and normals; none if every LOD has one of these, and there is nothing to tell
+/// apart.
+fn variants(methods: &[Method]) -> Vec<Method> {
+    let mut all: Vec<Method> = Vec::new();
+    for method in methods {
+        if !all.iter().any(|other| same(other, method)) {
+            all.push(*method);
+        }
+    }
+    let one_each = |lod: LodKind| all.iter().filter(|method| method.lod == lod).count() <= 1;
+    if LodKind::ALL.into_iter().all(one_each) { Vec::new() } else { all }
+}
+
+fn same(a: &Method, b: &Method) -> bool {
+    a.partitioning == b.partitioning && a.normals == b.normals
+}
+
+/// A line for surfaces, one for LODs, and more for what else there is several of.
+pub fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
+    let Some(subject) = subjects.iter().max_by_key(|subject| subject.methods().len()) else { return Vec::new() };
+    let variants = variants(&subject.methods());
+    let (mut surfaces, mut lods) = (Vec::new(), Vec::new());
+    for (method, look) in looks(subject) {
+        add(&mut surfaces, Sample::Marker(Look { fill: Fill::Full, ..look }), option_name(method.surface));
+        let mut name = match method.lod {
+            LodKind::Uniform => "uniform factor".to_owned(),
+            LodKind::Paper => "white paper's LOD, px a segment".to_owned(),
+            LodKind::Error => "LOD by error, px".to_owned(),
+        };
+        if variants.is_empty() {
+            name += &format!(" ({})", method.partitioning);
+        }
+        add(&mut lods, Sample::Line(dash(method.lod)), name);
+    }
+    add(&mut surfaces, Sample::Front, "nothing has less error at less cost".to_owned());
+    let mut lines = vec![surfaces, lods];
+    for (index, method) in variants.iter().enumerate() {
+        if index % IN_A_LINE == 0 {
+            lines.push(Vec::new());
+        }
+        let look = Look { color: INK, shape: Shape::Disc, ..Look::of(*method, index) };
+        let name = format!("{}, {} normals", method.partitioning, option_name(method.normals));
+        lines.last_mut().into_iter().for_each(|line| add(line, Sample::Marker(look), name.clone()));
+    }
+    lines
+}
+
+/// Once under each name.
+fn add(entries: &mut Vec<Entry>, sample: Sample, name: String) {
+    if !entries.iter().any(|entry| entry.name == name) {
+        entries.push(Entry { sample, name });
+    }
+}
+
+/// Draws entries side by side; `size` is that of their text, in px.
+pub fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], at: [f64; 2], size: i32) -> Drawn<DB> {
+    let [mut x, y] = at;
+    for Entry { sample, name } in entries {
+        let long = match sample {
+            Sample::Marker(look) => {
+                pen.marker([x + 6.0, y], look)?;
+                16.0
+            }
+            Sample::Line(dash) => {
+                pen.line(&[[x, y], [x + 32.0, y]], INK, 1.4, *dash)?;
+                38.0
+            }
+            Sample::Front => {
+                pen.line(&[[x, y], [x + 32.0, y]], FRONT, 9.0, None)?;
+                38.0
+            }
+        };
+        pen.text(name, [x + long, y], size, LEFT)?;
+        x += long + pen.text_width(name, size) * 1.08 + 22.0;
+    }
+    Ok(())
+}

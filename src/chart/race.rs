@@ -1,0 +1,102 @@
+//! Which rows nobody beats, and which method is the fastest to reach an error.
+
+use super::{Method, Row, Subject};
+use crate::tessellate::Surface;
+
+/// Rows of a mesh that can be compared, with their errors: all, if they were held against one truth; otherwise those of one
+/// surface, as each is off from its own limit.
+#[derive(Clone, Debug)]
+pub struct Race<'a> {
+    /// The one that all are of, without a truth.
+    pub surface: Option<Surface>,
+    pub entries: Vec<(&'a Row, f64)>,
+}
+
+/// The fastest to reach an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Win<'a> {
+    pub error: f64,
+    pub fastest: &'a Row,
+    /// The fastest of another method; none if no other reaches it.
+    pub next: Option<&'a Row>,
+}
+
+/// Of points with a cost and an error, the indices of those that no other one beats, by growing cost: each has less error
+/// than all that cost as much or less. Of equal points it is the first.
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| {
+        let ((cost_a, error_a), (cost_b, error_b)) = (points[a], points[b]);
+        cost_a.total_cmp(&cost_b).then(error_a.total_cmp(&error_b))
+    });
+    let mut least = f64::INFINITY;
+    order.retain(|&index| {
+        let better = points[index].1 < least;
+        least = least.min(points[index].1);
+        better
+    });
+    order
+}
+
+impl Subject {
+    /// Rows whose error is known, as they can be compared.
+    pub fn races(&self) -> Vec<Race<'_>> {
+        let mut races: Vec<Race> = Vec::new();
+        for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
+            let surface = self.truth.is_none().then_some(row.setting.method.surface);
+            match races.iter_mut().find(|race| race.surface == surface) {
+                Some(race) => race.entries.push((row, error)),
+                None => races.push(Race { surface, entries: vec![(row, error)] }),
+            }
+        }
+        races
+    }
+
+    /// Every method once, in the order of rows.
+    pub fn methods(&self) -> Vec<Method> {
+        let mut methods = Vec::new();
+        for row in &self.rows {
+            if !methods.contains(&row.setting.method) {
+                methods.push(row.setting.method);
+            }
+        }
+        methods
+    }
+}
+
+impl<'a> Race<'a> {
+    /// The rows that no other one beats, with their errors; `cost` is what a row costs.
+    pub fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
+        let points: Vec<_> = self.entries.iter().map(|(row, error)| (cost(row), *error)).collect();
+        front(&points).into_iter().map(|index| self.entries[index]).collect()
+    }
+
+    /// Errors to ask for, the largest first: up to `count` of 1, 2 and 5 times powers of ten, no smaller than `floor`, that
+    /// some rows reach and others don't.
+    pub fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
+        let errors = self.entries.iter().map(|(_, error)| error.max(floor));
+        let [least, most] = errors.fold([f64::INFINITY, 0.0], |[a, b], error| [a.min(error), b.max(error)]);
+        if least >= most {
+            return Vec::new();
+        }
+        let decades = least.log10().floor() as i32..=most.log10().ceil() as i32;
+        let mut levels: Vec<f64> = decades
+            .flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)))
+            .filter(|level| (least..most).contains(level))
+            .collect();
+        levels.reverse();
+        if levels.len() <= count {
+            return levels;
+        }
+        (0..count).map(|k| levels[k * (levels.len() - 1) / (count - 1).max(1)]).collect()
+    }
+
+    /// Who is the fastest to be off by no more than `error`; nobody, if no row is.
+    pub fn win(&self, error: f64) -> Option<Win<'a>> {
+        let reached = || self.entries.iter().filter(|(_, own)| *own <= error).map(|(row, _)| *row);
+        let faster = |a: &&Row, b: &&Row| a.time.total().total_cmp(&b.time.total());
+        let fastest = reached().min_by(faster)?;
+        let next = reached().filter(|row| row.setting.method != fastest.setting.method).min_by(faster);
+        Some(Win { error, fastest, next })
+    }
+}

@@ -1,0 +1,89 @@
+//! What a chart says, in sentences.
+
+use super::{Method, Race, Row, Subject, Win};
+use crate::numbers::{grouped, short};
+use crate::settings::option_name;
+
+/// Errors that winners are named for.
+const LEVELS: usize = 3;
+
+/// Errors below these are rounding: parts of the diagonal, and px.
+const LEAST_PART: f64 = 1e-7;
+const LEAST_PX: f64 = 1e-3;
+
+impl Subject {
+    /// Errors no larger than this are as good as none.
+    pub fn floor(&self) -> f64 {
+        if self.truth.is_some() { LEAST_PART } else { LEAST_PX }
+    }
+
+    /// Who wins at which error, and how close anything comes.
+    pub fn sentences(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        for race in self.races() {
+            let levels = race.levels(LEVELS, self.floor());
+            let wins: Vec<_> = levels.into_iter().filter_map(|level| race.win(level)).collect();
+            all.extend(wins.iter().map(|win| self.says(win)));
+            all.extend(self.closest(&race));
+        }
+        all
+    }
+
+    fn says(&self, win: &Win) -> String {
+        let Win { error, fastest, next } = *win;
+        let (name, ms) = (self.named(fastest), fastest.time.total());
+        let cost = format!("{} ms, {} triangles", short(ms), grouped(fastest.triangles));
+        let rest = match next {
+            Some(next) => {
+                let times = if ms > 0.0 { next.time.total() / ms } else { 1.0 };
+                format!("{times:.1} times faster than {}", self.named(next))
+            }
+            None => "and nothing else reaches it".to_owned(),
+        };
+        format!("At {} {name} is fastest: {cost}; {rest}.", self.amount(error))
+    }
+
+    /// What comes closest to the truth.
+    fn closest(&self, race: &Race) -> Option<String> {
+        self.truth.as_ref()?;
+        let (row, error) = race.entries.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let percent = short(error * 100.0);
+        Some(format!("Closest comes {}, to {percent} % of the diagonal.", self.named(row)))
+    }
+
+    /// A method and its setting.
+    fn named(&self, row: &Row) -> String {
+        format!("{} ({})", self.name(row.setting.method), row.setting.label())
+    }
+
+    /// What a method is called among the others.
+    pub fn name(&self, method: Method) -> String {
+        let mut name = method.to_string();
+        let others = self.methods();
+        if others.iter().any(|other| other.lod == method.lod && other.partitioning != method.partitioning) {
+            name += &format!(", {}", method.partitioning);
+        }
+        if others.iter().any(|other| other.normals != method.normals) {
+            name += &format!(", {} normals", option_name(method.normals));
+        }
+        name
+    }
+
+    /// An error as it is written.
+    fn amount(&self, error: f64) -> String {
+        match self.truth {
+            Some(_) => format!("{} % of the diagonal", plain(error * 100.0)),
+            None => format!("{} px", plain(error)),
+        }
+    }
+}
+
+/// A number with one digit that isn't 0.
+pub fn plain(number: f64) -> String {
+    let digit = (number.log10() + 1e-9).floor();
+    if !(-6.0..6.0).contains(&digit) {
+        return format!("{number:.0e}");
+    }
+    let decimals = (-digit).max(0.0) as usize;
+    format!("{number:.decimals$}")
+}

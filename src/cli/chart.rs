@@ -1,0 +1,292 @@
+//! `pnaen chart`: speed against accuracy.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::builder::{OsStringValueParser, TypedValueParser};
+
+use super::options::{CameraOption, Size};
+use super::{CliError, SurfaceOptions, Telling, WeldOption, file_error, load, options, write_text};
+use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, svg};
+use crate::engine::{Engine, Loaded};
+use crate::measure::AccuracyOptions;
+use crate::mesh::{Progress, Source};
+use crate::render::Target;
+use crate::settings::ARENA_BYTES;
+use crate::tessellate::{Normals, Partitioning, Surface};
+use crate::truth::Truth;
+
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// .gltf or .glb files, or shapes made in code such as shape:torus, or shape:torus@2 (finer)
+    #[arg(value_parser = options::source(), required = true)]
+    pub files: Vec<Source>,
+    /// Mesh that what is emitted should have been, such as the high-poly original, where the mesh is no shape with an exact
+    /// surface of its own; with one mesh only
+    #[arg(long, value_name = "FILE", value_parser = options::source())]
+    pub truth: Option<Source>,
+    #[command(flatten)]
+    pub weld: WeldOption,
+    /// Surfaces to try
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "SURFACE,..", default_values = ["flat", "pn-aen", "phong-aen", "nagata-aen"])]
+    pub surfaces: Vec<Surface>,
+    /// Normals to shade with
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NORMALS,..", default_values = ["linear"])]
+    pub normals: Vec<Normals>,
+    /// Partitionings to try with every LOD; by default fractional-odd, and integer by error. Subtriangulation is uniform only
+    #[arg(long, value_delimiter = ',', value_name = "P,..", value_parser = options::partitioning())]
+    pub partitionings: Vec<Partitioning>,
+    /// Where factors come from: the same everywhere; the white paper's projected length of an edge; or the error on screen
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error"])]
+    pub lods: Vec<LodKind>,
+    /// Factors to try under uniform LOD, each 1 to 64
+    #[arg(long, value_delimiter = ',', value_name = "F,..", default_value = "1,2,3,4,6,8,12,16,24,32,48,64", value_parser = options::factor)]
+    pub factors: Vec<f32>,
+    /// Lengths of a segment on screen to try under the white paper's LOD, in px, each 1 to 256
+    #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "32,16,8,4,2,1", value_parser = options::pixels)]
+    pub pixels: Vec<f32>,
+    /// Tolerances to try under LOD by error, in px, each 0.01 to 100
+    #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "8,4,2,1,0.5,0.25,0.125", value_parser = options::tolerance)]
+    pub tolerances: Vec<f32>,
+    /// Leave out settings of more triangles than this, and say so
+    #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = clap::value_parser!(u64).range(1..))]
+    pub max_triangles: u64,
+    /// Points of the truth that are looked at, and at least as many of what is emitted
+    #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = samples)]
+    pub samples: usize,
+    /// Width and height of the view, in px
+    #[arg(long, value_name = "WxH", default_value = "1280x720")]
+    pub size: Size,
+    /// Degrees from the front to the right, degrees upwards, and how far from the middle in bounding radii (by default as
+    /// far as shows all)
+    #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
+    pub camera: CameraOption,
+    /// Picture to write, an SVG or PNG file, with a part for each mesh
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture(), required_unless_present = "csv")]
+    pub output: Option<PathBuf>,
+    /// Table to write, a line as soon as a setting is done (- for standard output)
+    #[arg(long, value_name = "OUT.csv")]
+    pub csv: Option<PathBuf>,
+}
+
+/// The exit code after Ctrl-C, as shells have it.
+pub const INTERRUPTED: u8 = 130;
+
+/// Reads where to write a picture: its ending says of which kind.
+fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|path| {
+        let path = PathBuf::from(path);
+        if is_svg(&path) || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            Ok(path)
+        } else {
+            Err("charts are SVG or PNG files: name it .svg or .png")
+        }
+    })
+}
+
+fn is_svg(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
+}
+
+/// Reads how many points are looked at.
+fn samples(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|number| (100..=10_000_000).contains(number));
+    number.ok_or_else(|| "expected a whole number from 100 to 10000000".into())
+}
+
+impl Args {
+    /// # Errors
+    /// There is nothing to try, or it isn't clear what `--truth` is for.
+    fn settings(&self) -> Result<Vec<Setting>, CliError> {
+        if self.truth.is_some() && self.files.len() > 1 {
+            return Err(CliError::Usage("--truth is for one mesh: chart the others on their own"));
+        }
+        let plan = Plan {
+            surfaces: self.surfaces.clone(),
+            normals: self.normals.clone(),
+            partitionings: self.partitionings.clone(),
+            lods: self.lods.clone(),
+            factors: self.factors.clone(),
+            pixels: self.pixels.clone(),
+            tolerances: self.tolerances.clone(),
+        };
+        let settings = plan.settings();
+        if settings.is_empty() {
+            return Err(CliError::Usage("subtriangulation has no LOD but uniform: add it to --lods"));
+        }
+        Ok(settings)
+    }
+
+    fn effort(&self) -> Effort {
+        let accuracy = AccuracyOptions { samples: self.samples, ..AccuracyOptions::default() };
+        Effort { accuracy, most_triangles: self.max_triangles, ..Effort::default() }
+    }
+
+    /// What a mesh is held against, and what that is in words; a shape's exact surface if nothing was asked for.
+    fn truth_of(&self, mesh: &Source) -> Result<Option<(Truth, String)>, CliError> {
+        let asked = self.truth.as_ref();
+        let exact = asked.unwrap_or(mesh).shape().and_then(Truth::of_shape);
+        let Some(source) = asked.filter(|_| exact.is_none()) else {
+            return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
+        };
+        let none = || CliError::NoTruth { file: source.to_string() };
+        let truth = Truth::load(source, &Progress::new())?.ok_or_else(none)?;
+        Ok(Some((truth, source.title())))
+    }
+}
+
+/// A mesh to be charted.
+struct Loading {
+    loaded: Loaded,
+    truth: Option<(Truth, String)>,
+}
+
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let settings = args.settings()?;
+    let load_one = |source: &Source| {
+        let loaded = load(source, &args.weld.preparation())?;
+        Ok(Loading { truth: args.truth_of(source)?, loaded })
+    };
+    let meshes: Vec<Loading> = args.files.iter().map(load_one).collect::<Result<_, CliError>>()?;
+    let engine = Engine::headless()?;
+    let mut session = Session {
+        target: Target::new(&engine.gpu, args.size.0)?,
+        engine,
+        table: args.csv.as_deref().map(Table::new).transpose()?,
+        stop: stop_on_interrupt(),
+        telling: Telling::new(),
+        done: 0,
+        all: settings.len() * meshes.len(),
+    };
+    let mut subjects = Vec::new();
+    for mesh in &meshes {
+        let subject = session.subject(args, mesh, &settings)?;
+        subjects.extend((!subject.rows.is_empty()).then_some(subject));
+    }
+    publish(args, &subjects)?;
+    if session.stop.load(Ordering::Relaxed) && session.done < session.all {
+        return Err(CliError::Interrupted { done: session.done, all: session.all });
+    }
+    Ok(())
+}
+
+/// What all meshes share.
+struct Session {
+    engine: Engine,
+    target: Target,
+    table: Option<Table>,
+    stop: Arc<AtomicBool>,
+    telling: Telling,
+    /// Settings tried, of so many.
+    done: usize,
+    all: usize,
+}
+
+impl Session {
+    /// Tries all settings on a mesh, until somebody interrupts.
+    fn subject(&mut self, args: &Args, mesh: &Loading, settings: &[Setting]) -> Result<Subject, CliError> {
+        let Loading { loaded, truth } = mesh;
+        let title = loaded.source.title();
+        let scene = self.engine.scene(loaded, ARENA_BYTES)?;
+        let view = SurfaceOptions { size: args.size, camera: args.camera, ..SurfaceOptions::default() };
+        let mut bench = Bench {
+            engine: &self.engine,
+            mesh: loaded.source.to_string(),
+            camera: view.camera(&loaded.mesh, &scene.bounds),
+            scene,
+            target: &self.target,
+            truth: truth.as_ref().map(|(truth, _)| truth),
+            effort: args.effort(),
+        };
+        let (mut rows, mut too_large) = (Vec::new(), 0);
+        for setting in settings {
+            if self.stop.load(Ordering::Relaxed) {
+                break;
+            }
+            let number = self.done + 1;
+            self.telling.say(|| format!("{title}, {number} of {}: {}, {setting}", self.all, setting.method));
+            match bench.measure(setting)? {
+                Some(row) => {
+                    if let Some(table) = &mut self.table {
+                        table.add(&row.record())?;
+                    }
+                    rows.push(row);
+                }
+                None => too_large += 1,
+            }
+            self.done = number;
+        }
+        if too_large > 0 {
+            let (count, most) = (settings.len(), args.max_triangles);
+            let said =
+                format!("{title}: {too_large} of {count} settings are left out, for more than {most} triangles.");
+            super::warn(&[said]);
+        }
+        let truth = truth.as_ref().map(|(_, words)| words.clone());
+        let adapter = self.engine.gpu.info.name.clone();
+        Ok(Subject { title, truth, adapter, size: args.size.0, rows })
+    }
+}
+
+/// The picture, and its sentences, unless the table has standard output.
+fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
+    match &args.output {
+        Some(path) if is_svg(path) => write_text(path, &svg(subjects)?)?,
+        Some(path) => super::write_picture(path, &bitmap(subjects)?.into())?,
+        None => {}
+    }
+    if args.csv.as_deref() == Some(Path::new("-")) {
+        return Ok(());
+    }
+    let mut text = String::new();
+    for subject in subjects {
+        text += &format!("{}\n", subject.title);
+        text.extend(subject.sentences().iter().map(|sentence| format!("  {sentence}\n")));
+    }
+    write_text("-".as_ref(), &text)
+}
+
+/// A CSV file, every line of which is whole as soon as it is added.
+struct Table {
+    path: PathBuf,
+    writer: csv::Writer<Box<dyn Write>>,
+}
+
+impl Table {
+    fn new(path: &Path) -> Result<Self, CliError> {
+        let out: Box<dyn Write> = if path.as_os_str() == "-" {
+            Box::new(std::io::stdout())
+        } else {
+            Box::new(File::create(path).map_err(|error| file_error(path, "written", &error))?)
+        };
+        let mut table = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out) };
+        table.add(&COLUMNS)?;
+        Ok(table)
+    }
+
+    fn add<T: AsRef<[u8]>>(&mut self, record: &[T]) -> Result<(), CliError> {
+        let written = self.writer.write_record(record).map_err(std::io::Error::from);
+        written.and_then(|()| self.writer.flush()).map_err(|error| match self.path.as_os_str() == "-" {
+            true => CliError::Output(error),
+            false => file_error(&self.path, "written", &error),
+        })
+    }
+}
+
+/// What Ctrl-C sets; the second time it ends the program.
+fn stop_on_interrupt() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let set = stop.clone();
+    // Where there is no handler to be had, Ctrl-C ends the program at once as it does anywhere; the table's lines stay.
+    let _ = ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        let said = "pnaen: ending after this setting; Ctrl-C again ends at once";
+        let _ = writeln!(std::io::stderr(), "{said}");
+    });
+    stop
+}

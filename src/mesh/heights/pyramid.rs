@@ -1,0 +1,223 @@
+//! A height image as ever smaller ones, and what each of them loses.
+
+use std::num::NonZero;
+
+use super::{HeightMap, MAX_KEPT, MAX_LEVELS};
+use crate::mesh::progress::{Cancelled, Progress};
+
+impl HeightMap {
+    /// Of rows from the top. Sides of more than 4,096 px are made smaller first. What is no image is one black px.
+    pub fn new(size: [u32; 2], heights: Vec<f32>) -> Self {
+        let width = size[0] as usize;
+        let is_image = width > 0 && heights.len() == width * size[1] as usize && !heights.is_empty();
+        let (size, width, heights) = if is_image { (size, width, heights) } else { ([1, 1], 1, vec![0.0]) };
+        let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&heights[y * width..(y + 1) * width]);
+        Self::build(size, &Progress::new(), row).expect("nobody cancels")
+    }
+
+    /// Of what `row` writes for each row from the top, at least one; rows may be asked for more than once.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub(super) fn build(
+        size: [u32; 2],
+        progress: &Progress,
+        row: impl Fn(usize, &mut [f32]) + Sync,
+    ) -> Result<Self, Cancelled> {
+        let fitted = size.map(|side| side.min(MAX_KEPT));
+        let mut done = 0.75;
+        let mut level = shrunk(size, fitted, &progress.part(0.0, done), row)?;
+        let (mut size, mut heights, mut levels) = (fitted, level.clone(), 1);
+        while size != [1, 1] {
+            let (width, half) = (size[0] as usize, size.map(|side| (side / 2).max(1)));
+            let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&level[y * width..(y + 1) * width]);
+            // Each has a quarter of the px of the one before.
+            let end = done + 0.75 * (1.0 - done);
+            let next = shrunk(size, half, &progress.part(done, end), row)?;
+            heights.extend_from_slice(&next);
+            (level, size, levels, done) = (next, half, levels + 1, end);
+        }
+        Ok(Self { size: fitted, levels, repeats: false, heights })
+    }
+
+    /// How far each level, linearly interpolated, is from level 0 at most; no less for a coarser level.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub(super) fn detail(&self, progress: &Progress) -> Result<[f32; MAX_LEVELS], Cancelled> {
+        let mut detail = [0.0_f32; MAX_LEVELS];
+        let part = |level: usize| (level as f32 - 1.0) / (self.levels.max(2) - 1) as f32;
+        for level in 1..MAX_LEVELS {
+            detail[level] = detail[level - 1];
+            // Beyond the last level nothing more is lost than there.
+            if level < self.levels as usize {
+                let lost = lost_detail(self, level as u32, &progress.part(part(level), part(level + 1)))?;
+                detail[level] = detail[level].max(lost);
+            }
+        }
+        Ok(detail)
+    }
+}
+
+/// The px of one side that one px of a shorter one is made of, and their weights, whose sum is 1.
+struct Taps {
+    first: usize,
+    weights: Vec<f32>,
+}
+
+/// Of each px of a side that is made shorter, or stays as long: by a triangle as wide as two of the longer px.
+fn taps(from: u32, to: u32) -> Vec<Taps> {
+    let ratio = from as f32 / to as f32;
+    let of = |i: u32| {
+        let middle = (i as f32 + 0.5) * ratio;
+        let first = (middle - ratio).floor().max(0.0) as u32;
+        let end = ((middle + ratio).ceil() as u32).clamp(first + 1, from);
+        let weight = |k: u32| (1.0 - (k as f32 + 0.5 - middle).abs() / ratio).max(0.0);
+        let zeros = (first..end).take_while(|&k| weight(k) == 0.0).count() as u32;
+        let weights: Vec<f32> = (first + zeros..end).map(weight).take_while(|&weight| weight > 0.0).collect();
+        let sum: f32 = weights.iter().sum();
+        Taps { first: (first + zeros) as usize, weights: weights.into_iter().map(|weight| weight / sum).collect() }
+    };
+    (0..to).map(of).collect()
+}
+
+/// An image made smaller, or as large, from its rows.
+fn shrunk(
+    from: [u32; 2],
+    to: [u32; 2],
+    progress: &Progress,
+    row: impl Fn(usize, &mut [f32]) + Sync,
+) -> Result<Vec<f32>, Cancelled> {
+    let (columns, rows) = (taps(from[0], to[0]), taps(from[1], to[1]));
+    let mut out = vec![0.0; to[0] as usize * to[1] as usize];
+    by_rows(&mut out, to[0] as usize, progress, |y, out| {
+        let (mut sum, mut own) = (vec![0.0; from[0] as usize], vec![0.0; from[0] as usize]);
+        for (k, weight) in rows[y].weights.iter().enumerate() {
+            row(rows[y].first + k, &mut own);
+            sum.iter_mut().zip(&own).for_each(|(sum, own)| *sum += weight * own);
+        }
+        for (out, taps) in out.iter_mut().zip(&columns) {
+            *out = taps.weights.iter().zip(&sum[taps.first..]).map(|(weight, own)| weight * own).sum();
+        }
+    })?;
+    Ok(out)
+}
+
+/// Fills rows of this width on all processors.
+fn by_rows(
+    out: &mut [f32],
+    width: usize,
+    progress: &Progress,
+    fill: impl Fn(usize, &mut [f32]) + Sync,
+) -> Result<(), Cancelled> {
+    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
+    let band = (out.len() / width).div_ceil(threads).max(1);
+    let fill_band = |first: usize, rows: &mut [f32]| {
+        for (k, row) in rows.chunks_mut(width).enumerate() {
+            progress.check()?;
+            if first == 0 {
+                progress.set(k as f32 / band as f32);
+            }
+            fill(first + k, row);
+        }
+        Ok(())
+    };
+    let fill_band = &fill_band;
+    std::thread::scope(|scope| {
+        let start = |(index, rows)| scope.spawn(move || fill_band(index * band, rows));
+        let bands: Vec<_> = out.chunks_mut(band * width).enumerate().map(start).collect();
+        bands.into_iter().try_for_each(|band| band.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })
+}
+
+/// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over a
+/// repeating image's border it says nothing: many don't quite meet there.
+fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, Cancelled> {
+    let [width, height] = map.size.map(|side| side as usize);
+    let [across, down] = map.level_size(level).map(|side| side as usize);
+    let start = (0..level).map(|l| map.level_size(l)).map(|[x, y]| (x * y) as usize).sum::<usize>();
+    let (columns, rows) = (places(width, across, map.repeats), places(height, down, map.repeats));
+    let own = &map.heights[start..start + across * down];
+    let mut lost = vec![0.0_f32; height];
+    by_rows(&mut lost, 1, progress, |y, lost| {
+        let Some((upper, lower, below)) = rows[y] else { return };
+        let line = |row: usize| &own[row * across..(row + 1) * across];
+        let between: Vec<f32> = line(upper).iter().zip(line(lower)).map(|(a, b)| a + (b - a) * below).collect();
+        let all = map.heights[y * width..(y + 1) * width].iter().zip(&columns);
+        let differences = all.filter_map(|(height, column)| {
+            let (left, right, beside) = (*column)?;
+            Some((height - (between[left] + (between[right] - between[left]) * beside)).abs())
+        });
+        lost[0] = differences.fold(0.0, f32::max);
+    })?;
+    Ok(lost.into_iter().fold(0.0, f32::max))
+}
+
+/// For each of `count` px of level 0 along one side, between which two of a level's `own` it lies, and how far from the
+/// first; none beyond the last of a repeating one.
+fn places(count: usize, own: usize, repeats: bool) -> Vec<Option<(usize, usize, f32)>> {
+    let place = |i: usize| {
+        let at = (i as f32 + 0.5) / count as f32 * own as f32 - 0.5;
+        let inside = at.clamp(0.0, (own - 1) as f32);
+        let first = inside as usize;
+        (!repeats || at == inside).then(|| (first, (first + 1).min(own - 1), inside - first as f32))
+    };
+    (0..count).map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_halve_down_to_one_pixel() {
+        let map = HeightMap::new([5, 2], (0..10).map(|i| i as f32 / 9.0).collect());
+        assert_eq!((map.size, map.levels), ([5, 2], 3));
+        assert_eq!([0, 1, 2].map(|level| map.level_size(level)), [[5, 2], [2, 1], [1, 1]]);
+        assert_eq!(map.heights.len(), 10 + 2 + 1);
+        // The last is about the mean.
+        assert!((map.heights[12] - 0.5).abs() < 0.1, "{}", map.heights[12]);
+    }
+
+    #[test]
+    fn what_is_no_image_is_one_black_pixel() {
+        for bad in [HeightMap::new([0, 0], Vec::new()), HeightMap::new([3, 3], vec![1.0; 4])] {
+            assert_eq!((bad.size, bad.heights.as_slice()), ([1, 1], &[0.0][..]));
+        }
+    }
+
+    #[test]
+    fn images_shrink_as_the_image_crate_shrinks_them() {
+        use image::imageops::{FilterType, resize};
+        let size = [37, 23];
+        let heights: Vec<f32> =
+            (0..37 * 23_u32).map(|i| (i.wrapping_mul(2_654_435_769) >> 24) as f32 / 255.0).collect();
+        let image: image::ImageBuffer<image::Luma<f32>, _> =
+            image::ImageBuffer::from_raw(37, 23, heights.clone()).expect("all px");
+        for to in [[37, 23], [18, 11], [37, 1], [5, 23], [1, 1]] {
+            let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&heights[y * 37..(y + 1) * 37]);
+            let own = shrunk(size, to, &Progress::new(), row).expect("nobody cancels");
+            let peer = resize(&image, to[0], to[1], FilterType::Triangle).into_raw();
+            let farthest = own.iter().zip(&peer).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(own.len() == peer.len() && farthest < 1e-5, "{to:?}: {farthest}");
+        }
+    }
+
+    #[test]
+    fn detail_is_the_most_that_any_pixel_is_off() {
+        let map = HeightMap::new([8, 8], (0..64).map(|i| if i == 27 { 1.0 } else { 0.0 }).collect());
+        let detail = map.detail(&Progress::new()).expect("nobody cancels");
+        // One px among 64 that is white: all but its own share is lost.
+        assert!(detail[1] > 0.5 && detail[3] > 0.9 && detail[12] == detail[3], "{detail:?}");
+        assert!(detail.is_sorted());
+    }
+
+    #[test]
+    fn both_stop_when_told_to() {
+        let progress = Progress::new();
+        let map = HeightMap::new([64, 64], vec![0.5; 4096]);
+        progress.cancel();
+        assert_eq!(map.detail(&progress), Err(Cancelled));
+        assert_eq!(HeightMap::build([64, 64], &progress, |_, _| ()), Err(Cancelled));
+    }
+}

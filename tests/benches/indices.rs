@@ -1,0 +1,76 @@
+//! Index buffers for PN-AEN, ours beside meshoptimizer's, on one core: `cargo bench --bench indices`.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use glam::{Vec2, Vec3};
+use pnaen::mesh::adjacency::Layout;
+use pnaen::mesh::{Corner, Mesh, Progress, Topology};
+
+/// Runs of each, by turns.
+const RUNS: usize = 9;
+
+/// A torus of `n` by `2 n` quads, whose corners are shared but for a uv seam both ways round.
+fn torus(n: u32) -> Mesh {
+    let (rows, columns) = (n, 2 * n);
+    let corner = |i: u32, j: u32| {
+        let [a, b] =
+            [(i % columns, columns), (j % rows, rows)].map(|(i, n)| std::f32::consts::TAU * i as f32 / n as f32);
+        let out = Vec3::new(a.sin(), 0.0, a.cos());
+        let normal = out * b.cos() + Vec3::Y * b.sin();
+        let uv = Vec2::new(i as f32 / columns as f32, j as f32 / rows as f32);
+        Corner { position: out * 0.7 + normal * 0.3, normal, uv }
+    };
+    let at = |i: u32, j: u32| i * (rows + 1) + j;
+    let quad = |i, j| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]];
+    Mesh {
+        corners: (0..=columns).flat_map(|i| (0..=rows).map(move |j| corner(i, j))).collect(),
+        triangles: (0..columns).flat_map(|i| (0..rows).flat_map(move |j| quad(i, j))).collect(),
+        ..Mesh::default()
+    }
+}
+
+/// The same with its triangles in no order, as files may have them.
+fn shuffled(mut mesh: Mesh) -> Mesh {
+    let mut state = 1_u64;
+    for i in (1..mesh.triangles.len()).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        mesh.triangles.swap(i, ((state >> 33) % (i as u64 + 1)) as usize);
+    }
+    mesh
+}
+
+fn ours(mesh: &Mesh) -> Vec<u32> {
+    let topology = Topology::build(mesh, &Progress::new()).unwrap_or_default();
+    Layout::Twelve.indices(&topology)
+}
+
+fn theirs(mesh: &Mesh) -> Vec<u32> {
+    let positions: Vec<[f32; 3]> = mesh.corners.iter().map(|corner| corner.position.to_array()).collect();
+    match meshopt::VertexDataAdapter::new(bytemuck::cast_slice(&positions), 12, 0) {
+        Ok(vertices) => meshopt::generate_tessellation_indices(mesh.triangles.as_flattened(), &vertices),
+        Err(_) => Vec::new(),
+    }
+}
+
+fn main() {
+    println!("| mesh | triangles | ours, ms | meshoptimizer, ms | meshoptimizer / ours | the same indices |");
+    println!("| --- | ---: | ---: | ---: | ---: | --- |");
+    for (name, mesh) in [("torus", torus(708)), ("torus, triangles in no order", shuffled(torus(708)))] {
+        let mut times = [Vec::new(), Vec::new()];
+        let mut found = [Vec::new(), Vec::new()];
+        for _ in 0..RUNS {
+            for (k, build) in [ours, theirs].into_iter().enumerate() {
+                let start = Instant::now();
+                found[k] = build(black_box(&mesh));
+                times[k].push(start.elapsed().as_secs_f64() * 1e3);
+            }
+        }
+        let [ours, theirs] = times.map(|mut times| {
+            times.sort_by(f64::total_cmp);
+            times[RUNS / 2]
+        });
+        let same = if found[0] == found[1] { "yes" } else { "no" };
+        println!("| {name} | {} | {ours:.0} | {theirs:.0} | {:.2} | {same} |", mesh.triangles.len(), theirs / ours);
+    }
+}
