@@ -113,8 +113,8 @@ fn usual_times(domain: vec2<u32>) -> f32 {
 fn normal_vertex(
     @builtin(vertex_index) index: u32,
     @location(0) position: vec3<f32>,
-    @location(1) key: vec2<u32>,
-    @location(2) normal: u32,
+    @location(1) normal: u32,
+    @location(2) key: vec2<u32>,
 ) -> LineVaryings {
     let w = dot(vec4<f32>(position, 1.0), vec4<f32>(
         frame.clip_from_object[0].w,

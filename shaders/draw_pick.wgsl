@@ -3,7 +3,7 @@
 @group(0) @binding(0) var<uniform> pixel_from_object: mat4x4<f32>;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> patches: array<Patch>;
-@group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(3) var<storage, read> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(4) var<storage, read> indices: array<u32>;
 @group(0) @binding(5) var drawn: texture_2d<u32>;
 @group(0) @binding(6) var<storage, read_write> pick: Pick;
@@ -15,13 +15,18 @@ struct PickVaryings {
     @location(1) @interpolate(flat) number: u32,
 }
 
+fn drawn_vertex(index: u32) -> Vertex {
+    let at = indices[index];
+    return vertex_of(vertex_halves[at], vertex_halves[arrayLength(&vertex_halves) / 2u + at]);
+}
+
 fn weights_of(uv: vec2<u32>) -> vec3<f32> {
     return vec3<f32>(f32(uv.x), f32(uv.y), f32(FIXED_ONE - uv.x - uv.y)) * UNIT;
 }
 
 @vertex
 fn pick_emitted_vertex(@builtin(vertex_index) index: u32) -> PickVaryings {
-    let vertex = vertices[indices[index]];
+    let vertex = drawn_vertex(index);
     let clip = pixel_from_object * vec4<f32>(vertex.x, vertex.y, vertex.z, 1.0);
     return PickVaryings(clip, weights_of(key_uv(vec2<u32>(vertex.key0, vertex.key1))), index / 3u);
 }
@@ -50,7 +55,7 @@ fn pick_fragment(in: PickVaryings) -> @location(0) vec4<u32> {
 }
 
 fn emitted_vertex(triangle: u32, corner: u32) -> Vertex {
-    return vertices[indices[3u * triangle + corner]];
+    return drawn_vertex(3u * triangle + corner);
 }
 
 fn triangle_patch(triangle: u32) -> u32 {

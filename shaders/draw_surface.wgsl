@@ -8,7 +8,7 @@
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
-@group(0) @binding(4) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(4) var<storage, read> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> indices: array<u32>;
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
@@ -23,7 +23,6 @@
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
-    @location(0) position: vec3<f32>,
     @location(1) normal: vec3<f32>,
     @location(2) uv: vec2<f32>,
     // Domain coordinates in the patch.
@@ -53,7 +52,6 @@ fn varyings(
 ) -> Varyings {
     var out: Varyings;
     out.clip = frame.clip_from_object * vec4<f32>(position, 1.0);
-    out.position = position;
     out.normal = normal;
     out.uv = uv;
     out.domain = vec3<f32>(f32(domain.x), f32(domain.y), f32(FIXED_ONE - domain.x - domain.y)) * UNIT;
@@ -86,13 +84,17 @@ fn runs_back(a: vec2<u32>, b: vec2<u32>, c: vec2<u32>) -> bool {
     return ab.x * ac.y - ab.y * ac.x <= 0.0;
 }
 
+fn drawn_vertex(index: u32) -> Vertex {
+    let at = indices[index];
+    return vertex_of(vertex_halves[at], vertex_halves[arrayLength(&vertex_halves) / 2u + at]);
+}
+
 fn vertex_position(index: u32) -> vec3<f32> {
-    let vertex = vertices[indices[index]];
-    return vec3<f32>(vertex.x, vertex.y, vertex.z);
+    return bitcast<vec3<f32>>(vertex_halves[indices[index]].xyz);
 }
 
 fn vertex_domain(index: u32) -> vec2<u32> {
-    let vertex = vertices[indices[index]];
+    let vertex = drawn_vertex(index);
     return key_uv(vec2<u32>(vertex.key0, vertex.key1));
 }
 
@@ -137,8 +139,8 @@ fn unit_corner(k: u32) -> vec3<f32> {
 @vertex
 fn indexed_vertex(
     @location(0) position: vec3<f32>,
-    @location(1) key: vec2<u32>,
-    @location(2) normal: u32,
+    @location(1) normal: u32,
+    @location(2) key: vec2<u32>,
     @location(3) uv: vec2<f32>,
 ) -> Varyings {
     let out = varyings(position, unpack_normal(normal), uv, key_patch(key), key_uv(key), vec3<f32>(1.0));
@@ -147,7 +149,7 @@ fn indexed_vertex(
 
 @vertex
 fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
-    let vertex = vertices[indices[index]];
+    let vertex = drawn_vertex(index);
     let key = vec2<u32>(vertex.key0, vertex.key1);
     let position = vec3<f32>(vertex.x, vertex.y, vertex.z);
     let normal = unpack_normal(vertex.normal);
@@ -220,21 +222,28 @@ fn line_coverage(distance: f32, half_width: f32) -> f32 {
 struct Lights {
     key: vec3<f32>,
     fill: vec3<f32>,
-    eye: vec4<f32>,
+    // Unit direction.
+    to_eye: vec3<f32>,
 }
 
-fn shade(lights: Lights, base: vec3<f32>, normal: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
-    let to_eye = normalize(lights.eye.xyz - position * lights.eye.w);
+// The unit direction towards the eye from what is seen at a place of the picture, in px. All of that ray has one x / w and
+// one y / w: it lies in two planes, whose normals are these rows. So vertices need not hand on where they are.
+fn toward_eye(clip_from_object: mat4x4<f32>, viewport: vec2<f32>, px: vec2<f32>) -> vec3<f32> {
+    let at = vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0);
+    let rows = transpose(clip_from_object);
+    return normalize(cross(rows[0].xyz - at.x * rows[3].xyz, rows[1].xyz - at.y * rows[3].xyz));
+}
+
+fn shade(lights: Lights, base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let key = max(dot(normal, lights.key), 0.0);
     let fill = 0.5 + 0.5 * dot(normal, lights.fill);
-    let half_way = normalize(lights.key + to_eye);
+    let half_way = normalize(lights.key + lights.to_eye);
     let gloss = pow(max(dot(normal, half_way), 0.0), 48.0) * 0.08;
     return base * (0.62 * key + 0.22 * fill + 0.04) + vec3<f32>(gloss);
 }
 
 // Barely lit, so that colours can be read against a legend: as they are where the surface faces the eye.
-fn shade_flat(base: vec3<f32>, normal: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
-    let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
+fn shade_flat(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     return base * (0.7 + 0.3 * abs(dot(normal, to_eye)));
 }
 
@@ -293,8 +302,8 @@ fn deviation_at(triangle: u32, corner: vec3<f32>) -> f32 {
 
 fn deviation_color(in: Varyings) -> vec4<f32> {
     let distance = deviation_at(in.triangle, in.corner);
-    let w = (frame.clip_from_object * vec4<f32>(in.position, 1.0)).w;
-    let number = select(distance, distance * frame.px_per_unit / w, frame.px_per_unit > 0.0);
+    // A fragment has 1 / w where a vertex has w.
+    let number = select(distance, distance * frame.px_per_unit * in.clip.w, frame.px_per_unit > 0.0);
     return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
 }
 
@@ -334,10 +343,10 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     }
     let normal = normalize(select(-in.normal, in.normal, front));
     let meant = meaning(in, to_edges, edge_heights);
-    let lights = Lights(frame.key_light.xyz, frame.fill_light.xyz, frame.eye);
-    var color = shade(lights, base, normal, in.position);
+    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
+    var color = shade(Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye), base, normal);
     if meant.a > 0.0 && !marked_back {
-        color = shade_flat(meant.rgb, normal, in.position);
+        color = shade_flat(meant.rgb, normal, to_eye);
     }
     if in.folded != 0u {
         // Unlit: folds mostly face away from the light.
@@ -367,28 +376,46 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     return vec4<f32>(color, 1.0);
 }
 
-// The surface without anything on it, which is what most pictures are of: as little from vertex to fragment as that takes.
+// The surface without anything on it, which is what most pictures are of: as little from vertex to fragment as that takes,
+// which is what drawing many small triangles costs.
 struct PlainVaryings {
     @builtin(position) clip: vec4<f32>,
-    @location(0) position: vec3<f32>,
-    @location(1) normal: vec3<f32>,
-    @location(2) uv: vec2<f32>,
+    @location(0) normal: vec3<f32>,
 }
 
 @vertex
-fn plain_vertex(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(2) uv: vec2<f32>,
-) -> PlainVaryings {
-    let clip = plain_frame.clip_from_object * vec4<f32>(position, 1.0);
-    return PlainVaryings(clip, position, unpack_normal(normal), uv);
+fn plain_vertex(@location(0) position: vec3<f32>, @location(1) normal: u32) -> PlainVaryings {
+    return PlainVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), unpack_normal(normal));
+}
+
+fn plain_color(base: vec3<f32>, px: vec2<f32>, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let to_eye = toward_eye(plain_frame.clip_from_object, plain_frame.viewport, px);
+    let lights = Lights(plain_frame.key_light.xyz, plain_frame.fill_light.xyz, to_eye);
+    return vec4<f32>(shade(lights, base, normalize(select(-normal, normal, front))), 1.0);
 }
 
 @fragment
 fn plain_fragment(in: PlainVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    return plain_color(material.base_color.rgb, in.clip.xy, in.normal, front);
+}
+
+struct TexturedVaryings {
+    @builtin(position) clip: vec4<f32>,
+    @location(0) normal: vec3<f32>,
+    @location(1) uv: vec2<f32>,
+}
+
+@vertex
+fn textured_vertex(
+    @location(0) position: vec3<f32>,
+    @location(1) normal: u32,
+    @location(3) uv: vec2<f32>,
+) -> TexturedVaryings {
+    return TexturedVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), unpack_normal(normal), uv);
+}
+
+@fragment
+fn textured_fragment(in: TexturedVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = material.base_color.rgb * textureSample(base_texture, base_sampler, in.uv).rgb;
-    let normal = normalize(select(-in.normal, in.normal, front));
-    let lights = Lights(plain_frame.key_light.xyz, plain_frame.fill_light.xyz, plain_frame.eye);
-    return vec4<f32>(shade(lights, base, normal, in.position), 1.0);
+    return plain_color(base, in.clip.xy, in.normal, front);
 }

@@ -9,7 +9,7 @@
 @group(0) @binding(6) var<storage, read> patches: array<Patch>;
 @group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(8) var<storage, read> corners: array<Corner>;
-@group(0) @binding(9) var<storage, read_write> vertices: array<Vertex>;
+@group(0) @binding(9) var<storage, read_write> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(11) var<storage, read> shares: array<Share>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
 
@@ -208,7 +208,7 @@ fn displace_main(
     if index >= chunks[chunk_index].vertex_count {
         return;
     }
-    let vertex = vertices[index];
+    let vertex = vertex_of(vertex_halves[index], vertex_halves[arrayLength(&vertex_halves) / 2u + index]);
     let key = vec2<u32>(vertex.key0, vertex.key1);
     let patch_index = key_patch(key);
     let uv = key_uv(key);
@@ -233,5 +233,5 @@ fn displace_main(
         raised = raised_normal(uphill_at(asked), normal);
     }
     let p = vec3<f32>(vertex.x, vertex.y, vertex.z) + direction * offset;
-    vertices[index] = Vertex(p.x, p.y, p.z, vertex.key0, vertex.key1, pack_normal(raised), vertex.uv);
+    vertex_halves[index] = vertex_place(p, pack_normal(raised));
 }

@@ -10,7 +10,7 @@
 @group(0) @binding(6) var<storage, read> patches: array<Patch>;
 @group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(8) var<storage, read> corners: array<Corner>;
-// Vertices by halves: position and first key, the rest. So they are stored in two pieces of 16 bytes, not in eight.
+// All vertices' places, then all their details: see Vertex.
 @group(0) @binding(9) var<storage, read_write> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> indices: array<u32>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
@@ -171,8 +171,8 @@ fn store_vertex(index: u32, patch_index: u32, uv: vec2<u32>) {
         made.normal = surface_normal(params.surface, load_net(patch_index), uv.x, uv.y, made.normal);
     }
     let key = pack_key(patch_index, uv.x, uv.y);
-    vertex_halves[2u * index] = vec4<u32>(bitcast<vec3<u32>>(made.position), key.x);
-    vertex_halves[2u * index + 1u] = vec4<u32>(key.y, pack_normal(made.normal), bitcast<vec2<u32>>(made.uv));
+    vertex_halves[index] = vertex_place(made.position, pack_normal(made.normal));
+    vertex_halves[arrayLength(&vertex_halves) / 2u + index] = vertex_detail(key, made.uv);
 }
 
 @compute @workgroup_size(256)

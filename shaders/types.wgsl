@@ -99,15 +99,32 @@ struct HeightMap {
     repeats: u32,
 }
 
-// A vertex as it is drawn: position, patch and domain coordinates packed in 64 bits, normal packed in 32, uv.
+// A vertex as it is drawn: position, normal packed in 32 bits, patch and domain coordinates packed in 64, uv.
+//
+// The arena holds the first half of every vertex, its place, and behind them all the second of every vertex, its detail:
+// invocations side by side then fill whole lines of memory (where halves take turns, storing takes twice as long), and who
+// needs no more than places reads no more.
 struct Vertex {
     x: f32,
     y: f32,
     z: f32,
+    normal: u32,
     key0: u32,
     key1: u32,
-    normal: u32,
     uv: vec2<f32>,
+}
+
+fn vertex_of(place: vec4<u32>, detail: vec4<u32>) -> Vertex {
+    let position = bitcast<vec3<f32>>(place.xyz);
+    return Vertex(position.x, position.y, position.z, place.w, detail.x, detail.y, bitcast<vec2<f32>>(detail.zw));
+}
+
+fn vertex_place(position: vec3<f32>, normal: u32) -> vec4<u32> {
+    return vec4<u32>(bitcast<vec3<u32>>(position), normal);
+}
+
+fn vertex_detail(key: vec2<u32>, uv: vec2<f32>) -> vec4<u32> {
+    return vec4<u32>(key, bitcast<vec2<u32>>(uv));
 }
 
 // Patches that go through the arena together. `first_vertex` and `first_triangle` count from the slab's start.

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::gpu::{ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, wait};
+use crate::gpu::{
+    ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of, wait,
+};
 use crate::measure::{
     Accuracy, AccuracyOptions, AskedFactors, Deviant, Deviation, Field, Measured, Measurement, ScreenView, Sizes,
     Survey, Yardstick,
@@ -199,11 +201,13 @@ impl Engine {
             scene.tessellator.emit(&mut recorder, index);
             recorder.submit();
             let chunk = scene.tessellator.chunk(index);
-            let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
-            let vertices = read_buffer(&self.gpu, chunk.vertices, 0, vertex_bytes)?;
+            let mut halves = Vec::new();
+            for (buffer, bytes) in chunk.vertices() {
+                halves.extend(read_buffer(&self.gpu, buffer, bytes.start, bytes.end - bytes.start)?);
+            }
             let triangle_bytes = if triangles { u64::from(chunk.chunk.triangle_count) * 12 } else { 0 };
             let indices = read_buffer(&self.gpu, chunk.indices, 0, triangle_bytes)?;
-            take(chunk.chunk.first_patch, &cast(&vertices), &cast(&indices));
+            take(chunk.chunk.first_patch, &vertices_of(&halves), &cast(&indices));
         }
         Ok(())
     }

@@ -3,11 +3,11 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel, sync_channel};
 
 use super::measuring::{Copying, Part, PartKind, WAITING, copy_chunk, copy_on};
-use crate::gpu::{Gpu, GpuError, mapped_bytes};
+use crate::gpu::{Gpu, GpuError, mapped_bytes, vertices_of};
 use crate::measure::{Field, Place, Yardstick};
 use crate::mesh::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scale, Scene, deviation_scale};
-use crate::tessellate::{Posed, Vertex};
+use crate::tessellate::Posed;
 
 /// What is known about the distance to the truth.
 #[derive(Default)]
@@ -156,7 +156,7 @@ fn field(
             let PartKind::Chunk { vertex_bytes, .. } = part else { continue };
             let bytes = mapped_bytes(&staging).ok()?;
             let (vertices, indices) = bytes.split_at(vertex_bytes);
-            let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
+            let vertices = vertices_of(vertices);
             let indices = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
             field.take(against, &vertices, &indices, wanted).ok()?;
         }

@@ -1,9 +1,10 @@
 //! What is shown, measured beside the window: chunk after chunk is copied back without waiting, and looked at on a
 //! thread of its own.
 
+use std::ops::Range;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
-use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer};
+use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer, vertices_of};
 use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
@@ -177,11 +178,11 @@ pub(super) fn copy_on(under_way: &mut Option<Copying>, gpu: &Gpu, scene: &mut Sc
 
 fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
     let item = size_of::<PatchFactors>() as u64;
-    let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, u64::from(count) * item));
-    let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes).sum();
+    let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
+    let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
     let (asked, edges) = scene.tessellator.edge_factors();
     let asked_bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
-    let staging = copy(gpu, buffers.chain([(asked, asked_bytes)]));
+    let staging = copy(gpu, buffers.chain([(asked, 0..asked_bytes)]));
     let convention = scene.tessellator.convention();
     let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges, convention };
     Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: 0, parts }
@@ -195,21 +196,23 @@ pub(super) fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: Sync
     let chunk = scene.tessellator.chunk(index);
     let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
     let index_bytes = u64::from(chunk.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
-    let staging = copy(gpu, [(chunk.vertices, vertex_bytes), (chunk.indices, index_bytes)].into_iter());
+    let [first, second] = chunk.vertices();
+    let staging = copy(gpu, [first, second, (chunk.indices, 0..index_bytes)].into_iter());
     let part = PartKind::Chunk { first_patch: chunk.chunk.first_patch, vertex_bytes: vertex_bytes as usize };
     Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: index + 1, parts }
 }
 
-/// Copies the starts of buffers, one after another, where the host can read them.
-fn copy<'a>(gpu: &Gpu, buffers: impl Iterator<Item = (&'a wgpu::Buffer, u64)> + Clone) -> wgpu::Buffer {
+/// Copies bytes of buffers, one after another, where the host can read them.
+fn copy<'a>(gpu: &Gpu, buffers: impl Iterator<Item = (&'a wgpu::Buffer, Range<u64>)> + Clone) -> wgpu::Buffer {
     let mut timing = Timing::Off;
     let mut recorder = Recorder::new(gpu, &mut timing);
-    let total: u64 = buffers.clone().map(|(_, bytes)| bytes).sum();
+    let total: u64 = buffers.clone().map(|(_, bytes)| bytes.end - bytes.start).sum();
     let staging = staging_buffer(gpu, total.max(4));
     let mut offset = 0;
     for (buffer, bytes) in buffers {
-        recorder.encoder().copy_buffer_to_buffer(buffer, 0, &staging, offset, bytes);
-        offset += bytes;
+        let length = bytes.end - bytes.start;
+        recorder.encoder().copy_buffer_to_buffer(buffer, bytes.start, &staging, offset, length);
+        offset += length;
     }
     recorder.submit();
     staging
@@ -242,7 +245,7 @@ fn survey(
         let PartKind::Chunk { first_patch, vertex_bytes } = part else { continue };
         let bytes = mapped_bytes(&staging).ok()?;
         let (vertices, indices) = bytes.split_at(vertex_bytes);
-        let vertices: Vec<Vertex> = bytemuck::pod_collect_to_vec(vertices);
+        let vertices = vertices_of(vertices);
         let triangles = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
         survey.take(first_patch, &vertices, &triangles);
         sizes.take(&vertices, &triangles);

@@ -1,5 +1,7 @@
 //! Room for output: of fixed size, whatever the factors. What does not fit goes through it in chunks.
 
+use bytemuck::Zeroable;
+
 use super::buffers::empty;
 use super::layout::Vertex;
 use super::{Gpu, GpuError};
@@ -7,6 +9,8 @@ use crate::tessellate::{Partitioning, point_count, process, triangle_count};
 
 /// Room for one chunk's output.
 pub struct Arena {
+    /// The first half of every vertex that there is room for, then the second of every one: see `Vertex` in
+    /// `shaders/types.wgsl`.
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub vertex_capacity: u32,
@@ -46,6 +50,23 @@ impl Arena {
         };
         full(self.vertex_capacity, patch_vertices) + full(self.triangle_capacity, patch_triangles) + 1
     }
+}
+
+/// Bytes of half a vertex: position and normal, or key and texture coordinates.
+pub const VERTEX_HALF: u64 = 16;
+
+/// Vertices from the first halves of all of them and, behind those, the second.
+pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
+    let (first, second) = halves.split_at(halves.len() / 2);
+    let half = VERTEX_HALF as usize;
+    let whole = |(a, b): (&[u8], &[u8])| {
+        let mut vertex = Vertex::zeroed();
+        let (to_a, to_b) = bytemuck::bytes_of_mut(&mut vertex).split_at_mut(half);
+        to_a.copy_from_slice(a);
+        to_b.copy_from_slice(b);
+        vertex
+    };
+    first.chunks_exact(half).zip(second.chunks_exact(half)).map(whole).collect()
 }
 
 /// Vertices and triangles of a patch at the largest factors.

@@ -19,6 +19,7 @@ mod rig;
 mod slab;
 mod tessellator;
 
+pub use arena::{VERTEX_HALF, vertices_of};
 pub use buffers::MeshBuffers;
 pub use device::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};

@@ -2,11 +2,12 @@
 
 mod passes;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Mat4;
 
-use super::arena::Arena;
+use super::arena::{Arena, VERTEX_HALF};
 use super::buffers::filled;
 use super::counts::PendingCounts;
 use super::layout::{Chunk, DrawArgs, Params};
@@ -59,7 +60,8 @@ pub struct Tessellator {
 /// What a chunk left in the arena, for whoever draws or reads it.
 pub struct ChunkBuffers<'a> {
     pub chunk: Chunk,
-    pub vertices: &'a wgpu::Buffer,
+    /// See [`ChunkBuffers::vertices`].
+    vertices: &'a wgpu::Buffer,
     pub indices: &'a wgpu::Buffer,
     /// One [`DrawArgs`] a material, from `draw_args_offset` bytes on.
     pub draw_args: &'a wgpu::Buffer,
@@ -69,6 +71,15 @@ pub struct ChunkBuffers<'a> {
     pub first_patch: u32,
     /// The slab itself: a [`super::layout::Slab`].
     pub slab: &'a wgpu::Buffer,
+}
+
+impl ChunkBuffers<'_> {
+    /// The vertices: the first half of all of them, and the second of all of them, in which bytes of which buffer.
+    /// [`super::vertices_of`] puts them together.
+    pub fn vertices(&self) -> [(&wgpu::Buffer, Range<u64>); 2] {
+        let (bytes, half) = (u64::from(self.chunk.vertex_count) * VERTEX_HALF, self.vertices.size() / 2);
+        [0, half].map(|start| (self.vertices, start..start + bytes))
+    }
 }
 
 impl Tessellator {

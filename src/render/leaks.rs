@@ -4,8 +4,7 @@ use glam::Mat4;
 use wgpu::util::DeviceExt;
 
 use super::Scene;
-use crate::gpu::layout::Vertex;
-use crate::gpu::{Gpu, GpuError, Recorder, Timing, read_staging, shader_module, staging_buffer};
+use crate::gpu::{Gpu, GpuError, Recorder, Timing, VERTEX_HALF, read_staging, shader_module, staging_buffer};
 
 /// Counts of either sign, exact far beyond what any pixel sees, and blendable on every adapter.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
@@ -31,7 +30,7 @@ impl LeakCounter {
             operation: wgpu::BlendOperation::Add,
         };
         let vertex = wgpu::VertexBufferLayout {
-            array_stride: size_of::<Vertex>() as u64,
+            array_stride: VERTEX_HALF,
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x3],
         };
@@ -128,7 +127,8 @@ impl LeakCounter {
                 let chunk = scene.tessellator.chunk(index);
                 pass.set_pipeline(&self.pipeline);
                 pass.set_bind_group(0, &group, &[]);
-                pass.set_vertex_buffer(0, chunk.vertices.slice(..));
+                let [(places, bytes), _] = chunk.vertices();
+                pass.set_vertex_buffer(0, places.slice(bytes));
                 pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
                 pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
             }

@@ -9,8 +9,7 @@ use super::layout::{Frame, linear, overlay_bits};
 use super::pipelines::{Layer, chunk_layout, deviation_layout, material_layout, pipeline, scene_layout};
 use super::scene::{LineSegment, upload};
 use super::{Camera, Scene, Target};
-use crate::gpu::layout::Vertex;
-use crate::gpu::{ChunkBuffers, Gpu, Recorder};
+use crate::gpu::{ChunkBuffers, Gpu, Recorder, VERTEX_HALF};
 use crate::mesh::Texture;
 use crate::settings::{Colors, DeviationUnit, Overlays, Settings};
 
@@ -25,8 +24,10 @@ pub struct Renderer {
     unknown: wgpu::Buffer,
     pub(super) white: wgpu::TextureView,
     pub(super) sampler: wgpu::Sampler,
-    /// Both sides, then fronts only. Without anything on the surface.
+    /// Both sides, then fronts only. Without anything on the surface, not even a texture.
     plain: [wgpu::RenderPipeline; 2],
+    /// With nothing but a texture on it.
+    textured: [wgpu::RenderPipeline; 2],
     indexed: [wgpu::RenderPipeline; 2],
     pulled: [wgpu::RenderPipeline; 2],
     source: wgpu::RenderPipeline,
@@ -41,15 +42,15 @@ const PULL_ARGS: u64 = std::mem::offset_of!(crate::gpu::layout::DrawArgs, pull_v
 /// Both sides, then fronts only.
 const SIDES: [Layer; 2] = [Layer::Surface, Layer::Fronts];
 
-const VERTEX_ATTRIBUTES: [wgpu::VertexAttribute; 4] =
-    wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32x2, 2 => Uint32, 3 => Float32x2];
+/// Of an emitted vertex's halves.
+const PLACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
+const DETAIL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![2 => Uint32x2, 3 => Float32x2];
 
-/// The same without what tells patches apart.
-const PLAIN_ATTRIBUTES: [wgpu::VertexAttribute; 3] = [
-    wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x3, offset: 0, shader_location: 0 },
-    wgpu::VertexAttribute { format: wgpu::VertexFormat::Uint32, offset: 20, shader_location: 1 },
-    wgpu::VertexAttribute { format: wgpu::VertexFormat::Float32x2, offset: 24, shader_location: 2 },
-];
+/// An emitted vertex's halves, as vertex buffers.
+fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
+    let half = |attributes| wgpu::VertexBufferLayout { array_stride: VERTEX_HALF, step_mode, attributes };
+    [Some(half(&PLACE)), Some(half(&DETAIL))]
+}
 
 impl Renderer {
     pub fn new(gpu: &Gpu) -> Self {
@@ -60,12 +61,11 @@ impl Renderer {
         let surface = crate::gpu::shader_module(gpu, "draw");
         let layouts = [Some(&scene_layout), Some(&material_layout), Some(&chunk_layout), Some(&deviation_layout)];
         let as_it_came = [layouts[0], layouts[1], None, layouts[3]];
-        let array_stride = size_of::<Vertex>() as u64;
-        let vertex = |step_mode| wgpu::VertexBufferLayout { array_stride, step_mode, attributes: &VERTEX_ATTRIBUTES };
-        let step_mode = wgpu::VertexStepMode::Vertex;
-        let plain = [Some(wgpu::VertexBufferLayout { array_stride, step_mode, attributes: &PLAIN_ATTRIBUTES })];
-        let plain = SIDES
-            .map(|layer| pipeline(gpu, &layouts[..2], &surface, ("plain_vertex", "plain_fragment"), &plain, layer));
+        let halves = vertex_halves(wgpu::VertexStepMode::Vertex);
+        let bare =
+            |entries, buffers: &[_]| SIDES.map(|layer| pipeline(gpu, &layouts[..2], &surface, entries, buffers, layer));
+        let plain = bare(("plain_vertex", "plain_fragment"), &halves[..1]);
+        let textured = bare(("textured_vertex", "textured_fragment"), &halves);
         let surface = |entry, layouts: &[_], buffers: &[_], layer| {
             pipeline(gpu, layouts, &surface, (entry, "surface_fragment"), buffers, layer)
         };
@@ -75,21 +75,20 @@ impl Renderer {
             attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32],
         };
         let lines = crate::gpu::shader_module(gpu, "lines");
-        let lines = |vertex, layouts: &[_], buffer| {
-            let buffers = [Some(buffer)];
+        let lines = |vertex, layouts: &[_], buffers: &[_]| {
             [("hidden_line_fragment", Layer::Everywhere), ("line_fragment", Layer::InSight)]
-                .map(|(fragment, layer)| pipeline(gpu, layouts, &lines, (vertex, fragment), &buffers, layer))
+                .map(|(fragment, layer)| pipeline(gpu, layouts, &lines, (vertex, fragment), buffers, layer))
         };
         let with_chunk = [layouts[0], None, layouts[2]];
-        let per_vertex = [Some(vertex(wgpu::VertexStepMode::Vertex))];
         Self {
             gpu: gpu.clone(),
             plain,
-            indexed: SIDES.map(|layer| surface("indexed_vertex", &layouts, &per_vertex, layer)),
+            textured,
+            indexed: SIDES.map(|layer| surface("indexed_vertex", &layouts, &halves, layer)),
             pulled: SIDES.map(|layer| surface("pulled_vertex", &layouts, &[], layer)),
             source: surface("source_vertex", &as_it_came, &[], Layer::Surface),
-            lines: lines("line_vertex", &layouts[..1], segment),
-            normals: lines("normal_vertex", &with_chunk, vertex(wgpu::VertexStepMode::Instance)),
+            lines: lines("line_vertex", &layouts[..1], &[Some(segment)]),
+            normals: lines("normal_vertex", &with_chunk, &vertex_halves(wgpu::VertexStepMode::Instance)),
             white: upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] }),
             sampler: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("base color"),
@@ -143,7 +142,7 @@ impl Renderer {
             contents: bytemuck::bytes_of(&frame),
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
         });
-        let (pipeline, pulled) = self.surface_pipeline(scene, target, camera, settings);
+        let surfaces = self.surface_pipelines(scene, target, camera, settings);
         let steps = steps(scene.tessellator.chunk_count(), settings.overlays.normals);
         for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
             if let Step::Surface(chunk) | Step::Normals(chunk) = *step {
@@ -161,7 +160,7 @@ impl Renderer {
                 match *step {
                     Step::Surface(chunk) => {
                         pass.set_bind_group(3, &self.deviation_group(scene, Some(chunk)), &[]);
-                        self.draw_chunk(pass, scene, right, (pipeline, pulled), &scene.tessellator.chunk(chunk));
+                        self.draw_chunk(pass, scene, right, &surfaces, &scene.tessellator.chunk(chunk));
                     }
                     Step::Normals(chunk) => self.draw_normals(pass, right, &scene.tessellator.chunk(chunk)),
                     Step::Nothing => {}
@@ -173,25 +172,19 @@ impl Renderer {
         }
     }
 
-    /// The pipeline of the emitted triangles, and whether it pulls their vertices.
-    fn surface_pipeline(
-        &self,
-        scene: &Scene,
-        target: &Target,
-        camera: &Camera,
-        settings: &Settings,
-    ) -> (&wgpu::RenderPipeline, bool) {
+    /// The pipelines of the emitted triangles, without and with a texture, and whether they pull their vertices.
+    fn surface_pipelines(&self, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Surfaces<'_> {
         // These look at whole triangles, and at backs.
         let Overlays { wireframe, folds, back_faces, colors, .. } = settings.overlays;
         let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
-        let both = match pulled {
-            true => &self.pulled,
-            false if overlay_bits(&settings.overlays) == 0 => &self.plain,
-            false => &self.indexed,
+        let materials = match pulled {
+            true => [&self.pulled; 2],
+            false if overlay_bits(&settings.overlays) == 0 => [&self.plain, &self.textured],
+            false => [&self.indexed; 2],
         };
-        (&both[usize::from(fronts)], pulled)
+        Surfaces { materials: materials.map(|sides| &sides[usize::from(fronts)]), pulled }
     }
 
     fn frame(&self, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Frame {
@@ -237,7 +230,7 @@ impl Renderer {
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
         [x, y, width, height]: [u32; 4],
-        (pipeline, pulled): (&wgpu::RenderPipeline, bool),
+        surfaces: &Surfaces,
         chunk: &ChunkBuffers,
     ) {
         if width == 0 || height == 0 {
@@ -245,15 +238,15 @@ impl Renderer {
         }
         pass.set_scissor_rect(x, y, width, height);
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
-        pass.set_pipeline(pipeline);
-        if !pulled {
-            pass.set_vertex_buffer(0, chunk.vertices.slice(..));
+        if !surfaces.pulled {
+            set_vertices(pass, chunk);
             pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
         }
         let mut args = chunk.draw_args_offset;
-        for material in &scene.materials {
+        for (material, own) in scene.materials.iter().zip(&scene.tessellator.mesh().materials) {
+            pass.set_pipeline(surfaces.materials[usize::from(own.texture.is_some())]);
             pass.set_bind_group(1, material, &[]);
-            if pulled {
+            if surfaces.pulled {
                 pass.draw_indirect(chunk.draw_args, args + PULL_ARGS);
             } else {
                 pass.draw_indexed_indirect(chunk.draw_args, args);
@@ -269,7 +262,7 @@ impl Renderer {
         }
         pass.set_scissor_rect(x, y, width, height);
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
-        pass.set_vertex_buffer(0, chunk.vertices.slice(..));
+        set_vertices(pass, chunk);
         for pipeline in &self.normals {
             pass.set_pipeline(pipeline);
             pass.draw(0..6, 0..chunk.chunk.vertex_count);
@@ -307,6 +300,19 @@ impl Renderer {
     fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {
         crate::gpu::bind_group(&self.gpu, "chunk", &self.chunk_layout, &[(0, chunk.slab), (1, chunk.patch_factors)])
     }
+}
+
+fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {
+    for (slot, (buffer, bytes)) in (0..).zip(chunk.vertices()) {
+        pass.set_vertex_buffer(slot, buffer.slice(bytes));
+    }
+}
+
+/// Pipelines of the emitted triangles.
+struct Surfaces<'a> {
+    /// Of materials without a texture, and with one.
+    materials: [&'a wgpu::RenderPipeline; 2],
+    pulled: bool,
 }
 
 /// What one render pass of a picture adds.

@@ -19,10 +19,10 @@ use crate::mesh::{Mesh, Topology};
 pub struct Vertex {
     /// Object units.
     pub position: [f32; 3],
-    /// Patch and domain coordinates: see [`pack_key`].
-    pub key: [u32; 2],
     /// See [`super::pack_normal`].
     pub normal: u32,
+    /// Patch and domain coordinates: see [`pack_key`].
+    pub key: [u32; 2],
     pub uv: [f32; 2],
 }
 

@@ -148,9 +148,9 @@ fn a_vertex_is_eight_words() {
         ("x", position),
         ("y", position + 4),
         ("z", position + 8),
+        ("normal", offset_of!(Vertex, normal)),
         ("key0", key),
         ("key1", key + 4),
-        ("normal", offset_of!(Vertex, normal)),
         ("uv", offset_of!(Vertex, uv)),
     ];
     assert_eq!(members, rust.map(|(name, offset)| (name.to_owned(), offset)));

@@ -188,7 +188,7 @@ impl Subject {
             clip_from_object: self.clip_from_object().to_cols_array_2d(),
             key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
             fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
-            eye: self.camera.eye().extend(1.0).to_array(),
+            viewport: self.target.viewport().extend(0.0).extend(0.0).to_array(),
             base_color,
         }
     }

@@ -30,7 +30,8 @@ pub struct Frame {
     pub clip_from_object: [[f32; 4]; 4],
     pub key_light: [f32; 4],
     pub fill_light: [f32; 4],
-    pub eye: [f32; 4],
+    /// Width and height in px, then nothing.
+    pub viewport: [f32; 4],
     pub base_color: [f32; 4],
 }
 

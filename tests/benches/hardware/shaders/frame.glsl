@@ -4,6 +4,7 @@ layout(push_constant) uniform Frame {
     mat4 clip_from_object;
     vec4 key_light;
     vec4 fill_light;
-    vec4 eye;
+    // Width and height in px, then nothing.
+    vec4 viewport;
     vec4 base_color;
 } frame;

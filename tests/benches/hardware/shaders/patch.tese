@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The domain shader: a point of the PN patch with its normal and texture coordinate, as in shaders/surface.wgsl and
-// shaders/normal.wgsl. Vulkan's domain has its origin at the upper left, so that clockwise there is counter-clockwise in the
+// The domain shader: a point of the PN patch with its normal, as in shaders/surface.wgsl and shaders/normal.wgsl. Texture
+// coordinates, which ours makes too, are left out: no pixel needs them. Vulkan's domain has its origin at the upper left, so that clockwise there is counter-clockwise in the
 // order of a patch's corners.
 
 #ifdef EQUAL_SPACING
@@ -25,9 +25,7 @@ layout(location = 3) in vec4 far[];
 #define CORNER(k, field) field[k]
 #endif
 
-layout(location = 0) out vec3 position_out;
-layout(location = 1) out vec3 normal_out;
-layout(location = 2) out vec2 uv_out;
+layout(location = 0) out vec3 normal_out;
 
 void main() {
     float x = gl_TessCoord.x;
@@ -53,8 +51,6 @@ void main() {
         + near_c.xyz * (3.0 * z * z * x)
         + CORNER(2, far).xyz * (3.0 * z * x * x)
         + center * (6.0 * x * y * z);
-    position_out = position;
     normal_out = normalize(at_a.xyz * x + at_b.xyz * y + at_c.xyz * z);
-    uv_out = vec2(a.w, at_a.w) * x + vec2(b.w, at_b.w) * y + vec2(c.w, at_c.w) * z;
     gl_Position = frame.clip_from_object * vec4(position, 1.0);
 }
