@@ -12,14 +12,16 @@ use super::peer::Peer;
 use super::subjects::{subject, tori};
 use super::versus::{BenchError, PeerTimes, Versus};
 
-/// Px a segment that the white paper's LOD is asked for.
-pub const PAPER_PIXELS: f32 = 8.0;
+/// Px a segment that the white paper's LOD is asked for: coarse, and as fine as pictures without visible edges need.
+pub const PAPER_PIXELS: [f32; 2] = [8.0, 2.0];
 /// Halvings of the range of tolerances, in ratios.
 const TRIES: u32 = 12;
 
 /// One scene by both.
 pub struct EqualError {
     pub scene: String,
+    /// A segment, by the white paper's LOD.
+    pub paper_pixels: f32,
     /// Triangles and the largest error in px: the white paper's, then ours.
     pub triangles: [u64; 2],
     pub px: [f64; 2],
@@ -44,6 +46,7 @@ pub fn table_of(scenes: &[EqualError]) -> String {
         let (ours, theirs) = (&scene.ours, scene.peer.as_ref());
         vec![
             scene.scene.clone(),
+            scene.paper_pixels.to_string(),
             whole(scene.triangles[0]),
             whole(scene.triangles[1]),
             format!("{:.3}", scene.px[0]),
@@ -58,7 +61,7 @@ pub fn table_of(scenes: &[EqualError]) -> String {
             or_none(theirs.map(|peer| ratio(peer.wall.median, ours.wall.median))),
         ]
     };
-    let head = "scene | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px | theirs, GPU \
+    let head = "scene | theirs, px a segment | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px | theirs, GPU \
                 | ours with their LOD, GPU | ours, GPU | theirs / ours | theirs, host | ours, host | theirs / ours";
     table(head, &scenes.iter().map(row).collect::<Vec<_>>())
 }
@@ -75,7 +78,9 @@ pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Ve
         subject.camera.distance *= nearer;
         let patches = u64::from(subject.scene.tessellator.buffers().patch_count);
         let scene = format!("{name}, {} patches", whole(patches));
-        all.push(equal(engine, peer, scale, &mut subject, scene)?);
+        for paper_pixels in PAPER_PIXELS {
+            all.push(equal(engine, peer, scale, &mut subject, (scene.clone(), paper_pixels))?);
+        }
     }
     Ok(all)
 }
@@ -85,9 +90,9 @@ fn equal(
     peer: Option<&Peer>,
     scale: &Scale,
     subject: &mut Subject,
-    scene: String,
+    (scene, paper_pixels): (String, f32),
 ) -> Result<EqualError, BenchError> {
-    subject.settings = Settings { lod: Lod::Paper, pixels: PAPER_PIXELS, clip: Clip::Paper, ..Settings::default() };
+    subject.settings = Settings { lod: Lod::Paper, pixels: paper_pixels, clip: Clip::Paper, ..Settings::default() };
     let paper_px = deviation(engine, subject)?;
     let paper = Versus::measure(engine, peer, subject, scale.effort)?;
     subject.settings = Settings {
@@ -101,6 +106,7 @@ fn equal(
     let ours = Versus::measure(engine, None, subject, scale.effort)?;
     Ok(EqualError {
         scene,
+        paper_pixels,
         triangles: [paper.triangles, ours.triangles],
         px: [paper_px, px],
         tolerance,
