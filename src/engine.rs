@@ -10,7 +10,7 @@ use crate::measure::{
 };
 use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
-use crate::settings::Settings;
+use crate::settings::{Half, Settings};
 use crate::tessellate::{Inputs, LodView, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
 use crate::truth::Truth;
 
@@ -148,6 +148,15 @@ impl Engine {
         Scene::new(&self.gpu, &self.renderer, self.pipelines.clone(), mesh, topology, arena_bytes)
     }
 
+    /// Gives a scene another surface left of its split, with output of its own.
+    ///
+    /// # Errors
+    /// The mesh is larger than the adapter binds.
+    pub fn split(&self, scene: &mut Scene, arena_bytes: u64) -> Result<(), GpuError> {
+        let left = scene.beside(arena_bytes)()?;
+        scene.set_left(Some(left))
+    }
+
     /// Runs the passes up to the counts and waits for them.
     ///
     /// # Errors
@@ -175,7 +184,11 @@ impl Engine {
         timing: &mut Timing,
     ) -> Result<(), GpuError> {
         let view = camera.lod_view(target.viewport(), &scene.bounds);
-        self.count(scene, &settings.inputs(view), timing)?;
+        for half in Half::BOTH {
+            if let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) {
+                self.count(scene, &settings.inputs(view), timing)?;
+            }
+        }
         let mut recorder = Recorder::new(&self.gpu, timing);
         self.renderer.draw(&mut recorder, scene, target, camera, settings);
         recorder.submit();

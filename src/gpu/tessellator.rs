@@ -83,6 +83,28 @@ impl Tessellator {
         topology: Arc<Topology>,
         arena_bytes: u64,
     ) -> Result<Self, GpuError> {
+        let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
+        let solid = Solid::find(&mesh, &topology);
+        Self::with(gpu, pipelines, (mesh, topology), solid, images, arena_bytes)
+    }
+
+    /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
+    /// output of its own.
+    pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
+        let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid);
+        let (mesh, images) =
+            ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
+        move || Self::with(&gpu, pipelines, mesh, solid, images, arena_bytes)
+    }
+
+    fn with(
+        gpu: &Gpu,
+        pipelines: Arc<ComputePipelines>,
+        (mesh, topology): (Arc<Mesh>, Arc<Topology>),
+        solid: Option<Solid>,
+        images: Option<HeightImages>,
+        arena_bytes: u64,
+    ) -> Result<Self, GpuError> {
         let buffers = MeshBuffers::new(gpu, &mesh, &topology, Sharing::AllSides)?;
         let arena = Arena::new(gpu, buffers.patch_count, arena_bytes)?;
         let mut slabs = Vec::new();
@@ -90,13 +112,12 @@ impl Tessellator {
             let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);
             slabs.push(SlabPasses::new(gpu, &buffers, &arena, first_patch, patch_count)?);
         }
-        let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let params: Params = bytemuck::Zeroable::zeroed();
         let params_buffer = uniform_buffer(gpu, "params", bytemuck::bytes_of(&params));
         Ok(Self {
             gpu: gpu.clone(),
             pipelines,
-            solid: Solid::find(&mesh, &topology),
+            solid,
             posed: Posed::new(mesh.clone(), topology.clone(), None),
             mesh,
             topology,
@@ -153,13 +174,21 @@ impl Tessellator {
     /// # Errors
     /// The mesh's rig is larger than the adapter binds.
     pub fn set_pose(&mut self, pose: Option<Arc<Pose>>) -> Result<(), GpuError> {
-        let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != pose.as_deref()) else { return Ok(()) };
-        match (&pose, &mut self.rig) {
+        self.pose_as(&Posed::new(self.mesh.clone(), self.topology.clone(), pose))
+    }
+
+    /// The same as another tessellator of the mesh has it: what the host makes of the pose is made once.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub fn pose_as(&mut self, posed: &Posed) -> Result<(), GpuError> {
+        let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != posed.pose()) else { return Ok(()) };
+        match (posed.pose(), &mut self.rig) {
             (Some(pose), Some(rig)) => rig.set_pose(&self.gpu, pose)?,
             (Some(pose), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
             (None, _) => self.upload(self.buffers.sharing)?,
         }
-        self.posed = Posed::new(self.mesh.clone(), self.topology.clone(), pose);
+        self.posed = posed.clone();
         self.forget();
         Ok(())
     }
