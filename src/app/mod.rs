@@ -3,10 +3,12 @@
 mod animation;
 mod checks;
 mod deviating;
+mod deviation;
 mod document;
 mod facts;
 mod heights;
 mod labels;
+mod left;
 mod legend;
 mod measuring;
 mod menu;
@@ -39,6 +41,7 @@ use crate::tessellate::{Displacement, LodView};
 use animation::Playback;
 use deviating::Deviating;
 use document::{Document, Load};
+use left::Left;
 use measuring::Measuring;
 use pick::Selection;
 use picture::Viewport;
@@ -121,6 +124,7 @@ pub struct App {
     playback: Playback,
     measuring: Measuring,
     deviating: Deviating,
+    left: Left,
     /// What lines are over the mesh.
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
@@ -161,6 +165,7 @@ impl App {
             playback: Playback::default(),
             measuring: Measuring::default(),
             deviating: Deviating::default(),
+            left: Left::default(),
             marked: None,
             selected_edge: None,
             selection: Selection::default(),
@@ -250,7 +255,7 @@ impl App {
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
         let loads = self.load.is_some() || self.truth_load.is_some();
-        let measures = self.measuring.is_busy() || self.deviating.is_busy();
+        let measures = self.measuring.is_busy() || self.deviating.is_busy() || self.left.is_busy();
         loads || measures || self.viewport.is_busy() || self.selection.is_busy()
     }
 
@@ -286,6 +291,7 @@ impl App {
                     self.frame();
                 }
                 self.measuring = Measuring::default();
+                self.left.forget();
                 self.deselect();
             }
             Err(Some(error)) => {

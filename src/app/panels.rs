@@ -2,9 +2,9 @@
 
 use super::App;
 use super::text::short;
-use super::widgets::{chooser, fixed, heading, value_chooser};
+use super::widgets::{chooser, explanation, fixed, heading, value_chooser};
 use crate::settings::{
-    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, DeviationUnit, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings,
+    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, DeviationUnit, FACTOR_RANGE, Half, Overlay, PIXELS_RANGE, Settings,
     TOLERANCE_RANGE,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
@@ -104,6 +104,11 @@ const OVERLAYS: [(Overlay, &str, &str); 8] = [
     ),
 ];
 
+/// What a surface is called here.
+pub(super) fn surface_name(surface: Surface) -> &'static str {
+    SURFACES.iter().find(|(choice, _)| *choice == surface).map_or("", |(_, name)| name)
+}
+
 impl App {
     pub(super) fn settings_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -146,8 +151,10 @@ impl App {
         value_chooser(ui, "Surface", "What each triangle becomes (--surface).", &mut settings.surface, &SURFACES);
         let hover = "How strong Phong tessellation is, from 0, flat, to 1; its authors use 0.75 (--alpha).";
         let label = ui.label("Alpha").on_hover_text(hover);
+        let has_strength = |half| settings.half(half).is_some_and(|half| half.surface.is_phong());
+        let is_phong = Half::BOTH.into_iter().any(has_strength);
         let slider = egui::Slider::new(&mut settings.alpha, ALPHA_RANGE).max_decimals(2);
-        ui.add_enabled(settings.surface.is_phong(), slider)
+        ui.add_enabled(is_phong, slider)
             .labelled_by(label.id)
             .on_hover_text(hover)
             .on_disabled_hover_text("Only Phong tessellation has a strength.");
@@ -262,11 +269,13 @@ impl App {
 
     fn view_rows(&mut self, ui: &mut egui::Ui) {
         let mut split = self.settings.split.is_some();
-        let hover = "Left of the divider the mesh as it came, right of it tessellated, from one camera (S).";
+        let hover =
+            "Left of the divider the mesh as it came or another surface, right of it this one, from one camera (S).";
         if ui.checkbox(&mut split, "Split view").on_hover_text(hover).changed() {
             self.toggle_split();
         }
         egui::Grid::new("view").num_columns(2).min_col_width(84.0).show(ui, |ui| {
+            left_row(ui, &mut self.settings);
             let mut percent = self.settings.split.unwrap_or(self.last_split) * 100.0;
             let label = ui.label("Divider");
             let slider = egui::Slider::new(&mut percent, 0.0..=100.0).max_decimals(0).suffix(" %");
@@ -304,6 +313,22 @@ impl App {
             Some(_) => None,
             None => self.viewport.shown_view(),
         };
+    }
+}
+
+/// What is left of the split.
+fn left_row(ui: &mut egui::Ui, settings: &mut Settings) {
+    let abouts = SURFACES.map(|(surface, _)| format!("{} All other settings are the same.", explanation(surface)));
+    let as_it_came = (None, "As it came", "The mesh itself, untessellated.");
+    let surfaces = SURFACES.iter().zip(&abouts).map(|(&(surface, name), about)| (Some(surface), name, about.as_str()));
+    let choices: Vec<_> = [as_it_came].into_iter().chain(surfaces).collect();
+    if settings.split.is_some() {
+        let hover = "What is shown left of the divider: the mesh as it came, or another surface, to hold two methods against \
+                     each other (--split-surface).";
+        chooser(ui, "Left", hover, &mut settings.split_surface, &choices);
+    } else {
+        let shown = settings.split_surface.map_or("As it came", surface_name);
+        fixed(ui, "Left", shown, "Only a split view has a left half.");
     }
 }
 

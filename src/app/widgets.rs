@@ -10,6 +10,12 @@ pub fn heading(ui: &mut egui::Ui, text: &str) {
     ui.separator();
 }
 
+/// What the commands say of a value.
+pub fn explanation(value: impl ValueEnum) -> String {
+    let help = value.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
+    format!("{}.", help.unwrap_or_default())
+}
+
 /// A row with a name and a list to choose from.
 pub fn chooser<T: Copy + PartialEq>(
     ui: &mut egui::Ui,
@@ -37,11 +43,7 @@ pub fn value_chooser<T: ValueEnum + PartialEq + Copy>(
     value: &mut T,
     choices: &[(T, &str)],
 ) {
-    let explanation = |choice: &T| {
-        let help = choice.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
-        format!("{}.", help.unwrap_or_default())
-    };
-    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(choice)).collect();
+    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(*choice)).collect();
     let all: Vec<_> =
         choices.iter().zip(&explanations).map(|(&(choice, text), help)| (choice, text, help.as_str())).collect();
     chooser(ui, name, hover, value, &all);
