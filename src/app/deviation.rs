@@ -4,11 +4,11 @@ use egui::RichText;
 use glam::{Vec2, Vec3};
 
 use super::App;
+use super::choices::surface_name;
 use super::deviating::{Deviating, Found, Of};
 use super::legend::Distances;
-use super::panels::surface_name;
 use super::text::{grouped, short, shortened};
-use super::widgets::{fact, heading, swatch};
+use super::widgets::{fact, heading, number, swatch};
 use crate::measure::{MOST_TRIANGLES, Yardstick};
 use crate::render::layout::WORST_COLOR;
 use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, project, worst_lines};
@@ -148,7 +148,10 @@ impl App {
                 let Some(settings) = self.settings.half(half) else { continue };
                 let place = if half == Half::Left { "Left" } else { "Right" };
                 if is_split {
-                    fact(ui, place, surface_name(settings.surface), "What is shown in this half of the split.");
+                    let hover = "What is shown in this half of the split.";
+                    ui.label(RichText::new(place).strong()).on_hover_text(hover);
+                    number(ui, surface_name(settings.surface));
+                    ui.end_row();
                 }
                 if self.deviation_rows(ui, half, if is_split { place } else { "" }) {
                     clicked = Some(half);

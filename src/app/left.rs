@@ -4,10 +4,10 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use super::App;
+use super::choices::surface_name;
 use super::deviating::Deviating;
 use super::document::arena_bytes;
 use super::measuring::Measuring;
-use super::panels::surface_name;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
 use crate::render::Scene;

@@ -2,6 +2,7 @@
 
 mod animation;
 mod checks;
+mod choices;
 mod deviating;
 mod deviation;
 mod document;
@@ -10,6 +11,7 @@ mod heights;
 mod labels;
 mod left;
 mod legend;
+mod marked;
 mod measuring;
 mod menu;
 mod names;
@@ -24,6 +26,7 @@ mod text;
 mod truth;
 mod viewport;
 mod widgets;
+mod windows;
 mod worst;
 
 use std::sync::Arc;
@@ -42,11 +45,11 @@ use animation::Playback;
 use deviating::Deviating;
 use document::{Document, Load};
 use left::Left;
+use marked::Marked;
 use measuring::Measuring;
 use pick::Selection;
 use picture::Viewport;
 use truth::{Chosen, TruthLoad};
-use viewport::Marked;
 
 #[derive(Debug, Error)]
 pub enum WindowError {

@@ -26,7 +26,8 @@ pub fn chooser<T: Copy + PartialEq>(
 ) {
     let label = ui.label(name).on_hover_text(hover);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
+    // All of a list is in sight: the longest has nine entries.
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).height(260.0).show_ui(ui, |ui| {
         for (choice, text, hover) in choices {
             ui.selectable_value(value, *choice, *text).on_hover_text(*hover);
         }
