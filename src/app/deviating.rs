@@ -7,7 +7,7 @@ use crate::gpu::{Gpu, GpuError, mapped_bytes};
 use crate::measure::{Field, Place, Yardstick};
 use crate::mesh::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
-use crate::tessellate::{Posed, Vertex};
+use crate::tessellate::{Posed, Surface, Vertex};
 
 /// What is known about the distance to the truth.
 #[derive(Default)]
@@ -29,6 +29,8 @@ pub struct Of {
     pub tessellation: u64,
     /// Tells one truth from the next.
     pub truth: u64,
+    /// Whose limit it is held against without one.
+    pub limit: Surface,
 }
 
 /// A result; the samples themselves are the scene's.

@@ -26,7 +26,8 @@ impl App {
     fn deviation_of(&self, half: Half) -> Option<Of> {
         let document = self.document.as_ref()?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
-        Some(Of { document: document.generation, tessellation, truth: self.yardstick().0 })
+        let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.surface);
+        Some(Of { document, tessellation, truth, limit })
     }
 
     fn shows_deviation(&self) -> bool {
@@ -48,7 +49,8 @@ impl App {
         self.deviating(half).found_of(self.deviation_of(half)?)
     }
 
-    /// Lets measuring go on, if the overlay is on and nothing is under way that it would disturb.
+    /// Lets measuring go on, if the overlay is on and nothing is under way that it would disturb. Without a truth both halves
+    /// are held against the limit of the right one, which has these inputs: what flat triangles converge to they are already.
     pub(super) fn deviate(&mut self, inputs: &Inputs) -> Result<(), crate::gpu::GpuError> {
         if !self.shows_deviation() || self.playback.is_playing() {
             self.deviating.stop();
@@ -59,13 +61,13 @@ impl App {
             return Ok(());
         }
         for half in Half::BOTH {
-            let Some((of, settings)) = self.deviation_of(half).zip(self.settings.half(half)) else { continue };
-            let (inputs, truth) = (Inputs { surface: settings.surface, ..*inputs }, self.yardstick().1);
+            let Some(of) = self.deviation_of(half).filter(|_| self.settings.half(half).is_some()) else { continue };
+            let truth = self.yardstick().1;
             let Some(document) = self.document.as_mut() else { continue };
             let is_posed = document.moment == self.playback.moment();
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
-            let yardstick = || truth.map_or_else(|| Yardstick::Limit(Box::new(inputs)), Yardstick::Truth);
+            let yardstick = || truth.map_or_else(|| Yardstick::Limit(Box::new(*inputs)), Yardstick::Truth);
             let deviating = match half {
                 Half::Left => &mut self.left.deviating,
                 Half::Right => &mut self.deviating,
@@ -137,8 +139,11 @@ impl App {
             return;
         }
         heading(ui, "Deviation");
-        let name = self.yardstick().2;
+        let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
         let is_split = self.settings.half(Half::Left).is_some();
+        if is_split && truth.is_none() {
+            name = format!("{}'s limit", surface_name(self.settings.surface));
+        }
         let mut clicked = None;
         egui::Grid::new("deviation").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             let hover = "What the mesh should have been: the surface that a shape is sampled from, a file chosen under File, or \

@@ -201,13 +201,13 @@ impl Shot {
         Ok(measured)
     }
 
-    /// Measures what the overlay shows: both halves on the scale of the one that is farther off.
+    /// Measures what the overlay shows: both halves against one thing, and on the scale of the one that is farther off.
     fn hold(&mut self, held: Option<Held>) -> Result<(), CliError> {
         self.held = held;
+        let held = self.held.as_ref().filter(|_| self.settings.overlays.colors == Colors::Deviation);
+        let Some((held, inputs)) = held.zip(self.inputs(Half::Right)) else { return Ok(()) };
+        let yardstick = held.yardstick(&inputs);
         for half in Half::BOTH {
-            let held = self.held.as_ref().filter(|_| self.settings.overlays.colors == Colors::Deviation);
-            let Some((held, inputs)) = held.zip(self.inputs(half)) else { continue };
-            let yardstick = held.yardstick(&inputs);
             let Some(scene) = self.scene.half_mut(half) else { continue };
             self.fields[half as usize] = Some(self.engine.field(scene, &yardstick)?);
         }

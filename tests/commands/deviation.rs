@@ -60,6 +60,19 @@ fn two_surfaces_beside_each_other_have_a_number_each_and_one_scale() {
 }
 
 #[test]
+fn without_a_truth_both_are_held_against_the_limit_of_the_right_one() {
+    let smooth = ["shape:cube-smooth", "--factor", "8", "--overlay", "deviation", "--split", "0.5"];
+    let of = |surfaces: [&str; 2]| {
+        let both = stats(&[&smooth[..], &["--split-surface", surfaces[0], "--surface", surfaces[1]]].concat());
+        ["/left/deviation/max", "/deviation/max"].map(|max| number(&both, max))
+    };
+    let [flat, curved] = of(["flat", "pn-aen"]);
+    assert!(flat > 10.0 * curved && curved > 1e-4, "{flat} and {curved}");
+    let [curved, flat_alone] = of(["pn-aen", "flat"]);
+    assert!(flat_alone < 1e-6 && curved > 0.5 * flat, "flat triangles are their own limit: {flat_alone} and {curved}");
+}
+
+#[test]
 fn another_surface_needs_a_split() {
     let folder = Folder::new("split-surface");
     let out = folder.path("out.png");

@@ -171,9 +171,17 @@ fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
         assert!(app.selected_triangle().is_some() && app.selected_edge().is_some());
         assert_eq!(app.hit().is_some(), emitted, "{offset} points from the divider");
     }
-    // Another mesh is split the same way, and measured anew.
-    let context = harness.ctx.clone();
     press(&mut harness, egui::Key::V);
+    // No truth is known of this one.
+    assert!(harness.query_by_label("PN-AEN's limit").is_some());
+    let against = |harness: &Harness<App>| harness.state().deviation(Half::Left).expect("measured");
+    let other = against(&harness);
+    choose(&mut harness, "Surface", "Flat");
+    assert!(harness.query_by_label("Flat's limit").is_some() && against(&harness) != other, "measured anew");
+    choose(&mut harness, "Surface", "PN-AEN");
+    assert_eq!(against(&harness), other);
+    // Another mesh is split the same way.
+    let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::Icosahedron));
     settle(&mut harness);
     let [left, right] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
