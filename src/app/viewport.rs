@@ -178,12 +178,9 @@ impl App {
             self.last_split = *split;
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        let color = if response.hovered() || response.dragged() {
-            ui.visuals().selection.stroke.color
-        } else {
-            egui::Color32::from_gray(190)
-        };
-        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(1.5, color));
+        // Over the picture, which is dark in both themes.
+        let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
+        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
         let titles = match (left, right) {
             (Some(left), Some(right)) => [left, right],
             _ => ["untessellated", "tessellated"].map(str::to_owned),

@@ -79,7 +79,7 @@ impl Engine {
         Ok(sizes)
     }
 
-    /// Pixels through which one looks into what should be closed, seen from `camera`: see [`LeakCounter`]. None
+    /// Pixels through which one looks into what should be closed, seen from `camera`: see [`crate::render::LeakCounter`]. None
     /// where that says nothing: the mesh is open, or reaches the near plane, or its backs are left out. The counts must be
     /// known.
     ///

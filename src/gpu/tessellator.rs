@@ -1,5 +1,6 @@
 //! One mesh being tessellated: its state, and what is recomputed when.
 
+mod output;
 mod passes;
 
 use std::sync::Arc;
@@ -9,7 +10,7 @@ use glam::Mat4;
 use super::arena::Arena;
 use super::buffers::filled;
 use super::counts::PendingCounts;
-use super::layout::{Chunk, DrawArgs, Params};
+use super::layout::{Chunk, Params};
 use super::params::params_of;
 use super::recorder::wait;
 use super::relief::{HeightImages, ReliefPasses};
@@ -18,6 +19,8 @@ use super::slab::{SlabPasses, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
 use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Posed, Solid, sharing};
+
+pub use output::ChunkBuffers;
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -54,21 +57,6 @@ pub struct Tessellator {
     generation: u64,
     chunks: Vec<(usize, u32, Chunk)>,
     emitted: Option<(usize, u32)>,
-}
-
-/// What a chunk left in the arena, for whoever draws or reads it.
-pub struct ChunkBuffers<'a> {
-    pub chunk: Chunk,
-    pub vertices: &'a wgpu::Buffer,
-    pub indices: &'a wgpu::Buffer,
-    /// One [`DrawArgs`] a material, from `draw_args_offset` bytes on.
-    pub draw_args: &'a wgpu::Buffer,
-    pub draw_args_offset: u64,
-    /// The factors of the slab's patches, the first of which is `first_patch`.
-    pub patch_factors: &'a wgpu::Buffer,
-    pub first_patch: u32,
-    /// The slab itself: a [`super::layout::Slab`].
-    pub slab: &'a wgpu::Buffer,
 }
 
 impl Tessellator {
@@ -300,57 +288,6 @@ impl Tessellator {
             self.take_chunks(&table);
         }
         Ok(())
-    }
-
-    fn take_chunks(&mut self, table: &[Chunk]) {
-        self.counts_done = true;
-        self.chunks.clear();
-        let mut rows = table.iter();
-        for (index, slab) in self.slabs.iter().enumerate() {
-            for chunk in 0..slab.slab.chunk_capacity {
-                if let Some(row) = rows.next().filter(|row| row.vertex_count > 0) {
-                    self.chunks.push((index, chunk, *row));
-                }
-            }
-        }
-    }
-
-    /// How many chunks the output takes; 0 before the counts are known, and when nothing is emitted.
-    pub fn chunk_count(&self) -> usize {
-        if self.counts_done { self.chunks.len() } else { 0 }
-    }
-
-    /// Vertices and triangles of the whole output.
-    pub fn totals(&self) -> (u64, u64) {
-        let sum = |count: fn(&Chunk) -> u32| self.chunks.iter().map(|(_, _, chunk)| u64::from(count(chunk))).sum();
-        (sum(|chunk| chunk.vertex_count), sum(|chunk| chunk.triangle_count))
-    }
-
-    /// The arena as chunk `index` left it.
-    pub fn chunk(&self, index: usize) -> ChunkBuffers<'_> {
-        let (slab_index, chunk_index, chunk) = self.chunks[index];
-        let slab = &self.slabs[slab_index];
-        let row = size_of::<DrawArgs>() as u64 * u64::from(self.buffers.material_count);
-        ChunkBuffers {
-            chunk,
-            vertices: &self.arena.vertices,
-            indices: &self.arena.indices,
-            draw_args: &slab.draw_args,
-            draw_args_offset: u64::from(chunk_index) * row,
-            patch_factors: &slab.patch_factors,
-            first_patch: slab.slab.first_patch,
-            slab: &slab.slab_buffer,
-        }
-    }
-
-    /// Room for vertices and for indices, whatever chunk they hold.
-    pub fn arena(&self) -> (&wgpu::Buffer, &wgpu::Buffer) {
-        (&self.arena.vertices, &self.arena.indices)
-    }
-
-    /// The factors of all patches, slab by slab.
-    pub fn patch_factors(&self) -> impl Iterator<Item = (&wgpu::Buffer, u32)> + Clone {
-        self.slabs.iter().map(|slab| (&slab.patch_factors, slab.slab.patch_count))
     }
 
     /// The factors that LOD gave, and whether they are the edges' or the sides'.
