@@ -1,20 +1,18 @@
 //! The engine as both faces use it: a device with its pipelines, and what one does with a scene without a window.
 
+mod measured;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{
     ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of, wait,
 };
-use crate::measure::{
-    Accuracy, AccuracyOptions, AskedFactors, Deviant, Deviation, Field, Measured, Measurement, ScreenView, Sizes,
-    Survey, Yardstick,
-};
+use crate::measure::AskedFactors;
 use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
-use crate::settings::Settings;
-use crate::tessellate::{Inputs, LodView, PatchFactors, Posed, Tessellated, Vertex, is_beyond_near};
-use crate::truth::Truth;
+use crate::settings::{Half, Settings};
+use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -150,6 +148,15 @@ impl Engine {
         Scene::new(&self.gpu, &self.renderer, self.pipelines.clone(), mesh, topology, arena_bytes)
     }
 
+    /// Gives a scene another surface left of its split, with output of its own.
+    ///
+    /// # Errors
+    /// The mesh is larger than the adapter binds.
+    pub fn split(&self, scene: &mut Scene, arena_bytes: u64) -> Result<(), GpuError> {
+        let left = scene.beside(arena_bytes)()?;
+        scene.set_left(Some(left))
+    }
+
     /// Runs the passes up to the counts and waits for them.
     ///
     /// # Errors
@@ -177,7 +184,11 @@ impl Engine {
         timing: &mut Timing,
     ) -> Result<(), GpuError> {
         let view = camera.lod_view(target.viewport(), &scene.bounds);
-        self.count(scene, &settings.inputs(view), timing)?;
+        for half in Half::BOTH {
+            if let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) {
+                self.count(scene, &settings.inputs(view), timing)?;
+            }
+        }
         let mut recorder = Recorder::new(&self.gpu, timing);
         self.renderer.draw(&mut recorder, scene, target, camera, settings);
         recorder.submit();
@@ -238,99 +249,6 @@ impl Engine {
         let mut factors = cast::<f32>(&read_buffer(&self.gpu, buffer, 0, buffer.size())?);
         factors.truncate(scene.tessellator.buffers().factor_count as usize);
         Ok(AskedFactors::new(edges, convention, factors))
-    }
-
-    /// Reads back all that is emitted and measures it. The counts must be known.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
-        let (mesh, topology) = scene.tessellator.posed().deformed();
-        let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.asked_factors(scene)?);
-        self.read_chunks(scene, true, |first, vertices, triangles| survey.take(first, vertices, triangles))?;
-        Ok(survey.finish())
-    }
-
-    /// The largest distance on screen between what is emitted and the surface that it stands for, seen from the view of
-    /// `inputs`; none if nothing is in view. The counts must be known, for the same inputs.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn deviation(&self, scene: &mut Scene, inputs: &Inputs) -> Result<Option<Deviant>, GpuError> {
-        let (mesh, topology) = scene.tessellator.posed().deformed();
-        let (_, total) = scene.tessellator.totals();
-        let mut deviation = Deviation::new(&mesh, &topology, inputs);
-        self.read_chunks(scene, true, |_, vertices, triangles| deviation.take(vertices, triangles, total))?;
-        Ok(deviation.worst())
-    }
-
-    /// How far what is emitted is from what it should have been, all over. The counts must be known.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn field(&self, scene: &mut Scene, yardstick: &Yardstick) -> Result<Field, GpuError> {
-        let (mesh, topology) = scene.tessellator.posed().deformed();
-        let mut field = Field::new(scene.tessellator.totals().1);
-        let wanted = Progress::new();
-        yardstick.with(&mesh, &topology, |against| {
-            self.read_chunks(scene, true, |_, vertices, triangles| {
-                // Nobody else knows of this progress, so that nobody cancels it.
-                let _ = field.take(against, vertices, triangles, &wanted);
-            })
-        })?;
-        Ok(field)
-    }
-
-    /// What is emitted held against a truth, in px as seen from `view`; none if nothing is emitted that has an area. All of
-    /// the mesh must be emitted, and the counts be known.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn accuracy(
-        &self,
-        scene: &mut Scene,
-        truth: &Truth,
-        view: &LodView,
-        options: AccuracyOptions,
-    ) -> Result<Option<Accuracy>, GpuError> {
-        let mut measurement = Measurement::new(truth, Some(view), options);
-        self.read_chunks(scene, true, |_, vertices, triangles| measurement.take(vertices, triangles))?;
-        Ok(measurement.finish())
-    }
-
-    /// How large what is emitted is on screen. The counts must be known.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn sizes(&self, scene: &mut Scene, view: ScreenView) -> Result<Sizes, GpuError> {
-        let mut sizes = Sizes::new(view);
-        self.read_chunks(scene, true, |_, vertices, triangles| sizes.take(vertices, triangles))?;
-        Ok(sizes)
-    }
-
-    /// Pixels through which one looks into what should be closed, seen from `camera`: see [`LeakCounter`]. None
-    /// where that says nothing: the mesh is open, or reaches the near plane, or its backs are left out. The counts must be
-    /// known.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn leaks(
-        &self,
-        scene: &mut Scene,
-        measured: &Measured,
-        size: [u32; 2],
-        camera: &Camera,
-    ) -> Result<Option<u64>, GpuError> {
-        let viewport = glam::vec2(size[0] as f32, size[1] as f32);
-        let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
-        // What clipping left out isn't in what was measured; its corners say whether it lies behind the near plane.
-        let corners = scene.tessellator.posed().deformed().0.bounds();
-        let whole = [measured.extent[0].min(corners.min), measured.extent[1].max(corners.max)];
-        let closed = scene.tessellator.topology().is_closed_and_oriented() && measured.culled.facing_away == 0;
-        if !closed || !is_beyond_near(clip_from_object, whole) {
-            return Ok(None);
-        }
-        self.leaks.count(&self.gpu, scene, size, clip_from_object).map(Some)
     }
 
     /// The whole tessellated mesh, read back. The counts must be known.

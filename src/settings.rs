@@ -58,8 +58,10 @@ pub struct Settings {
     pub overlays: Overlays,
     /// What distances to the truth are coloured by.
     pub deviation_in: DeviationUnit,
-    /// Where the picture is split, untessellated left of it and tessellated right: a fraction of its width.
+    /// Where the picture is split, tessellated right of it: a fraction of its width.
     pub split: Option<f32>,
+    /// What is left of the split, all else the same; none for the mesh as it came.
+    pub split_surface: Option<Surface>,
     /// sRGB behind the mesh.
     pub background: [u8; 3],
 }
@@ -87,9 +89,21 @@ impl Default for Settings {
             overlays: Overlays::default(),
             deviation_in: DeviationUnit::Units,
             split: None,
+            split_surface: None,
             background: [0x2b, 0x2e, 0x33],
         }
     }
+}
+
+/// Of a picture that is split; one that isn't is all right half.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Half {
+    Left,
+    Right,
+}
+
+impl Half {
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 }
 
 /// What the surface's colours mean: one thing at a time.
@@ -263,6 +277,14 @@ impl Settings {
     /// chosen; what is chosen is kept for other partitionings.
     pub fn used_lod(&self) -> Lod {
         if self.partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { self.lod }
+    }
+
+    /// What a half is tessellated by; none where the mesh is shown as it came, or there is no such half.
+    pub fn half(&self, half: Half) -> Option<Self> {
+        match half {
+            Half::Left => Some(Self { surface: self.split_surface.filter(|_| self.split.is_some())?, ..*self }),
+            Half::Right => Some(*self),
+        }
     }
 
     /// How far heights move any point of a mesh at most, in object units.

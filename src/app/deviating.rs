@@ -6,8 +6,8 @@ use super::measuring::{Copying, Part, PartKind, WAITING, copy_chunk, copy_on};
 use crate::gpu::{Gpu, GpuError, mapped_bytes, vertices_of};
 use crate::measure::{Field, Place, Yardstick};
 use crate::mesh::Progress;
-use crate::render::{DEVIATION_PX_SCALE, Scale, Scene, deviation_scale};
-use crate::tessellate::Posed;
+use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
+use crate::tessellate::{Posed, Surface};
 
 /// What is known about the distance to the truth.
 #[derive(Default)]
@@ -29,6 +29,8 @@ pub struct Of {
     pub tessellation: u64,
     /// Tells one truth from the next.
     pub truth: u64,
+    /// Whose limit it is held against without one.
+    pub limit: Surface,
 }
 
 /// A result; the samples themselves are the scene's.
@@ -39,9 +41,15 @@ pub struct Found {
     pub worst: Option<Place>,
     /// Object units.
     pub rms: f64,
-    pub scale: Scale,
     /// Triangles without a colour, because there were too many.
     pub left_out: u64,
+}
+
+impl Found {
+    /// Object units; 0 if nothing was emitted.
+    pub fn largest(&self) -> f64 {
+        self.worst.map_or(0.0, |worst| worst.value)
+    }
 }
 
 /// The thread that compares; it gives up when this is dropped.
@@ -84,6 +92,11 @@ impl Deviating {
         }
     }
 
+    /// Forgets everything, and stops what is under way.
+    pub fn forget(&mut self) {
+        *self = Self { generation: self.generation + 1, ..Self::default() };
+    }
+
     /// Goes on measuring, or starts over if that isn't what was asked for last; the scene, whose counts are known, gets
     /// what comes of it.
     ///
@@ -109,7 +122,7 @@ impl Deviating {
                 scene.set_deviation(gpu, Some((&field, scale)));
                 self.generation += 1;
                 let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);
-                self.found = Some(Found { of, worst, rms, scale, left_out });
+                self.found = Some(Found { of, worst, rms, left_out });
             }
             Some(Err(TryRecvError::Disconnected)) => {
                 // It failed: what waits for distances is drawn without.

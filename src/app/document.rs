@@ -7,7 +7,7 @@ use super::checks::Checks;
 use crate::engine::{self, Engine, Loaded, Preparation};
 use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source};
 use crate::render::Scene;
-use crate::settings::ARENA_BYTES;
+use crate::settings::{ARENA_BYTES, Half};
 use crate::tessellate::Deformed;
 use crate::truth::Truth;
 
@@ -37,6 +37,20 @@ impl Document {
     pub fn posed(&self) -> Option<Deformed> {
         self.scene.tessellator.posed().deformed_soon()
     }
+
+    /// Bytes on the device: topology and output, of both halves if there are two surfaces.
+    pub fn bytes(&self) -> u64 {
+        let of = |scene: &Scene| {
+            let tessellator = &scene.tessellator;
+            tessellator.buffers().bytes() + tessellator.work_bytes() + tessellator.arena_bytes()
+        };
+        Half::BOTH.into_iter().filter_map(|half| self.scene.half(half)).map(of).sum()
+    }
+}
+
+/// Memory for a tessellation's output: steps that a software adapter takes no longer for than a person notices.
+pub fn arena_bytes(engine: &Engine) -> u64 {
+    if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES }
 }
 
 /// A load under way; dropping it cancels it.
@@ -106,9 +120,7 @@ fn load(
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => return Err(Some(error.to_string())),
     };
-    // Steps that a software adapter takes no longer for than a person notices.
-    let arena = if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES };
-    let scene = engine.scene(&loaded, arena).map_err(|error| Some(error.to_string()))?;
+    let scene = engine.scene(&loaded, arena_bytes(engine)).map_err(|error| Some(error.to_string()))?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
     let diagonal = scene.bounds.diagonal();

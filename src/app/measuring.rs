@@ -86,8 +86,13 @@ impl Measuring {
     /// Forgets what was found about anything but this document and tessellation.
     pub fn keep_only(&mut self, document: u64, tessellation: u64) {
         if self.of.is_some_and(|of| of != (document, tessellation)) {
-            *self = Self { generation: self.generation + 1, ..Self::default() };
+            self.forget();
         }
+    }
+
+    /// Forgets everything, and stops what is under way.
+    pub fn forget(&mut self) {
+        *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
     /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now, and if

@@ -2,12 +2,16 @@
 
 mod animation;
 mod checks;
+mod choices;
 mod deviating;
+mod deviation;
 mod document;
 mod facts;
 mod heights;
 mod labels;
+mod left;
 mod legend;
+mod marked;
 mod measuring;
 mod menu;
 mod names;
@@ -22,6 +26,7 @@ mod text;
 mod truth;
 mod viewport;
 mod widgets;
+mod windows;
 mod worst;
 
 use std::sync::Arc;
@@ -39,11 +44,12 @@ use crate::tessellate::{Displacement, LodView};
 use animation::Playback;
 use deviating::Deviating;
 use document::{Document, Load};
+use left::Left;
+use marked::Marked;
 use measuring::Measuring;
 use pick::Selection;
 use picture::Viewport;
 use truth::{Chosen, TruthLoad};
-use viewport::Marked;
 
 #[derive(Debug, Error)]
 pub enum WindowError {
@@ -121,6 +127,7 @@ pub struct App {
     playback: Playback,
     measuring: Measuring,
     deviating: Deviating,
+    left: Left,
     /// What lines are over the mesh.
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
@@ -161,6 +168,7 @@ impl App {
             playback: Playback::default(),
             measuring: Measuring::default(),
             deviating: Deviating::default(),
+            left: Left::default(),
             marked: None,
             selected_edge: None,
             selection: Selection::default(),
@@ -250,7 +258,7 @@ impl App {
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
         let loads = self.load.is_some() || self.truth_load.is_some();
-        let measures = self.measuring.is_busy() || self.deviating.is_busy();
+        let measures = self.measuring.is_busy() || self.deviating.is_busy() || self.left.is_busy();
         loads || measures || self.viewport.is_busy() || self.selection.is_busy()
     }
 
@@ -286,6 +294,7 @@ impl App {
                     self.frame();
                 }
                 self.measuring = Measuring::default();
+                self.left.forget();
                 self.deselect();
             }
             Err(Some(error)) => {

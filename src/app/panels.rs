@@ -1,108 +1,16 @@
 //! On the left: what one sets.
 
 use super::App;
-use super::text::short;
-use super::widgets::{chooser, fixed, heading, value_chooser};
-use crate::settings::{
-    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, DeviationUnit, FACTOR_RANGE, Overlay, PIXELS_RANGE, Settings,
-    TOLERANCE_RANGE,
+use super::choices::{
+    CLIPS, COLORS, CONVENTIONS, DEVIATION_UNITS, EDGES, LOD_FIXED, LODS, NORMALS, OVERLAYS, PARTITIONINGS, SURFACES,
+    surface_name,
 };
-use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
-
-/// What values are called here; what they are is said where they are defined, for the commands too.
-const SURFACES: [(Surface, &str); 8] = [
-    (Surface::Flat, "Flat"),
-    (Surface::Pn, "PN"),
-    (Surface::PnAen, "PN-AEN"),
-    (Surface::PnCrease, "PN crease"),
-    (Surface::Phong, "Phong"),
-    (Surface::PhongAen, "Phong AEN"),
-    (Surface::Nagata, "Nagata"),
-    (Surface::NagataAen, "Nagata AEN"),
-];
-const NORMALS: [(Normals, &str); 3] = [
-    (Normals::Linear, "Linear normals"),
-    (Normals::Quadratic, "Quadratic normals"),
-    (Normals::Surface, "Surface normals"),
-];
-const EDGES: [(Edges, &str); 2] = [(Edges::PerEdge, "Once an edge"), (Edges::AsPublished, "As published")];
-const LODS: [(Lod, &str); 5] = [
-    (Lod::Uniform, "Uniform"),
-    (Lod::Error, "Error"),
-    (Lod::EdgeLength, "Edge length"),
-    (Lod::Distance, "Distance"),
-    (Lod::Paper, "White paper"),
-];
-const CLIPS: [(Clip, &str); 3] = [(Clip::Off, "Off"), (Clip::Frustum, "Frustum"), (Clip::Paper, "White paper")];
-const CONVENTIONS: [(Convention, &str); 5] = [
-    (Convention::D3d11, "Direct3D 11"),
-    (Convention::AmdPn, "AMD PN sample"),
-    (Convention::EdgeOrder, "Edge order"),
-    (Convention::Rotated, "Rotated, a mistake"),
-    (Convention::Mirrored, "Mirrored, a mistake"),
-];
-const PARTITIONINGS: [(Partitioning, &str, &str); 5] = [
-    (Partitioning::Integer, "Integer", Partitioning::Integer.about()),
-    (Partitioning::Pow2, "Power of two", Partitioning::Pow2.about()),
-    (Partitioning::FractionalOdd, "Fractional odd", Partitioning::FractionalOdd.about()),
-    (Partitioning::FractionalEven, "Fractional even", Partitioning::FractionalEven.about()),
-    (Partitioning::Subtriangulation, "Subtriangulation", Partitioning::Subtriangulation.about()),
-];
-const LOD_FIXED: &str = "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD \
-                         that was chosen.";
-/// Name and explanation of each meaning of colours, and overlay.
-const COLORS: [(Colors, &str, &str); 6] = [
-    (Colors::Material, "Material", "The mesh's own."),
-    (
-        Colors::Barycentric,
-        "Barycentric",
-        "Domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2 (B).",
-    ),
-    (
-        Colors::Factors,
-        "Factors",
-        "Tessellation factors after clamping and rounding: inside each patch its inside factor, and along each edge that \
-         edge's (H).",
-    ),
-    (
-        Colors::TriangleSize,
-        "Triangle size",
-        "How large triangles are on screen: the side, in px, of the square that has twice the triangle's area. Those below \
-         3 px, of which a GPU shades up to four times as many px as it shows, stand out (X).",
-    ),
-    (
-        Colors::LowFactors,
-        "Factors below 2",
-        "Patches whose factors are all below 2, edges and inside: drawing them untessellated would hardly show, and cost \
-         less (U).",
-    ),
-    (
-        Colors::Deviation,
-        "Deviation",
-        "How far every place of what is emitted is from what it should have been: the surface that a shape is sampled from, a \
-         truth chosen under File, or else the surface that the tessellation converges to (V).",
-    ),
-];
-const DEVIATION_UNITS: [(DeviationUnit, &str); 2] = [(DeviationUnit::Units, "Object units"), (DeviationUnit::Px, "Px")];
-const OVERLAYS: [(Overlay, &str, &str); 8] = [
-    (Overlay::Wireframe, "Wireframe", "Edges of the tessellated triangles (W)."),
-    (Overlay::Patches, "Patch borders", "Borders of the input triangles (P)."),
-    (Overlay::Adjacency, "Adjacency edges", "Borders of the input triangles, coloured by the kind of edge (A)."),
-    (Overlay::Cracks, "Cracks", "Edges whose sides put a point at different positions, faint behind the surface (C)."),
-    (Overlay::Folds, "Folds", "Triangles that face away from the side that their patch faces (O)."),
-    (
-        Overlay::TJunctions,
-        "T-junctions",
-        "Open edges that another triangle's point lies on, faint behind the surface (T).",
-    ),
-    (Overlay::BackFaces, "Back faces", "Faces seen from behind: open meshes, and triangles wound the other way (K)."),
-    (
-        Overlay::Normals,
-        "Normals",
-        "Normals of emitted vertices, 18 px long across the view, faint behind the surface. Where vertices are many, only as \
-         many as leave about 24 px between them (N).",
-    ),
-];
+use super::text::short;
+use super::widgets::{chooser, explanation, fixed, heading, value_chooser};
+use crate::settings::{
+    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Half, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+};
+use crate::tessellate::{Displacement, Edges, Lod, Partitioning};
 
 impl App {
     pub(super) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -146,8 +54,10 @@ impl App {
         value_chooser(ui, "Surface", "What each triangle becomes (--surface).", &mut settings.surface, &SURFACES);
         let hover = "How strong Phong tessellation is, from 0, flat, to 1; its authors use 0.75 (--alpha).";
         let label = ui.label("Alpha").on_hover_text(hover);
+        let has_strength = |half| settings.half(half).is_some_and(|half| half.surface.is_phong());
+        let is_phong = Half::BOTH.into_iter().any(has_strength);
         let slider = egui::Slider::new(&mut settings.alpha, ALPHA_RANGE).max_decimals(2);
-        ui.add_enabled(settings.surface.is_phong(), slider)
+        ui.add_enabled(is_phong, slider)
             .labelled_by(label.id)
             .on_hover_text(hover)
             .on_disabled_hover_text("Only Phong tessellation has a strength.");
@@ -262,11 +172,13 @@ impl App {
 
     fn view_rows(&mut self, ui: &mut egui::Ui) {
         let mut split = self.settings.split.is_some();
-        let hover = "Left of the divider the mesh as it came, right of it tessellated, from one camera (S).";
+        let hover =
+            "Left of the divider the mesh as it came or another surface, right of it this one, from one camera (S).";
         if ui.checkbox(&mut split, "Split view").on_hover_text(hover).changed() {
             self.toggle_split();
         }
         egui::Grid::new("view").num_columns(2).min_col_width(84.0).show(ui, |ui| {
+            left_row(ui, &mut self.settings);
             let mut percent = self.settings.split.unwrap_or(self.last_split) * 100.0;
             let label = ui.label("Divider");
             let slider = egui::Slider::new(&mut percent, 0.0..=100.0).max_decimals(0).suffix(" %");
@@ -304,6 +216,22 @@ impl App {
             Some(_) => None,
             None => self.viewport.shown_view(),
         };
+    }
+}
+
+/// What is left of the split.
+fn left_row(ui: &mut egui::Ui, settings: &mut Settings) {
+    let abouts = SURFACES.map(|(surface, _)| format!("{} All other settings are the same.", explanation(surface)));
+    let as_it_came = (None, "As it came", "The mesh itself, untessellated.");
+    let surfaces = SURFACES.iter().zip(&abouts).map(|(&(surface, name), about)| (Some(surface), name, about.as_str()));
+    let choices: Vec<_> = [as_it_came].into_iter().chain(surfaces).collect();
+    if settings.split.is_some() {
+        let hover = "What is shown left of the divider: the mesh as it came, or another surface, to hold two methods against \
+                     each other (--split-surface).";
+        chooser(ui, "Left", hover, &mut settings.split_surface, &choices);
+    } else {
+        let shown = settings.split_surface.map_or("As it came", surface_name);
+        fixed(ui, "Left", shown, "Only a split view has a left half.");
     }
 }
 

@@ -9,6 +9,7 @@ use crate::gpu::GpuError;
 use crate::measure::patch_edges;
 use crate::mesh::Topology;
 use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
+use crate::settings::Half;
 use crate::tessellate::Convention;
 
 /// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
@@ -19,9 +20,9 @@ pub struct Selection {
     /// With the tessellation that it belongs to.
     hit: Option<(u64, PickedTriangle)>,
     /// A click on a picture whose tessellation isn't known yet.
-    clicked: Option<Pixel>,
-    /// With the tessellation that is searched.
-    picking: Option<(u64, Picking)>,
+    clicked: Option<(Half, Pixel)>,
+    /// With the tessellation that is searched; none for the left half's, of which nothing more is said.
+    picking: Option<(Option<u64>, Picking)>,
 }
 
 /// What the lines over a selected patch are a function of, besides what was measured.
@@ -103,15 +104,16 @@ impl App {
     /// The device was lost.
     pub(super) fn pick(&mut self) -> Result<bool, GpuError> {
         let Some(document) = &mut self.document else { return Ok(false) };
-        let scene = &mut document.scene;
-        if scene.tessellator.is_counted()
-            && let Some(pixel) = self.selection.clicked.take()
+        if document.scene.tessellator.is_counted()
+            && let Some((half, pixel)) = self.selection.clicked.take()
+            && let Some(scene) = document.scene.half_mut(half)
         {
             // What takes many steps to draw would take as long to pick: then it is done without emitted triangles.
             let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
             let pixel = Pixel { split, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel);
-            self.selection.picking = Some((scene.tessellator.generation(), picking));
+            let emitted = (half == Half::Right).then(|| scene.tessellator.generation());
+            self.selection.picking = Some((emitted, picking));
         }
         let Some((emitted, picking)) = self.selection.picking.take() else { return Ok(false) };
         let Some(found) = picking.poll()? else {
@@ -122,14 +124,14 @@ impl App {
         Ok(true)
     }
 
-    fn take_picked(&mut self, emitted: u64, found: Option<Picked>) {
+    fn take_picked(&mut self, emitted: Option<u64>, found: Option<Picked>) {
         let (Some(picked), Some(document)) = (found, &self.document) else { return self.deselect() };
         let topology = &document.loaded.topology;
         let Some(patch) = topology.patches.get(picked.patch as usize) else { return self.deselect() };
         // Weights are by corner: opposite corner k is side k + 1.
         let side = patch.sides[(picked.weight as usize + 1) % 3];
         self.selected_edge = Some(topology.sides[side as usize].edge);
-        let hit = picked.triangle.map(|triangle| (emitted, triangle));
+        let hit = emitted.zip(picked.triangle);
         self.selection = Selection { triangle: Some(patch.triangle), hit, ..Selection::default() };
     }
 
@@ -144,15 +146,15 @@ impl App {
     }
 
     /// See [`patch_edges`].
-    pub(super) fn patch_edges(&self, topology: &Topology, patch: u32) -> [Vec<Vec3>; 3] {
-        patch_edges(topology, patch, self.measuring.found().map(|found| &found.rims), self.convention())
+    pub(super) fn patch_edges(&self, topology: &Topology, patch: u32, half: Half) -> [Vec<Vec3>; 3] {
+        patch_edges(topology, patch, self.measured(half).found().map(|found| &found.rims), self.convention())
     }
 
     /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.
-    pub(super) fn patch_outline(&self, topology: &Topology) -> Vec<LineSegment> {
+    pub(super) fn patch_outline(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
         let Some(patch) = self.selected_patch() else { return Vec::new() };
-        let mut lines = patch_lines(&self.patch_edges(topology, patch));
-        if let Some(hit) = self.hit() {
+        let mut lines = patch_lines(&self.patch_edges(topology, patch, half));
+        if let Some(hit) = self.hit().filter(|_| half == Half::Right) {
             let corners = hit.vertices.map(|vertex| Vec3::from(vertex.position));
             let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
             let edge = |(a, b)| LineSegment { half_width: 1.25, ..LineSegment::new(a, b, [255; 3]) };

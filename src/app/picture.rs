@@ -12,7 +12,7 @@ use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks, ScreenView};
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
-use crate::settings::{Colors, Settings};
+use crate::settings::{Colors, Half, Settings};
 use crate::tessellate::{Inputs, LodView};
 
 /// Everything that the picture is a function of.
@@ -29,6 +29,13 @@ pub struct Wanted {
     pub clip_from_object: Mat4,
     /// Width and height in px.
     pub viewport: Vec2,
+}
+
+impl Wanted {
+    /// What a half is tessellated with, if there is such a half.
+    fn inputs_of(&self, half: Half) -> Option<Inputs> {
+        Some(Inputs { surface: self.settings.half(half)?.surface, ..self.inputs })
+    }
 }
 
 /// A picture under way: one step a submission, so that the window goes on beside it.
@@ -119,11 +126,17 @@ impl Viewport {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
-    /// A pixel (from the left and the top) of the last picture.
-    pub fn pixel(&self, at: [u32; 2]) -> Option<Pixel> {
+    /// A pixel (from the left and the top) of the last picture, and which half's surface is there: the right one's also where
+    /// the mesh is as it came.
+    pub fn pixel(&self, at: [u32; 2]) -> Option<(Half, Pixel)> {
         let Wanted { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
-        Some(Pixel { clip_from_object, size, at, split: settings.split })
+        let pixel = Pixel { clip_from_object, size, at, split: settings.split };
+        if settings.half(Half::Left).is_none() {
+            return Some((Half::Right, pixel));
+        }
+        let half = if pixel.is_left() { Half::Left } else { Half::Right };
+        Some((half, Pixel { split: None, ..pixel }))
     }
 
     /// Where the picture that is shown was seen from.
@@ -180,7 +193,6 @@ impl Viewport {
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and
     /// until all steps are drawn, the last picture stays.
     pub fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
-        let tessellator = &mut document.scene.tessellator;
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
         let mut keeps_on = |drawing: &mut Drawing| {
             drawing.wanted == *wanted || (drawing.steps <= SHORT && drawing.wanted.document == document.generation)
@@ -195,25 +207,16 @@ impl Viewport {
         if self.cancelled.is_some() {
             return Ok(());
         }
-        if under_way.is_none() {
-            tessellator.set(&wanted.inputs)?;
-        }
-        if tessellator.needs_count() {
-            let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
-            tessellator.count(&mut recorder);
-            recorder.submit();
-            tessellator.request_counts();
-            self.counting = Some(wanted);
-        }
+        let scene = &mut document.scene;
+        let is_counted = self.count(engine, scene, &wanted, under_way.is_none())?;
         let Some((target, _)) = &self.target else { return Ok(()) };
-        if self.in_flight.is_some() || !tessellator.poll_counts()? {
+        if self.in_flight.is_some() || !is_counted {
             return Ok(());
         }
         self.counting = None;
         if self.drawn == Some(wanted) {
             return Ok(());
         }
-        let scene = &mut document.scene;
         if self.holds(scene, &wanted) {
             return Ok(());
         }
@@ -231,6 +234,29 @@ impl Viewport {
         Ok(())
     }
 
+    /// Lets the device count what each half will emit, with these inputs if `anew` is set. True once it is known; while the
+    /// left half is still being made, it isn't.
+    fn count(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, anew: bool) -> Result<bool, GpuError> {
+        let mut is_counted = true;
+        for half in Half::BOTH {
+            let Some(inputs) = wanted.inputs_of(half) else { continue };
+            let Some(scene) = scene.half_mut(half) else { return Ok(false) };
+            let tessellator = &mut scene.tessellator;
+            if anew {
+                tessellator.set(&inputs)?;
+            }
+            if tessellator.needs_count() {
+                let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
+                tessellator.count(&mut recorder);
+                recorder.submit();
+                tessellator.request_counts();
+                self.counting = Some(*wanted);
+            }
+            is_counted &= self.in_flight.is_none() && tessellator.poll_counts()?;
+        }
+        Ok(is_counted)
+    }
+
     /// Whether the last picture stays until the distances are known that the new one shows: so from the same place, where
     /// without them it would only flicker.
     fn holds(&self, scene: &Scene, wanted: &Wanted) -> bool {
@@ -238,7 +264,9 @@ impl Viewport {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
         let shows = wanted.settings.overlays.colors == Colors::Deviation;
-        shows && self.drawing.is_none() && !scene.knows_deviation() && self.drawn.as_ref().is_some_and(from_here)
+        let mut halves = Half::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
+        let is_known = halves.all(Scene::knows_deviation);
+        shows && self.drawing.is_none() && !is_known && self.drawn.as_ref().is_some_and(from_here)
     }
 
     /// Whether nothing is under way that a new pose would disturb.

@@ -45,11 +45,12 @@ impl App {
                 "Before and after tessellation.",
             );
             self.status_of_cracks(ui);
-            let bytes = scene.tessellator.buffers().bytes()
-                + scene.tessellator.work_bytes()
-                + scene.tessellator.arena_bytes()
-                + self.viewport.bytes();
-            status(ui, 76.0, mebibytes(bytes), "Memory on the device: topology, output and picture.");
+            status(
+                ui,
+                76.0,
+                mebibytes(document.bytes() + self.viewport.bytes()),
+                "Memory on the device: topology, output and picture.",
+            );
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
             let warnings = &document.loaded.mesh.warnings;

@@ -7,14 +7,13 @@ use glam::{Vec2, vec2};
 
 use super::App;
 use super::legend::legend;
-use super::pick::Outlined;
 use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
-use crate::mesh::{Moment, Stage};
-use crate::render::t_junction_lines;
-use crate::settings::Colors;
+use crate::mesh::Stage;
+use crate::render::Scene;
+use crate::settings::{Colors, Half};
 
 /// Degrees that the camera turns for a point of dragging, and for a press of an arrow key.
 const DEGREES_PER_POINT: f32 = 0.4;
@@ -24,22 +23,8 @@ const POINTS_PER_KEY: f32 = 40.0;
 /// Half the width in points in which the divider can be grabbed.
 const DIVIDER_REACH: f32 = 5.0;
 
-/// What the lines over the mesh are a function of.
-#[derive(Clone, Copy, PartialEq)]
-pub struct Marked {
-    document: u64,
-    measured: u64,
-    cracks: bool,
-    t_junctions: bool,
-    selected_edge: Option<u32>,
-    outlined: Outlined,
-    /// The worst point, by the result that it is of; 0 for none.
-    worst: u64,
-    /// If there are any; and whether it is known where they are then.
-    moment: Option<(Moment, bool)>,
-    /// Counts the times that they changed.
-    generation: u64,
-}
+/// Where the halves of a split have their names: beside the divider.
+const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TOP];
 
 impl App {
     pub(super) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
@@ -70,6 +55,7 @@ impl App {
         let _ = self.engine.gpu.device.poll(wgpu::PollType::Poll);
         self.viewport.fit(&self.render_state, &self.engine, size)?;
         self.viewport.land(&self.engine);
+        self.keep_left(context)?;
         self.pose()?;
         self.mark();
         let deviation = self.deviation_shown();
@@ -91,6 +77,9 @@ impl App {
         };
         self.viewport.draw(&self.engine, document, &wanted)?;
         self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
+        if let Some(left) = document.scene.half(Half::Left) {
+            self.left.measuring.keep_only(document.generation, left.tessellator.generation());
+        }
         let is_posed = document.moment == moment;
         let shown = is_posed && self.viewport.drawn.as_ref() == Some(&wanted);
         self.viewport.outdated = !shown && self.viewport.cancelled.is_none();
@@ -99,9 +88,12 @@ impl App {
             let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
             let follows = self.settings.overlays.colors == Colors::TriangleSize;
             self.measuring.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
+            self.measure_left(view)?;
         }
         self.deviate(&inputs)?;
-        let measures_only = self.deviating.is_busy() && self.viewport.is_free() && !self.measuring.is_busy();
+        let measures = self.deviating.is_busy() || self.left.deviating.is_busy() || !self.left.is_made();
+        let copies = self.measuring.is_busy() || self.left.measuring.is_busy();
+        let measures_only = measures && self.viewport.is_free() && !copies;
         if self.pick()? || (self.is_busy() && !measures_only) {
             context.request_repaint();
         } else if measures_only {
@@ -129,48 +121,6 @@ impl App {
             document.scene.set_moment(wanted)?;
         }
         Ok(())
-    }
-
-    /// Puts the lines over the mesh that belong there by now: cracks, T-junctions, the selected edge.
-    fn mark(&mut self) {
-        let Some(document) = &self.document else { return };
-        let overlays = self.settings.overlays;
-        let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
-        let worst = self.worst_mark();
-        let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
-        let is_marked = junctions.is_some() || is_selected;
-        let posed = if is_marked { document.posed() } else { None };
-        let wanted = Marked {
-            document: document.generation,
-            measured: if overlays.cracks || is_selected { self.measuring.generation } else { 0 },
-            cracks: overlays.cracks,
-            t_junctions: junctions.is_some(),
-            selected_edge: self.selected_edge,
-            outlined: self.outlined(),
-            worst: if worst.is_empty() { 0 } else { self.deviating.generation },
-            moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
-            generation: self.marked.map_or(0, |marked| marked.generation),
-        };
-        if self.marked == Some(wanted) {
-            return;
-        }
-        let mut lines = Vec::new();
-        if let Some((_, topology)) = &posed {
-            lines.extend(t_junction_lines(topology, junctions.unwrap_or_default()));
-        }
-        if let Some(found) = self.measuring.found().filter(|_| overlays.cracks) {
-            lines.extend(found.crack_lines(&document.loaded.topology));
-        }
-        lines.extend(worst);
-        // Over all else.
-        if let Some((_, topology)) = &posed {
-            lines.extend(self.patch_outline(topology));
-            lines.extend(self.selection_lines(topology));
-        }
-        self.marked = Some(Marked { generation: wanted.generation + 1, ..wanted });
-        if let Some(document) = &mut self.document {
-            document.scene.set_lines(&self.engine.gpu, &lines);
-        }
     }
 
     fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, points: Vec2) {
@@ -215,6 +165,7 @@ impl App {
 
     /// The split's divider, which can be dragged.
     fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        let [left, right] = Half::BOTH.map(|half| self.half_title(half));
         let Some(split) = &mut self.settings.split else { return };
         let at = rect.left() + rect.width() * *split;
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
@@ -227,19 +178,27 @@ impl App {
             self.last_split = *split;
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        let color = if response.hovered() || response.dragged() {
-            ui.visuals().selection.stroke.color
-        } else {
-            egui::Color32::from_gray(190)
+        // Over the picture, which is dark in both themes.
+        let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
+        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
+        let titles = match (left, right) {
+            (Some(left), Some(right)) => [left, right],
+            _ => ["untessellated", "tessellated"].map(str::to_owned),
         };
-        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(1.5, color));
-        note(ui, egui::pos2(at - 8.0, rect.top() + 8.0), egui::Align2::RIGHT_TOP, "untessellated");
-        note(ui, egui::pos2(at + 8.0, rect.top() + 8.0), egui::Align2::LEFT_TOP, "tessellated");
+        let halves = [rect.with_max_x(at), rect.with_min_x(at)];
+        for ((half, place), (title, align)) in halves.into_iter().zip(["Left", "Right"]).zip(titles.iter().zip(ALIGN)) {
+            half_note(ui, half, align, title, &format!("{place}: {title}"));
+        }
     }
 
     /// How many triangles what is wanted has.
     fn triangles(&self) -> String {
-        let triangles = self.document.as_ref().map_or(0, |document| document.scene.tessellator.totals().1);
+        let of = |scene: &Scene| scene.tessellator.totals().1;
+        let triangles = self.document.as_ref().map_or(0, |document| {
+            let halves =
+                Half::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
+            halves.map(of).sum()
+        });
         format!("{} triangles", grouped(triangles))
     }
 
@@ -251,7 +210,7 @@ impl App {
         }
         let is_old = self.document.as_ref().map(|document| document.generation)
             != self.viewport.drawn.as_ref().map(|drawn| drawn.document);
-        if self.document.is_some() && is_old {
+        if self.document.is_some() && (is_old || self.left.takes_long()) {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(load) = &self.load {
@@ -307,6 +266,19 @@ fn progress(
     };
     let popup = |ui: &mut egui::Ui| egui::Frame::popup(ui.style()).show(ui, show).inner;
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), popup).inner
+}
+
+/// What a half of a split is called, at its top beside the divider; nothing where it has no room for that.
+fn half_note(ui: &egui::Ui, half: egui::Rect, align: egui::Align2, text: &str, name: &str) {
+    let galley = note_text(ui, text, egui::Color32::from_gray(235));
+    let room = half.shrink(8.0);
+    if galley.size().x > room.width() {
+        return;
+    }
+    let place = align.align_size_within_rect(galley.size(), room);
+    let response = ui.interact(place, ui.scope_id().with(("half", align.x() as u8)), Sense::empty());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
+    paint_note(ui, place, galley);
 }
 
 /// A short text over the picture, legible on any of it.

@@ -10,6 +10,12 @@ pub fn heading(ui: &mut egui::Ui, text: &str) {
     ui.separator();
 }
 
+/// What the commands say of a value.
+pub fn explanation(value: impl ValueEnum) -> String {
+    let help = value.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
+    format!("{}.", help.unwrap_or_default())
+}
+
 /// A row with a name and a list to choose from.
 pub fn chooser<T: Copy + PartialEq>(
     ui: &mut egui::Ui,
@@ -20,7 +26,8 @@ pub fn chooser<T: Copy + PartialEq>(
 ) {
     let label = ui.label(name).on_hover_text(hover);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
+    // All of a list is in sight: the longest has nine entries.
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).height(260.0).show_ui(ui, |ui| {
         for (choice, text, hover) in choices {
             ui.selectable_value(value, *choice, *text).on_hover_text(*hover);
         }
@@ -37,11 +44,7 @@ pub fn value_chooser<T: ValueEnum + PartialEq + Copy>(
     value: &mut T,
     choices: &[(T, &str)],
 ) {
-    let explanation = |choice: &T| {
-        let help = choice.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
-        format!("{}.", help.unwrap_or_default())
-    };
-    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(choice)).collect();
+    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(*choice)).collect();
     let all: Vec<_> =
         choices.iter().zip(&explanations).map(|(&(choice, text), help)| (choice, text, help.as_str())).collect();
     chooser(ui, name, hover, value, &all);

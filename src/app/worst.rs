@@ -10,6 +10,7 @@ use crate::measure::{CrackedEdge, EdgeSide, ulp};
 use crate::mesh::{EdgeKind, TJunction, Topology};
 use crate::render::LineSegment;
 use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
+use crate::settings::Half;
 use glam::Vec3;
 
 impl App {
@@ -72,7 +73,7 @@ impl App {
         let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "What the edge's sides have in common.");
-            if let Some(crack) = self.crack_of(edge) {
+            if let Some(crack) = self.crack_of(edge, Half::Right) {
                 let (px, ulps) = (self.viewport.gap_of_edge_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
                 fact(
@@ -136,16 +137,16 @@ impl App {
         self.keep_triangle_of(edge);
     }
 
-    /// The crack along an edge, if there is one.
-    fn crack_of(&self, edge: u32) -> Option<&CrackedEdge> {
-        self.measuring.cracks()?.edges.iter().find(|crack| crack.edge == edge)
+    /// The crack along an edge in a half, if there is one.
+    fn crack_of(&self, edge: u32, half: Half) -> Option<&CrackedEdge> {
+        self.measured(half).cracks()?.edges.iter().find(|crack| crack.edge == edge)
     }
 
     /// What marks the selected edge: each of its sides in a colour of its own, the later ones thinner, so that sides in
     /// one place both show; and where they are farthest apart. If its patches emit nothing, the straight line.
-    pub(super) fn selection_lines(&self, topology: &Topology) -> Vec<LineSegment> {
+    pub(super) fn selection_lines(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
         let Some(edge) = self.selected_edge else { return Vec::new() };
-        let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
+        let sides = self.measured(half).found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
         if polylines.iter().all(|points| points.len() < 2) {
             polylines =
@@ -160,7 +161,7 @@ impl App {
             .iter()
             .enumerate()
             .flat_map(|(k, points)| strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { 2.5 } else { 1.25 }));
-        let gap = self.crack_of(edge).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
+        let gap = self.crack_of(edge, half).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
         let dots = gap.into_iter().flatten();
         let dots = dots.map(|place| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, CRACK_COLOR) });
         outline.chain(colored).chain(dots).collect()

@@ -11,6 +11,7 @@ mod info;
 mod options;
 mod reference;
 mod render;
+mod split;
 mod stability;
 mod stats;
 mod tessellate;
@@ -28,6 +29,7 @@ use thiserror::Error;
 pub use animation::AnimationOption;
 pub use given::GivenOption;
 pub use options::{SurfaceOptions, WeldOption};
+pub use split::SplitOption;
 pub use truth::TruthOption;
 
 use crate::engine::{Loaded, Preparation};

@@ -116,6 +116,14 @@ impl SurfaceOptions {
     /// A budget without a tolerance to raise, an animation of what a rim was made for, heights that there aren't, or factors
     /// that differ under a partitioning that has one for all.
     pub fn check(&self) -> Result<(), CliError> {
+        self.check_with(None)
+    }
+
+    /// The same where another surface may be tessellated with these options too.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn check_with(&self, other: Option<Surface>) -> Result<(), CliError> {
         if self.partitioning == Partitioning::Subtriangulation && self.lod != Lod::Uniform {
             return Err(CliError::Usage(
                 "--partitioning subtriangulation has one number of segments for all edges: it needs --lod uniform",
@@ -131,7 +139,8 @@ impl SurfaceOptions {
         if !takes_heights && (self.height_scale != height_scale || self.midlevel != midlevel) {
             return Err(CliError::Usage("--height-scale and --midlevel need --height, or --displacement"));
         }
-        if !self.surface.is_phong() && self.alpha != Settings::default().alpha {
+        let has_strength = self.surface.is_phong() || other.is_some_and(Surface::is_phong);
+        if !has_strength && self.alpha != Settings::default().alpha {
             return Err(CliError::Usage("--alpha needs --surface phong or phong-aen, whose strength it is"));
         }
         if self.max_triangles.is_some() && self.lod != Lod::Error {

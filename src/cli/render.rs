@@ -2,18 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
+use super::split::LeftStats;
 use super::stats::{AnimationStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, Held};
 use super::{
-    CliError, GivenOption, SurfaceOptions, TruthOption, load, options, reference, to_json, write_picture, write_text,
+    CliError, GivenOption, SplitOption, SurfaceOptions, TruthOption, load, options, reference, to_json, write_picture,
+    write_text,
 };
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
 use crate::measure::{AccuracyOptions, Field, Measured, ScreenView, patch_edges};
 use crate::mesh::{LoadError, Moment, Progress, Source, t_junctions};
-use crate::render::{Camera, LineSegment, Scene, Target, deviation_scale, patch_lines, t_junction_lines, worst_lines};
-use crate::settings::{Colors, Overlay, Overlays, Settings};
-use crate::tessellate::{HullFactors, Lod};
+use crate::render::{
+    Camera, LineSegment, Scale, Scene, Target, deviation_scale, patch_lines, t_junction_lines, worst_lines,
+};
+use crate::settings::{Colors, Half, Overlay, Overlays, Settings};
+use crate::tessellate::{HullFactors, Inputs, Lod};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -32,9 +36,8 @@ pub struct Args {
     pub overlay: Vec<Overlay>,
     #[command(flatten)]
     pub truth: TruthOption,
-    /// Left of this fraction of the width, show the mesh untessellated
-    #[arg(long, value_name = "FRACTION", value_parser = options::fraction)]
-    pub split: Option<f32>,
+    #[command(flatten)]
+    pub split: SplitOption,
     /// Outline this triangle (its number in the mesh, from 0), its edges in the colours of factors 0, 1 and 2: red, green,
     /// blue
     #[arg(long, value_name = "TRIANGLE")]
@@ -67,7 +70,7 @@ impl Args {
             given: GivenOption::default(),
             overlay: vec![Overlay::Wireframe],
             truth: TruthOption::default(),
-            split: None,
+            split: SplitOption::default(),
             select: None,
             background,
             stats: None,
@@ -87,7 +90,7 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    args.surface.check()?;
+    args.surface.check_with(args.split.split_surface)?;
     let overlays = args.overlays()?;
     let reference = args.reference.as_deref().map(|path| reference::read(path, &args.output)).transpose()?;
     let loaded = load(&args.file, &args.surface.preparation())?;
@@ -96,19 +99,19 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
     let mut shot = Shot::new(args, loaded, overlays, given)?;
-    let measured = if overlays.cracks || selected.is_some() || args.stats.is_some() {
-        Some(shot.engine.measure(&mut shot.scene)?)
-    } else {
-        None
-    };
+    let is_measured = overlays.cracks || selected.is_some() || args.stats.is_some();
+    let measured = if is_measured { shot.measure()? } else { Default::default() };
     shot.hold(held)?;
-    let lines = shot.lines(measured.as_ref(), selected)?;
-    shot.scene.set_lines(&shot.engine.gpu, &lines);
+    shot.mark(&measured, selected)?;
     shot.engine.draw(&mut shot.scene, &shot.target, &shot.camera, &shot.settings, &mut Timing::Off)?;
     let picture = shot.target.read(&shot.engine.gpu)?;
     write_picture(&args.output, &picture.clone().into())?;
-    if let Some((path, measured)) = args.stats.as_deref().zip(measured) {
-        let mut stats = shot.stats(args, &measured)?;
+    let [left, right] = &measured;
+    if let Some((path, right)) = args.stats.as_deref().zip(right.as_ref()) {
+        let mut stats = shot.stats(args, right)?;
+        if let Some(left) = left {
+            stats.left = shot.left_stats(args, left)?;
+        }
         stats.factors_file = factors_file;
         write_text(path, &to_json(&stats)?)?;
     }
@@ -129,10 +132,15 @@ struct Shot {
     target: Target,
     camera: Camera,
     settings: Settings,
-    /// What it is held against, and how far from that it is where the overlay shows it.
     held: Option<Held>,
-    field: Option<Field>,
+    /// How far each half is from that, where the overlay shows it.
+    fields: ByHalf<Field>,
+    /// What those are read against.
+    scale: Scale,
 }
+
+/// Of each half, if there is one.
+type ByHalf<T> = [Option<T>; 2];
 
 impl Shot {
     fn new(
@@ -144,7 +152,7 @@ impl Shot {
         let moment = args.surface.animation.moment(&at_rest)?;
         let engine = Engine::headless()?;
         let mut scene = engine.scene(&at_rest, args.surface.arena_bytes())?;
-        scene.tessellator.give(given)?;
+        scene.tessellator.give(given.clone())?;
         scene.frame_clip(moment.map(|moment| moment.clip));
         scene.set_moment(moment)?;
         let target = Target::new(&engine.gpu, args.surface.size.0)?;
@@ -154,29 +162,83 @@ impl Shot {
             engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
             Ok(scene.tessellator.totals().1)
         })?;
-        let Args { split, background, .. } = *args;
-        let settings = Settings { overlays, split, background, deviation_in: args.truth.deviation_in, ..surface };
-        engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
-        let loaded = at_rest.posed(moment);
-        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, held: None, field: None })
+        let (SplitOption { split, split_surface }, background) = (args.split, args.background);
+        let deviation_in = args.truth.deviation_in;
+        let settings = Settings { overlays, split, split_surface, background, deviation_in, ..surface };
+        if settings.half(Half::Left).is_some() {
+            engine.split(&mut scene, args.surface.arena_bytes())?;
+        }
+        for half in Half::BOTH {
+            let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) else { continue };
+            if half == Half::Left {
+                scene.tessellator.give(given.clone())?;
+            }
+            engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
+        }
+        let (loaded, scale) = (at_rest.posed(moment), deviation_scale(0.0, scene.ulp()));
+        let (held, fields) = (None, Default::default());
+        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, held, fields, scale })
     }
 
-    /// Measures what the overlay shows.
-    fn hold(&mut self, held: Option<Held>) -> Result<(), CliError> {
-        let Self { engine, scene, target, camera, settings, .. } = self;
-        if let Some(held) = held.as_ref().filter(|_| settings.overlays.colors == Colors::Deviation) {
-            let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
-            let field = engine.field(scene, &held.yardstick(&inputs))?;
-            let scale = deviation_scale(field.worst().map_or(0.0, |worst| worst.value), scene.ulp());
-            scene.set_deviation(&engine.gpu, Some((&field, scale)));
-            self.field = Some(field);
+    /// What a half is tessellated with, if there is one.
+    fn inputs(&self, half: Half) -> Option<Inputs> {
+        let view = self.camera.lod_view(self.target.viewport(), &self.scene.bounds);
+        Some(self.settings.half(half)?.inputs(view))
+    }
+
+    fn view(&self) -> ScreenView {
+        let viewport = self.target.viewport();
+        ScreenView { clip_from_object: self.camera.clip_from_object(viewport, &self.scene.bounds), viewport }
+    }
+
+    fn measure(&mut self) -> Result<ByHalf<Measured>, CliError> {
+        let mut measured = ByHalf::default();
+        for half in Half::BOTH {
+            if let Some(scene) = self.scene.half_mut(half) {
+                measured[half as usize] = Some(self.engine.measure(scene)?);
+            }
         }
+        Ok(measured)
+    }
+
+    /// Measures what the overlay shows: both halves against one thing, and on the scale of the one that is farther off.
+    fn hold(&mut self, held: Option<Held>) -> Result<(), CliError> {
         self.held = held;
+        let held = self.held.as_ref().filter(|_| self.settings.overlays.colors == Colors::Deviation);
+        let Some((held, inputs)) = held.zip(self.inputs(Half::Right)) else { return Ok(()) };
+        let yardstick = held.yardstick(&inputs);
+        for half in Half::BOTH {
+            let Some(scene) = self.scene.half_mut(half) else { continue };
+            self.fields[half as usize] = Some(self.engine.field(scene, &yardstick)?);
+        }
+        let worst = self.fields.iter().flatten().filter_map(Field::worst);
+        let largest = worst.map(|worst| worst.value).fold(0.0, f64::max);
+        self.scale = deviation_scale(largest, self.scene.ulp());
+        for (half, field) in Half::BOTH.into_iter().zip(&self.fields) {
+            if let Some((scene, field)) = self.scene.half_mut(half).zip(field.as_ref()) {
+                scene.set_deviation(&self.engine.gpu, Some((field, self.scale)));
+            }
+        }
         Ok(())
     }
 
-    /// The overlays that are lines, and the outline of the selected patch.
-    fn lines(&self, measured: Option<&Measured>, selected: Option<u32>) -> Result<Vec<LineSegment>, CliError> {
+    /// Puts lines over each half: the overlays that are lines, and the outline of the selected patch.
+    fn mark(&mut self, measured: &ByHalf<Measured>, selected: Option<u32>) -> Result<(), CliError> {
+        for (half, measured) in Half::BOTH.into_iter().zip(measured) {
+            let lines = self.lines(half, measured.as_ref(), selected)?;
+            if let Some(scene) = self.scene.half_mut(half) {
+                scene.set_lines(&self.engine.gpu, &lines);
+            }
+        }
+        Ok(())
+    }
+
+    fn lines(
+        &self,
+        half: Half,
+        measured: Option<&Measured>,
+        selected: Option<u32>,
+    ) -> Result<Vec<LineSegment>, CliError> {
         let topology = &self.loaded.topology;
         let mut lines = match measured {
             Some(measured) if self.settings.overlays.cracks => measured.crack_lines(topology),
@@ -186,7 +248,7 @@ impl Shot {
             let junctions = t_junctions(&self.at_rest.topology, &Progress::default()).map_err(LoadError::from)?;
             lines.extend(t_junction_lines(topology, &junctions));
         }
-        if let Some(worst) = self.field.as_ref().and_then(Field::worst) {
+        if let Some(worst) = self.fields[half as usize].as_ref().and_then(Field::worst) {
             lines.extend(worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()));
         }
         if let Some(patch) = selected {
@@ -196,38 +258,68 @@ impl Shot {
         Ok(lines)
     }
 
+    /// How far a half is from its own surface on screen, in px, and from the truth.
+    fn errors(
+        &mut self,
+        args: &Args,
+        half: Half,
+        measured: &Measured,
+    ) -> Result<(Option<f64>, Option<AccuracyStats>), CliError> {
+        let Some((inputs, scene)) = self.inputs(half).zip(self.scene.half_mut(half)) else { return Ok((None, None)) };
+        let error = if args.measure_error { self.engine.deviation(scene, &inputs)? } else { None };
+        let accuracy = match self.held.as_ref().and_then(Held::truth) {
+            Some((name, truth)) => {
+                let accuracy = self.engine.accuracy(scene, truth, &inputs.view, AccuracyOptions::default())?;
+                accuracy.map(|accuracy| AccuracyStats::new(name, &accuracy, measured.culled.total() == 0))
+            }
+            None => None,
+        };
+        Ok((error.map(|worst| worst.px), accuracy))
+    }
+
+    /// What the overlay shows of a half, if it is on.
+    fn deviation(&self, half: Half) -> Option<DeviationStats> {
+        self.fields[half as usize].as_ref().map(|field| DeviationStats::new(field, self.scale))
+    }
+
     fn stats(&mut self, args: &Args, measured: &Measured) -> Result<Stats, CliError> {
+        let (max_error_px, accuracy) = self.errors(args, Half::Right, measured)?;
+        let view = self.view();
         let Self { engine, scene, target, camera, settings, .. } = self;
-        let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
-        let deviation = if args.measure_error { engine.deviation(scene, &inputs)? } else { None };
-        let passes = engine.time(scene, target, camera, settings, Runs::default())?;
+        // What is left of the split isn't what is timed.
+        let alone = Settings { split_surface: None, ..*settings };
+        let passes = engine.time(scene, target, camera, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.partitioning);
         if settings.used_lod() == Lod::Error {
             let written = scene.tessellator.hull_factors()?;
             factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
         }
-        let viewport = target.viewport();
-        let view = ScreenView { clip_from_object: camera.clip_from_object(viewport, &scene.bounds), viewport };
         let name = args.surface.animation.animation.clone();
         let sizes = engine.sizes(scene, view)?;
-        let accuracy = match self.held.as_ref().and_then(Held::truth) {
-            Some((name, truth)) => {
-                let accuracy = engine.accuracy(scene, truth, &inputs.view, AccuracyOptions::default())?;
-                accuracy.map(|accuracy| AccuracyStats::new(name, &accuracy, measured.culled.total() == 0))
-            }
-            None => None,
-        };
         let mut stats = Stats::new(engine, &self.loaded, scene, measured, settings, view, &passes);
         stats.triangles_in_view = sizes.in_view;
         stats.triangles_below_3_px = sizes.small;
         stats.leaks = leaks;
-        stats.max_error_px = deviation.map(|worst| worst.px);
+        stats.max_error_px = max_error_px;
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
-        stats.deviation = self.field.as_ref().map(|field| DeviationStats::new(field, self.scene.ulp()));
+        stats.deviation = self.deviation(Half::Right);
         stats.animation = self.moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
         Ok(stats)
+    }
+
+    /// What is known of another surface left of the split.
+    fn left_stats(&mut self, args: &Args, measured: &Measured) -> Result<Option<LeftStats>, CliError> {
+        let (max_error_px, accuracy) = self.errors(args, Half::Left, measured)?;
+        let Some((scene, settings)) = self.scene.half(Half::Left).zip(self.settings.half(Half::Left)) else {
+            return Ok(None);
+        };
+        let mut stats = LeftStats::new(scene, measured, &settings, self.view());
+        stats.max_error_px = max_error_px;
+        stats.accuracy = accuracy;
+        stats.deviation = self.deviation(Half::Left);
+        Ok(Some(stats))
     }
 }
 

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::given::FactorsFile;
+use super::split::LeftStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
 use crate::measure::{Measured, ScreenView, ulp};
-use crate::mesh::EdgeCounts;
+use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
 use crate::settings::{Settings, option_name};
 use crate::tessellate::Displacement;
@@ -58,6 +59,8 @@ pub struct Stats {
     pub accuracy: Option<AccuracyStats>,
     /// Of the overlay, if it is on.
     pub deviation: Option<DeviationStats>,
+    /// Left of the split, if that is another surface; all else is about the one right of it.
+    pub left: Option<LeftStats>,
     /// None at rest.
     pub animation: Option<AnimationStats>,
     ms: BTreeMap<&'static str, f64>,
@@ -122,7 +125,7 @@ struct Bytes {
 }
 
 #[derive(Debug, Serialize)]
-struct CrackStats {
+pub struct CrackStats {
     edge_points: u64,
     edges_compared: u64,
     different_bits: u64,
@@ -134,6 +137,24 @@ struct CrackStats {
     max_gap_ulp: f64,
     max_gap_px: f64,
     edges: u64,
+}
+
+impl CrackStats {
+    /// As seen from `view`.
+    pub fn new(measured: &Measured, topology: &Topology, view: ScreenView) -> Self {
+        let cracks = &measured.cracks;
+        Self {
+            edge_points: cracks.edge_points,
+            edges_compared: cracks.edges_compared,
+            different_bits: cracks.different_bits,
+            different_factors: cracks.different_factors,
+            different_normals: cracks.different_normals,
+            max_gap: cracks.max_gap(),
+            max_gap_ulp: cracks.max_gap() / ulp(topology),
+            max_gap_px: cracks.max_gap_px(view.clip_from_object, view.viewport),
+            edges: cracks.edges.len() as u64,
+        }
+    }
 }
 
 impl Stats {
@@ -149,7 +170,6 @@ impl Stats {
     ) -> Self {
         let (mesh, topology) = (&loaded.mesh, &loaded.topology);
         let (vertices_out, triangles_out) = scene.tessellator.totals();
-        let cracks = &measured.cracks;
         let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
         ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
         Self {
@@ -174,17 +194,7 @@ impl Stats {
                 topology: scene.tessellator.buffers().bytes() + scene.tessellator.work_bytes(),
                 arena: scene.tessellator.arena_bytes(),
             },
-            cracks: CrackStats {
-                edge_points: cracks.edge_points,
-                edges_compared: cracks.edges_compared,
-                different_bits: cracks.different_bits,
-                different_factors: cracks.different_factors,
-                different_normals: cracks.different_normals,
-                max_gap: cracks.max_gap(),
-                max_gap_ulp: cracks.max_gap() / ulp(topology),
-                max_gap_px: cracks.max_gap_px(view.clip_from_object, view.viewport),
-                edges: cracks.edges.len() as u64,
-            },
+            cracks: CrackStats::new(measured, topology, view),
             leaks: None,
             folds: measured.folds,
             not_finite: measured.not_finite,
@@ -193,6 +203,7 @@ impl Stats {
             factors_file: None,
             accuracy: None,
             deviation: None,
+            left: None,
             animation: None,
             ms,
         }

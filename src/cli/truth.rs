@@ -10,7 +10,7 @@ use super::{CliError, SurfaceOptions, options};
 use crate::engine::Loaded;
 use crate::measure::{Accuracy, Angles, Distances, Field, Yardstick};
 use crate::mesh::{Progress, Source};
-use crate::render::deviation_scale;
+use crate::render::Scale;
 use crate::settings::DeviationUnit;
 use crate::tessellate::{Displacement, Inputs};
 use crate::truth::Truth;
@@ -150,10 +150,8 @@ struct WorstStats {
 }
 
 impl DeviationStats {
-    /// `ulp` is one unit in the last place, in object units.
-    pub fn new(field: &Field, ulp: f32) -> Self {
+    pub fn new(field: &Field, scale: Scale) -> Self {
         let max = field.worst().map_or(0.0, |worst| worst.value);
-        let scale = deviation_scale(max, ulp);
         let worst = field.worst().map(|worst| {
             let [emitted, truth] = [worst.emitted, worst.truth].map(|place: DVec3| place.to_array());
             WorstStats { patch: worst.patch, emitted, truth }

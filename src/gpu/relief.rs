@@ -17,10 +17,16 @@ const HEIGHTS_ACROSS: u32 = 4096;
 pub struct HeightImages {
     view: wgpu::TextureView,
     maps: wgpu::Buffer,
+    /// That were uploaded for it.
     bytes: u64,
 }
 
 impl HeightImages {
+    /// The same for another tessellation: nothing more is uploaded.
+    pub fn shared(&self) -> Self {
+        Self { view: self.view.clone(), maps: self.maps.clone(), bytes: 0 }
+    }
+
     /// # Errors
     /// They are larger than the adapter's textures.
     pub fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {

@@ -1,16 +1,16 @@
 //! One mesh being tessellated: its state, and what is recomputed when.
 
+mod output;
 mod passes;
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Mat4;
 
-use super::arena::{Arena, VERTEX_HALF};
+use super::arena::Arena;
 use super::buffers::filled;
 use super::counts::PendingCounts;
-use super::layout::{Chunk, DrawArgs, Params};
+use super::layout::{Chunk, Params};
 use super::params::params_of;
 use super::recorder::wait;
 use super::relief::{HeightImages, ReliefPasses};
@@ -19,6 +19,8 @@ use super::slab::{SlabPasses, uniform_buffer};
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
 use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Posed, Solid, sharing};
+
+pub use output::ChunkBuffers;
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;
@@ -57,31 +59,6 @@ pub struct Tessellator {
     emitted: Option<(usize, u32)>,
 }
 
-/// What a chunk left in the arena, for whoever draws or reads it.
-pub struct ChunkBuffers<'a> {
-    pub chunk: Chunk,
-    /// See [`ChunkBuffers::vertices`].
-    vertices: &'a wgpu::Buffer,
-    pub indices: &'a wgpu::Buffer,
-    /// One [`DrawArgs`] a material, from `draw_args_offset` bytes on.
-    pub draw_args: &'a wgpu::Buffer,
-    pub draw_args_offset: u64,
-    /// The factors of the slab's patches, the first of which is `first_patch`.
-    pub patch_factors: &'a wgpu::Buffer,
-    pub first_patch: u32,
-    /// The slab itself: a [`super::layout::Slab`].
-    pub slab: &'a wgpu::Buffer,
-}
-
-impl ChunkBuffers<'_> {
-    /// The vertices: the first half of all of them, and the second of all of them, in which bytes of which buffer.
-    /// [`super::vertices_of`] puts them together.
-    pub fn vertices(&self) -> [(&wgpu::Buffer, Range<u64>); 2] {
-        let (bytes, half) = (u64::from(self.chunk.vertex_count) * VERTEX_HALF, self.vertices.size() / 2);
-        [0, half].map(|start| (self.vertices, start..start + bytes))
-    }
-}
-
 impl Tessellator {
     /// Uploads a mesh. `arena_bytes` bounds the memory for output; what does not fit goes through it in chunks.
     ///
@@ -94,6 +71,28 @@ impl Tessellator {
         topology: Arc<Topology>,
         arena_bytes: u64,
     ) -> Result<Self, GpuError> {
+        let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
+        let solid = Solid::find(&mesh, &topology);
+        Self::with(gpu, pipelines, (mesh, topology), solid, images, arena_bytes)
+    }
+
+    /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
+    /// output of its own.
+    pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
+        let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid);
+        let (mesh, images) =
+            ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
+        move || Self::with(&gpu, pipelines, mesh, solid, images, arena_bytes)
+    }
+
+    fn with(
+        gpu: &Gpu,
+        pipelines: Arc<ComputePipelines>,
+        (mesh, topology): (Arc<Mesh>, Arc<Topology>),
+        solid: Option<Solid>,
+        images: Option<HeightImages>,
+        arena_bytes: u64,
+    ) -> Result<Self, GpuError> {
         let buffers = MeshBuffers::new(gpu, &mesh, &topology, Sharing::AllSides)?;
         let arena = Arena::new(gpu, buffers.patch_count, arena_bytes)?;
         let mut slabs = Vec::new();
@@ -101,13 +100,12 @@ impl Tessellator {
             let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);
             slabs.push(SlabPasses::new(gpu, &buffers, &arena, first_patch, patch_count)?);
         }
-        let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let params: Params = bytemuck::Zeroable::zeroed();
         let params_buffer = uniform_buffer(gpu, "params", bytemuck::bytes_of(&params));
         Ok(Self {
             gpu: gpu.clone(),
             pipelines,
-            solid: Solid::find(&mesh, &topology),
+            solid,
             posed: Posed::new(mesh.clone(), topology.clone(), None),
             mesh,
             topology,
@@ -164,13 +162,21 @@ impl Tessellator {
     /// # Errors
     /// The mesh's rig is larger than the adapter binds.
     pub fn set_pose(&mut self, pose: Option<Arc<Pose>>) -> Result<(), GpuError> {
-        let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != pose.as_deref()) else { return Ok(()) };
-        match (&pose, &mut self.rig) {
+        self.pose_as(&Posed::new(self.mesh.clone(), self.topology.clone(), pose))
+    }
+
+    /// The same as another tessellator of the mesh has it: what the host makes of the pose is made once.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub fn pose_as(&mut self, posed: &Posed) -> Result<(), GpuError> {
+        let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != posed.pose()) else { return Ok(()) };
+        match (posed.pose(), &mut self.rig) {
             (Some(pose), Some(rig)) => rig.set_pose(&self.gpu, pose)?,
             (Some(pose), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
             (None, _) => self.upload(self.buffers.sharing)?,
         }
-        self.posed = Posed::new(self.mesh.clone(), self.topology.clone(), pose);
+        self.posed = posed.clone();
         self.forget();
         Ok(())
     }
@@ -282,57 +288,6 @@ impl Tessellator {
             self.take_chunks(&table);
         }
         Ok(())
-    }
-
-    fn take_chunks(&mut self, table: &[Chunk]) {
-        self.counts_done = true;
-        self.chunks.clear();
-        let mut rows = table.iter();
-        for (index, slab) in self.slabs.iter().enumerate() {
-            for chunk in 0..slab.slab.chunk_capacity {
-                if let Some(row) = rows.next().filter(|row| row.vertex_count > 0) {
-                    self.chunks.push((index, chunk, *row));
-                }
-            }
-        }
-    }
-
-    /// How many chunks the output takes; 0 before the counts are known, and when nothing is emitted.
-    pub fn chunk_count(&self) -> usize {
-        if self.counts_done { self.chunks.len() } else { 0 }
-    }
-
-    /// Vertices and triangles of the whole output.
-    pub fn totals(&self) -> (u64, u64) {
-        let sum = |count: fn(&Chunk) -> u32| self.chunks.iter().map(|(_, _, chunk)| u64::from(count(chunk))).sum();
-        (sum(|chunk| chunk.vertex_count), sum(|chunk| chunk.triangle_count))
-    }
-
-    /// The arena as chunk `index` left it.
-    pub fn chunk(&self, index: usize) -> ChunkBuffers<'_> {
-        let (slab_index, chunk_index, chunk) = self.chunks[index];
-        let slab = &self.slabs[slab_index];
-        let row = size_of::<DrawArgs>() as u64 * u64::from(self.buffers.material_count);
-        ChunkBuffers {
-            chunk,
-            vertices: &self.arena.vertices,
-            indices: &self.arena.indices,
-            draw_args: &slab.draw_args,
-            draw_args_offset: u64::from(chunk_index) * row,
-            patch_factors: &slab.patch_factors,
-            first_patch: slab.slab.first_patch,
-            slab: &slab.slab_buffer,
-        }
-    }
-
-    /// Room for vertices and for indices, whatever chunk they hold.
-    pub fn arena(&self) -> (&wgpu::Buffer, &wgpu::Buffer) {
-        (&self.arena.vertices, &self.arena.indices)
-    }
-
-    /// The factors of all patches, slab by slab.
-    pub fn patch_factors(&self) -> impl Iterator<Item = (&wgpu::Buffer, u32)> + Clone {
-        self.slabs.iter().map(|slab| (&slab.patch_factors, slab.slab.patch_count))
     }
 
     /// The factors that LOD gave, and whether they are the edges' or the sides'.

@@ -13,7 +13,7 @@ pub struct Deviations {
     /// One a chunk: see `deviations` in `shaders/draw_surface.wgsl`.
     pub(super) chunks: Vec<wgpu::Buffer>,
     /// In object units.
-    scale: Scale,
+    pub(super) scale: Scale,
     /// Which tessellation it is about: see [`crate::gpu::Tessellator::generation`].
     pub(super) of: u64,
 }

@@ -28,6 +28,14 @@ pub struct Pixel {
     pub split: Option<f32>,
 }
 
+impl Pixel {
+    /// Whether it is left of the split.
+    pub fn is_left(&self) -> bool {
+        let [[.., width, _], _] = halves(self.size, self.split);
+        self.at[0] < width
+    }
+}
+
 /// What is in front at a pixel's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Picked {
@@ -94,8 +102,7 @@ impl Picker {
         let run = Run::new(gpu, pixel);
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
-        let [[.., source_width, _], _] = halves(pixel.size, pixel.split);
-        if pixel.at[0] < source_width {
+        if pixel.is_left() {
             run.record(&mut recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true);
         } else {
             for index in 0..scene.tessellator.chunk_count() {

@@ -11,7 +11,7 @@ use super::scene::{LineSegment, upload};
 use super::{Camera, Scene, Target};
 use crate::gpu::{ChunkBuffers, Gpu, Recorder, VERTEX_HALF};
 use crate::mesh::Texture;
-use crate::settings::{Colors, DeviationUnit, Overlays, Settings};
+use crate::settings::{Colors, DeviationUnit, Half, Overlays, Settings};
 
 /// Long-lived: one for a device, whatever is loaded.
 pub struct Renderer {
@@ -123,7 +123,7 @@ impl Renderer {
 
     /// In how many steps [`Self::draw_steps`] draws the scene: one a chunk and round, and one if there is none.
     pub fn step_count(scene: &Scene, settings: &Settings) -> usize {
-        steps(scene.tessellator.chunk_count(), settings.overlays.normals).len()
+        steps(scene, settings).len()
     }
 
     /// Draws some of the steps of a picture; all of them, in order, make it. It is seen once the last is done.
@@ -136,37 +136,39 @@ impl Renderer {
         settings: &Settings,
         range: Range<usize>,
     ) {
-        let frame = self.frame(scene, target, camera, settings);
-        let frame = self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("frame"),
-            contents: bytemuck::bytes_of(&frame),
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
-        });
-        let surfaces = self.surface_pipelines(scene, target, camera, settings);
-        let steps = steps(scene.tessellator.chunk_count(), settings.overlays.normals);
+        let rects = halves(target.size, settings.split);
+        let frames = Half::BOTH.map(|half| scene.half(half).map(|half| self.frame(half, target, camera, settings)));
+        let steps = steps(scene, settings);
+        let has_left = settings.half(Half::Left).and(scene.half(Half::Left)).is_some();
         for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
-            if let Step::Surface(chunk) | Step::Normals(chunk) = *step {
-                scene.tessellator.emit(recorder, chunk);
+            let half = step.half();
+            let Some(drawn) = scene.half_mut(half) else { continue };
+            if let Some(chunk) = step.chunk() {
+                drawn.tessellator.emit(recorder, chunk);
             }
             let (first, last) = (index == 0, index + 1 == steps.len());
             let color = target.color(linear_color(settings.background), first, last);
-            let group = self.scene_group(scene, &frame);
+            let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { continue };
+            let group = self.scene_group(drawn, frame);
+            let (surfaces, rect) = (self.surface_pipelines(drawn, target, camera, settings), rects[half as usize]);
             recorder.render("draw", color, target.depth(first), |pass| {
                 pass.set_bind_group(0, &group, &[]);
-                let [left, right] = halves(target.size, settings.split);
-                if first {
-                    self.draw_source(pass, scene, left);
+                if first && !has_left {
+                    self.draw_source(pass, scene, rects[Half::Left as usize]);
                 }
                 match *step {
-                    Step::Surface(chunk) => {
-                        pass.set_bind_group(3, &self.deviation_group(scene, Some(chunk)), &[]);
-                        self.draw_chunk(pass, scene, right, &surfaces, &scene.tessellator.chunk(chunk));
+                    Step::Surface(_, chunk) => {
+                        pass.set_bind_group(3, &self.deviation_group(drawn, Some(chunk)), &[]);
+                        self.draw_chunk(pass, drawn, rect, &surfaces, &drawn.tessellator.chunk(chunk));
                     }
-                    Step::Normals(chunk) => self.draw_normals(pass, right, &scene.tessellator.chunk(chunk)),
+                    Step::Normals(_, chunk) => self.draw_normals(pass, rect, &drawn.tessellator.chunk(chunk)),
                     Step::Nothing => {}
                 }
                 if last {
-                    self.draw_lines(pass, scene, right);
+                    self.draw_lines(pass, scene, rects[Half::Right as usize]);
+                    if let Some(left) = scene.half(Half::Left).filter(|_| has_left) {
+                        self.draw_lines(pass, left, rects[Half::Left as usize]);
+                    }
                 }
             });
         }
@@ -187,7 +189,8 @@ impl Renderer {
         Surfaces { materials: materials.map(|sides| &sides[usize::from(fronts)]), pulled }
     }
 
-    fn frame(&self, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> Frame {
+    /// How the picture sees a scene, on the device.
+    fn frame(&self, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
         let viewport = target.viewport();
         let [right, up, back] = camera.axes();
         let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
@@ -196,7 +199,7 @@ impl Renderer {
         let px_where_w_is_1 =
             (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
         let in_px = settings.deviation_in == DeviationUnit::Px;
-        Frame {
+        let frame = Frame {
             clip_from_object: camera.clip_from_object(viewport, &scene.bounds).to_cols_array_2d(),
             key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
             fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
@@ -209,7 +212,12 @@ impl Renderer {
             scale_most: scale.most,
             px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
             scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
-        }
+        };
+        self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("frame"),
+            contents: bytemuck::bytes_of(&frame),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
+        })
     }
 
     fn draw_source(&self, pass: &mut wgpu::RenderPass, scene: &Scene, [x, y, width, height]: [u32; 4]) {
@@ -319,18 +327,40 @@ struct Surfaces<'a> {
 enum Step {
     /// The background alone: nothing is emitted.
     Nothing,
-    /// The triangles of a chunk.
-    Surface(usize),
-    /// The normals of a chunk.
-    Normals(usize),
+    /// The triangles of a half's chunk.
+    Surface(Half, usize),
+    /// The normals of a half's chunk.
+    Normals(Half, usize),
 }
 
-fn steps(chunks: usize, normals: bool) -> Vec<Step> {
-    if chunks == 0 {
+impl Step {
+    fn half(&self) -> Half {
+        match self {
+            Self::Nothing => Half::Right,
+            Self::Surface(half, _) | Self::Normals(half, _) => *half,
+        }
+    }
+
+    fn chunk(&self) -> Option<usize> {
+        match self {
+            Self::Nothing => None,
+            Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
+        }
+    }
+}
+
+fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
+    let chunks = |half| {
+        let drawn = settings.half(half).and(scene.half(half));
+        (0..drawn.map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
+    };
+    let all: Vec<_> = Half::BOTH.into_iter().flat_map(chunks).collect();
+    if all.is_empty() {
         return vec![Step::Nothing];
     }
-    let with_normals = if normals { chunks } else { 0 };
-    (0..chunks).map(Step::Surface).chain((0..with_normals).map(Step::Normals)).collect()
+    let with_normals = if settings.overlays.normals { all.len() } else { 0 };
+    let surfaces = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk));
+    surfaces.chain(all[..with_normals].iter().map(|&(half, chunk)| Step::Normals(half, chunk))).collect()
 }
 
 /// The picture left and right of the split: x, y, width, height in px.

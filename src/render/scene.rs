@@ -14,7 +14,7 @@ use super::layout::{Material, linear};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::{Field, ulp, ulp_at};
 use crate::mesh::{Bounds, Mesh, Moment, Texture, Topology};
-use crate::settings::Settings;
+use crate::settings::{Half, Settings};
 use crate::tessellate::bounds_through;
 
 /// One mesh on the device, its materials, and the lines drawn over it.
@@ -28,6 +28,8 @@ pub struct Scene {
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
     /// How far what was emitted is from the truth, once that is known.
     deviation: Option<Deviations>,
+    /// The same mesh tessellated once more, for a picture with another surface left of its split.
+    left: Option<Box<Scene>>,
 }
 
 /// A piece of a line drawn through everything; a dot where it starts and ends at one place.
@@ -80,7 +82,48 @@ impl Scene {
         });
         let materials = materials.collect();
         let ulp = ulp(tessellator.topology()) as f32;
-        Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None, deviation: None })
+        Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None, deviation: None, left: None })
+    }
+
+    /// Makes a scene of the same mesh for [`Self::set_left`], on whatever thread: it shares mesh, topology and images.
+    pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
+        let tessellator = self.tessellator.beside(arena_bytes);
+        let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
+        move || {
+            Ok(Self { tessellator: tessellator()?, bounds, ulp, materials, lines: None, deviation: None, left: None })
+        }
+    }
+
+    /// Takes what is drawn left of the split where settings have a surface there, in the pose of now; or none, for the mesh
+    /// as it came.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub fn set_left(&mut self, left: Option<Self>) -> Result<(), GpuError> {
+        self.left = left.map(Box::new);
+        self.follow()
+    }
+
+    /// The left half shows what the right one does.
+    fn follow(&mut self) -> Result<(), GpuError> {
+        let Some(left) = &mut self.left else { return Ok(()) };
+        (left.bounds, left.ulp) = (self.bounds, self.ulp);
+        left.tessellator.pose_as(self.tessellator.posed())
+    }
+
+    /// What a half draws; none left of a split that has the mesh there as it came.
+    pub fn half(&self, half: Half) -> Option<&Self> {
+        match half {
+            Half::Left => self.left.as_deref(),
+            Half::Right => Some(self),
+        }
+    }
+
+    pub fn half_mut(&mut self, half: Half) -> Option<&mut Self> {
+        match half {
+            Half::Left => self.left.as_deref_mut(),
+            Half::Right => Some(self),
+        }
     }
 
     /// Takes the bounds all through a clip, so that nothing that depends on them changes while it plays; those at rest
@@ -89,6 +132,9 @@ impl Scene {
         self.bounds = bounds_through(self.tessellator.mesh(), clip);
         let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
         self.ulp = if clip.is_some() { ulp_at(largest) } else { ulp(self.tessellator.topology()) } as f32;
+        if let Some(left) = &mut self.left {
+            (left.bounds, left.ulp) = (self.bounds, self.ulp);
+        }
     }
 
     /// The bounds with room for what heights do under these settings: what a picture of everything holds.
@@ -102,7 +148,8 @@ impl Scene {
     /// The mesh's rig is larger than the adapter binds.
     pub fn set_moment(&mut self, moment: Option<Moment>) -> Result<(), GpuError> {
         let rig = self.tessellator.mesh().rig.clone();
-        self.tessellator.set_pose(moment.zip(rig).map(|(moment, rig)| Arc::new(rig.pose(moment))))
+        self.tessellator.set_pose(moment.zip(rig).map(|(moment, rig)| Arc::new(rig.pose(moment))))?;
+        self.follow()
     }
 
     /// Takes how far what is emitted now is from the truth, and the scale that it is read against in object units; none
@@ -110,6 +157,13 @@ impl Scene {
     pub fn set_deviation(&mut self, gpu: &Gpu, field: Option<(&Field, Scale)>) {
         let of = self.tessellator.generation();
         self.deviation = field.map(|(field, scale)| Deviations::new(gpu, field, scale, of));
+    }
+
+    /// Reads the distances that it has against another scale.
+    pub fn scale_deviation(&mut self, scale: Scale) {
+        if let Some(deviation) = &mut self.deviation {
+            deviation.scale = scale;
+        }
     }
 
     /// Whether it is known how far what is emitted now is from the truth.

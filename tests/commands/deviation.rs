@@ -29,6 +29,61 @@ fn a_flat_icosahedron_is_a_fifth_of_its_radius_off_the_sphere() {
 }
 
 #[test]
+fn two_surfaces_beside_each_other_have_a_number_each_and_one_scale() {
+    let split = ["--split", "0.5", "--split-surface", "flat", "--overlay", "deviation,wireframe,cracks"];
+    let drawn = |split: &[&str]| {
+        let options = ["shape:icosahedron", "--surface", "pn-aen", "--factor", "32", "--partitioning", "integer"];
+        stats(&[&options[..], split].concat())
+    };
+    let both = drawn(&split);
+    let (left, right) = (number(&both, "/left/deviation/max"), number(&both, "/deviation/max"));
+    // Flat triangles stay on the face, however finely it is cut. A patch's middle is the mean of its edges' control points,
+    // (4 - c) / 3 times the face's, where c is the cosine between two corners.
+    let curved = 1.0 - (4.0 - 0.2_f64.sqrt()) / 3.0 * (1.0 - GAP);
+    assert!(near(left, GAP, 2e-6) && near(right, curved, 3e-4), "{left} and {right}, not {GAP} and {curved}");
+    assert!(near(number(&both, "/left/accuracy/to_truth/max"), GAP, 2e-6), "{both}");
+    assert_eq!((&both["left"]["surface"], &both["settings"]["surface"]), (&"flat".into(), &"pn-aen".into()));
+    for scale in [&both["deviation"]["scale"], &both["left"]["deviation"]["scale"]] {
+        assert_eq!(*scale, serde_json::json!([0.0025, 0.25]), "that of the one farther off");
+    }
+    for equal in ["triangles_out", "vertices_out"] {
+        assert_eq!(both["left"][equal], both[equal], "the same factors");
+    }
+    assert_eq!(number(&both, "/left/cracks/edges"), 0.0);
+    // What is right of the split is as it would be alone.
+    let alone = drawn(&["--overlay", "deviation"]);
+    assert_eq!(alone["left"], Value::Null);
+    for same in ["max", "rms", "worst"] {
+        assert_eq!(alone["deviation"][same], both["deviation"][same], "{same}");
+    }
+    assert_ne!(alone["deviation"]["scale"], both["deviation"]["scale"], "alone it has a scale of its own");
+}
+
+#[test]
+fn without_a_truth_both_are_held_against_the_limit_of_the_right_one() {
+    let smooth = ["shape:cube-smooth", "--factor", "8", "--overlay", "deviation", "--split", "0.5"];
+    let of = |surfaces: [&str; 2]| {
+        let both = stats(&[&smooth[..], &["--split-surface", surfaces[0], "--surface", surfaces[1]]].concat());
+        ["/left/deviation/max", "/deviation/max"].map(|max| number(&both, max))
+    };
+    let [flat, curved] = of(["flat", "pn-aen"]);
+    assert!(flat > 10.0 * curved && curved > 1e-4, "{flat} and {curved}");
+    let [curved, flat_alone] = of(["pn-aen", "flat"]);
+    assert!(flat_alone < 1e-6 && curved > 0.5 * flat, "flat triangles are their own limit: {flat_alone} and {curved}");
+}
+
+#[test]
+fn another_surface_needs_a_split() {
+    let folder = Folder::new("split-surface");
+    let out = folder.path("out.png");
+    let without = ["render", "shape:torus", "-o", &out, "--split-surface", "flat"];
+    assert!(failure(&without, 2).contains("--split"), "says what it needs");
+    let strength = ["render", "shape:torus", "-o", &out, "--size", "60x40", "--split", "0.5", "--alpha", "0.5"];
+    failure(&strength, 2);
+    output(&[&strength[..], &["--split-surface", "phong"]].concat());
+}
+
+#[test]
 fn another_mesh_is_a_truth_and_a_cube_is_held_against_what_it_converges_to() {
     let folder = Folder::new("truth");
     let high = folder.path("high.glb");

@@ -197,3 +197,22 @@ fn a_mesh_that_cannot_move_takes_no_pose() {
     scene.tessellator.set_pose(Some(Arc::default())).expect("nothing to upload");
     assert!(on_gpu(&mut scene, &inputs) == before);
 }
+
+#[test]
+fn both_halves_of_a_split_are_in_one_pose() {
+    let (loaded, mut scene) = scene();
+    engine().split(&mut scene, ARENA_BYTES).expect("a small mesh");
+    scene.frame_clip(Some(0));
+    let target = Target::new(&engine().gpu, [240, 160]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let right = Settings { surface: Surface::Flat, ..Settings::default() };
+    let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
+    for moment in moments(&loaded.mesh, 3).into_iter().map(Some).chain([None]) {
+        scene.set_moment(moment).expect("a small rig");
+        let [both, alone] = [split, right].map(|settings| {
+            engine().draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
+            target.read(&engine().gpu).expect("a readback")
+        });
+        assert!(both == alone, "{moment:?}: one surface on both sides is no split");
+    }
+}

@@ -7,9 +7,9 @@ use image::RgbaImage;
 use pnaen::gpu::Timing;
 use pnaen::measure::{Field, Yardstick};
 use pnaen::mesh::Shape;
-use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, project};
-use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings};
-use pnaen::tessellate::Surface;
+use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, project, worst_lines};
+use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Half, Overlays, Settings};
+use pnaen::tessellate::{Lod, Surface};
 use pnaen::truth::Truth;
 
 use crate::engine;
@@ -137,6 +137,67 @@ fn the_limit_surface_is_what_a_fine_tessellation_comes_to() {
     // The error falls with the square of the factor.
     assert!(coarse > 1e-3 && fine < coarse / 40.0, "{coarse} and {fine}");
     assert!(worst(Surface::Flat, 5.0) < 1e-6, "flat triangles are their own limit");
+}
+
+#[test]
+fn two_surfaces_beside_each_other_look_as_they_do_alone() {
+    let (_, mut scene) = crate::scene(Shape::Icosahedron);
+    engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
+    let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let right = settings(Surface::PnAen, 4.0);
+    let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
+    let truth = Arc::new(Truth::of_shape(Shape::Icosahedron).expect("a sphere"));
+    let view = camera.lod_view(target.viewport(), &scene.bounds);
+    let fields = Half::BOTH.map(|half| {
+        let (scene, settings) = scene.half_mut(half).zip(split.half(half)).expect("both halves");
+        engine().count(scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
+        engine().field(scene, &Yardstick::Truth(truth.clone())).expect("a readback")
+    });
+    let scale = deviation_scale(fields[0].worst().expect("something is emitted").value, scene.ulp());
+    for (half, field) in Half::BOTH.into_iter().zip(&fields) {
+        let worst = field.worst().expect("something is emitted");
+        let half = scene.half_mut(half).expect("both halves");
+        half.set_deviation(&engine().gpu, Some((field, scale)));
+        half.set_lines(&engine().gpu, &worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()));
+    }
+    let mut draw = |settings: &Settings| {
+        engine().draw(&mut scene, &target, &camera, settings, &mut Timing::Off).expect("a draw");
+        target.read(&engine().gpu).expect("a readback")
+    };
+    let both = draw(&split);
+    // Alone, the right half is what it is beside the other.
+    let alone = draw(&right);
+    let is_same = |from: u32, other: &RgbaImage| {
+        let pixels = both.enumerate_pixels().filter(|(x, ..)| (from..from + SIZE[0] / 2).contains(x));
+        pixels.into_iter().all(|(x, y, pixel)| pixel == other.get_pixel(x, y))
+    };
+    assert!(is_same(SIZE[0] / 2, &alone) && !is_same(0, &alone));
+    // With the mesh as it came on its left, which has no distances.
+    let source = draw(&Settings { split_surface: None, ..split });
+    assert!(is_same(SIZE[0] / 2, &source) && !is_same(0, &source));
+    assert_eq!(differing(vec![("deviation-split".to_owned(), both)]), Vec::<String>::new());
+}
+
+#[test]
+fn each_half_of_a_split_has_its_own_factors() {
+    let (_, mut scene) = crate::scene(Shape::Icosahedron);
+    engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
+    let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let overlays = Overlays { wireframe: true, ..Overlays::default() };
+    let right = Settings { surface: Surface::PnAen, lod: Lod::Error, overlays, ..Settings::default() };
+    let flat = Settings { surface: Surface::Flat, ..right };
+    let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
+    let [both, alone, flat] = [split, right, flat].map(|settings| {
+        engine().draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
+        target.read(&engine().gpu).expect("a readback")
+    });
+    let middle = SIZE[0] / 2;
+    let is_right = alone.enumerate_pixels().all(|(x, y, pixel)| x < middle || pixel == both.get_pixel(x, y));
+    // But for the last column: the software driver lets a sample of the right half in there.
+    let is_left = flat.enumerate_pixels().all(|(x, y, pixel)| x + 1 >= middle || pixel == both.get_pixel(x, y));
+    assert!(is_left && is_right && flat != alone);
 }
 
 #[test]

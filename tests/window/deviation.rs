@@ -1,9 +1,14 @@
 //! The deviation overlay, its section, and truths.
 
-use egui_kittest::kittest::Queryable;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec3;
+use pnaen::app::App;
 use pnaen::mesh::{Shape, Source};
-use pnaen::settings::{Colors, DeviationUnit};
+use pnaen::render::layout::CRACK_COLOR;
+use pnaen::settings::{Colors, DeviationUnit, Half};
+use pnaen::tessellate::Surface;
 
 use crate::{choose, click, press, settle, uniform, window};
 
@@ -16,7 +21,7 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
     assert_eq!(harness.state().settings().overlays.colors, Colors::Deviation);
     assert!(harness.query_by_label("Legend: Deviation, units").is_some());
     // What the inscribed sphere leaves of the circumscribed one.
-    let largest = harness.state().deviation().expect("measured");
+    let largest = harness.state().deviation(Half::Right).expect("measured");
     assert!((largest - 0.205_345_5).abs() < 1e-6, "{largest}");
     for text in ["exact icosahedron", "0.205 units"] {
         assert!(harness.query_by_label(text).is_some(), "{text}");
@@ -29,7 +34,7 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
     // The middle of a face, seen from above it.
     assert!((after.target.length() - 0.794_654_5).abs() < 1e-5, "{}", after.target);
     assert!(after.axes()[2].distance(after.target.normalize()) < 1e-3);
-    assert_eq!(harness.state().deviation(), Some(largest), "the same tessellation");
+    assert_eq!(harness.state().deviation(Half::Right), Some(largest), "the same tessellation");
     choose(&mut harness, "Distances in", "Px");
     assert_eq!(harness.state().settings().deviation_in, DeviationUnit::Px);
     assert!(harness.query_by_label("Legend: Deviation, px").is_some());
@@ -42,12 +47,12 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
 fn another_tessellation_is_measured_anew_and_the_worst_point_stays_the_worst_when_framed() {
     let mut harness = window(Some(Source::Shape(Shape::Icosahedron)));
     press(&mut harness, egui::Key::V);
-    let adaptive = harness.state().deviation().expect("measured");
+    let adaptive = harness.state().deviation(Half::Right).expect("measured");
     harness.get_by_label_contains("Worst point in patch").click();
     settle(&mut harness);
-    assert_eq!(harness.state().deviation(), Some(adaptive), "LOD and clipping stay as they are");
+    assert_eq!(harness.state().deviation(Half::Right), Some(adaptive), "LOD and clipping stay as they are");
     choose(&mut harness, "Surface", "Flat");
-    let flat = harness.state().deviation().expect("measured anew");
+    let flat = harness.state().deviation(Half::Right).expect("measured anew");
     assert!(flat > 1.2 * adaptive, "{flat} and {adaptive}");
 }
 
@@ -56,20 +61,129 @@ fn a_truth_is_loaded_beside_the_window_and_the_old_one_stays_where_it_fails() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSmooth)));
     press(&mut harness, egui::Key::V);
     assert!(harness.query_by_label("its own limit").is_some());
-    let limit = harness.state().deviation().expect("measured");
+    let limit = harness.state().deviation(Half::Right).expect("measured");
     let context = harness.ctx.clone();
     harness.state_mut().open_truth(&context, Source::Shape(Shape::CubeSplit));
     settle(&mut harness);
     // The cube that it is made from: rounded, its corners stay and its faces bulge.
     assert_eq!(harness.state().truth(), Some(&Source::Shape(Shape::CubeSplit)));
-    let bulge = harness.state().deviation().expect("measured");
+    let bulge = harness.state().deviation(Half::Right).expect("measured");
     assert!(bulge > 10.0 * limit && bulge < Vec3::ONE.length().into(), "{bulge} and {limit}");
     harness.state_mut().open_truth(&context, Source::File("nowhere.glb".into()));
     settle(&mut harness);
     assert!(harness.query_by_label_contains("nowhere.glb").is_some(), "a problem");
-    assert_eq!(harness.state().deviation(), Some(bulge), "the old one stays");
+    assert_eq!(harness.state().deviation(Half::Right), Some(bulge), "the old one stays");
     click(&mut harness, "Close");
     click(&mut harness, "File");
     click(&mut harness, "No truth");
-    assert_eq!((harness.state().truth(), harness.state().deviation()), (None, Some(limit)));
+    assert_eq!((harness.state().truth(), harness.state().deviation(Half::Right)), (None, Some(limit)));
+}
+
+/// What the inscribed sphere of an icosahedron leaves of the circumscribed one.
+const GAP: f64 = 0.205_345_5;
+
+#[test]
+fn two_surfaces_stand_beside_each_other_with_a_number_each() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
+    let left = harness.get_by_role_and_label(Role::ComboBox, "Left");
+    assert!(left.accesskit_node().is_disabled(), "nothing is split");
+    press(&mut harness, egui::Key::S);
+    let memory = |harness: &Harness<App>| {
+        let label = harness.get_by_label_contains("MiB");
+        let node = label.accesskit_node();
+        node.value().or(node.label()).expect("a number")
+    };
+    let alone = memory(&harness);
+    choose(&mut harness, "Left", "Flat");
+    assert_eq!(harness.state().settings().split_surface, Some(Surface::Flat));
+    assert!(harness.query_by_label("Left: Flat").is_some() && harness.query_by_label("Right: PN-AEN").is_some());
+    assert_ne!(memory(&harness), alone, "memory of its own");
+    press(&mut harness, egui::Key::V);
+    let [flat, curved] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
+    assert!((flat - GAP).abs() < 1e-6 && curved < 0.35 * GAP, "{flat} and {curved}");
+    assert!(harness.query_by_label("Left: Flat: 0.205 units").is_some());
+    assert!(harness.query_by_label_contains("Right: PN-AEN: 0.06").is_some());
+    harness.get_by_label_contains("Left Worst point in patch").click();
+    settle(&mut harness);
+    // The middle of a flat face, in the middle of its half: a quarter of the view's width left of the target.
+    let (camera, area) = (*harness.state().camera(), harness.get_by_role_and_label(Role::Image, "Viewport").rect());
+    let quarter = camera.axes()[0] * (camera.units_per_pixel(area.height()) * area.width() / 4.0);
+    let worst = (camera.target - quarter).length();
+    assert!((f64::from(worst) - (1.0 - GAP)).abs() < 1e-4, "{worst}");
+    let pictures = harness.state().pictures();
+    harness.run_steps(20);
+    assert_eq!(harness.state().pictures(), pictures, "nothing is drawn when nothing changed");
+    choose(&mut harness, "Surface", "PN");
+    assert_eq!(harness.state().deviation(Half::Left), Some(flat), "the other half stays as it is");
+    harness.get_by_role_and_label(Role::ComboBox, "Left").click();
+    settle(&mut harness);
+    // The section on the right names it too.
+    harness.get_by_role_and_label(Role::Button, "PN").click();
+    settle(&mut harness);
+    let [left, right] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
+    assert_eq!(left, right, "the same surface");
+    press(&mut harness, egui::Key::S);
+    assert_eq!(harness.state().deviation(Half::Left), None);
+    assert_eq!(memory(&harness), alone, "it is let go");
+    assert!(harness.query_by_label_contains("Left: PN").is_none());
+    press(&mut harness, egui::Key::S);
+    assert_eq!(harness.state().deviation(Half::Left), Some(right), "and made again");
+    choose(&mut harness, "Left", "As it came");
+    assert!(harness.query_by_label("Left: untessellated").is_some());
+}
+
+/// Pixels of the picture in the colour of cracks, left and right of its middle.
+fn cracked(harness: &mut Harness<App>) -> [usize; 2] {
+    // What was measured last is marked with the next picture.
+    settle(harness);
+    let area = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
+    let picture = harness.render().expect("a picture of the window");
+    let mut count = [0; 2];
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        let place = egui::pos2(x as f32, y as f32);
+        let is_red = pixel.0[..3].iter().zip(CRACK_COLOR).all(|(shown, color)| shown.abs_diff(color) < 12);
+        if is_red && area.contains(place) {
+            count[usize::from(place.x > area.center().x)] += 1;
+        }
+    }
+    count
+}
+
+#[test]
+fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left", "PN");
+    press(&mut harness, egui::Key::C);
+    let [left, right] = cracked(&mut harness);
+    assert!(left > 100 && right == 0, "{left} and {right} px: PN tears and PN-AEN doesn't");
+    assert_eq!(harness.state().cracks().map(|cracks| cracks.edges.len()), Some(0), "facts are about the right half");
+    press(&mut harness, egui::Key::C);
+    assert_eq!(cracked(&mut harness), [0, 0]);
+    for (offset, emitted) in [(-60.0, false), (60.0, true)] {
+        let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center() + egui::vec2(offset, 0.0);
+        harness.hover_at(place);
+        harness.drag_at(place);
+        harness.run_steps(1);
+        harness.drop_at(place);
+        settle(&mut harness);
+        let app = harness.state();
+        assert!(app.selected_triangle().is_some() && app.selected_edge().is_some());
+        assert_eq!(app.hit().is_some(), emitted, "{offset} points from the divider");
+    }
+    press(&mut harness, egui::Key::V);
+    // No truth is known of this one.
+    assert!(harness.query_by_label("PN-AEN's limit").is_some());
+    let against = |harness: &Harness<App>| harness.state().deviation(Half::Left).expect("measured");
+    let other = against(&harness);
+    choose(&mut harness, "Surface", "Flat");
+    assert!(harness.query_by_label("Flat's limit").is_some() && against(&harness) != other, "measured anew");
+    choose(&mut harness, "Surface", "PN-AEN");
+    assert_eq!(against(&harness), other);
+    // Another mesh is split the same way.
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Icosahedron));
+    settle(&mut harness);
+    let [left, right] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
+    assert!((left - right).abs() < 1e-6 && left > 0.01, "{left} and {right}: no normals are split there");
 }
