@@ -1,8 +1,12 @@
 //! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
 
 mod animation;
+mod chart;
+mod chart_panel;
+mod charting;
 mod checks;
 mod deviating;
+mod diagram;
 mod document;
 mod facts;
 mod heights;
@@ -37,6 +41,7 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};
 
 use animation::Playback;
+use chart::Chart;
 use deviating::Deviating;
 use document::{Document, Load};
 use measuring::Measuring;
@@ -121,6 +126,7 @@ pub struct App {
     playback: Playback,
     measuring: Measuring,
     deviating: Deviating,
+    chart: Chart,
     /// What lines are over the mesh.
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
@@ -161,6 +167,7 @@ impl App {
             playback: Playback::default(),
             measuring: Measuring::default(),
             deviating: Deviating::default(),
+            chart: Chart::default(),
             marked: None,
             selected_edge: None,
             selection: Selection::default(),
@@ -274,6 +281,7 @@ impl App {
                     self.frozen = None;
                     self.forget_truth();
                 }
+                self.chart.stop();
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
                 let before = self.document.replace(document);
@@ -329,6 +337,7 @@ impl eframe::App for App {
         self.take_loaded(context);
         self.take_truth();
         self.take_dialog(context);
+        self.take_chart(context);
         self.take_device_problem();
         let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());
         if let Some(path) = dropped {
@@ -343,7 +352,9 @@ impl eframe::App for App {
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
         egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
         egui::Panel::right("facts").resizable(false).exact_size(284.0).show(ui, |ui| self.facts_panel(ui));
+        self.chart_panel(ui);
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
+        self.hold_chart();
     }
 }

@@ -103,7 +103,7 @@ impl App {
     }
 
     /// What is measured from, and what it is called. In a pose and displaced a mesh is none that a truth at rest knows of.
-    fn yardstick(&self) -> (u64, Option<Arc<Truth>>, String) {
+    pub(super) fn yardstick(&self) -> (u64, Option<Arc<Truth>>, String) {
         let limit = || (0, None, "its own limit".to_owned());
         let Some(document) = self.document.as_ref().filter(|_| self.playback.moment().is_none()) else {
             return limit();
