@@ -15,7 +15,7 @@ pub struct Chart {
     pub(super) cost: Cost,
     /// Surfaces and LODs that are tried; shading is the window's.
     pub(super) plan: Plan,
-    effort: Effort,
+    pub(super) effort: Effort,
     pub(super) charting: Charting,
     /// What the window last had that isn't in the chart, and since when, on the window's clock in s.
     still: Option<(Settings, f64)>,

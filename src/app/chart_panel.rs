@@ -17,6 +17,17 @@ const HEIGHTS: std::ops::RangeInclusive<f32> = 200.0..=700.0;
 const LIST_WIDTH: f32 = 360.0;
 /// As wide as its longest text, so that nothing beside it moves.
 const BUTTON_WIDTH: f32 = 96.0;
+/// Says what is missing from the chart for too many triangles.
+fn left_out(charted: &Charted) -> String {
+    let own = charted.current.is_some_and(|(_, probe)| probe.is_none());
+    match (charted.left_out.len(), own) {
+        (0, false) => String::new(),
+        (0, true) => "current left out as too fine; ".into(),
+        (count, false) => format!("{count} left out as too fine; "),
+        (count, true) => format!("{count} and current left out as too fine; "),
+    }
+}
+
 const NOTHING_YET: &str = "Measure tries surfaces and LODs at many settings on this mesh, in this view: how far off each is, \
                            and how long it takes. A click on a point applies its setting.";
 
@@ -58,7 +69,10 @@ impl App {
         let (done, all) = self.measure_button(ui);
         let part = done as f32 / all.max(1) as f32;
         let bar = egui::ProgressBar::new(part).desired_width(120.0).text(format!("{done} of {all}"));
-        ui.add(bar).on_hover_text("Settings tried, of all. Trying waits while a picture is drawn.");
+        let most = grouped(self.chart.effort.most_triangles);
+        ui.add(bar).on_hover_text(format!(
+            "Settings tried, of all. Trying waits while a picture is drawn. Those of more than {most} triangles are left out."
+        ));
         ui.separator();
         let cost = &mut self.chart.cost;
         ui.selectable_value(cost, Cost::Ms, "Time").on_hover_text("Error against the time to tessellate and draw.");
@@ -73,7 +87,8 @@ impl App {
         }
         let Some(charted) = self.chart.charted() else { return };
         let is_of = self.chart_is_of();
-        let facts = format!("{} {}", charted.subject.title, charted.subject.facts());
+        let left_out = left_out(charted);
+        let facts = format!("{left_out}{} {}", charted.subject.title, charted.subject.facts());
         let (text, hover) = match is_of {
             Some(other) => (RichText::new(format!("of {other}")).color(ui.visuals().warn_fg_color), "Measured: "),
             None => (RichText::new(&facts).weak(), ""),

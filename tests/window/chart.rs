@@ -108,6 +108,7 @@ fn a_click_on_a_point_applies_its_setting() {
     let mut harness = charting(one, Effort { most_triangles: 30, ..effort() });
     measure(&mut harness, "Measure");
     assert_eq!((harness.state().chart_rows().len(), harness.state().chart_current()), (1, None));
+    assert!(harness.query_by_label_contains("current left out as too fine").is_some());
     let middle = harness.get_by_role_and_label(Role::Image, "Chart").rect().center();
     harness.hover_at(middle);
     harness.run_steps(3);
