@@ -12,7 +12,7 @@ use crate::settings::option_name;
 use crate::tessellate::Surface;
 
 /// Heights of the panel, and the width of the list in it, in points.
-const HEIGHT: f32 = 300.0;
+const HEIGHT: f32 = 320.0;
 const HEIGHTS: std::ops::RangeInclusive<f32> = 200.0..=700.0;
 const LIST_WIDTH: f32 = 360.0;
 /// As wide as its longest text, so that nothing beside it moves.
@@ -39,7 +39,8 @@ impl App {
         let panel = egui::Panel::bottom("chart").resizable(true).default_size(HEIGHT).size_range(HEIGHTS);
         panel.show(ui, |ui| {
             ui.add_space(2.0);
-            ui.horizontal(|ui| self.chart_controls(ui));
+            ui.horizontal_wrapped(|ui| self.chart_controls(ui));
+            self.chart_facts(ui);
             let mut applied = None;
             if let Some(charted) = self.chart.charted().filter(|charted| !charted.subject.rows.is_empty()) {
                 let is_stale = self.chart_is_of().is_some();
@@ -69,6 +70,8 @@ impl App {
         let (done, all) = self.measure_button(ui);
         let part = done as f32 / all.max(1) as f32;
         let bar = egui::ProgressBar::new(part).desired_width(120.0).text(format!("{done} of {all}"));
+        // Of nothing it would paint a round end.
+        let bar = if done == 0 { bar.fill(egui::Color32::TRANSPARENT) } else { bar };
         let most = grouped(self.chart.effort.most_triangles);
         ui.add(bar).on_hover_text(format!(
             "Settings tried, of all. Trying waits while a picture is drawn. Those of more than {most} triangles are left out."
@@ -85,11 +88,14 @@ impl App {
         if save.on_hover_text("As a picture (.svg, .png) or a table (.csv).").clicked() {
             self.save_dialog(ui.ctx());
         }
+    }
+
+    /// What the chart is of, and what isn't in it.
+    fn chart_facts(&self, ui: &mut egui::Ui) {
         let Some(charted) = self.chart.charted() else { return };
-        let is_of = self.chart_is_of();
         let left_out = left_out(charted);
         let facts = format!("{left_out}{} {}", charted.subject.title, charted.subject.facts());
-        let (text, hover) = match is_of {
+        let (text, hover) = match self.chart_is_of() {
             Some(other) => (RichText::new(format!("of {other}")).color(ui.visuals().warn_fg_color), "Measured: "),
             None => (RichText::new(&facts).weak(), ""),
         };
@@ -241,6 +247,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let front: Vec<_> = races.iter().flat_map(|race| race.front(|row| diagram.cost.of(row))).collect();
     let unit = if subject.truth.is_some() { "%" } else { "px" };
     let cost = if diagram.cost == Cost::Ms { "ms" } else { "tri" };
+    ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
     columns(ui, &format!("{unit:>8} {cost:>8}  setting"), true).on_hover_text(
         "What nothing beats, the cheapest first: less error at less cost has no other. A click applies it.",
     );
