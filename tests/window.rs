@@ -2,6 +2,8 @@
 
 #[path = "window/animation.rs"]
 mod animation;
+#[path = "window/chart.rs"]
+mod chart;
 #[path = "window/deviation.rs"]
 mod deviation;
 #[path = "window/lists.rs"]

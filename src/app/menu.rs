@@ -14,7 +14,7 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 33] = [
+pub const KEYS: [(&str, &str); 34] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -42,6 +42,7 @@ pub const KEYS: [(&str, &str); 33] = [
     ("L", "adaptive LOD"),
     ("D", "displacement, where there are heights"),
     ("Z", "freeze the LOD camera"),
+    ("G", "chart of speed against accuracy"),
     ("Space", "play or pause the animation"),
     ("R", "reload the file"),
     ("Ctrl+O", "open a file"),
@@ -158,6 +159,12 @@ impl App {
         }
         ui.checkbox(&mut self.camera.orthographic, "Orthographic").on_hover_text("No perspective (5)");
         ui.separator();
+        let mut shows_chart = self.chart.is_open;
+        let hover = "Speed against accuracy, of this mesh in this view (G)";
+        if ui.checkbox(&mut shows_chart, "Chart").on_hover_text(hover).changed() {
+            self.toggle_chart();
+        }
+        ui.separator();
         let mut theme = ui.ctx().options(|options| options.theme_preference);
         for (choice, text) in [
             (egui::ThemePreference::System, "Theme of the system"),
@@ -231,6 +238,9 @@ impl App {
         }
         if pressed(context, Key::D) {
             self.toggle_displacement();
+        }
+        if pressed(context, Key::G) {
+            self.toggle_chart();
         }
         if pressed(context, Key::Z) {
             self.toggle_frozen();

@@ -1,10 +1,14 @@
 //! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
 
 mod animation;
+mod chart;
+mod chart_panel;
+mod charting;
 mod checks;
 mod choices;
 mod deviating;
 mod deviation;
+mod diagram;
 mod document;
 mod facts;
 mod heights;
@@ -42,6 +46,7 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};
 
 use animation::Playback;
+use chart::Chart;
 use deviating::Deviating;
 use document::{Document, Load};
 use left::Left;
@@ -128,6 +133,7 @@ pub struct App {
     measuring: Measuring,
     deviating: Deviating,
     left: Left,
+    chart: Chart,
     /// What lines are over the mesh.
     marked: Option<Marked>,
     /// The edge that is looked at, in the topology of what is shown.
@@ -169,6 +175,7 @@ impl App {
             measuring: Measuring::default(),
             deviating: Deviating::default(),
             left: Left::default(),
+            chart: Chart::default(),
             marked: None,
             selected_edge: None,
             selection: Selection::default(),
@@ -282,6 +289,7 @@ impl App {
                     self.frozen = None;
                     self.forget_truth();
                 }
+                self.chart.stop();
                 let title = format!("{} - pnaen", document.loaded.source.title());
                 context.send_viewport_cmd(egui::ViewportCommand::Title(title));
                 let before = self.document.replace(document);
@@ -338,6 +346,7 @@ impl eframe::App for App {
         self.take_loaded(context);
         self.take_truth();
         self.take_dialog(context);
+        self.take_chart(context);
         self.take_device_problem();
         let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());
         if let Some(path) = dropped {
@@ -352,7 +361,9 @@ impl eframe::App for App {
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
         egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
         egui::Panel::right("facts").resizable(false).exact_size(284.0).show(ui, |ui| self.facts_panel(ui));
+        self.chart_panel(ui);
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
+        self.hold_chart();
     }
 }

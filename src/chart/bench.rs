@@ -7,6 +7,8 @@ use crate::engine::{Engine, Runs};
 use crate::gpu::{GpuError, Timing};
 use crate::measure::AccuracyOptions;
 use crate::render::{Camera, Scene, Target};
+use crate::settings::Settings;
+use crate::tessellate::Clip;
 use crate::truth::Truth;
 
 /// How much is spent on a setting.
@@ -34,7 +36,19 @@ pub struct Bench<'a> {
     pub target: &'a Target,
     pub camera: Camera,
     pub truth: Option<&'a Truth>,
+    /// What settings that are tried have in common.
+    pub base: Settings,
     pub effort: Effort,
+}
+
+/// What some settings cost, and how far off they are: see [`Row`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    pub triangles: u64,
+    pub vertices: u64,
+    pub time: Time,
+    pub errors: Option<Errors>,
+    pub max_error_px: Option<f64>,
 }
 
 impl Bench<'_> {
@@ -43,8 +57,25 @@ impl Bench<'_> {
     /// # Errors
     /// The device was lost.
     pub fn measure(&mut self, setting: &Setting) -> Result<Option<Row>, GpuError> {
+        let probe = self.probe(&setting.applied(&self.base))?;
+        Ok(probe.map(|probe| self.row(setting, probe)))
+    }
+
+    /// What came of a setting, as a row.
+    pub fn row(&self, setting: &Setting, probe: Probe) -> Row {
+        let Probe { triangles, vertices, time, errors, max_error_px } = probe;
+        let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
+        Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px }
+    }
+
+    /// Measures any settings, but so that all of the mesh is emitted, whatever they leave out: otherwise it couldn't be held
+    /// against a truth. None if that is more triangles than the effort allows.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn probe(&mut self, settings: &Settings) -> Result<Option<Probe>, GpuError> {
         let Self { engine, scene, target, camera, .. } = self;
-        let settings = setting.settings();
+        let settings = whole(settings);
         let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
         engine.count(scene, &inputs, &mut Timing::Off)?;
         let (vertices, triangles) = scene.tessellator.totals();
@@ -52,28 +83,26 @@ impl Bench<'_> {
             return Ok(None);
         }
         let passes = engine.time(scene, target, camera, &settings, self.effort.runs)?;
-        let mut row = Row {
-            mesh: self.mesh.clone(),
-            adapter: engine.gpu.info.name.clone(),
-            setting: *setting,
-            triangles,
-            vertices,
-            time: Time::of(&passes),
-            errors: None,
-            max_error_px: None,
-        };
+        let time = Time::of(&passes);
+        let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None };
         match self.truth {
             Some(truth) => {
                 let accuracy = engine.accuracy(scene, truth, &inputs.view, self.effort.accuracy)?;
-                row.max_error_px = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
-                row.errors = accuracy.map(|accuracy| {
+                probe.max_error_px = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
+                probe.errors = accuracy.map(|accuracy| {
                     let distances = accuracy.relative(accuracy.both_ways());
                     let normal_degrees = accuracy.normals.largest;
                     Errors { largest: distances.largest, rms: distances.rms, normal_degrees }
                 });
             }
-            None => row.max_error_px = engine.deviation(scene, &inputs)?.map(|worst| worst.px),
+            None => probe.max_error_px = engine.deviation(scene, &inputs)?.map(|worst| worst.px),
         }
-        Ok(Some(row))
+        Ok(Some(probe))
     }
+}
+
+/// What is measured of settings: the surface alone, all of it.
+pub fn whole(settings: &Settings) -> Settings {
+    let Settings { overlays, deviation_in, split, background, .. } = Settings::default();
+    Settings { clip: Clip::Off, cull_back_faces: false, overlays, deviation_in, split, background, ..*settings }
 }

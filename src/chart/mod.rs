@@ -8,13 +8,19 @@ mod look;
 mod pen;
 mod picture;
 mod race;
+mod save;
 mod setting;
 mod words;
 
-pub use bench::{Bench, Effort};
-pub use picture::{bitmap, svg};
+pub use axis::{Axis, Tick, tick_text};
+pub use bench::{Bench, Effort, Probe, whole};
+pub use legend::looks;
+pub use look::{Fill, Look, Shape, dash};
+pub use pen::RADIUS;
+pub use picture::{Cost, bitmap, svg};
 pub use race::{Race, Win, front};
-pub use setting::{LodKind, Method, Plan, Setting};
+pub use save::{SaveError, save};
+pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use crate::gpu::PassTime;
 use crate::settings::option_name;
@@ -138,9 +144,14 @@ pub struct Subject {
 impl Subject {
     /// How far a row is off: a part of the truth's diagonal, or px without a truth.
     pub fn error(&self, row: &Row) -> Option<f64> {
+        self.error_of(row.errors, row.max_error_px)
+    }
+
+    /// The same, of anything measured as rows are.
+    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
         let error = match self.truth {
-            Some(_) => row.errors.map(|errors| errors.largest),
-            None => row.max_error_px,
+            Some(_) => errors.map(|errors| errors.largest),
+            None => max_error_px,
         };
         error.filter(|error| error.is_finite())
     }

@@ -1,7 +1,5 @@
 //! What a chart is drawn with, into a bitmap or an SVG file alike. All is in px of the chart.
 
-use std::f64::consts::TAU;
-
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -24,7 +22,7 @@ pub const RIGHT: Pos = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
 pub const FRONT: RGBColor = RGBColor(214, 214, 214);
 
 /// From the middle of a point to its rim.
-const RADIUS: f64 = 3.6;
+pub const RADIUS: f64 = 3.6;
 
 fn px([x, y]: [f64; 2]) -> (i32, i32) {
     let density = f64::from(DENSITY);
@@ -82,24 +80,13 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     }
 
     fn shape(&self, at: [f64; 2], shape: Shape, radius: f64, style: ShapeStyle) -> Drawn<DB> {
-        let around = |degrees: f64, radius: f64| {
-            let (sin, cos) = (TAU * degrees / 360.0).sin_cos();
-            px([at[0] + radius * sin, at[1] - radius * cos])
-        };
-        let corners: Vec<_> = match shape {
-            Shape::Disc => return self.0.draw(&Circle::new(px(at), width(radius) as i32, style)),
-            Shape::Polygon(count, first) => {
-                // Triangles and squares as large as discs look.
-                let radius = radius * if count == 3 { 1.35 } else { 1.2 };
-                let step = 360.0 / f64::from(count);
-                (0..count).map(|k| around(f64::from(first) + f64::from(k) * step, radius)).collect()
-            }
-            Shape::Star => {
-                let reach = |k: u32| radius * if k.is_multiple_of(2) { 1.5 } else { 0.65 };
-                (0..10).map(|k| around(36.0 * f64::from(k), reach(k))).collect()
-            }
-        };
-        self.0.draw(&Polygon::new(corners, style))
+        if shape == Shape::Disc {
+            return self.0.draw(&Circle::new(px(at), width(radius) as i32, style));
+        }
+        shape.pieces(radius).into_iter().try_for_each(|piece| {
+            let corners: Vec<_> = piece.into_iter().map(|[x, y]| px([at[0] + x, at[1] + y])).collect();
+            self.0.draw(&Polygon::new(corners, style))
+        })
     }
 }
 

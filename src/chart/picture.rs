@@ -97,21 +97,27 @@ fn part_height(lines: &[String]) -> f64 {
 }
 
 /// What one pays.
-#[derive(Clone, Copy)]
-enum Cost {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cost {
+    #[default]
     Ms,
     Triangles,
 }
 
 impl Cost {
-    fn of(self, row: &Row) -> f64 {
+    pub fn of(self, row: &Row) -> f64 {
+        self.either(row.time.total(), row.triangles)
+    }
+
+    /// Of ms and triangles the one that it is.
+    pub fn either(self, ms: f64, triangles: u64) -> f64 {
         match self {
-            Self::Ms => row.time.total(),
-            Self::Triangles => row.triangles as f64,
+            Self::Ms => ms,
+            Self::Triangles => triangles as f64,
         }
     }
 
-    fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Ms => "Tessellation and drawing, ms",
             Self::Triangles => "Triangles",
@@ -120,13 +126,8 @@ impl Cost {
 }
 
 fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[String], top: f64) -> Drawn<DB> {
-    let against = match &subject.truth {
-        Some(truth) => format!("against {truth}"),
-        None => "against each surface's own limit".to_owned(),
-    };
-    let [width, height] = subject.size;
+    let facts = subject.facts();
     pen.text(&subject.title, [LEFT_MARGIN, top + 20.0], TITLE, LEFT)?;
-    let facts = format!("{against}; {width} x {height} px; {}", subject.adapter);
     let after = LEFT_MARGIN + pen.text_width(&subject.title, TITLE) * 1.08 + 12.0;
     pen.text(&facts, [after, top + 21.0], TEXT, LEFT)?;
     let across = (f64::from(WIDTH) - LEFT_MARGIN - RIGHT_MARGIN - BETWEEN) / 2.0;
@@ -157,13 +158,13 @@ impl<'a> Panel<'a> {
         let known = || subject.rows.iter().filter(|row| subject.error(row).is_some());
         let x = Axis::around(known().map(|row| cost.of(row)), 0.0, [frame.min[0], frame.max[0]]);
         let errors = subject.rows.iter().filter_map(|row| subject.error(row));
-        let shown = errors.map(|error| error * unit(subject));
-        let y = Axis::around(shown, subject.floor() * unit(subject), [frame.max[1], frame.min[1]]);
+        let shown = errors.map(|error| error * subject.unit());
+        let y = Axis::around(shown, subject.floor() * subject.unit(), [frame.max[1], frame.min[1]]);
         Self { subject, cost, frame, x, y }
     }
 
     fn point(&self, row: &Row, error: f64) -> [f64; 2] {
-        [self.x.place(self.cost.of(row)), self.y.place(error * unit(self.subject))]
+        [self.x.place(self.cost.of(row)), self.y.place(error * self.subject.unit())]
     }
 
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, is_first: bool) -> Drawn<DB> {
@@ -244,17 +245,8 @@ impl<'a> Panel<'a> {
         if !is_first {
             return Ok(());
         }
-        let error = match self.subject.truth {
-            Some(_) => "Largest error, % of the diagonal",
-            None => "Largest error, px",
-        };
-        pen.text_upwards(error, [left - 52.0, (top + bottom) / 2.0], TEXT)
+        pen.text_upwards(self.subject.error_name(), [left - 52.0, (top + bottom) / 2.0], TEXT)
     }
-}
-
-/// What errors are multiplied by to be shown: to per cent, or not at all.
-fn unit(subject: &Subject) -> f64 {
-    if subject.truth.is_some() { 100.0 } else { 1.0 }
 }
 
 /// Text in lines of at most so many letters, broken between words.

@@ -21,6 +21,11 @@ pub enum LodKind {
 impl LodKind {
     pub const ALL: [Self; 3] = [Self::Uniform, Self::Paper, Self::Error];
 
+    /// The one that these settings use; none for an LOD that isn't tried.
+    fn of(lod: Lod) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.lod() == lod)
+    }
+
     fn lod(self) -> Lod {
         match self {
             Self::Uniform => Lod::Uniform,
@@ -61,15 +66,36 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// All of the mesh is emitted, so that all of it can be held against a truth.
-    pub fn settings(&self) -> Settings {
+    /// The one that these settings have; none under an LOD that isn't tried.
+    pub fn of(settings: &Settings) -> Option<Self> {
+        let &Settings { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings;
+        let lod = LodKind::of(settings.used_lod())?;
+        let value = match lod {
+            LodKind::Uniform => factor,
+            LodKind::Paper => pixels,
+            LodKind::Error => tolerance,
+        };
+        Some(Self { method: Method { surface, normals, partitioning, lod }, value })
+    }
+
+    /// These settings, but with this one for their own.
+    pub fn applied(&self, settings: &Settings) -> Settings {
         let Method { surface, normals, partitioning, lod } = self.method;
-        let plain = Settings { surface, normals, partitioning, lod: lod.lod(), ..Settings::default() };
+        let plain = Settings { surface, normals, partitioning, lod: lod.lod(), ..*settings };
         match lod {
             LodKind::Uniform => Settings { factor: self.value, ..plain },
             LodKind::Paper => Settings { pixels: self.value, ..plain },
             LodKind::Error => Settings { tolerance: self.value, ..plain },
         }
+    }
+
+    /// Whether it is the same method, but finer.
+    pub fn is_finer(&self, than: &Self) -> bool {
+        let finer = match self.method.lod {
+            LodKind::Uniform => self.value > than.value,
+            LodKind::Paper | LodKind::Error => self.value < than.value,
+        };
+        finer && self.method == than.method
     }
 
     /// How fine, as short as it goes.
@@ -105,6 +131,29 @@ pub struct Plan {
     /// For the white paper's, and by error.
     pub pixels: Vec<f32>,
     pub tolerances: Vec<f32>,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self {
+            surfaces: vec![Surface::Flat, Surface::PnAen, Surface::PhongAen, Surface::NagataAen],
+            normals: vec![Normals::Linear],
+            partitionings: Vec::new(),
+            lods: LodKind::ALL.to_vec(),
+            factors: vec![1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0],
+            pixels: vec![32.0, 16.0, 8.0, 4.0, 2.0, 1.0],
+            tolerances: vec![8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
+        }
+    }
+}
+
+/// The same settings, the coarsest of every method first, so that all of a chart fills in together.
+pub fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
+    let place =
+        |index: usize| settings[..index].iter().filter(|earlier| earlier.method == settings[index].method).count();
+    let mut placed: Vec<_> = (0..settings.len()).map(|index| (place(index), settings[index])).collect();
+    placed.sort_by_key(|(place, _)| *place);
+    placed.into_iter().map(|(_, setting)| setting).collect()
 }
 
 impl Plan {

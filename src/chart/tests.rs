@@ -2,7 +2,8 @@ use proptest::prelude::*;
 
 use super::labels::{Rect, Wanted, place};
 use super::*;
-use crate::tessellate::{Normals, Partitioning, Surface};
+use crate::settings::Settings;
+use crate::tessellate::{Clip, Lod, Normals, Partitioning, Surface};
 
 fn method(surface: Surface, lod: LodKind) -> Method {
     Method { surface, normals: Normals::Linear, partitioning: Partitioning::Integer, lod }
@@ -202,9 +203,66 @@ fn everything_listed_is_tried_once() {
     assert_eq!(names(&plan), [each, each].concat());
     let by_error = plan.settings()[3];
     assert_eq!(by_error.method.partitioning, Partitioning::Integer);
-    assert_eq!((by_error.settings().tolerance, plan.settings()[2].settings().pixels), (0.25, 4.0));
+    let applied = |setting: Setting| setting.applied(&Settings::default());
+    assert_eq!((applied(by_error).tolerance, applied(plan.settings()[2]).pixels), (0.25, 4.0));
     let only = Plan { partitionings: vec![Partitioning::Subtriangulation], ..plan };
     assert_eq!(names(&only), ["factor 1", "factor 2", "factor 1", "factor 2"], "it is uniform only");
+}
+
+#[test]
+fn a_setting_is_applied_and_found_again_and_touches_nothing_else() {
+    let own = Settings { alpha: 0.5, midlevel: 0.25, factor: 7.0, ..Settings::opening() };
+    for setting in Plan::default().settings() {
+        let applied = setting.applied(&own);
+        assert_eq!(Setting::of(&applied), Some(setting));
+        let Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, .. } = applied;
+        assert_eq!(applied, Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, ..own });
+    }
+    assert_eq!(Setting::of(&Settings { lod: Lod::Distance, ..own }), None, "not tried");
+    let equal = Settings { lod: Lod::Distance, partitioning: Partitioning::Subtriangulation, ..own };
+    assert_eq!(Setting::of(&equal).map(|setting| setting.to_string()), Some("factor 7".into()), "uniform all the same");
+}
+
+#[test]
+fn what_is_measured_leaves_nothing_out_and_keeps_the_surface() {
+    let own = Settings { alpha: 0.5, split: Some(0.5), ..Settings::opening() };
+    let measured = whole(&own);
+    assert_eq!((measured.clip, measured.cull_back_faces, measured.split), (Clip::Off, false, None));
+    assert!(!measured.overlays.wireframe, "drawn without what one looks at");
+    assert_eq!((measured.alpha, measured.lod, measured.tolerance), (0.5, own.lod, own.tolerance));
+}
+
+#[test]
+fn the_coarsest_of_every_method_come_first() {
+    let plan = Plan { surfaces: vec![Surface::Flat, Surface::PnAen], ..Plan::default() };
+    let all = coarse_first(plan.settings());
+    assert_eq!(all.len(), plan.settings().len());
+    assert!(plan.settings().iter().all(|setting| all.contains(setting)));
+    let methods: Vec<Method> = all[..6].iter().map(|setting| setting.method).collect();
+    assert!((0..6).all(|k| !methods[..k].contains(&methods[k])), "each once");
+    let factors = all.iter().filter(|setting| setting.method == methods[0]).map(|setting| setting.value);
+    assert_eq!(factors.collect::<Vec<_>>(), plan.factors, "in their order");
+}
+
+#[test]
+fn a_chart_is_saved_by_its_ending() {
+    let shown = subject(Some("the exact surface"), some_rows());
+    let folder = std::env::temp_dir().join(format!("pnaen-chart-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let saved = |name: &str| {
+        save(&folder.join(name), &shown).expect("it is written");
+        std::fs::read(folder.join(name)).expect("it is there")
+    };
+    assert!(saved("a.svg").starts_with(b"<svg "));
+    assert_eq!(saved("a.PNG")[1..4], *b"PNG");
+    let table = String::from_utf8(saved("a.csv")).expect("text");
+    assert_eq!(table.lines().count(), 1 + shown.rows.len());
+    assert_eq!(table.lines().next(), Some(&COLUMNS.join(",")[..]));
+    let other = save(&folder.join("a.txt"), &shown).map_err(|error| error.to_string());
+    assert!(other.is_err_and(|text| text.contains(".svg, .png or .csv")));
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let nowhere = save(&folder.join("a.svg"), &shown).map_err(|error| error.to_string());
+    assert!(nowhere.is_err_and(|text| text.contains("a.svg")), "it says which file");
 }
 
 #[test]

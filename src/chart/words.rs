@@ -17,6 +17,29 @@ impl Subject {
         if self.truth.is_some() { LEAST_PART } else { LEAST_PX }
     }
 
+    /// What errors are multiplied by to be shown: to per cent, or not at all.
+    pub fn unit(&self) -> f64 {
+        if self.truth.is_some() { 100.0 } else { 1.0 }
+    }
+
+    /// What errors are, and their unit.
+    pub fn error_name(&self) -> &'static str {
+        match self.truth {
+            Some(_) => "Largest error, % of the diagonal",
+            None => "Largest error, px",
+        }
+    }
+
+    /// What it was held against, seen how large, and on what it ran.
+    pub fn facts(&self) -> String {
+        let against = match &self.truth {
+            Some(truth) => format!("against {truth}"),
+            None => "against each surface's own limit".to_owned(),
+        };
+        let [width, height] = self.size;
+        format!("{against}; {width} x {height} px; {}", self.adapter)
+    }
+
     /// Who wins at which error, and how close anything comes.
     pub fn sentences(&self) -> Vec<String> {
         let mut all = Vec::new();
@@ -52,7 +75,7 @@ impl Subject {
     }
 
     /// A method and its setting.
-    fn named(&self, row: &Row) -> String {
+    pub fn named(&self, row: &Row) -> String {
         format!("{} ({})", self.name(row.setting.method), row.setting.label())
     }
 

@@ -15,7 +15,7 @@ use crate::engine::{Engine, Loaded};
 use crate::measure::AccuracyOptions;
 use crate::mesh::{Progress, Source};
 use crate::render::Target;
-use crate::settings::ARENA_BYTES;
+use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Normals, Partitioning, Surface};
 use crate::truth::Truth;
 
@@ -104,7 +104,15 @@ impl Args {
         if self.truth.is_some() && self.files.len() > 1 {
             return Err(CliError::Usage("--truth is for one mesh: chart the others on their own"));
         }
-        let plan = Plan {
+        let settings = self.plan().settings();
+        if settings.is_empty() {
+            return Err(CliError::Usage("subtriangulation has no LOD but uniform: add it to --lods"));
+        }
+        Ok(settings)
+    }
+
+    fn plan(&self) -> Plan {
+        Plan {
             surfaces: self.surfaces.clone(),
             normals: self.normals.clone(),
             partitionings: self.partitionings.clone(),
@@ -112,12 +120,7 @@ impl Args {
             factors: self.factors.clone(),
             pixels: self.pixels.clone(),
             tolerances: self.tolerances.clone(),
-        };
-        let settings = plan.settings();
-        if settings.is_empty() {
-            return Err(CliError::Usage("subtriangulation has no LOD but uniform: add it to --lods"));
         }
-        Ok(settings)
     }
 
     fn effort(&self) -> Effort {
@@ -199,6 +202,7 @@ impl Session {
             scene,
             target: &self.target,
             truth: truth.as_ref().map(|(truth, _)| truth),
+            base: Settings::default(),
             effort: args.effort(),
         };
         let (mut rows, mut too_large) = (Vec::new(), 0);
@@ -289,4 +293,24 @@ fn stop_on_interrupt() -> Arc<AtomicBool> {
         let _ = writeln!(std::io::stderr(), "{said}");
     });
     stop
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    #[test]
+    fn by_default_it_tries_what_the_window_tries() {
+        let line = Line::try_parse_from(["chart", "shape:torus", "--csv", "-"]).expect("it is valid");
+        assert_eq!(line.args.plan(), Plan::default());
+        assert_eq!(line.args.effort().accuracy, Effort::default().accuracy);
+    }
 }

@@ -88,7 +88,8 @@ impl<'a> Exported<'a> {
     }
 }
 
-fn ending(path: &Path) -> String {
+/// In lower case; empty without one.
+pub fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 

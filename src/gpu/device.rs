@@ -80,9 +80,17 @@ impl Gpu {
             ..Default::default()
         };
         let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)?;
-        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+        Self::on(&adapter)
+    }
+
+    /// A device of its own on an adapter, beside others there: what waits for one doesn't make another wait.
+    ///
+    /// # Errors
+    /// The adapter gives none.
+    pub fn on(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
             .map_err(|error| GpuError::NoDevice { adapter: adapter.get_info().name, reason: error.to_string() })?;
-        Ok(Self::new(&adapter, device, queue))
+        Ok(Self::new(adapter, device, queue))
     }
 
     /// Takes over a device that a window already has.

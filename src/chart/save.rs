@@ -1,0 +1,51 @@
+//! A chart as a file: a picture, or a table.
+
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+use image::ImageFormat;
+use thiserror::Error;
+
+use super::{COLUMNS, Subject, bitmap, svg};
+use crate::plot::ChartError;
+
+#[derive(Debug, Error)]
+pub enum SaveError {
+    #[error("{} can't be a chart: name it .svg, .png or .csv", .0.display())]
+    Ending(PathBuf),
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+    #[error("the chart could not be encoded: {0}")]
+    Encode(#[from] image::ImageError),
+    #[error("{} could not be written: {reason}", .path.display())]
+    Write { path: PathBuf, reason: String },
+}
+
+/// Writes an SVG or PNG picture, or a CSV table: whichever the path's ending says.
+///
+/// # Errors
+/// The ending is another, or the file can't be written.
+pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
+    let failed = |reason: String| SaveError::Write { path: path.to_owned(), reason };
+    let subjects = std::slice::from_ref(subject);
+    let bytes = match crate::export::ending(path).as_str() {
+        "svg" => svg(subjects)?.into_bytes(),
+        "png" => {
+            let mut png = Cursor::new(Vec::new());
+            bitmap(subjects)?.write_to(&mut png, ImageFormat::Png)?;
+            png.into_inner()
+        }
+        "csv" => table(subject).map_err(|error| failed(error.to_string()))?,
+        _ => return Err(SaveError::Ending(path.to_owned())),
+    };
+    crate::export::write_whole(path, &bytes).map_err(|error| failed(error.to_string()))
+}
+
+fn table(subject: &Subject) -> std::io::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    for row in &subject.rows {
+        writer.write_record(row.record())?;
+    }
+    writer.into_inner().map_err(|error| error.into_error())
+}
