@@ -13,6 +13,8 @@
 // All vertices' places, then all their details: see Vertex.
 @group(0) @binding(9) var<storage, read_write> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> indices: array<u32>;
+// Which points triangles join: see patterns.wgsl.
+@group(0) @binding(11) var<storage, read> patterns: array<u32>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
 
 // Normals that vertices get, NORMALS_*: a pipeline each, in which what the others need takes no registers.

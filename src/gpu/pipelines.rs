@@ -1,7 +1,9 @@
 //! Shader modules put together from their rooms, and the compute pipelines made of them.
 
+use wgpu::util::DeviceExt;
+
 use super::Gpu;
-use crate::tessellate::Normals;
+use crate::tessellate::{Normals, patterns};
 
 /// Rooms of the tessellator itself, part of every module that tessellates.
 const DOMAIN: [&str; 3] = [
@@ -17,6 +19,8 @@ const ERROR: &str = include_str!("../../shaders/error.wgsl");
 const CULL: &str = include_str!("../../shaders/cull.wgsl");
 const CONVENTION: &str = include_str!("../../shaders/convention.wgsl");
 const TYPES: &str = include_str!("../../shaders/types.wgsl");
+const CONNECTIVITY: &str = include_str!("../../shaders/connectivity.wgsl");
+const PATTERNS: &str = include_str!("../../shaders/patterns.wgsl");
 const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 const DISPLACE: &str = include_str!("../../shaders/displace.wgsl");
 const RELIEF: &str = include_str!("../../shaders/relief.wgsl");
@@ -47,7 +51,8 @@ pub const SHADERS: [(&str, &[&str]); 14] = [
 /// The whole text of the module `name`, which is one of [`SHADERS`]; any other name gives the shared rooms alone.
 pub fn shader_source(name: &str) -> String {
     let own = SHADERS.iter().find(|(shader, _)| *shader == name).map_or(&[][..], |(_, rooms)| rooms);
-    ROOMS.iter().chain(own).copied().collect::<Vec<_>>().join("\n")
+    let connectivity = if name == "emit" { PATTERNS } else { CONNECTIVITY };
+    ROOMS.iter().chain([&connectivity]).chain(own).copied().collect::<Vec<_>>().join("\n")
 }
 
 /// Compiles the module `name`.
@@ -74,6 +79,8 @@ pub struct ComputePipelines {
     /// One for each of [`Normals`].
     pub emit_vertices: [wgpu::ComputePipeline; 3],
     pub emit_triangles: wgpu::ComputePipeline,
+    /// [`patterns::PATTERNS`], for `emit_triangles`.
+    pub patterns: wgpu::Buffer,
     pub directions: wgpu::ComputePipeline,
     pub frames: wgpu::ComputePipeline,
     pub factor_levels: wgpu::ComputePipeline,
@@ -103,6 +110,11 @@ impl ComputePipelines {
                 specialised_pipeline(gpu, &emit, "emit_vertices_main", &constants)
             }),
             emit_triangles: compute_pipeline(gpu, &emit, "emit_triangles_main"),
+            patterns: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("patterns"),
+                contents: bytemuck::cast_slice(&patterns::PATTERNS),
+                usage: wgpu::BufferUsages::STORAGE,
+            }),
             directions: compute_pipeline(gpu, &levels, "directions_main"),
             frames: compute_pipeline(gpu, &levels, "frames_main"),
             factor_levels: compute_pipeline(gpu, &levels, "factor_levels_main"),

@@ -154,7 +154,7 @@ impl SlabPasses {
             emit_triangles: group(
                 "emit.triangles",
                 &pipelines.emit_triangles,
-                &[&emit[..], &[(10, &arena.indices)]].concat(),
+                &[&emit[..], &[(10, &arena.indices), (11, &pipelines.patterns)]].concat(),
             ),
         }
     }

@@ -2,6 +2,7 @@
 //! `mesh.rs` does for a whole mesh what `shaders/pass_*.wgsl` do, and is their twin.
 
 mod budget;
+mod connectivity;
 mod control_points;
 mod convention;
 mod cull;
@@ -17,6 +18,7 @@ mod lod;
 mod mesh;
 mod nets;
 mod normal;
+pub mod patterns;
 mod posed;
 mod relief;
 mod solid;

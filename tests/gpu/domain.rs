@@ -123,6 +123,7 @@ fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let source = [
         include_str!("../../shaders/factors.wgsl"),
         include_str!("../../shaders/domain.wgsl"),
+        include_str!("../../shaders/connectivity.wgsl"),
         include_str!("../../shaders/subtriangulation.wgsl"),
         ENTRY,
     ]
@@ -267,6 +268,8 @@ fn twins_have_the_same_functions_in_the_same_order() {
     let twins = [
         (include_str!("../../src/tessellate/factors.rs"), include_str!("../../shaders/factors.wgsl")),
         (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
+        (include_str!("../../src/tessellate/connectivity.rs"), include_str!("../../shaders/connectivity.wgsl")),
+        (include_str!("../../src/tessellate/patterns.rs"), include_str!("../../shaders/patterns.wgsl")),
         (include_str!("../../src/tessellate/control_points.rs"), include_str!("../../shaders/control_points.wgsl")),
         (include_str!("../../src/tessellate/subtriangulation.rs"), include_str!("../../shaders/subtriangulation.wgsl")),
         (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),
