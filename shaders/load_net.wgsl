@@ -1,13 +1,13 @@
-// A patch's control net from the buffers of the module that includes this: points, patches, curve_nets.
+// A patch's control net from the buffer `points` of the module that includes this, and its patch_at and curve_net_at.
 // Its centre is what `centers_main` of the nets pass has put behind the points.
 // Written out side by side: where loops stay loops, arrays that they index live in memory.
 
 fn load_net(patch_index: u32) -> ControlNet {
-    let own = patches[patch_index];
+    let own = patch_at(patch_index);
     let curves = array<CurveNet, 3>(
-        curve_nets[own.curves[0] >> 1u],
-        curve_nets[own.curves[1] >> 1u],
-        curve_nets[own.curves[2] >> 1u],
+        curve_net_at(own.curves[0] >> 1u),
+        curve_net_at(own.curves[1] >> 1u),
+        curve_net_at(own.curves[2] >> 1u),
     );
     let reversed = vec3<bool>((own.curves[0] & 1u) == 1u, (own.curves[1] & 1u) == 1u, (own.curves[2] & 1u) == 1u);
     var net: ControlNet;

@@ -7,9 +7,10 @@
 @group(0) @binding(3) var<storage, read> offsets: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> patch_factors: array<PatchFactors>;
 @group(0) @binding(5) var<storage, read> points: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> patches: array<Patch>;
-@group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
-@group(0) @binding(8) var<storage, read> corners: array<Corner>;
+// Patches, curve nets and corners, 16 bytes at a time: every vertex reads some, and a word at a time that takes longer.
+@group(0) @binding(6) var<storage, read> patch_words: array<vec4<u32>>;
+@group(0) @binding(7) var<storage, read> curve_net_words: array<vec4<f32>>;
+@group(0) @binding(8) var<storage, read> corner_words: array<vec4<f32>>;
 // All vertices' places, then all their details: see Vertex.
 @group(0) @binding(9) var<storage, read_write> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> indices: array<u32>;
@@ -108,6 +109,31 @@ fn run_patch(run: PatchRun, component: u32, item: u32, before: u32) -> u32 {
     return find_patch(component, item, run.first + EMIT_ITEMS, chunk.patch_end - slab.first_patch) - run.first;
 }
 
+fn patch_at(index: u32) -> Patch {
+    let a = patch_words[3u * index];
+    let b = patch_words[3u * index + 1u];
+    let c = patch_words[3u * index + 2u];
+    return Patch(
+        array<u32, 3>(a.x, a.y, a.z),
+        array<u32, 3>(a.w, b.x, b.y),
+        array<u32, 3>(b.z, b.w, c.x),
+        array<u32, 3>(c.y, c.z, c.w),
+    );
+}
+
+fn curve_net_at(index: u32) -> CurveNet {
+    return CurveNet(curve_net_words[2u * index].xyz, curve_net_words[2u * index + 1u].xyz);
+}
+
+fn corner_at(index: u32) -> Corner {
+    return Corner(corner_words[2u * index].xyz, corner_words[2u * index + 1u].xy);
+}
+
+// An array that is indexed by what only runs know lives in memory; three values needn't.
+fn of_three(values: array<u32, 3>, k: u32) -> u32 {
+    return select(select(values[0], values[1], k == 1u), values[2], k == 2u);
+}
+
 // What the domain shader makes of one domain point.
 struct DomainVertex {
     position: vec3<f32>,
@@ -117,17 +143,18 @@ struct DomainVertex {
 
 // Computed in the edge's own direction.
 fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
-    let curve = patches[patch_index].curves[side];
+    let own = patch_at(patch_index);
+    let curve = of_three(own.curves, side);
     let reversed = (curve & 1u) == 1u;
     let next = (side + 1u) % 3u;
     let start = select(side, next, reversed);
     let end = select(next, side, reversed);
     let t = select(side_t, FIXED_ONE - side_t, reversed);
-    let a = points[patches[patch_index].points[start]].xyz;
-    let b = points[patches[patch_index].points[end]].xyz;
-    let at_a = corners[patches[patch_index].corners[start]];
-    let at_b = corners[patches[patch_index].corners[end]];
-    let net = curve_nets[curve >> 1u];
+    let a = points[of_three(own.points, start)].xyz;
+    let b = points[of_three(own.points, end)].xyz;
+    let at_a = corner_at(of_three(own.corners, start));
+    let at_b = corner_at(of_three(own.corners, end));
+    let net = curve_net_at(curve >> 1u);
     var position = edge_position(params.surface, a, net.ab, net.ba, b, t);
     if t == 0u {
         position = a;
@@ -145,9 +172,10 @@ fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
 }
 
 fn patch_vertex(patch_index: u32, u: u32, v: u32) -> DomainVertex {
-    let a = corners[patches[patch_index].corners[0]];
-    let b = corners[patches[patch_index].corners[1]];
-    let c = corners[patches[patch_index].corners[2]];
+    let own = patch_at(patch_index);
+    let a = corner_at(own.corners[0]);
+    let b = corner_at(own.corners[1]);
+    let c = corner_at(own.corners[2]);
     let net = load_net(patch_index);
     let normals = array<vec3<f32>, 3>(a.normal, b.normal, c.normal);
     var normal: vec3<f32>;

@@ -21,6 +21,7 @@ const CONVENTION: &str = include_str!("../../shaders/convention.wgsl");
 const TYPES: &str = include_str!("../../shaders/types.wgsl");
 const CONNECTIVITY: &str = include_str!("../../shaders/connectivity.wgsl");
 const PATTERNS: &str = include_str!("../../shaders/patterns.wgsl");
+const LOADS: &str = include_str!("../../shaders/loads.wgsl");
 const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 const DISPLACE: &str = include_str!("../../shaders/displace.wgsl");
 const RELIEF: &str = include_str!("../../shaders/relief.wgsl");
@@ -33,14 +34,14 @@ const ROOMS: [&str; 11] =
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 14] = [
     ("deform", &[include_str!("../../shaders/deform.wgsl"), include_str!("../../shaders/pass_deform.wgsl")]),
-    ("nets", &[LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
+    ("nets", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
-    ("counts", &[LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
+    ("counts", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
     ("scan", &[include_str!("../../shaders/pass_scan.wgsl")]),
     ("chunks", &[include_str!("../../shaders/pass_chunks.wgsl")]),
     ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
     ("levels", &[DISPLACE, RELIEF, include_str!("../../shaders/pass_levels.wgsl")]),
-    ("displace", &[LOAD_NET, DISPLACE, RELIEF, include_str!("../../shaders/pass_displace.wgsl")]),
+    ("displace", &[LOADS, LOAD_NET, DISPLACE, RELIEF, include_str!("../../shaders/pass_displace.wgsl")]),
     ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
     ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
     ("leaks", &[include_str!("../../shaders/draw_leaks.wgsl")]),
