@@ -95,6 +95,12 @@ fn find_run(component: u32, first_item: u32, last_item: u32, local: u32) -> Patc
     return PatchRun(low, workgroupUniformLoad(&run_count));
 }
 
+// Whether a run's patches have so many items each that 32 invocations are worth one patch at a time. They then read it
+// once, and take one path all.
+fn is_of_large_patches(run: PatchRun) -> bool {
+    return run.count < EMIT_ITEMS / (2u * LANES);
+}
+
 // Of the run's patches, counted from its first, the one whose item this is; `before` is that of an earlier item.
 fn run_patch(run: PatchRun, component: u32, item: u32, before: u32) -> u32 {
     var patch_index = before;
@@ -171,38 +177,55 @@ fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
     return DomainVertex(position, normal, edge_uv(at_a.uv, at_b.uv, t));
 }
 
-fn patch_vertex(patch_index: u32, u: u32, v: u32) -> DomainVertex {
+// What the domain shader reads of a patch.
+struct HullPatch {
+    net: ControlNet,
+    normals: array<vec3<f32>, 3>,
+    uvs: array<vec2<f32>, 3>,
+}
+
+fn load_hull(patch_index: u32) -> HullPatch {
     let own = patch_at(patch_index);
     let a = corner_at(own.corners[0]);
     let b = corner_at(own.corners[1]);
     let c = corner_at(own.corners[2]);
-    let net = load_net(patch_index);
     let normals = array<vec3<f32>, 3>(a.normal, b.normal, c.normal);
-    var normal: vec3<f32>;
-    if EMIT_NORMALS == NORMALS_QUADRATIC {
-        normal = quadratic_normal(net.corners, normals, u, v);
-    } else {
-        normal = linear_normal(normals, u, v);
-    }
-    let position = patch_position(params.surface, net, u, v);
-    return DomainVertex(position, normal, linear_uv(array<vec2<f32>, 3>(a.uv, b.uv, c.uv), u, v));
+    return HullPatch(load_net(patch_index), normals, array<vec2<f32>, 3>(a.uv, b.uv, c.uv));
 }
 
-fn store_vertex(index: u32, patch_index: u32, uv: vec2<u32>) {
+fn patch_vertex(hull: HullPatch, u: u32, v: u32) -> DomainVertex {
+    var normal: vec3<f32>;
+    if EMIT_NORMALS == NORMALS_QUADRATIC {
+        normal = quadratic_normal(hull.net.corners, hull.normals, u, v);
+    } else {
+        normal = linear_normal(hull.normals, u, v);
+    }
+    return DomainVertex(patch_position(params.surface, hull.net, u, v), normal, linear_uv(hull.uvs, u, v));
+}
+
+fn store_vertex(index: u32, patch_index: u32, hull: HullPatch, uv: vec2<u32>) {
     let at = place(uv.x, uv.y);
     var made: DomainVertex;
     if at.side == 3u || params.edges == EDGES_AS_PUBLISHED {
-        made = patch_vertex(patch_index, uv.x, uv.y);
+        made = patch_vertex(hull, uv.x, uv.y);
     } else {
         made = rim_vertex(patch_index, at.side, at.t);
     }
     if EMIT_NORMALS == NORMALS_SURFACE {
         // Every patch's own, also on its rim, where its neighbours' differ.
-        made.normal = surface_normal(params.surface, load_net(patch_index), uv.x, uv.y, made.normal);
+        made.normal = surface_normal(params.surface, hull.net, uv.x, uv.y, made.normal);
     }
     let key = pack_key(patch_index, uv.x, uv.y);
     vertex_halves[index] = vertex_place(made.position, pack_normal(made.normal));
     vertex_halves[arrayLength(&vertex_halves) / 2u + index] = vertex_detail(key, made.uv);
+}
+
+// Vertices `first` to `end` of a patch, whose first is `start`, in turns of all lanes.
+fn emit_patch_vertices(plan: DomainPlan, hull: HullPatch, patch_index: u32, start: u32, first: u32, end: u32) {
+    for (var index = first; index < end; index += LANES) {
+        let uv = corner_weights(params.convention, domain_point(plan, index - start));
+        store_vertex(index, patch_index, hull, uv);
+    }
 }
 
 @compute @workgroup_size(256)
@@ -215,6 +238,36 @@ fn emit_vertices_main(
     let first = emit_first(workgroup, workgroups);
     let last = chunk.first_vertex + min(first + EMIT_ITEMS, chunk.vertex_count) - 1u;
     let run = find_run(0u, chunk.first_vertex + first, last, local);
+    if is_of_large_patches(run) {
+        vertices_by_patch(chunk, run, first, local);
+    } else {
+        vertices_by_item(chunk, run, first, local);
+    }
+}
+
+fn vertices_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
+    var at = first + (local / LANES) * (LANES * EMIT_RUN);
+    let end = min(at + LANES * EMIT_RUN, chunk.vertex_count);
+    var in_run = run_patch(run, 0u, chunk.first_vertex + at, 0u);
+    while at < end {
+        let entry = run.first + in_run;
+        let patch_index = slab.first_patch + entry;
+        // Where the patch starts and ends, in the chunk: its start may lie before it.
+        let start = offsets[entry].x - chunk.first_vertex;
+        let factors = patch_factors[entry];
+        let plan = domain_plan(factors);
+        let stop = min(start + point_count(factors), end);
+        let hull = load_hull(patch_index);
+        // The outline first, and then the inside, which takes another path.
+        let inside = clamp(start + plan.outer, at, stop);
+        emit_patch_vertices(plan, hull, patch_index, start, at + local % LANES, inside);
+        emit_patch_vertices(plan, hull, patch_index, start, inside + local % LANES, stop);
+        at = stop;
+        in_run += 1u;
+    }
+}
+
+fn vertices_by_item(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
     var known = NO_PATCH;
     var in_run = 0u;
     var start = 0u;
@@ -233,7 +286,21 @@ fn emit_vertices_main(
             plan = domain_plan(patch_factors[entry]);
         }
         let uv = corner_weights(params.convention, domain_point(plan, item - start));
-        store_vertex(index, slab.first_patch + entry, uv);
+        let patch_index = slab.first_patch + entry;
+        store_vertex(index, patch_index, load_hull(patch_index), uv);
+    }
+}
+
+fn store_triangle(index: u32, corners: vec3<u32>) {
+    indices[3u * index] = corners.x;
+    indices[3u * index + 1u] = corners.y;
+    indices[3u * index + 2u] = corners.z;
+}
+
+// Triangles `first` to `end` of a patch, whose first is `start` and whose vertices start at `base`, in turns of all lanes.
+fn emit_patch_triangles(plan: DomainPlan, base: u32, start: u32, first: u32, end: u32) {
+    for (var index = first; index < end; index += LANES) {
+        store_triangle(index, base + domain_triangle(plan, index - start));
     }
 }
 
@@ -247,6 +314,33 @@ fn emit_triangles_main(
     let first = emit_first(workgroup, workgroups);
     let last = chunk.first_triangle + min(first + EMIT_ITEMS, chunk.triangle_count) - 1u;
     let run = find_run(1u, chunk.first_triangle + first, last, local);
+    if is_of_large_patches(run) {
+        triangles_by_patch(chunk, run, first, local);
+    } else {
+        triangles_by_item(chunk, run, first, local);
+    }
+}
+
+fn triangles_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
+    var at = first + (local / LANES) * (LANES * EMIT_RUN);
+    let end = min(at + LANES * EMIT_RUN, chunk.triangle_count);
+    var in_run = run_patch(run, 1u, chunk.first_triangle + at, 0u);
+    while at < end {
+        let entry = run.first + in_run;
+        let starts = offsets[entry] - vec2<u32>(chunk.first_vertex, chunk.first_triangle);
+        let factors = patch_factors[entry];
+        let plan = domain_plan(factors);
+        let stop = min(starts.y + triangle_count(factors), end);
+        // Those at the outline first, and then the others, which take another path.
+        let inside = clamp(starts.y + plan.outer + 3u * (plan.n - 2u), at, stop);
+        emit_patch_triangles(plan, starts.x, starts.y, at + local % LANES, inside);
+        emit_patch_triangles(plan, starts.x, starts.y, inside + local % LANES, stop);
+        at = stop;
+        in_run += 1u;
+    }
+}
+
+fn triangles_by_item(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
     var known = NO_PATCH;
     var in_run = 0u;
     var start = vec2<u32>(0u);
@@ -264,10 +358,6 @@ fn emit_triangles_main(
             start = offsets[entry];
             plan = domain_plan(patch_factors[entry]);
         }
-        let corners = domain_triangle(plan, item - start.y);
-        let base = start.x - chunk.first_vertex;
-        indices[3u * index] = base + corners.x;
-        indices[3u * index + 1u] = base + corners.y;
-        indices[3u * index + 2u] = base + corners.z;
+        store_triangle(index, start.x - chunk.first_vertex + domain_triangle(plan, item - start.y));
     }
 }
