@@ -22,8 +22,9 @@
 override EMIT_NORMALS: u32 = 0u;
 
 const NO_PATCH: u32 = 0xffffffffu;
-// Items an invocation makes.
-const EMIT_RUN: u32 = EMIT_ITEMS / WORKGROUP;
+// Invocations of a workgroup. Those that make vertices keep control nets, and have the longer runs for it.
+const VERTEX_WORKGROUP: u32 = 128u;
+const TRIANGLE_WORKGROUP: u32 = 256u;
 // Invocations that run in step on most devices: these have items side by side, and mostly of one patch.
 const LANES: u32 = 32u;
 
@@ -31,9 +32,9 @@ fn emit_first(workgroup: vec3<u32>, workgroups: vec3<u32>) -> u32 {
     return (workgroup.y * workgroups.x + workgroup.x) * EMIT_ITEMS;
 }
 
-// The item that invocation `local` makes in its turn `turn`, from the workgroup's first on.
-fn emit_item(local: u32, turn: u32) -> u32 {
-    return (local / LANES) * (LANES * EMIT_RUN) + turn * LANES + local % LANES;
+// The first item, from the workgroup's first on, of the `turns` that invocation `local` and those beside it make together.
+fn emit_start(local: u32, turns: u32) -> u32 {
+    return (local / LANES) * (LANES * turns);
 }
 
 // Entry of `offsets` (from the slab's start) whose patch emits item `item`, in [low, high). Component 0 counts
@@ -63,14 +64,14 @@ var<workgroup> run_count: u32;
 // Where the patches after the first begin.
 var<workgroup> run_starts: array<u32, EMIT_ITEMS>;
 
-// All invocations look for the first item's patch together: each round leaves one part in 256.
-fn find_run(component: u32, first_item: u32, last_item: u32, local: u32) -> PatchRun {
+// All `width` invocations look for the first item's patch together: each round leaves one part of so many.
+fn find_run(component: u32, first_item: u32, last_item: u32, local: u32, width: u32) -> PatchRun {
     let chunk = chunks[chunk_index];
     let end = chunk.patch_end - slab.first_patch;
     var low = chunk.first_patch - slab.first_patch;
     var high = end;
     while low + 1u < high {
-        let stride = (high - low + WORKGROUP - 1u) / WORKGROUP;
+        let stride = (high - low + width - 1u) / width;
         let at = low + local * stride;
         let next = at + stride;
         if at < high && offsets[at][component] <= first_item && (next >= high || offsets[next][component] > first_item) {
@@ -83,7 +84,7 @@ fn find_run(component: u32, first_item: u32, last_item: u32, local: u32) -> Patc
         run_count = 0u;
     }
     workgroupBarrier();
-    for (var i = local; i < EMIT_ITEMS; i += WORKGROUP) {
+    for (var i = local; i < EMIT_ITEMS; i += width) {
         let entry = low + 1u + i;
         let start = offsets[min(entry, end)][component];
         run_starts[i] = start;
@@ -228,7 +229,7 @@ fn emit_patch_vertices(plan: DomainPlan, hull: HullPatch, patch_index: u32, star
     }
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(VERTEX_WORKGROUP)
 fn emit_vertices_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
@@ -237,7 +238,7 @@ fn emit_vertices_main(
     let chunk = chunks[chunk_index];
     let first = emit_first(workgroup, workgroups);
     let last = chunk.first_vertex + min(first + EMIT_ITEMS, chunk.vertex_count) - 1u;
-    let run = find_run(0u, chunk.first_vertex + first, last, local);
+    let run = find_run(0u, chunk.first_vertex + first, last, local, VERTEX_WORKGROUP);
     if is_of_large_patches(run) {
         vertices_by_patch(chunk, run, first, local);
     } else {
@@ -246,8 +247,9 @@ fn emit_vertices_main(
 }
 
 fn vertices_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
-    var at = first + (local / LANES) * (LANES * EMIT_RUN);
-    let end = min(at + LANES * EMIT_RUN, chunk.vertex_count);
+    let turns = EMIT_ITEMS / VERTEX_WORKGROUP;
+    var at = first + emit_start(local, turns);
+    let end = min(at + LANES * turns, chunk.vertex_count);
     var in_run = run_patch(run, 0u, chunk.first_vertex + at, 0u);
     while at < end {
         let entry = run.first + in_run;
@@ -272,8 +274,9 @@ fn vertices_by_item(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
     var in_run = 0u;
     var start = 0u;
     var plan: DomainPlan;
-    for (var turn = 0u; turn < EMIT_RUN; turn++) {
-        let index = first + emit_item(local, turn);
+    let turns = EMIT_ITEMS / VERTEX_WORKGROUP;
+    for (var turn = 0u; turn < turns; turn++) {
+        let index = first + emit_start(local, turns) + turn * LANES + local % LANES;
         if index >= chunk.vertex_count {
             return;
         }
@@ -304,7 +307,7 @@ fn emit_patch_triangles(plan: DomainPlan, base: u32, start: u32, first: u32, end
     }
 }
 
-@compute @workgroup_size(256)
+@compute @workgroup_size(TRIANGLE_WORKGROUP)
 fn emit_triangles_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
@@ -313,7 +316,7 @@ fn emit_triangles_main(
     let chunk = chunks[chunk_index];
     let first = emit_first(workgroup, workgroups);
     let last = chunk.first_triangle + min(first + EMIT_ITEMS, chunk.triangle_count) - 1u;
-    let run = find_run(1u, chunk.first_triangle + first, last, local);
+    let run = find_run(1u, chunk.first_triangle + first, last, local, TRIANGLE_WORKGROUP);
     if is_of_large_patches(run) {
         triangles_by_patch(chunk, run, first, local);
     } else {
@@ -322,8 +325,9 @@ fn emit_triangles_main(
 }
 
 fn triangles_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
-    var at = first + (local / LANES) * (LANES * EMIT_RUN);
-    let end = min(at + LANES * EMIT_RUN, chunk.triangle_count);
+    let turns = EMIT_ITEMS / TRIANGLE_WORKGROUP;
+    var at = first + emit_start(local, turns);
+    let end = min(at + LANES * turns, chunk.triangle_count);
     var in_run = run_patch(run, 1u, chunk.first_triangle + at, 0u);
     while at < end {
         let entry = run.first + in_run;
@@ -345,8 +349,9 @@ fn triangles_by_item(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
     var in_run = 0u;
     var start = vec2<u32>(0u);
     var plan: DomainPlan;
-    for (var turn = 0u; turn < EMIT_RUN; turn++) {
-        let index = first + emit_item(local, turn);
+    let turns = EMIT_ITEMS / TRIANGLE_WORKGROUP;
+    for (var turn = 0u; turn < turns; turn++) {
+        let index = first + emit_start(local, turns) + turn * LANES + local % LANES;
         if index >= chunk.triangle_count {
             return;
         }
