@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3, vec2};
 use super::Look;
 use crate::mesh::Bounds;
 use crate::render::Camera;
+use crate::truth::radical_inverse;
 
 /// Width and height in px of what is measured on screen.
 pub const SIZE: [u32; 2] = [320, 240];
@@ -17,7 +18,7 @@ pub fn viewport() -> Vec2 {
 /// Camera `index` of a sequence that goes all around the mesh, near and far, inside too, every eighth time without
 /// perspective: Halton's low-discrepancy sequence, so that the first few already differ much.
 pub fn random(bounds: &Bounds, index: u32) -> Camera {
-    let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(index + 1, base));
+    let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(base, index as usize + 1) as f32);
     let radius = bounds.radius();
     Camera {
         target: bounds.center() + radius * Vec3::new(x - 0.5, y - 0.5, depth - 0.5),
@@ -39,25 +40,9 @@ pub fn look(bounds: &Bounds, look: &Look, viewport: Vec2) -> Camera {
     camera
 }
 
-/// The digits of `index` in some base, mirrored at the point: 0 to 1 (Halton 1960).
-fn radical_inverse(mut index: u32, base: u32) -> f32 {
-    let (mut sum, mut digit) = (0.0, 1.0);
-    while index > 0 {
-        digit /= base as f32;
-        sum += digit * (index % base) as f32;
-        index /= base;
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn digits_are_mirrored() {
-        assert_eq!([1, 2, 3, 4].map(|i| radical_inverse(i, 2)), [0.5, 0.25, 0.75, 0.125]);
-    }
 
     #[test]
     fn some_cameras_are_inside_and_most_are_not() {

@@ -16,6 +16,7 @@ use glam::DVec3;
 
 pub use exact::{Exact, of_shape};
 pub use reference::Reference;
+pub(crate) use spread::radical_inverse;
 pub use triangles::{Closest, Triangles};
 
 use crate::mesh::{LoadError, Mesh, Progress, Shape, Source};

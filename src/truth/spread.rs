@@ -53,8 +53,9 @@ pub(super) fn find(sums: &[f64], part: f64) -> (usize, f64) {
     (step, rest)
 }
 
-/// The digits of `i` mirrored at the point: evenly spread over 0 to 1 however many are taken (van der Corput).
-pub(super) fn radical_inverse(base: usize, mut i: usize) -> f64 {
+/// The digits of `i` mirrored at the point: evenly spread over 0 to 1 however many are taken (van der Corput 1935; Halton
+/// 1960).
+pub fn radical_inverse(base: usize, mut i: usize) -> f64 {
     let (mut sum, mut digit) = (0.0, 1.0);
     while i > 0 {
         digit /= base as f64;
@@ -62,4 +63,14 @@ pub(super) fn radical_inverse(base: usize, mut i: usize) -> f64 {
         i /= base;
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_are_mirrored() {
+        assert_eq!([1, 2, 3, 4].map(|i| radical_inverse(2, i)), [0.5, 0.25, 0.75, 0.125]);
+    }
 }
