@@ -66,11 +66,7 @@ fn named(parts: &[Part], answers: &[Answer], reached: usize) -> String {
     let winners = winners(answers);
     let mut words: Vec<String> = Vec::new();
     for (index, (method, count)) in winners.iter().take(NAMED).enumerate() {
-        let of = if index == 0 {
-            format!(" of {reached} {}", if reached == 1 { "mesh" } else { "meshes" })
-        } else {
-            String::new()
-        };
+        let of = if index == 0 { format!(" of {}", fronts::meshes(reached)) } else { String::new() };
         words.push(format!("{} (on {count}{of})", fronts::name(parts, *method)));
     }
     if winners.len() > NAMED {
@@ -96,7 +92,7 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
         }
     };
     let triangles = compared(times.mean, ["fewer triangles than", "as many triangles as"]);
-    let mut text = format!("At equal error LOD by error takes {triangles} {against}");
+    let mut text = format!("At equal error, LOD by error takes {triangles} {against}");
     if let Some(Saving { times, .. }) = saving(parts, other, Cost::Ms) {
         text += &format!(", and {}", compared(times.mean, ["less time", "as much time"]));
     }

@@ -10,7 +10,7 @@ use crate::numbers::{grouped, short};
 
 /// Errors that are asked for, as parts of the diagonal; in px where there is no truth.
 pub const PARTS: [f64; 3] = [0.01, 0.001, 0.0001];
-pub const PX: [f64; 3] = [1.0, 0.25, 0.1];
+pub const PX: [f64; 3] = [1.0, 0.5, 0.1];
 
 /// Methods that take less than this times the ms of the fastest are as fast: so much differs from run to run.
 const AS_FAST: f64 = 1.05;

@@ -4,6 +4,7 @@ use super::Part;
 use crate::chart::{Cost, Method, Row};
 use crate::markdown;
 use crate::numbers::grouped;
+use crate::settings::option_name;
 
 /// Where a method is on the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +51,7 @@ pub fn table_of(parts: &[Part]) -> String {
         ["method", "meshes", "on the front by triangles", "settings there", "on the front by ms", "settings there"];
     let rows: Vec<_> = standings(parts)
         .iter()
+        .filter(|standing| standing.meshes != [0, 0])
         .map(|standing| {
             let Standing { method, tried, meshes, settings } = *standing;
             let counts = [tried, meshes[0], settings[0], meshes[1], settings[1]];
@@ -67,10 +69,32 @@ pub fn table_of(parts: &[Part]) -> String {
     )
 }
 
+/// So many meshes.
+pub fn meshes(count: usize) -> String {
+    format!("{count} {}", if count == 1 { "mesh" } else { "meshes" })
+}
+
 /// What a method is called, where it was tried.
 pub fn name(parts: &[Part], method: Method) -> String {
     let part = parts.iter().find(|part| part.subject.methods().contains(&method));
     part.map_or_else(|| method.to_string(), |part| part.subject.name(method))
+}
+
+/// Methods by their names; those of a surface that are all of it that was tried by that surface's.
+pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
+    let tried: Vec<Method> = parts.iter().flat_map(|part| part.subject.methods()).collect();
+    let mut names = Vec::new();
+    for method in methods {
+        let mut own = tried.iter().filter(|other| other.surface == method.surface);
+        let name = match own.all(|other| methods.contains(other)) {
+            true => format!("{} by any LOD", option_name(method.surface)),
+            false => name(parts, *method),
+        };
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
 }
 
 /// Who is on most fronts, and who on none.
@@ -85,11 +109,11 @@ pub fn sentences(parts: &[Part]) -> Vec<String> {
         let by = if cost == Cost::Ms { "ms" } else { "triangles" };
         if !names.is_empty() {
             let names = markdown::listed(&names);
-            all.push(format!("Most often on the front by {by}: {names}, on {most} of {tried} meshes."));
+            all.push(format!("Most often on the front by {by}: {names}, on {most} of {}.", meshes(tried)));
         }
     }
     let never = standings.iter().filter(|standing| standing.meshes == [0, 0]);
-    let never: Vec<_> = never.map(|standing| name(parts, standing.method)).collect();
+    let never = brief(parts, &never.map(|standing| standing.method).collect::<Vec<_>>());
     if !never.is_empty() {
         all.push(format!("On no front at all: {}.", markdown::listed(&never)));
     }

@@ -1,6 +1,7 @@
 //! How close each surface gets, whatever it costs.
 
 use super::Part;
+use super::fronts::meshes;
 use super::lods::Range;
 use crate::chart::{Race, has_converged};
 use crate::markdown;
@@ -99,7 +100,11 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
     let against =
         Range::of(&ratios).map_or_else(String::new, |range| format!(" That is {} flat.", closer(&range, ratios.len())));
     let on = reached.len();
-    Some(format!("However fine, `{name}` stops at {range}, on {on} of {tried} meshes: {}.{against}", reason(surface)))
+    Some(format!(
+        "However fine, `{name}` stops at {range}, on {on} of {}: {}.{against}",
+        meshes(tried),
+        reason(surface)
+    ))
 }
 
 fn closer(range: &Range, meshes: usize) -> String {

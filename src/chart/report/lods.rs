@@ -17,7 +17,7 @@ pub struct Saving {
 /// What it saves in `cost` against `other`; none if nowhere both were needed.
 ///
 /// They are compared at 1, 2 and 5 times powers of ten, for each surface, with the cheapest setting of each. Where a mesh needs
-/// no tessellation nothing is to be saved.
+/// no tessellation nothing is to be saved; and where the coarsest setting does, one that wasn't tried might have been cheaper.
 pub fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
     let (mut ratios, mut alone) = (Vec::new(), [0, 0]);
     for part in parts {
@@ -27,8 +27,9 @@ pub fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
                     let is_own = |row: &Row| (row.setting.method.surface, row.setting.method.lod) == (surface, lod);
                     race.cheapest(error, cost, is_own)
                 };
+                let is_end = |row: &Row| part.is_plain(row) || is_coarsest(part, row);
                 match (cheapest(LodKind::Error), cheapest(other)) {
-                    (Some(own), Some(row)) if part.is_plain(own) || part.is_plain(row) => {}
+                    (Some(own), Some(row)) if is_end(own) || is_end(row) => {}
                     (Some(own), Some(row)) if cost.of(own) > 0.0 => ratios.push(cost.of(row) / cost.of(own)),
                     (Some(_), None) => alone[0] += 1,
                     (None, Some(_)) => alone[1] += 1,
@@ -38,6 +39,11 @@ pub fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
         }
     }
     Some(Saving { times: Range::of(&ratios)?, count: ratios.len(), alone })
+}
+
+/// Whether nothing coarser of its method was tried.
+fn is_coarsest(part: &Part, row: &Row) -> bool {
+    !part.subject.rows.iter().any(|other| row.setting.is_finer(&other.setting))
 }
 
 /// Every surface with every error that is asked for.

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::Part;
 use super::answers::{PARTS, PX};
+use super::fronts::brief;
 use crate::chart::words::plain;
 use crate::chart::{Cost, Race, Row};
 use crate::markdown;
@@ -16,9 +17,9 @@ pub fn section(part: &Part) -> String {
     let _ = writeln!(text, "![Largest error of {title} over ms and over triangles]({})", part.picture);
     for race in part.subject.races() {
         let of = race.surface.map_or_else(String::new, |surface| {
-            format!(" of `{}`, against its own limit", crate::settings::option_name(surface))
+            format!(" (`{}`, against its own limit)", crate::settings::option_name(surface))
         });
-        let _ = write!(text, "\nWhat nothing beats{of}, in triangles or in ms:\n\n{}", front(part, &race));
+        let _ = write!(text, "\nWhat nothing beats, in triangles or in ms{of}:\n\n{}", front(part, &race));
         let (table, missing) = best(part, &race);
         if !table.is_empty() {
             let _ = write!(text, "\nThe fewest triangles that each method takes{of}:\n\n{table}");
@@ -107,11 +108,10 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
             rows.push(names.into_iter().chain(cells(part, row)).collect());
         }
         let missing = methods().filter(|method| cheapest(*method).is_none());
-        let missing: Vec<_> = missing.map(|method| part.subject.name(method)).collect();
-        match (reached.is_empty(), missing.is_empty()) {
-            (true, _) => said.push(format!("{level}: nothing gets there.")),
-            (false, false) => said.push(format!("{level}: not reached by {}.", markdown::listed(&missing))),
-            (false, true) => {}
+        match brief(std::slice::from_ref(part), &missing.collect::<Vec<_>>()) {
+            _ if reached.is_empty() => said.push(format!("{level}: nothing gets there.")),
+            names if names.is_empty() => {}
+            names => said.push(format!("{level}: not reached by {}.", markdown::listed(&names))),
         }
     }
     if rows.is_empty() {

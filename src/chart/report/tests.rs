@@ -29,6 +29,7 @@ fn duel(uniform: (f64, u64), error: (f64, u64)) -> Part {
     part(vec![
         row(PnAen, Uniform, 1.0, (1.0, 10, 0.03)),
         row(PnAen, Uniform, 8.0, (uniform.0, uniform.1, 0.0009)),
+        row(PnAen, Error, 4.0, (1.0, 10, 0.03)),
         row(PnAen, Error, 1.0, (error.0, error.1, 0.0009)),
     ])
 }
@@ -86,6 +87,10 @@ fn what_lod_by_error_saves_is_measured_both_ways() {
     assert!(text.contains("takes 4.00 times as many triangles as a uniform factor"), "{text}");
     assert!(text.contains("and about as much time."), "{text}");
     assert_eq!(saving(&parts, Paper, Cost::Triangles), None, "it wasn't tried");
+    // Without a coarser one it isn't known what would have done.
+    let mut first = duel((8.0, 400), (2.0, 100));
+    first.subject.rows.retain(|row| row.setting.value != 4.0);
+    assert_eq!(saving(&[first], Uniform, Cost::Triangles), None);
     // Only one of them gets there: that is said, and is in no mean.
     let mut alone = duel((8.0, 400), (2.0, 100));
     alone.subject.rows.push(row(PnAen, Error, 0.5, (3.0, 200, 0.0004)));
@@ -124,7 +129,7 @@ fn with_limits(surface: Surface, error: f64) -> Part {
 fn where_a_surface_stops_is_said_with_its_reason() {
     let text = said(&[with_limits(PhongAen, 0.02)]);
     assert!(
-        text.contains("However fine, `flat` stops at 4.00 % (Torus \\<7\\>), on 1 of 1 meshes: its points lie"),
+        text.contains("However fine, `flat` stops at 4.00 % (Torus \\<7\\>), on 1 of 1 mesh: its points lie"),
         "{text}"
     );
     assert!(text.contains("`phong-aen` stops at 2.00 %") && text.contains("off by 0.5 of what flat is"), "{text}");
@@ -159,7 +164,7 @@ fn fronts_are_counted_without_the_mesh_as_it_is() {
     assert_eq!((found(Error).meshes, found(Error).settings), ([2, 1], [2, 1]));
     assert_eq!((found(Uniform).meshes, found(Uniform).tried), ([0, 1], 2));
     let text = said(&parts[..1]);
-    assert!(text.contains("Most often on the front by triangles: pn-aen by error LOD, on 1 of 1 meshes."), "{text}");
+    assert!(text.contains("Most often on the front by triangles: pn-aen by error LOD, on 1 of 1 mesh."), "{text}");
     assert!(text.contains("On no front at all: pn-aen by uniform LOD."), "{text}");
 }
 
@@ -173,7 +178,7 @@ fn a_page_has_its_occasion_and_a_section_a_mesh() {
     assert!(text.starts_with(start), "{text}");
     assert!(!text.contains("is software") && text.contains("](torus.svg)"), "{text}");
     assert!(text.contains("| 0.1 % | pn-aen by uniform LOD | 4 | 160 | 2.00 | 0.0900 | 0.0450 | "), "{text}");
-    assert!(text.contains("\n0.1 %: not reached by flat by uniform LOD.\n"), "{text}");
+    assert!(text.contains("\n0.1 %: not reached by flat by any LOD.\n"), "{text}");
     let left_out = "Left out are settings: 3 of more than 500,000 triangles and 12 finer than a method takes to come as close as it gets.";
     assert!(text.contains(left_out), "{text}");
     let software = Occasion { is_software: true, ..occasion() };

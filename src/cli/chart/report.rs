@@ -45,10 +45,10 @@ pub fn pictures(meshes: &[Source]) -> Vec<String> {
 pub fn occasion(gpu: &Gpu) -> Occasion {
     let info = &gpu.info;
     let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|words| !words.is_empty());
-    let driver = driver.chain([info.backend.to_str()]).collect::<Vec<_>>().join(", ");
+    let driver: Vec<String> = driver.map(str::to_owned).chain([format!("{:?}", info.backend)]).collect();
     Occasion {
         adapter: info.name.clone(),
-        driver,
+        driver: driver.join(", "),
         is_software: gpu.is_software(),
         date: utc(SystemTime::now()),
         command: command_line(std::env::args_os().skip(1)),
