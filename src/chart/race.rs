@@ -39,14 +39,15 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
 }
 
 /// How many times the triangles of an earlier setting a later one has, that comes no closer: finer ones won't either.
-const FINER: u64 = 4;
+const FINER: u64 = 3;
 
 /// Which part of an error must be gone for a setting to be closer.
-const CLOSER: f64 = 0.01;
+const CLOSER: f64 = 0.05;
 
 /// Whether a method has come as close as it gets, so that finer settings cost more and show nothing new: of the rows of it, from
-/// coarse to fine, the last has four times the triangles of another, and each of its errors is less by a hundredth at most.
-/// What a surface is off from its limit falls to a quarter or less with that, so that what is left to gain is less still.
+/// coarse to fine, the last has three times the triangles of another, and each of its errors is less by a twentieth at most.
+/// What triangles are off from their surface falls as their number grows, or faster, so that half of that twentieth at most is
+/// left to gain.
 pub fn has_converged(rows: &[Row], method: Method) -> bool {
     let mut own = rows.iter().rev().filter(|row| row.setting.method == method);
     let Some(last) = own.next() else { return false };

@@ -50,12 +50,14 @@ fn a_mesh_is_held_against_another_or_its_own_limit() {
 fn a_report_has_a_page_a_table_and_a_picture_of_every_mesh() {
     let folder = Folder::new("chart-report");
     let into = folder.path("made/here");
-    let options = ["chart", "shape:icosahedron", "shape:cube-smooth", "--surfaces", "flat,pn-aen", "--factors", "1,2,8"];
+    let options =
+        ["chart", "shape:icosahedron", "shape:cube-smooth", "--surfaces", "flat,pn-aen", "--factors", "1,2,8"];
     let said = run(&[&options[..], &QUICK, &["--report", &into]].concat());
     assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
     let read = |name: &str| std::fs::read_to_string(format!("{into}/{name}")).expect("it was written");
     let (page, table) = (read("results.md"), read("results.csv"));
-    let adapter = csv::Reader::from_reader(table.as_bytes()).records().next().expect("a row").expect("whole")[1].to_owned();
+    let adapter =
+        csv::Reader::from_reader(table.as_bytes()).records().next().expect("a row").expect("whole")[1].to_owned();
     assert!(page.contains(&format!("Measured on {adapter} (")), "{page}");
     assert!(page.contains("\n    pnaen chart shape:icosahedron shape:cube-smooth --surfaces flat,pn-aen"), "{page}");
     for name in ["icosahedron.svg", "cube-smooth.svg"] {
