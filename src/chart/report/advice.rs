@@ -44,7 +44,7 @@ fn reaching(parts: &[Part], error: f64) -> Option<String> {
     let reached = by_triangles_alone.iter().filter(|answer| matches!(answer, Answer::By(_))).count();
     if reached > 0 {
         let [fewest, fastest] = [&by_triangles_alone, &by_ms].map(|answers| named(parts, answers, reached));
-        text += &format!(" the fewest triangles take {fewest}; the fastest, or as fast but for 5 %, are {fastest}.");
+        text += &format!(" fewest triangles: {fewest}; fastest, or within 5 % of it: {fastest}.");
     }
     let titles = |is_meant: &dyn Fn(&Answer) -> bool| -> Vec<String> {
         let meant = by_triangles.iter().filter(|(_, answer)| is_meant(answer));
@@ -56,7 +56,11 @@ fn reaching(parts: &[Part], error: f64) -> Option<String> {
         text += &format!(" No tessellation is needed on {}.", markdown::listed(&as_they_are));
     }
     if !nobody.is_empty() {
-        text += &format!(" Nothing gets there on {}.", markdown::listed(&nobody));
+        let on = match nobody.len() == raced.len() {
+            true => "any mesh".to_owned(),
+            false => markdown::listed(&nobody),
+        };
+        text += &format!(" Nothing gets there on {on}.");
     }
     Some(text)
 }

@@ -89,12 +89,12 @@ fn front(part: &Part, race: &Race) -> String {
 /// For each error what each method takes to reach it; and who doesn't, in sentences.
 fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
     let (mut rows, mut said) = (Vec::new(), Vec::new());
-    let (errors, unit) = if part.has_truth() { (PARTS, "%") } else { (PX, "px") };
+    let (errors, unit) = if part.has_truth() { (&PARTS[..], "%") } else { (&PX[..], "px") };
     let methods = || {
         let own = part.subject.methods().into_iter();
         own.filter(|method| race.surface.is_none_or(|surface| method.surface == surface))
     };
-    for error in errors {
+    for &error in errors {
         let level = format!("{} {unit}", plain(part.subject.unit() * error));
         if race.cheapest(error, Cost::Triangles, |row| part.is_plain(row)).is_some() {
             said.push(format!("{level}: the mesh as it is does."));
