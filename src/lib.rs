@@ -14,6 +14,7 @@ pub mod export;
 pub mod factors_file;
 pub mod gallery;
 pub mod gpu;
+pub mod markdown;
 pub mod measure;
 pub mod mesh;
 pub mod numbers;

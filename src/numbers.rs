@@ -1,5 +1,7 @@
 //! Numbers as people read them, in the window and on pages.
 
+use std::time::{SystemTime, UNIX_EPOCH};
+
 /// With a comma between thousands.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
@@ -40,9 +42,43 @@ pub fn hundredths(number: f64) -> String {
     }
 }
 
+/// A moment as its day and minute, in UTC.
+pub fn utc(moment: SystemTime) -> String {
+    let seconds = moment.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
+    let (days, minutes) = (seconds / 86_400, seconds / 60 % 1440);
+    let (year, month, day) = date(days);
+    format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", minutes / 60, minutes % 60)
+}
+
+/// Year, month and day, so many days after the first of January 1970. Years are counted from March, so that a leap day is
+/// the last of its year.
+fn date(days: u64) -> (u64, u64, u64) {
+    /// From the first of March of the year 0 to 1970, and in 400 years.
+    const BEFORE: u64 = 719_468;
+    const ERA: u64 = 146_097;
+    let days = days + BEFORE;
+    let (era, day) = (days / ERA, days % ERA);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (month, next) = if month < 10 { (month + 3, 0) } else { (month - 9, 1) };
+    (400 * era + year + next, month, day)
+}
+
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+
+    #[test]
+    fn days_have_their_dates() {
+        let at = |seconds: u64| utc(UNIX_EPOCH + Duration::from_secs(seconds));
+        assert_eq!([at(0), at(951_782_399)], ["1970-01-01 00:00 UTC", "2000-02-28 23:59 UTC"]);
+        assert_eq!([at(951_782_400), at(951_868_800)], ["2000-02-29 00:00 UTC", "2000-03-01 00:00 UTC"]);
+        assert_eq!([at(1_798_761_599), at(4_107_542_400)], ["2026-12-31 23:59 UTC", "2100-03-01 00:00 UTC"]);
+    }
 
     #[test]
     fn numbers_read_well() {

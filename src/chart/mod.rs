@@ -8,6 +8,7 @@ mod look;
 mod pen;
 mod picture;
 mod race;
+pub mod report;
 mod save;
 mod setting;
 mod words;
@@ -18,7 +19,7 @@ pub use legend::looks;
 pub use look::{Fill, Look, Shape, dash};
 pub use pen::RADIUS;
 pub use picture::{Cost, bitmap, svg};
-pub use race::{Race, Win, front};
+pub use race::{Race, Win, front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 

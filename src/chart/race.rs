@@ -1,6 +1,6 @@
 //! Which rows nobody beats, and which method is the fastest to reach an error.
 
-use super::{Method, Row, Subject};
+use super::{Cost, Method, Row, Subject};
 use crate::tessellate::Surface;
 
 /// Rows of a mesh that can be compared, with their errors: all, if they were held against one truth; otherwise those of one
@@ -36,6 +36,31 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
         better
     });
     order
+}
+
+/// How many times the triangles of an earlier setting a later one has, that comes no closer: finer ones won't either.
+const FINER: u64 = 3;
+
+/// Which part of an error must be gone for a setting to be closer.
+const CLOSER: f64 = 0.05;
+
+/// Whether a method has come as close as it gets, so that finer settings cost more and show nothing new: of the rows of it, from
+/// coarse to fine, the last has three times the triangles of another, and each of its errors is less by a twentieth at most.
+/// What triangles are off from their surface falls as their number grows, or faster, so that half of that twentieth at most is
+/// left to gain.
+pub fn has_converged(rows: &[Row], method: Method) -> bool {
+    let mut own = rows.iter().rev().filter(|row| row.setting.method == method);
+    let Some(last) = own.next() else { return false };
+    let errors = |row: &Row| {
+        let [largest, rms, degrees] =
+            row.errors.map_or([0.0; 3], |errors| [errors.largest, errors.rms, errors.normal_degrees]);
+        [largest, rms, degrees, row.max_error_px.unwrap_or(0.0)]
+    };
+    let is_no_closer = |earlier: &Row| {
+        let pairs = errors(earlier).into_iter().zip(errors(last));
+        pairs.into_iter().all(|(before, now)| now >= (1.0 - CLOSER) * before)
+    };
+    own.any(|row| row.triangles.saturating_mul(FINER) <= last.triangles && is_no_closer(row))
 }
 
 impl Subject {
@@ -91,12 +116,16 @@ impl<'a> Race<'a> {
         (0..count).map(|k| levels[k * (levels.len() - 1) / (count - 1).max(1)]).collect()
     }
 
+    /// The row that is off by no more than `error` at the least cost.
+    pub fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
+        let reached = self.entries.iter().filter(|(row, own)| *own <= error && of(row)).map(|(row, _)| *row);
+        reached.min_by(|a, b| cost.of(a).total_cmp(&cost.of(b)))
+    }
+
     /// Who is the fastest to be off by no more than `error`; nobody, if no row is.
     pub fn win(&self, error: f64) -> Option<Win<'a>> {
-        let reached = || self.entries.iter().filter(|(_, own)| *own <= error).map(|(row, _)| *row);
-        let faster = |a: &&Row, b: &&Row| a.time.total().total_cmp(&b.time.total());
-        let fastest = reached().min_by(faster)?;
-        let next = reached().filter(|row| row.setting.method != fastest.setting.method).min_by(faster);
+        let fastest = self.cheapest(error, Cost::Ms, |_| true)?;
+        let next = self.cheapest(error, Cost::Ms, |row| row.setting.method != fastest.setting.method);
         Some(Win { error, fastest, next })
     }
 }

@@ -10,7 +10,7 @@ fn method(surface: Surface, lod: LodKind) -> Method {
 }
 
 /// A row of so many ms and triangles, and an error that is a part of the diagonal and as many px.
-fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, error): (f64, u64, f64)) -> Row {
+pub(super) fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, error): (f64, u64, f64)) -> Row {
     Row {
         mesh: "shape:torus".into(),
         adapter: "an adapter, made up".into(),
@@ -23,13 +23,13 @@ fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, error): (f64,
     }
 }
 
-fn subject(truth: Option<&str>, rows: Vec<Row>) -> Subject {
+pub(super) fn subject(truth: Option<&str>, rows: Vec<Row>) -> Subject {
     let truth = truth.map(str::to_owned);
     Subject { title: "Torus <7>".into(), truth, adapter: "an adapter".into(), size: [1280, 720], rows }
 }
 
 /// Flat is as far off as its mesh whatever the factor; PN-AEN comes closer.
-fn some_rows() -> Vec<Row> {
+pub(super) fn some_rows() -> Vec<Row> {
     use LodKind::{Error, Uniform};
     vec![
         row(Surface::Flat, Uniform, 1.0, (1.0, 10, 0.03)),

@@ -1,5 +1,7 @@
 //! `pnaen chart`: speed against accuracy.
 
+mod report;
+
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,7 +12,8 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::options::{CameraOption, Size};
 use super::{CliError, SurfaceOptions, Telling, WeldOption, file_error, load, options, write_text};
-use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, svg};
+use crate::chart::report::{LeftOut, Part, TABLE};
+use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
 use crate::engine::{Engine, Loaded};
 use crate::measure::AccuracyOptions;
 use crate::mesh::{Progress, Source};
@@ -21,8 +24,9 @@ use crate::truth::Truth;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// .gltf or .glb files, or shapes made in code such as shape:torus, or shape:torus@2 (finer)
-    #[arg(value_parser = options::source(), required = true)]
+    /// .gltf or .glb files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with --report, by default
+    /// seven shapes, and assets/vase.glb where there is one
+    #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,
     /// Mesh that what is emitted should have been, such as the high-poly original, where the mesh is no shape with an exact
     /// surface of its own; with one mesh only
@@ -51,6 +55,9 @@ pub struct Args {
     /// Tolerances to try under LOD by error, in px, each 0.01 to 100
     #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "8,4,2,1,0.5,0.25,0.125", value_parser = options::tolerance)]
     pub tolerances: Vec<f32>,
+    /// Try every setting, also those finer than a method takes to come as close as it gets
+    #[arg(long)]
+    pub all: bool,
     /// Leave out settings of more triangles than this, and say so
     #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: u64,
@@ -65,11 +72,15 @@ pub struct Args {
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
     pub camera: CameraOption,
     /// Picture to write, an SVG or PNG file, with a part for each mesh
-    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture(), required_unless_present = "csv")]
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture(), required_unless_present_any = ["csv", "report"])]
     pub output: Option<PathBuf>,
     /// Table to write, a line as soon as a setting is done (- for standard output)
     #[arg(long, value_name = "OUT.csv")]
     pub csv: Option<PathBuf>,
+    /// Folder for a page that says which method to use when, results.md, a picture of each mesh, and the table, results.csv;
+    /// made if it isn't there
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
 }
 
 /// The exit code after Ctrl-C, as shells have it.
@@ -101,7 +112,7 @@ impl Args {
     /// # Errors
     /// There is nothing to try, or it isn't clear what `--truth` is for.
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
-        if self.truth.is_some() && self.files.len() > 1 {
+        if self.truth.is_some() && self.files.len() != 1 {
             return Err(CliError::Usage("--truth is for one mesh: chart the others on their own"));
         }
         let settings = self.plan().settings();
@@ -109,6 +120,11 @@ impl Args {
             return Err(CliError::Usage("subtriangulation has no LOD but uniform: add it to --lods"));
         }
         Ok(settings)
+    }
+
+    /// The meshes that were named, or what is usual.
+    fn meshes(&self) -> Vec<Source> {
+        if self.files.is_empty() { report::usual() } else { self.files.clone() }
     }
 
     fn plan(&self) -> Plan {
@@ -153,22 +169,32 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         let loaded = load(source, &args.weld.preparation())?;
         Ok(Loading { truth: args.truth_of(source)?, loaded })
     };
-    let meshes: Vec<Loading> = args.files.iter().map(load_one).collect::<Result<_, CliError>>()?;
+    let sources = args.meshes();
+    let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;
+    let folder = args.report.as_deref().map(report::make_folder).transpose()?;
     let engine = Engine::headless()?;
+    let tables = args.csv.iter().cloned().chain(folder.as_ref().map(|folder| folder.join(TABLE)));
     let mut session = Session {
         target: Target::new(&engine.gpu, args.size.0)?,
         engine,
-        table: args.csv.as_deref().map(Table::new).transpose()?,
+        tables: tables.map(|path| Table::new(&path)).collect::<Result<_, CliError>>()?,
         stop: stop_on_interrupt(),
         telling: Telling::new(),
         done: 0,
         all: settings.len() * meshes.len(),
     };
-    let mut subjects = Vec::new();
-    for mesh in &meshes {
-        let subject = session.subject(args, mesh, &settings)?;
-        subjects.extend((!subject.rows.is_empty()).then_some(subject));
+    let mut parts = Vec::new();
+    for (mesh, picture) in meshes.iter().zip(report::pictures(&sources)) {
+        let (subject, left_out) = session.subject(args, mesh, &settings)?;
+        let topology = &mesh.loaded.topology;
+        let (patches, split_edges) = (topology.patches.len() as u64, topology.edge_counts().split.into());
+        let part = Part { subject, patches, split_edges, picture, left_out };
+        parts.extend((!part.subject.rows.is_empty()).then_some(part));
     }
+    if let Some(folder) = &folder {
+        report::write(folder, &report::occasion(&session.engine.gpu), &parts)?;
+    }
+    let subjects: Vec<Subject> = parts.into_iter().map(|part| part.subject).collect();
     publish(args, &subjects)?;
     if session.stop.load(Ordering::Relaxed) && session.done < session.all {
         return Err(CliError::Interrupted { done: session.done, all: session.all });
@@ -180,7 +206,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 struct Session {
     engine: Engine,
     target: Target,
-    table: Option<Table>,
+    tables: Vec<Table>,
     stop: Arc<AtomicBool>,
     telling: Telling,
     /// Settings tried, of so many.
@@ -190,7 +216,7 @@ struct Session {
 
 impl Session {
     /// Tries all settings on a mesh, until somebody interrupts.
-    fn subject(&mut self, args: &Args, mesh: &Loading, settings: &[Setting]) -> Result<Subject, CliError> {
+    fn subject(&mut self, args: &Args, mesh: &Loading, settings: &[Setting]) -> Result<(Subject, LeftOut), CliError> {
         let Loading { loaded, truth } = mesh;
         let title = loaded.source.title();
         let scene = self.engine.scene(loaded, ARENA_BYTES)?;
@@ -205,33 +231,40 @@ impl Session {
             base: Settings::default(),
             effort: args.effort(),
         };
-        let (mut rows, mut too_large) = (Vec::new(), 0);
-        for setting in settings {
+        let mut rows = Vec::new();
+        let mut left_out = LeftOut { most_triangles: args.max_triangles, ..LeftOut::default() };
+        for (index, setting) in settings.iter().enumerate() {
             if self.stop.load(Ordering::Relaxed) {
+                left_out.interrupted = settings.len() - index;
                 break;
             }
             let number = self.done + 1;
+            if !args.all && has_converged(&rows, setting.method) {
+                left_out.converged += 1;
+                self.done = number;
+                continue;
+            }
             self.telling.say(|| format!("{title}, {number} of {}: {}, {setting}", self.all, setting.method));
             match bench.measure(setting)? {
                 Some(row) => {
-                    if let Some(table) = &mut self.table {
-                        table.add(&row.record())?;
-                    }
+                    self.tables.iter_mut().try_for_each(|table| table.add(&row.record()))?;
                     rows.push(row);
                 }
-                None => too_large += 1,
+                None => left_out.too_large += 1,
             }
             self.done = number;
         }
+        let LeftOut { too_large, most_triangles, .. } = left_out;
         if too_large > 0 {
-            let (count, most) = (settings.len(), args.max_triangles);
-            let said =
-                format!("{title}: {too_large} of {count} settings are left out, for more than {most} triangles.");
+            let count = settings.len();
+            let said = format!(
+                "{title}: {too_large} of {count} settings are left out, for more than {most_triangles} triangles."
+            );
             super::warn(&[said]);
         }
         let truth = truth.as_ref().map(|(_, words)| words.clone());
         let adapter = self.engine.gpu.info.name.clone();
-        Ok(Subject { title, truth, adapter, size: args.size.0, rows })
+        Ok((Subject { title, truth, adapter, size: args.size.0, rows }, left_out))
     }
 }
 

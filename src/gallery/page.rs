@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{Exhibit, Shown, Tile};
+use crate::markdown;
 use crate::numbers::{grouped, hundredths, short};
 
 /// The page's file.
@@ -22,7 +23,8 @@ const LEGEND: &str = "Red edges: their sides are half a px apart or more, in thi
      passes that tessellate and of the draw without marks, which leaves out the backs of closed surfaces that nothing tears. Factors are lower than asked for where a tile would have more \
      than about 2,000,000 triangles.\n";
 
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 11] = [
+    "",
     "factor",
     "triangles",
     "error, px",
@@ -56,9 +58,9 @@ pub fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<Shown>)
 
 /// What each tile showed.
 fn table(tiles: &[Tile], shown: &[Shown]) -> String {
-    let mut text = format!("| | {} |\n| --- |{}\n", COLUMNS.join(" | "), " ---: |".repeat(COLUMNS.len()));
-    for (tile, shown) in tiles.iter().zip(shown) {
-        let cells = [
+    let row = |(tile, shown): (&Tile, &Shown)| {
+        vec![
+            format!("`{}`", tile.name),
             shown.factor.to_string(),
             grouped(shown.triangles),
             shown.error_px.map_or("-".to_owned(), hundredths),
@@ -69,10 +71,9 @@ fn table(tiles: &[Tile], shown: &[Shown]) -> String {
             grouped(shown.folds),
             hundredths(shown.tessellation_ms),
             hundredths(shown.draw_ms),
-        ];
-        let _ = writeln!(text, "| `{}` | {} |", tile.name, cells.join(" | "));
-    }
-    text
+        ]
+    };
+    markdown::table(&COLUMNS, &[0], &tiles.iter().zip(shown).map(row).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

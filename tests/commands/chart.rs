@@ -47,6 +47,32 @@ fn a_mesh_is_held_against_another_or_its_own_limit() {
 }
 
 #[test]
+fn a_report_has_a_page_a_table_and_a_picture_of_every_mesh() {
+    let folder = Folder::new("chart-report");
+    let into = folder.path("made/here");
+    let options =
+        ["chart", "shape:icosahedron", "shape:cube-smooth", "--surfaces", "flat,pn-aen", "--factors", "1,2,8"];
+    let said = run(&[&options[..], &QUICK, &["--report", &into]].concat());
+    assert!(said.status.success(), "{}", String::from_utf8_lossy(&said.stderr));
+    let read = |name: &str| std::fs::read_to_string(format!("{into}/{name}")).expect("it was written");
+    let (page, table) = (read("results.md"), read("results.csv"));
+    let adapter =
+        csv::Reader::from_reader(table.as_bytes()).records().next().expect("a row").expect("whole")[1].to_owned();
+    assert!(page.contains(&format!("Measured on {adapter} (")), "{page}");
+    assert!(page.contains("\n    pnaen chart shape:icosahedron shape:cube-smooth --surfaces flat,pn-aen"), "{page}");
+    for name in ["icosahedron.svg", "cube-smooth.svg"] {
+        assert!(page.contains(&format!("]({name})")) && read(name).contains("</svg>"), "{name}");
+    }
+    // A face of the icosahedron lies 5.93 % of the sphere's diagonal below it; PN-AEN comes nearer, and a cube has no truth.
+    assert!(page.contains("`flat` stops at 5.93 % (Icosahedron)"), "{page}");
+    assert!(page.contains("- Cube, smooth normals: no truth is known"), "{page}");
+    assert!(page.contains("\n| Icosahedron | 5.93 | "), "{page}");
+    let rows = |start: &str| table.lines().filter(|line| line.starts_with(start)).count();
+    assert_eq!(rows("shape:icosahedron,"), 5, "flat at factor 8 is flat at factor 2: {table}");
+    assert!(page.contains("Left out are settings: 1 finer than a method takes"), "{page}");
+}
+
+#[test]
 fn wrong_usage_of_a_chart_is_said_in_a_sentence() {
     let usage = |arguments: &[&str], word: &str| {
         let said = failure(&[&["chart"], arguments].concat(), 2);
@@ -56,6 +82,8 @@ fn wrong_usage_of_a_chart_is_said_in_a_sentence() {
     usage(&["shape:torus", "--partitionings", "subtriangulation", "--lods", "error", "--csv", "-"], "subtriangulation");
     usage(&["shape:torus", "-o", "out.jpg"], ".svg or .png");
     usage(&["shape:torus"], "--output");
+    usage(&["--csv", "-"], "FILES");
+    usage(&["--report", "out", "--truth", "shape:torus"], "one mesh");
     usage(&["shape:torus", "--csv", "-", "--factors", "0.5"], "1 to 64");
     usage(&["shape:torus", "--csv", "-", "--samples", "1"], "100 to");
     sentence(&["chart", "shape:torus", "--csv", "/nowhere/at/all.csv"], &["/nowhere/at/all.csv", "written"]);
@@ -81,7 +109,7 @@ fn an_interrupt_keeps_what_is_done() {
     let factors: Vec<String> = (0..4000).map(|k| format!("{}", 1.0 + f64::from(k) / 64.0 / 4.0)).collect();
     let factors = factors.join(",");
     let options =
-        ["chart", "shape:icosahedron", "--surfaces", "flat", "--factors", &factors, "-o", &svg, "--csv", &csv];
+        ["chart", "shape:icosahedron", "--surfaces", "flat", "--all", "--factors", &factors, "-o", &svg, "--csv", &csv];
     let mut child = command(&[&options[..], &QUICK].concat())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())

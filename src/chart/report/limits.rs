@@ -1,0 +1,175 @@
+//! How close each surface gets, whatever it costs.
+
+use super::Part;
+use super::fronts::meshes;
+use super::lods::Range;
+use crate::chart::{Race, has_converged};
+use crate::markdown;
+use crate::numbers::short;
+use crate::settings::{Settings, option_name};
+use crate::tessellate::Surface;
+
+/// How close a surface gets on a mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// A part of the diagonal.
+    pub error: f64,
+    /// Whether finer settings come no closer, or might.
+    pub is_reached: bool,
+}
+
+/// How close a surface gets; none if it wasn't tried.
+pub fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit> {
+    let own = race.entries.iter().filter(|(row, _)| row.setting.method.surface == surface);
+    let error = own.map(|(_, error)| *error).reduce(f64::min)?;
+    let mut methods = part.subject.methods().into_iter().filter(|method| method.surface == surface);
+    let is_reached = methods.any(|method| has_converged(&part.subject.rows, method));
+    Some(Limit { error, is_reached })
+}
+
+/// Every surface that was tried, in the order of rows.
+pub fn surfaces(parts: &[Part]) -> Vec<Surface> {
+    let mut all = Vec::new();
+    for method in parts.iter().flat_map(|part| part.subject.methods()) {
+        if !all.contains(&method.surface) {
+            all.push(method.surface);
+        }
+    }
+    all
+}
+
+/// How close every surface gets on every mesh that has a truth.
+pub fn table_of(parts: &[Part]) -> String {
+    let surfaces = surfaces(parts);
+    let row = |part: &Part| -> Option<Vec<String>> {
+        let race = part.race()?;
+        let cell = |surface: &Surface| match limit(part, &race, *surface) {
+            Some(Limit { error, is_reached: true }) => short(100.0 * error),
+            Some(Limit { error, is_reached: false }) => format!("{} or less", short(100.0 * error)),
+            None => "-".to_owned(),
+        };
+        let cells = surfaces.iter().map(cell);
+        Some([markdown::plain(&part.subject.title)].into_iter().chain(cells).collect())
+    };
+    let rows: Vec<_> = parts.iter().filter_map(row).collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let names = surfaces.iter().map(|surface| format!("{}, %", option_name(*surface)));
+    let columns: Vec<String> = ["mesh".to_owned()].into_iter().chain(names).collect();
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    format!(
+        "\n### How close each surface gets\n\nThe least largest error of any setting; \"or less\" where finer ones would come \
+         closer still.\n\n{}",
+        markdown::table(&columns, &[0], &rows)
+    )
+}
+
+/// What is said of how close surfaces get.
+pub fn sentences(parts: &[Part]) -> Vec<String> {
+    let all = surfaces(parts);
+    all.iter()
+        .filter_map(|surface| stops(parts, *surface))
+        .chain(all.iter().filter_map(|s| rounds(parts, *s)))
+        .collect()
+}
+
+/// Where a surface stops, and why that is known; none if it stops nowhere.
+fn stops(parts: &[Part], surface: Surface) -> Option<String> {
+    let (mut reached, mut ratios, mut tried) = (Vec::new(), Vec::new(), 0);
+    for part in parts {
+        let Some(race) = part.race() else { continue };
+        let Some(limit) = limit(part, &race, surface) else { continue };
+        tried += 1;
+        if !limit.is_reached {
+            continue;
+        }
+        reached.push((limit.error, part));
+        let floor = part.subject.floor();
+        let flat = self::limit(part, &race, Surface::Flat).filter(|_| surface != Surface::Flat);
+        ratios.extend(flat.map(|flat| flat.error.max(floor) / limit.error.max(floor)));
+    }
+    reached.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let ((least, near), (most, far)) = (*reached.first()?, *reached.last()?);
+    let at = |error: f64, part: &Part| format!("{} % ({})", short(100.0 * error), markdown::plain(&part.subject.title));
+    let range = match reached.len() {
+        1 => at(least, near),
+        _ => format!("{} to {}", at(least, near), at(most, far)),
+    };
+    let name = option_name(surface);
+    let against =
+        Range::of(&ratios).map_or_else(String::new, |range| format!(" That is {} flat.", closer(&range, ratios.len())));
+    let on = reached.len();
+    Some(format!(
+        "However fine, `{name}` stops at {range}, on {on} of {}: {}.{against}",
+        meshes(tried),
+        reason(surface)
+    ))
+}
+
+fn closer(range: &Range, meshes: usize) -> String {
+    let Range { mean, least, most } = *range;
+    let (times, word) = if mean >= 1.0 { (mean, "closer") } else { (1.0 / mean, "farther off") };
+    match meshes {
+        1 => format!("{} times {word} than", short(times)),
+        _ if mean >= 1.0 => {
+            format!("{} times {word} (geometric mean; {} to {}) than", short(times), short(least), short(most))
+        }
+        _ => format!(
+            "{} times {word} (geometric mean; {} to {}) than",
+            short(times),
+            short(1.0 / most),
+            short(1.0 / least)
+        ),
+    }
+}
+
+/// Why a surface has a limit of its own.
+fn reason(surface: Surface) -> String {
+    match surface {
+        Surface::Flat => {
+            "its points lie on the mesh's own triangles, so that no factor moves anything or turns a normal".into()
+        }
+        Surface::Pn | Surface::PnAen | Surface::PnCrease => {
+            "a cubic patch knows where its corners are and how they are turned, \
+            which gives smooth surfaces their curvature; the rest only a finer mesh brings nearer"
+                .into()
+        }
+        Surface::Phong | Surface::PhongAen => {
+            let alpha = Settings::default().alpha;
+            let rises = 2.0 * alpha;
+            format!(
+                "to the second order it rises 2 alpha times as high over its triangles as a smooth surface does, which at {alpha} \
+                 is {rises} times: it is off by {} of what flat is",
+                (rises - 1.0).abs()
+            )
+        }
+        Surface::Nagata | Surface::NagataAen => {
+            "a quadratic patch has the slopes at its edges' ends, which gives smooth \
+            surfaces their curvature; the rest only a finer mesh brings nearer"
+                .into()
+        }
+    }
+}
+
+/// Where flat triangles are closer than a surface that goes by means of normals, and why, if creases are.
+fn rounds(parts: &[Part], surface: Surface) -> Option<String> {
+    if !matches!(surface, Surface::PnAen | Surface::PhongAen | Surface::NagataAen) {
+        return None;
+    }
+    let is_farther = |part: &&Part| {
+        let both =
+            part.race().and_then(|race| Some([limit(part, &race, surface)?, limit(part, &race, Surface::Flat)?]));
+        part.split_edges > 0 && both.is_some_and(|[own, flat]| own.error > flat.error)
+    };
+    let meshes: Vec<_> = parts.iter().filter(is_farther).map(|part| markdown::plain(&part.subject.title)).collect();
+    if meshes.is_empty() {
+        return None;
+    }
+    Some(format!(
+        "On {} `flat` comes closer than `{}`: creases are there (edges whose sides' normals differ), and the mean of both \
+         sides rounds them.",
+        markdown::listed(&meshes),
+        option_name(surface)
+    ))
+}

@@ -1,0 +1,102 @@
+//! `--report`: the folder that `pnaen chart` writes its page to, and what is charted if no mesh was named.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::super::{CliError, file_error, write_text};
+use crate::chart::report::{Occasion, PAGE, Part, page};
+use crate::chart::svg;
+use crate::gpu::Gpu;
+use crate::mesh::{Shape, Source};
+use crate::numbers::utc;
+
+/// Shapes with an exact surface each, round ones first.
+const SHAPES: [Shape; 7] =
+    [Shape::Icosphere, Shape::Ellipsoid, Shape::Torus, Shape::Cylinder, Shape::Cone, Shape::Saddle, Shape::Bicubic];
+
+/// The project's own mesh, where the command is run in its folder.
+const VASE: &str = "assets/vase.glb";
+
+/// What is charted if no mesh was named.
+pub fn usual() -> Vec<Source> {
+    let vase = Path::new(VASE).is_file().then(|| Source::File(VASE.into()));
+    SHAPES.into_iter().map(Source::Shape).chain(vase).collect()
+}
+
+/// Names for pictures, one a mesh: letters, digits and hyphens, and no name twice.
+pub fn pictures(meshes: &[Source]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for mesh in meshes {
+        let stem = match mesh {
+            Source::File(path) => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            shape => shape.to_string().trim_start_matches("shape:").to_owned(),
+        };
+        let sign = |letter: char| if letter.is_ascii_alphanumeric() { letter.to_ascii_lowercase() } else { '-' };
+        let stem: String = stem.chars().map(sign).collect();
+        let name = |k: usize| if k == 1 { format!("{stem}.svg") } else { format!("{stem}-{k}.svg") };
+        let free = (1..).map(name).find(|name| !names.contains(name));
+        names.extend(free);
+    }
+    names
+}
+
+/// What it runs on, now, and by which command line.
+pub fn occasion(gpu: &Gpu) -> Occasion {
+    let info = &gpu.info;
+    let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|words| !words.is_empty());
+    let driver: Vec<String> = driver.map(str::to_owned).chain([format!("{:?}", info.backend)]).collect();
+    Occasion {
+        adapter: info.name.clone(),
+        driver: driver.join(", "),
+        is_software: gpu.is_software(),
+        date: utc(SystemTime::now()),
+        command: command_line(std::env::args_os().skip(1)),
+    }
+}
+
+/// The command with its arguments, as one types them.
+fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "_@%+=:,./-".contains(letter);
+    let typed = |argument: OsString| {
+        let text = argument.to_string_lossy().into_owned();
+        if !text.is_empty() && text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
+    };
+    ["pnaen".to_owned()].into_iter().chain(arguments.map(typed)).collect::<Vec<_>>().join(" ")
+}
+
+/// Makes the folder, so that a command that takes minutes doesn't fail at its end.
+pub fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
+    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &error))?;
+    Ok(folder.to_owned())
+}
+
+/// Writes the page and its pictures.
+pub fn write(folder: &Path, occasion: &Occasion, parts: &[Part]) -> Result<(), CliError> {
+    for part in parts {
+        write_text(&folder.join(&part.picture), &svg(std::slice::from_ref(&part.subject))?)?;
+    }
+    write_text(&folder.join(PAGE), &page(occasion, parts))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_mesh_has_a_picture_of_its_own() {
+        let source = |text: &str| text.parse::<Source>().expect("a source");
+        let meshes = ["shape:torus", "shape:torus@2", "a/Low poly.glb", "b/low poly.gltf", "torus.glb"].map(source);
+        assert_eq!(pictures(&meshes), ["torus.svg", "torus-2.svg", "low-poly.svg", "low-poly-2.svg", "torus-3.svg"]);
+    }
+
+    #[test]
+    fn the_command_line_can_be_typed_again() {
+        let line = |words: &[&str]| command_line(words.iter().map(OsString::from));
+        assert_eq!(
+            line(&["chart", "shape:torus@2", "--report", "docs/results"]),
+            "pnaen chart shape:torus@2 --report docs/results"
+        );
+        assert_eq!(line(&["chart", "it's a.glb", ""]), "pnaen chart 'it'\\''s a.glb' ''");
+    }
+}

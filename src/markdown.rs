@@ -1,0 +1,52 @@
+//! What pages that commands write are made of.
+
+/// A table: `words` are the columns that stand to the left, others are numbers and stand to the right.
+pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String {
+    let line = |cells: &mut dyn Iterator<Item = &str>| {
+        let cell = |text: &str| if text.is_empty() { " |".to_owned() } else { format!(" {text} |") };
+        format!("|{}\n", cells.map(cell).collect::<String>())
+    };
+    let mut text = line(&mut columns.iter().copied());
+    text += &line(&mut (0..columns.len()).map(|column| if words.contains(&column) { "---" } else { "---:" }));
+    text.extend(rows.iter().map(|row| line(&mut row.iter().map(String::as_str))));
+    text
+}
+
+/// Words one after the other, as a sentence lists them.
+pub fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
+/// Text that stands for itself, also where it has letters that Markdown reads as signs.
+pub fn plain(text: &str) -> String {
+    let mut out = String::new();
+    for letter in text.chars() {
+        if matches!(letter, '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#') {
+            out.push('\\');
+        }
+        out.push(letter);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stand_left_and_numbers_right() {
+        let text = table(&["", "n"], &[0], &[vec!["a".into(), "1".into()], vec![String::new(), "22".into()]]);
+        assert_eq!(text, "| | n |\n| --- | ---: |\n| a | 1 |\n| | 22 |\n");
+    }
+
+    #[test]
+    fn words_are_listed_and_signs_are_letters() {
+        let words = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!([listed(&words[..1]), listed(&words[..2]), listed(&words)], ["a", "a and b", "a, b and c"]);
+        assert_eq!(plain("low_poly|2.glb"), "low\\_poly\\|2.glb");
+    }
+}
