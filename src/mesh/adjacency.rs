@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use clap::ValueEnum;
 
-use super::topology::Topology;
+use super::topology::{Patch, Side, Topology};
 
 /// Which indices a patch has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -41,26 +41,41 @@ impl Layout {
 
     /// The number of indices a patch.
     pub fn per_patch(self) -> usize {
+        self.of_twelve().len()
+    }
+
+    /// Which of a patch's twelve.
+    fn of_twelve(self) -> Range<usize> {
         match self {
-            Self::Six => 6,
-            Self::Nine => 9,
-            Self::Twelve => 12,
+            Self::Six => 3..9,
+            Self::Nine => 0..9,
+            Self::Twelve => 0..12,
         }
     }
 
     /// The indices of every patch, in the order of the patches.
     pub fn indices(self, topology: &Topology) -> Vec<u32> {
-        let patches = 0..topology.patches.len() as u32;
-        match self {
-            Self::Six => patches.flat_map(|patch| six(topology, patch)).collect(),
-            Self::Nine => patches.flat_map(|patch| nine(topology, patch)).collect(),
-            Self::Twelve => patches.flat_map(|patch| twelve(topology, patch)).collect(),
+        let (per_patch, of_twelve) = (self.per_patch(), self.of_twelve());
+        let mut indices = Vec::with_capacity(per_patch * topology.patches.len());
+        for patch in &topology.patches {
+            indices.extend_from_slice(&alone(topology, patch)[of_twelve.clone()]);
         }
+        // Edge by edge: what is read lies in a row, and only what is written is as far apart as the patches. To ask each
+        // patch for its neighbours is several times slower where triangles come in no order.
+        for edge in &topology.edges {
+            if let [a, b] = topology.edge_sides(edge) {
+                for (own, other) in [(a, b), (b, a)] {
+                    let place = per_patch * own.patch as usize + pair(own.index.into()).start - of_twelve.start;
+                    indices[place..place + 2].copy_from_slice(&across(own, other));
+                }
+            }
+        }
+        indices
     }
 
     /// The parts of a patch, and where among its indices they are.
     pub fn parts(self) -> impl Iterator<Item = (Part, Range<usize>)> {
-        let first = if self == Self::Six { 0 } else { 3 };
+        let first = pair(0).start - self.of_twelve().start;
         let corners = (self != Self::Six).then_some((Part::Corners, 0..3));
         let sides = (0..3).map(move |k| (Part::Side(k as u32), first + 2 * k..first + 2 * k + 2));
         let dominant = (self == Self::Twelve).then_some((Part::Dominant, 9..12));
@@ -68,31 +83,15 @@ impl Layout {
     }
 }
 
-/// The neighbours' corners along a patch's sides 0-1, 1-2 and 2-0, each pair in the patch's own direction: the first lies
-/// on the point of corner 0, the second on that of corner 1, the third on that of corner 1, and so on. Where there is no
-/// single neighbour (a boundary, or three sides and more) the patch's own corners stand in.
-///
-/// # Panics
-/// When `patch` isn't an index into [`Topology::patches`].
-pub fn six(topology: &Topology, patch: u32) -> [u32; 6] {
-    let own = topology.patches[patch as usize].corners;
-    let mut indices = [0; 6];
-    for k in 0..3 {
-        let across = neighbour(topology, patch, k).unwrap_or([own[k], own[(k + 1) % 3]]);
-        indices[2 * k..2 * k + 2].copy_from_slice(&across);
-    }
-    indices
-}
-
-/// A patch's corners 0, 1, 2, then the six of [`six`].
+/// A patch's corners 0, 1, 2, then its neighbours' corners along the sides 0-1, 1-2 and 2-0, each pair in the patch's own
+/// direction: the first lies on the point of corner 0, the second on that of corner 1, the third on that of corner 1, and
+/// so on. Where there is no single neighbour (a boundary, or three sides and more) the patch's own corners stand in.
 ///
 /// # Panics
 /// When `patch` isn't an index into [`Topology::patches`].
 pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
-    let mut indices = [0; 9];
-    indices[..3].copy_from_slice(&topology.patches[patch as usize].corners);
-    indices[3..].copy_from_slice(&six(topology, patch));
-    indices
+    let [nine @ .., _, _, _] = twelve(topology, patch);
+    nine
 }
 
 /// The nine of [`nine`], then the dominant corner of corners 0, 1 and 2: the lowest corner on the same point, which is
@@ -101,26 +100,46 @@ pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
 /// # Panics
 /// When `patch` isn't an index into [`Topology::patches`].
 pub fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
-    let mut indices = [0; 12];
-    indices[..9].copy_from_slice(&nine(topology, patch));
-    for (k, corner) in topology.patches[patch as usize].corners.into_iter().enumerate() {
-        let point = topology.corner_points[corner as usize];
-        indices[9 + k] = topology.point_corners[point as usize];
+    let patch = &topology.patches[patch as usize];
+    let mut indices = alone(topology, patch);
+    for (k, &own) in patch.sides.iter().enumerate() {
+        if let Some(across) = neighbour(topology, own) {
+            indices[pair(k)].copy_from_slice(&across);
+        }
     }
     indices
 }
 
-/// The corners that the one other patch has along side k, in this patch's own direction.
-fn neighbour(topology: &Topology, patch: u32, k: usize) -> Option<[u32; 2]> {
-    let own = topology.patches[patch as usize].sides[k];
-    let side = topology.sides[own as usize];
+/// The twelve of a patch as if it had no neighbours.
+fn alone(topology: &Topology, patch: &Patch) -> [u32; 12] {
+    let [a, b, c] = patch.corners;
+    let [d, e, f] = patch.corners.map(|corner| {
+        let point = topology.corner_points[corner as usize];
+        topology.point_corners[point as usize]
+    });
+    [a, b, c, a, b, b, c, c, a, d, e, f]
+}
+
+/// Where the neighbour's corners along side k are among the twelve.
+fn pair(k: usize) -> Range<usize> {
+    3 + 2 * k..5 + 2 * k
+}
+
+/// The corners that the one other patch has along a side (an index into [`Topology::sides`]).
+fn neighbour(topology: &Topology, own: u32) -> Option<[u32; 2]> {
+    let side = &topology.sides[own as usize];
     let range = topology.edges[side.edge as usize].sides.clone();
     if range.len() != 2 {
         return None;
     }
     let other = if own == range.start { range.start + 1 } else { range.start };
-    let [a, b] = topology.sides[other as usize].corners;
-    Some(if side.reversed { [b, a] } else { [a, b] })
+    Some(across(side, &topology.sides[other as usize]))
+}
+
+/// The other side's corners in a side's own direction.
+fn across(own: &Side, other: &Side) -> [u32; 2] {
+    let [a, b] = other.corners;
+    if own.reversed { [b, a] } else { [a, b] }
 }
 
 #[cfg(test)]
@@ -132,7 +151,10 @@ mod tests {
     use crate::mesh::{Corner, Mesh, Progress};
 
     fn topology(mesh: &Mesh) -> Topology {
-        Topology::build(mesh, &Progress::new()).unwrap()
+        let topology = Topology::build(mesh, &Progress::new()).unwrap();
+        let one_by_one = (0..topology.patches.len() as u32).flat_map(|patch| twelve(&topology, patch));
+        assert!(Layout::Twelve.indices(&topology).into_iter().eq(one_by_one), "all patches at once are each by itself");
+        topology
     }
 
     /// A square of two triangles, each with corners of its own.
@@ -148,7 +170,7 @@ mod tests {
         let topology = topology(&square());
         assert_eq!(nine(&topology, 0), [0, 1, 2, 0, 1, 1, 2, 4, 3]);
         assert_eq!(nine(&topology, 1), [3, 4, 5, 0, 2, 4, 5, 5, 3]);
-        assert_eq!(six(&topology, 1), [0, 2, 4, 5, 5, 3], "without the corners");
+        assert_eq!(Layout::Six.indices(&topology)[6..], [0, 2, 4, 5, 5, 3], "without the corners");
         assert_eq!(twelve(&topology, 1)[9..], [0, 2, 5]);
     }
 
