@@ -18,7 +18,7 @@ mod lod;
 mod mesh;
 mod nets;
 mod normal;
-pub mod patterns;
+pub(crate) mod patterns;
 mod posed;
 mod relief;
 mod solid;
