@@ -80,7 +80,7 @@ pub struct ComputePipelines {
     /// One for each of [`Normals`].
     pub emit_vertices: [wgpu::ComputePipeline; 3],
     pub emit_triangles: wgpu::ComputePipeline,
-    /// [`patterns::PATTERNS`], for `emit_triangles`.
+    /// Which points triangles join, looked up by `emit_triangles`: see `shaders/patterns.wgsl`.
     pub patterns: wgpu::Buffer,
     pub directions: wgpu::ComputePipeline,
     pub frames: wgpu::ComputePipeline,
