@@ -128,6 +128,7 @@ impl HeightMap {
 impl Heights {
     /// One map for all of a mesh's materials.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
+        // It fails only when it is cancelled, and this progress is nobody else's.
         Self::all_over(mesh, map, &Progress::new()).expect("nobody cancels")
     }
 

@@ -12,6 +12,7 @@ impl HeightMap {
         let is_image = width > 0 && heights.len() == width * size[1] as usize && !heights.is_empty();
         let (size, width, heights) = if is_image { (size, width, heights) } else { ([1, 1], 1, vec![0.0]) };
         let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&heights[y * width..(y + 1) * width]);
+        // It fails only when it is cancelled, and this progress is nobody else's.
         Self::build(size, &Progress::new(), row).expect("nobody cancels")
     }
 
