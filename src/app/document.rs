@@ -42,7 +42,7 @@ impl Document {
     pub fn bytes(&self) -> u64 {
         let of = |scene: &Scene| {
             let tessellator = &scene.tessellator;
-            tessellator.buffers().bytes() + tessellator.work_bytes() + tessellator.arena_bytes()
+            tessellator.buffers().bytes() + scene.work_bytes() + tessellator.arena_bytes()
         };
         Half::BOTH.into_iter().filter_map(|half| self.scene.half(half)).map(of).sum()
     }

@@ -5,6 +5,7 @@ use egui::RichText;
 use super::App;
 use super::text::{grouped, mebibytes, short};
 use super::widgets::{rgb, status};
+use crate::gpu::DRAWING;
 use crate::render::layout::CRACK_COLOR;
 
 impl App {
@@ -68,18 +69,19 @@ impl App {
     /// Tessellation and drawing, by the last run of each pass and the GPU's own clock; or else the last whole picture.
     fn times(&self) -> (String, String) {
         let times = &self.viewport.times;
-        let draw = times.iter().find(|time| time.pass == "draw" && self.viewport.pass_times_hold);
-        let Some(draw) = draw else {
+        if !(self.viewport.pass_times_hold && times.iter().any(|time| time.pass == "draw")) {
             let ms = self.viewport.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
             let why = "From submitting the last picture to its completion: this adapter can't time single passes, or the \
                        picture was drawn in several steps.";
             return (ms, why.into());
-        };
-        let all: f64 = times.iter().map(|time| time.ms).sum();
+        }
+        let sum =
+            |drawing| times.iter().filter(|time| DRAWING.contains(&time.pass) == drawing).map(|time| time.ms).sum();
+        let (tessellation, draw): (f64, f64) = (sum(false), sum(true));
         let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
         let hover =
             format!("Tessellation and drawing: each pass's last run, by the GPU's own clock.\n{}", passes.join("\n"));
-        (format!("{:.2} + {:.2} ms", all - draw.ms, draw.ms), hover)
+        (format!("{:.2} + {:.2} ms", tessellation, draw), hover)
     }
 
     fn status_of_cracks(&self, ui: &mut egui::Ui) {

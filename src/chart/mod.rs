@@ -23,7 +23,7 @@ pub use race::{Race, Win, front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
-use crate::gpu::PassTime;
+use crate::gpu::{DRAWING, PassTime};
 use crate::settings::option_name;
 use crate::tessellate::Vertex;
 
@@ -89,7 +89,7 @@ impl Time {
         let sum = |which: &dyn Fn(&str) -> bool| {
             passes.iter().filter(|time| which(time.pass)).map(|time| time.ms).sum::<f64>()
         };
-        Self { tessellate: sum(&|pass| TESSELLATE.contains(&pass)), draw: sum(&|pass| pass == "draw") }
+        Self { tessellate: sum(&|pass| TESSELLATE.contains(&pass)), draw: sum(&|pass| DRAWING.contains(&pass)) }
     }
 
     pub fn total(&self) -> f64 {

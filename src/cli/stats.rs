@@ -191,7 +191,7 @@ impl Stats {
             vertices_out,
             bytes: Bytes {
                 input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,
-                topology: scene.tessellator.buffers().bytes() + scene.tessellator.work_bytes(),
+                topology: scene.tessellator.buffers().bytes() + scene.work_bytes(),
                 arena: scene.tessellator.arena_bytes(),
             },
             cracks: CrackStats::new(measured, topology, view),

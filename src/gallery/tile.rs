@@ -4,7 +4,7 @@ use image::{DynamicImage, RgbImage};
 
 use super::page::{CALM_COLOR, VISIBLE_PX};
 use crate::engine::{Engine, Loaded, Runs};
-use crate::gpu::{GpuError, PassTime, Timing};
+use crate::gpu::{DRAWING, GpuError, PassTime, Timing};
 use crate::measure::{CrackedEdge, Measured};
 use crate::render::layout::{CRACK_COLOR, linear};
 use crate::render::{Camera, LineSegment, Scene, Target};
@@ -84,8 +84,8 @@ pub fn draw_tile(
         max_gap: measured.cracks.max_gap(),
         different_normals: measured.cracks.different_normals,
         folds: measured.folds,
-        tessellation_ms: ms(&passes, |pass| pass != "draw"),
-        draw_ms: ms(&passes, |pass| pass == "draw"),
+        tessellation_ms: ms(&passes, |pass| !DRAWING.contains(&pass)),
+        draw_ms: ms(&passes, |pass| DRAWING.contains(&pass)),
     };
     Ok((DynamicImage::from(target.read(&engine.gpu)?).to_rgb8(), shown))
 }

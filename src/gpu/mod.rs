@@ -20,12 +20,16 @@ mod slab;
 mod tessellator;
 
 pub use arena::{VERTEX_HALF, vertices_of};
-pub use buffers::MeshBuffers;
+pub use buffers::{MeshBuffers, empty};
 pub use device::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;
-pub use pipelines::{ComputePipelines, SHADERS, bind_group, compute_pipeline, shader_module, shader_source};
-pub use recorder::{
-    PASSES, PassTime, Recorder, Timing, mapped_bytes, read_buffer, read_staging, staging_buffer, take_times, wait,
+pub use pipelines::{
+    ComputePipelines, SHADERS, bind_group, compute_pipeline, dispatch, grid, shader_module, shader_source,
 };
+pub use recorder::{
+    DRAWING, PASSES, PassTime, Recorder, Timing, mapped_bytes, read_buffer, read_staging, staging_buffer, take_times,
+    wait,
+};
+pub use slab::uniform_buffer;
 pub use tessellator::{ChunkBuffers, Tessellator};

@@ -25,6 +25,7 @@ const LOADS: &str = include_str!("../../shaders/loads.wgsl");
 const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
 const DISPLACE: &str = include_str!("../../shaders/displace.wgsl");
 const RELIEF: &str = include_str!("../../shaders/relief.wgsl");
+const WORKGROUP_SCAN: &str = include_str!("../../shaders/workgroup_scan.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
@@ -32,17 +33,25 @@ const ROOMS: [&str; 11] =
     [DOMAIN[0], DOMAIN[1], DOMAIN[2], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
-pub const SHADERS: [(&str, &[&str]); 14] = [
+pub const SHADERS: [(&str, &[&str]); 15] = [
     ("deform", &[include_str!("../../shaders/deform.wgsl"), include_str!("../../shaders/pass_deform.wgsl")]),
     ("nets", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
     ("counts", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
-    ("scan", &[include_str!("../../shaders/pass_scan.wgsl")]),
+    ("scan", &[WORKGROUP_SCAN, include_str!("../../shaders/pass_scan.wgsl")]),
     ("chunks", &[include_str!("../../shaders/pass_chunks.wgsl")]),
     ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
     ("levels", &[DISPLACE, RELIEF, include_str!("../../shaders/pass_levels.wgsl")]),
     ("displace", &[LOADS, LOAD_NET, DISPLACE, RELIEF, include_str!("../../shaders/pass_displace.wgsl")]),
     ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
+    (
+        "coverage",
+        &[
+            WORKGROUP_SCAN,
+            include_str!("../../shaders/coverage.wgsl"),
+            include_str!("../../shaders/pass_coverage.wgsl"),
+        ],
+    ),
     ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
     ("leaks", &[include_str!("../../shaders/draw_leaks.wgsl")]),
     ("pick", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_pick.wgsl")]),

@@ -150,8 +150,23 @@ fn summed(times: impl Iterator<Item = PassTime>) -> Vec<PassTime> {
 }
 
 /// The names that passes have; a profiler's results give them back as owned text.
-pub const PASSES: [&str; 11] =
-    ["deform", "nets", "directions", "factors", "levels", "counts", "scan", "chunks", "emit", "displace", "draw"];
+pub const PASSES: [&str; 12] = [
+    "deform",
+    "nets",
+    "directions",
+    "factors",
+    "levels",
+    "counts",
+    "scan",
+    "chunks",
+    "emit",
+    "displace",
+    "coverage",
+    "draw",
+];
+
+/// Those of them that make a picture of what was emitted.
+pub const DRAWING: [&str; 2] = ["coverage", "draw"];
 
 fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {
     let pass = PASSES.into_iter().find(|pass| *pass == result.label)?;

@@ -1,6 +1,7 @@
 //! Pictures: a camera, a scene on the device, and one indirect draw a material into an offscreen texture.
 
 mod camera;
+mod coverage;
 mod deviation;
 pub mod layout;
 mod leaks;
@@ -13,6 +14,7 @@ mod scene;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
+pub use coverage::Sieve;
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use leaks::LeakCounter;
 pub use marks::{patch_lines, t_junction_lines, worst_lines};

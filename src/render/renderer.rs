@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use wgpu::util::DeviceExt;
 
+use super::coverage::{Coverage, CoveragePipelines};
 use super::deviation::{Deviations, scale_of};
 use super::layout::{Frame, linear, overlay_bits};
 use super::pipelines::{Layer, chunk_layout, deviation_layout, material_layout, pipeline, scene_layout};
@@ -12,6 +13,7 @@ use super::{Camera, Scene, Target};
 use crate::gpu::{ChunkBuffers, Gpu, Recorder, VERTEX_HALF};
 use crate::mesh::Texture;
 use crate::settings::{Colors, DeviationUnit, Half, Overlays, Settings};
+use crate::tessellate::CoverageView;
 
 /// Long-lived: one for a device, whatever is loaded.
 pub struct Renderer {
@@ -34,7 +36,13 @@ pub struct Renderer {
     /// Through everything and faint, then what is in sight.
     lines: [wgpu::RenderPipeline; 2],
     normals: [wgpu::RenderPipeline; 2],
+    coverage: CoveragePipelines,
+    /// From how many triangles of a chunk on those that cover no sample are left out before it is drawn.
+    pub sift_from: u32,
 }
+
+/// Below, a rasteriser is done before the passes that would spare it are.
+const SIFT_FROM: u32 = 1 << 18;
 
 /// Bytes from a [`crate::gpu::layout::DrawArgs`]'s start to its arguments for pulled drawing.
 const PULL_ARGS: u64 = std::mem::offset_of!(crate::gpu::layout::DrawArgs, pull_vertex_count) as u64;
@@ -104,6 +112,8 @@ impl Renderer {
             chunk_layout,
             deviation_layout,
             unknown: Deviations::unknown(gpu),
+            coverage: CoveragePipelines::new(gpu),
+            sift_from: SIFT_FROM,
         }
     }
 
@@ -148,9 +158,12 @@ impl Renderer {
             }
             let (first, last) = (index == 0, index + 1 == steps.len());
             let color = target.color(linear_color(settings.background), first, last);
+            let mut surfaces = self.surface_pipelines(drawn, target, camera, settings);
+            if let Step::Surface(_, chunk) = *step {
+                surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces);
+            }
             let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { continue };
-            let group = self.scene_group(drawn, frame);
-            let (surfaces, rect) = (self.surface_pipelines(drawn, target, camera, settings), rects[half as usize]);
+            let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
             recorder.render("draw", color, target.depth(first), |pass| {
                 pass.set_bind_group(0, &group, &[]);
                 if first && !has_left {
@@ -186,7 +199,32 @@ impl Renderer {
             false if overlay_bits(&settings.overlays) == 0 => [&self.plain, &self.textured],
             false => [&self.indexed; 2],
         };
-        Surfaces { materials: materials.map(|sides| &sides[usize::from(fronts)]), pulled }
+        Surfaces { materials: materials.map(|sides| &sides[usize::from(fronts)]), pulled, fronts, sifted: false }
+    }
+
+    /// Keeps only what may be seen of a chunk that was emitted, if that is worth it. False where all of it is to be drawn.
+    fn sift(
+        &self,
+        recorder: &mut Recorder,
+        scene: &mut Scene,
+        target: &Target,
+        camera: &Camera,
+        chunk: usize,
+        surfaces: &Surfaces,
+    ) -> bool {
+        let (gpu, chunk) = (&self.gpu, scene.tessellator.chunk(chunk));
+        if surfaces.pulled || chunk.chunk.triangle_count < self.sift_from {
+            return false;
+        }
+        if !scene.coverage.as_ref().is_some_and(|coverage| coverage.has_room(&chunk)) {
+            let material_count = scene.tessellator.buffers().material_count;
+            scene.coverage = Coverage::new(gpu, &chunk, material_count).ok();
+        }
+        let Some(coverage) = &scene.coverage else { return false };
+        let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
+        let view = CoverageView::new(clip_from_object, target.viewport(), gpu.samples, surfaces.fronts);
+        coverage.keep(recorder, &self.coverage, gpu, &chunk, view);
+        true
     }
 
     /// How the picture sees a scene, on the device.
@@ -246,18 +284,22 @@ impl Renderer {
         }
         pass.set_scissor_rect(x, y, width, height);
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
+        let sifted = scene.coverage.as_ref().filter(|_| surfaces.sifted);
+        let (indices, draw_args, mut args) = match sifted {
+            Some(coverage) => (&coverage.indices, &coverage.draw_args, 0),
+            None => (chunk.indices, chunk.draw_args, chunk.draw_args_offset),
+        };
         if !surfaces.pulled {
             set_vertices(pass, chunk);
-            pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
-        let mut args = chunk.draw_args_offset;
         for (material, own) in scene.materials.iter().zip(&scene.tessellator.mesh().materials) {
             pass.set_pipeline(surfaces.materials[usize::from(own.texture.is_some())]);
             pass.set_bind_group(1, material, &[]);
             if surfaces.pulled {
-                pass.draw_indirect(chunk.draw_args, args + PULL_ARGS);
+                pass.draw_indirect(draw_args, args + PULL_ARGS);
             } else {
-                pass.draw_indexed_indirect(chunk.draw_args, args);
+                pass.draw_indexed_indirect(draw_args, args);
             }
             args += size_of::<crate::gpu::layout::DrawArgs>() as u64;
         }
@@ -321,6 +363,10 @@ struct Surfaces<'a> {
     /// Of materials without a texture, and with one.
     materials: [&'a wgpu::RenderPipeline; 2],
     pulled: bool,
+    /// Whether what faces away is left out.
+    fronts: bool,
+    /// Whether what covers no sample is.
+    sifted: bool,
 }
 
 /// What one render pass of a picture adds.

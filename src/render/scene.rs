@@ -9,6 +9,7 @@ use wgpu::util::DeviceExt;
 
 use super::Renderer;
 use super::Scale;
+use super::coverage::Coverage;
 use super::deviation::Deviations;
 use super::layout::{Material, linear};
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
@@ -26,6 +27,8 @@ pub struct Scene {
     pub(super) ulp: f32,
     pub(super) materials: Vec<wgpu::BindGroup>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
+    /// Once a picture had triangles enough.
+    pub(super) coverage: Option<Coverage>,
     /// How far what was emitted is from the truth, once that is known.
     deviation: Option<Deviations>,
     /// The same mesh tessellated once more, for a picture with another surface left of its split.
@@ -82,16 +85,18 @@ impl Scene {
         });
         let materials = materials.collect();
         let ulp = ulp(tessellator.topology()) as f32;
-        Ok(Self { tessellator, bounds: mesh.bounds(), ulp, materials, lines: None, deviation: None, left: None })
+        Ok(Self::at_rest(tessellator, mesh.bounds(), ulp, materials))
     }
 
     /// Makes a scene of the same mesh for [`Self::set_left`], on whatever thread: it shares mesh, topology and images.
     pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let tessellator = self.tessellator.beside(arena_bytes);
         let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
-        move || {
-            Ok(Self { tessellator: tessellator()?, bounds, ulp, materials, lines: None, deviation: None, left: None })
-        }
+        move || Ok(Self::at_rest(tessellator()?, bounds, ulp, materials))
+    }
+
+    fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<wgpu::BindGroup>) -> Self {
+        Self { tessellator, bounds, ulp, materials, lines: None, coverage: None, deviation: None, left: None }
     }
 
     /// Takes what is drawn left of the split where settings have a surface there, in the pose of now; or none, for the mesh
@@ -109,6 +114,19 @@ impl Scene {
         let Some(left) = &mut self.left else { return Ok(()) };
         (left.bounds, left.ulp) = (self.bounds, self.ulp);
         left.tessellator.pose_as(self.tessellator.posed())
+    }
+
+    /// Bytes of what the passes work with: see [`Tessellator::work_bytes`].
+    pub fn work_bytes(&self) -> u64 {
+        self.tessellator.work_bytes() + self.coverage.as_ref().map_or(0, Coverage::bytes)
+    }
+
+    /// How many triangles of the last chunk that was sifted were drawn; none if every one was.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn covering_triangles(&self) -> Result<Option<u64>, GpuError> {
+        self.coverage.as_ref().map(|coverage| coverage.kept(self.tessellator.gpu())).transpose()
     }
 
     /// What a half draws; none left of a split that has the mesh there as it came.

@@ -5,6 +5,7 @@ mod budget;
 mod connectivity;
 mod control_points;
 mod convention;
+mod coverage;
 mod cull;
 mod deform;
 mod displace;
@@ -32,6 +33,7 @@ pub use control_points::{
     phong_control_point, side_control_points, straight_control_point,
 };
 pub use convention::{Convention, corner_weights, domain_side, factor_side, weight_corner};
+pub use coverage::{CoverageView, ScreenCorner, covers_nothing, screen_corner};
 pub use cull::{
     Clip, FACING_AWAY, OUT_OF_VIEW, SEEN, faces_away, is_clipped, patch_is_outside, planes_outside, unseen,
 };

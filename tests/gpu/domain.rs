@@ -279,6 +279,7 @@ fn twins_have_the_same_functions_in_the_same_order() {
         (include_str!("../../src/tessellate/error.rs"), include_str!("../../shaders/error.wgsl")),
         (include_str!("../../src/tessellate/convention.rs"), include_str!("../../shaders/convention.wgsl")),
         (include_str!("../../src/tessellate/cull.rs"), include_str!("../../shaders/cull.wgsl")),
+        (include_str!("../../src/tessellate/coverage.rs"), include_str!("../../shaders/coverage.wgsl")),
         (include_str!("../../src/tessellate/deform.rs"), include_str!("../../shaders/deform.wgsl")),
     ];
     for (rust, wgsl) in twins {

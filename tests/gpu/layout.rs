@@ -8,7 +8,9 @@ use pnaen::gpu::layout::{
     PatchFactors, Share, Slab, Vertex,
 };
 use pnaen::gpu::{DomainParams, SHADERS, shader_source};
+use pnaen::render::Sieve;
 use pnaen::render::layout::{Frame, Material, Pick};
+use pnaen::tessellate::CoverageView;
 
 fn parse(name: &str) -> naga::Module {
     let source = shader_source(name);
@@ -118,7 +120,9 @@ fn shared_structs_have_one_layout() {
         px_per_unit,
         scale,
     });
+    same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only });
     same!(Material { base_color });
+    same!(Sieve { view, triangle_count, material_count, first_draw });
     same!(Pick { vertices, found, patch_index, triangle, weight });
 }
 

@@ -3,6 +3,7 @@
 //! These tests fail, rather than pass over, where there is no adapter. In CI it must be the software one.
 
 mod conventions;
+mod coverage;
 mod culling;
 mod deforming;
 mod deviation;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 use pnaen::engine::Engine;
 use pnaen::gpu::layout::{CurveNet, Patch, Vertex};
-use pnaen::gpu::{GpuError, PassTime, Timing, read_buffer, take_times, wait};
+use pnaen::gpu::{DRAWING, GpuError, PassTime, Timing, read_buffer, take_times, wait};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 
@@ -125,10 +125,10 @@ impl Subject {
         engine.gpu.check()?;
         let spread = |passes: &[&str]| Spread::of(runs.iter().map(|run| run.sum(passes)));
         let passes = pnaen::gpu::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
-        let frame = [&TESSELLATING[..], &["draw"]].concat();
+        let frame = [&TESSELLATING[..], &DRAWING].concat();
         Ok(OurTimes {
             tessellation: spread(&TESSELLATING),
-            draw: spread(&["draw"]),
+            draw: spread(&DRAWING),
             frame: spread(&frame),
             wall: Spread::of(wall.into_iter()),
             passes: passes.into_iter().filter(|time| time.ms > 0.0).collect(),

@@ -78,7 +78,7 @@ pub fn drawn(rows: &[Named]) -> String {
 }
 
 pub fn passes(rows: &[Named]) -> String {
-    const PASSES: [&str; 7] = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
+    const PASSES: [&str; 8] = ["nets", "factors", "counts", "scan", "chunks", "emit", "coverage", "draw"];
     let row = |(name, row): &Named| {
         let time = |pass: &str| {
             let time = row.ours.passes.iter().find(|time| time.pass == pass);
