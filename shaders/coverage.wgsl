@@ -10,6 +10,8 @@ struct CoverageView {
     sample_count: u32,
     // 1 where what faces away isn't drawn either.
     fronts_only: u32,
+    // How far a corner is moved when it is rounded to the rasteriser's grid, in px.
+    snap: f32,
 }
 
 // A corner on screen.
@@ -20,16 +22,9 @@ struct ScreenCorner {
     reach: f32,
 }
 
-// The coarsest grid that corners are rounded to is of 1/16 px (Vulkan specification, subPixelPrecisionBits of at least 4).
-const SNAP: f32 = 1.0 / 32.0;
-
-// Where Vulkan, Metal and Direct3D have a pixel's four samples, in px.
-const SAMPLES: array<vec2<f32>, 4> = array<vec2<f32>, 4>(
-    vec2<f32>(0.375, 0.125),
-    vec2<f32>(0.875, 0.375),
-    vec2<f32>(0.125, 0.625),
-    vec2<f32>(0.625, 0.875),
-);
+// Samples lie in rows, one a pixel in each: how many rows a pixel has (1 or 4), and how far a row's samples are from their
+// pixels' left. A row is half a row's height below its upper side. So have it Vulkan, Metal and Direct3D.
+const ROW_SAMPLES: array<f32, 4> = array<f32, 4>(0.375, 0.875, 0.125, 0.625);
 
 fn screen_corner(view: CoverageView, position: vec3<f32>) -> ScreenCorner {
     let clip = view.clip_from_object * vec4<f32>(position, 1.0);
@@ -41,7 +36,7 @@ fn screen_corner(view: CoverageView, position: vec3<f32>) -> ScreenCorner {
     let place = clip.xy / clip.w;
     let half_size = 0.5 * view.viewport;
     let reach = (off.xy + (abs(place) + 1.0) * off.w) / least_w * half_size;
-    return ScreenCorner(half_size + place * vec2<f32>(half_size.x, -half_size.y), SNAP + max(reach.x, reach.y));
+    return ScreenCorner(half_size + place * vec2<f32>(half_size.x, -half_size.y), view.snap + max(reach.x, reach.y));
 }
 
 fn cross_2d(a: vec2<f32>, b: vec2<f32>) -> f32 {
@@ -59,8 +54,8 @@ fn turns_away(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32) -> bool {
     return cross_2d(ab, ac) > 2.0 * reach * (taxicab(ab) + taxicab(ac) + 4.0 * reach);
 }
 
-// Whether a triangle may cover a place if its corners are within reach: the place is then within its box, and twice the areas
-// that the place spans with its sides have one sign.
+// Whether a triangle may cover a place within its box if its corners are within reach: twice the areas that the place spans
+// with its sides have one sign then.
 fn may_cover(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32) -> bool {
     let to_a = a - at;
     let to_b = b - at;
@@ -68,19 +63,15 @@ fn may_cover(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32
     let areas = vec3<f32>(cross_2d(to_a, to_b), cross_2d(to_b, to_c), cross_2d(to_c, to_a));
     let lengths = vec3<f32>(taxicab(to_a), taxicab(to_b), taxicab(to_c));
     let change = reach * (lengths + lengths.yzx + 2.0 * reach);
-    let is_in_box = all(min(min(to_a, to_b), to_c) <= vec2<f32>(reach)) && all(max(max(to_a, to_b), to_c) >= vec2<f32>(-reach));
-    return is_in_box && (all(areas >= -change) || all(areas <= change));
+    return all(areas >= -change) || all(areas <= change);
 }
 
-fn may_cover_pixel(view: CoverageView, px: vec2<f32>, a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32) -> bool {
+// How far a row's samples are from their pixels' left.
+fn row_sample(view: CoverageView, row: f32) -> f32 {
     if view.sample_count == 1u {
-        return may_cover(px + 0.5, a, b, c, reach);
+        return 0.5;
     }
-    var covers = false;
-    for (var i = 0u; i < 4u; i++) {
-        covers = covers || may_cover(px + SAMPLES[i], a, b, c, reach);
-    }
-    return covers;
+    return ROW_SAMPLES[u32(row) & 3u];
 }
 
 // Whether nothing of a triangle can be seen. Triangles of more than two px either way are not looked at closely.
@@ -97,14 +88,16 @@ fn covers_nothing(view: CoverageView, a: ScreenCorner, b: ScreenCorner, c: Scree
     if view.fronts_only != 0u && turns_away(a.at, b.at, c.at, reach) {
         return true;
     }
-    let first = floor(low);
-    let last = floor(high);
-    if any(last - first > vec2<f32>(1.0)) {
+    if any(high - low > vec2<f32>(2.0)) {
         return false;
     }
-    for (var y = first.y; y <= last.y; y += 1.0) {
-        for (var x = first.x; x <= last.x; x += 1.0) {
-            if may_cover_pixel(view, vec2<f32>(x, y), a.at, b.at, c.at, reach) {
+    // Above the picture and left of it are no samples.
+    let rows = f32(view.sample_count);
+    let last = high.y * rows - 0.5;
+    for (var row = ceil(max(low.y, 0.0) * rows - 0.5); row <= last; row += 1.0) {
+        let sample = row_sample(view, row);
+        for (var x = ceil(low.x - sample) + sample; x <= high.x; x += 1.0) {
+            if may_cover(vec2<f32>(x, (row + 0.5) / rows), a.at, b.at, c.at, reach) {
                 return false;
             }
         }

@@ -7,15 +7,22 @@
 @group(0) @binding(4) var<storage, read_write> emit_args: array<EmitArgs>;
 @group(0) @binding(5) var<storage, read_write> draw_args: array<DrawArgs>;
 
+fn fits(first: u32, end: u32) -> bool {
+    let size = offsets[end] - offsets[first];
+    return size.x <= slab.vertex_capacity && size.y <= slab.triangle_capacity;
+}
+
 // The last patch boundary (from the slab's start) up to which everything from `first` on fits the arena.
 fn chunk_end(first: u32) -> u32 {
-    let base = offsets[first];
+    // Mostly there is room for all.
+    if fits(first, slab.patch_count) {
+        return slab.patch_count;
+    }
     var low = first;
     var high = slab.patch_count;
     while low < high {
         let middle = (low + high + 1u) / 2u;
-        let size = offsets[middle] - base;
-        if size.x <= slab.vertex_capacity && size.y <= slab.triangle_capacity {
+        if fits(first, middle) {
             low = middle;
         } else {
             high = middle - 1u;
@@ -43,15 +50,22 @@ fn write_draw(chunk_index: u32, material: u32) {
     draw_args[index] = DrawArgs(count, 1u, first_index, 0, 0u, count, 1u, first_index, 0u);
 }
 
+var<workgroup> chunk_count: u32;
+
 @compute @workgroup_size(256)
 fn chunks_main(@builtin(local_invocation_index) local: u32) {
     if local == 0u {
         var first = 0u;
-        for (var index = 0u; index < slab.chunk_capacity; index++) {
+        while first < slab.patch_count && chunk_count < slab.chunk_capacity {
             let end = chunk_end(first);
-            write_chunk(index, first, end);
+            write_chunk(chunk_count, first, end);
             first = end;
+            chunk_count += 1u;
         }
+    }
+    let used = workgroupUniformLoad(&chunk_count);
+    for (var i = used + local; i < slab.chunk_capacity; i += WORKGROUP) {
+        write_chunk(i, slab.patch_count, slab.patch_count);
     }
     storageBarrier();
     for (var i = local; i < slab.chunk_capacity * slab.material_count; i += WORKGROUP) {

@@ -58,21 +58,8 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     );
 }
 
-@compute @workgroup_size(256)
-fn counts_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
-    if index > slab.patch_count {
-        return;
-    }
-    if index == slab.patch_count {
-        // After the scan, the entry past the last patch holds the totals.
-        offsets[index] = vec2<u32>(0u);
-        return;
-    }
+// Vertices and triangles of a patch, whose factors it keeps.
+fn counted(index: u32) -> vec2<u32> {
     let patch_index = slab.first_patch + index;
     let net = needed_net(patch_index);
     let why = unseen(params.clip, params.culls_back == 1u, params.view, net);
@@ -83,7 +70,25 @@ fn counts_main(
         factors = process(params.partitioning, written.xyz, written.w);
     }
     patch_factors[index] = factors;
-    offsets[index] = vec2<u32>(point_count(factors), triangle_count(factors));
+    return vec2<u32>(point_count(factors), triangle_count(factors));
+}
+
+// Leaves offsets within a block of patches, and behind them all the sum of every block: what pass_scan.wgsl makes offsets of.
+@compute @workgroup_size(256)
+fn counts_main(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    let index = workgroup.x * WORKGROUP + local;
+    var count = vec2<u32>(0u);
+    if index < slab.patch_count {
+        count = counted(index);
+    }
+    let before = workgroup_scan(local, count);
+    // The entry past the last patch will hold the totals.
+    if index <= slab.patch_count {
+        offsets[index] = before;
+    }
+    if local == WORKGROUP - 1u {
+        offsets[slab.patch_count + 1u + workgroup.x] = before + count;
+    }
 }
 
 // Every patch of the mesh, for those who want to see them.

@@ -1,4 +1,4 @@
-// Prefix sums of what the invocations of a workgroup have.
+// Sums of what the invocations of a workgroup have.
 
 var<workgroup> shared_sums: array<vec2<u32>, 256>;
 
@@ -16,4 +16,9 @@ fn workgroup_scan(local: u32, value: vec2<u32>) -> vec2<u32> {
         workgroupBarrier();
     }
     return shared_sums[local] - value;
+}
+
+fn workgroup_sum(local: u32, value: vec2<u32>) -> vec2<u32> {
+    _ = workgroup_scan(local, value);
+    return shared_sums[WORKGROUP - 1u];
 }

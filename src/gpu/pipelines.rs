@@ -37,7 +37,7 @@ pub const SHADERS: [(&str, &[&str]); 15] = [
     ("deform", &[include_str!("../../shaders/deform.wgsl"), include_str!("../../shaders/pass_deform.wgsl")]),
     ("nets", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
     ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
-    ("counts", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_counts.wgsl")]),
+    ("counts", &[LOADS, LOAD_NET, WORKGROUP_SCAN, include_str!("../../shaders/pass_counts.wgsl")]),
     ("scan", &[WORKGROUP_SCAN, include_str!("../../shaders/pass_scan.wgsl")]),
     ("chunks", &[include_str!("../../shaders/pass_chunks.wgsl")]),
     ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
@@ -82,9 +82,7 @@ pub struct ComputePipelines {
     pub edge_factors: wgpu::ComputePipeline,
     pub heights_inside: wgpu::ComputePipeline,
     pub counts: wgpu::ComputePipeline,
-    pub scan_blocks: wgpu::ComputePipeline,
-    pub scan_sums: wgpu::ComputePipeline,
-    pub scan_add: wgpu::ComputePipeline,
+    pub scan: wgpu::ComputePipeline,
     pub chunks: wgpu::ComputePipeline,
     /// One for each of [`Normals`].
     pub emit_vertices: [wgpu::ComputePipeline; 3],
@@ -100,7 +98,7 @@ pub struct ComputePipelines {
 
 impl ComputePipelines {
     pub fn new(gpu: &Gpu) -> Self {
-        let (nets, scan, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "scan"), shader_module(gpu, "emit"));
+        let (nets, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "emit"));
         let (factors, levels) = (shader_module(gpu, "factors"), shader_module(gpu, "levels"));
         let deform = shader_module(gpu, "deform");
         Self {
@@ -111,9 +109,7 @@ impl ComputePipelines {
             edge_factors: compute_pipeline(gpu, &factors, "edge_factors_main"),
             heights_inside: compute_pipeline(gpu, &factors, "heights_inside_main"),
             counts: compute_pipeline(gpu, &shader_module(gpu, "counts"), "counts_main"),
-            scan_blocks: compute_pipeline(gpu, &scan, "scan_blocks_main"),
-            scan_sums: compute_pipeline(gpu, &scan, "scan_sums_main"),
-            scan_add: compute_pipeline(gpu, &scan, "scan_add_main"),
+            scan: compute_pipeline(gpu, &shader_module(gpu, "scan"), "scan_main"),
             chunks: compute_pipeline(gpu, &shader_module(gpu, "chunks"), "chunks_main"),
             emit_vertices: [Normals::Linear, Normals::Quadratic, Normals::Surface].map(|normals| {
                 let constants = [("EMIT_NORMALS", f64::from(normals as u32))];

@@ -8,8 +8,8 @@ use super::layout::{Chunk, DrawArgs, EmitArgs, PatchFactors, Slab};
 use super::pipelines::bind_group;
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
 
-/// Items a workgroup of the scan takes; see `pass_scan.wgsl`.
-pub const SCAN_BLOCK: u32 = 1024;
+/// Patches whose counts a workgroup adds up.
+pub const SCAN_BLOCK: u32 = 256;
 /// Offsets of uniform bindings are multiples of this: WebGPU's default limit.
 pub const UNIFORM_STRIDE: u64 = 256;
 
@@ -18,8 +18,8 @@ pub struct SlabPasses {
     pub slab: Slab,
     pub slab_buffer: wgpu::Buffer,
     pub patch_factors: wgpu::Buffer,
+    /// One a patch and one past the last; behind those, the sums of blocks of patches.
     pub offsets: wgpu::Buffer,
-    pub block_sums: wgpu::Buffer,
     pub chunks: wgpu::Buffer,
     pub emit_args: wgpu::Buffer,
     pub draw_args: wgpu::Buffer,
@@ -31,7 +31,7 @@ pub struct SlabGroups {
     pub edge_factors: wgpu::BindGroup,
     pub heights_inside: wgpu::BindGroup,
     pub counts: wgpu::BindGroup,
-    pub scan: [wgpu::BindGroup; 3],
+    pub scan: wgpu::BindGroup,
     pub chunks: wgpu::BindGroup,
     /// One for each pipeline.
     pub emit_vertices: [wgpu::BindGroup; 3],
@@ -67,8 +67,7 @@ impl SlabPasses {
             slab,
             slab_buffer: uniform_buffer(gpu, "slab", bytemuck::bytes_of(&slab)),
             patch_factors: empty::<PatchFactors>(gpu, "patch factors", patches)?,
-            offsets: empty::<[u32; 2]>(gpu, "offsets", patches + 1)?,
-            block_sums: empty::<[u32; 2]>(gpu, "scan sums", (patches + 1).div_ceil(SCAN_BLOCK as usize))?,
+            offsets: empty::<[u32; 2]>(gpu, "offsets", patches + 1 + (patches + 1).div_ceil(SCAN_BLOCK as usize))?,
             chunks: empty::<Chunk>(gpu, "chunks", chunks)?,
             emit_args: empty::<EmitArgs>(gpu, "emit arguments", chunks)?,
             draw_args: empty::<DrawArgs>(gpu, "draw arguments", chunks * buffers.material_count as usize)?,
@@ -79,7 +78,7 @@ impl SlabPasses {
 
     /// Bytes of everything but uniforms.
     pub fn bytes(&self) -> u64 {
-        [&self.patch_factors, &self.offsets, &self.block_sums, &self.chunks, &self.emit_args, &self.draw_args]
+        [&self.patch_factors, &self.offsets, &self.chunks, &self.emit_args, &self.draw_args]
             .iter()
             .map(|buffer| buffer.size())
             .sum()
@@ -99,7 +98,6 @@ impl SlabPasses {
             bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers)
         };
         let slab = &self.slab_buffer;
-        let scan = [(0, slab), (1, &self.offsets), (2, &self.block_sums)];
         let emit = [(1, slab), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)];
         let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.corners)];
         let factors = [
@@ -131,11 +129,7 @@ impl SlabPasses {
                     (8, given),
                 ],
             ),
-            scan: [
-                group("scan.blocks", &pipelines.scan_blocks, &scan),
-                group("scan.sums", &pipelines.scan_sums, &[scan[0], scan[2]]),
-                group("scan.add", &pipelines.scan_add, &scan),
-            ],
+            scan: group("scan", &pipelines.scan, &[(0, slab), (1, &self.offsets)]),
             chunks: group(
                 "chunks",
                 &pipelines.chunks,

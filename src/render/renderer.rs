@@ -37,12 +37,12 @@ pub struct Renderer {
     lines: [wgpu::RenderPipeline; 2],
     normals: [wgpu::RenderPipeline; 2],
     coverage: CoveragePipelines,
-    /// From how many triangles of a chunk on those that cover no sample are left out before it is drawn.
-    pub sift_from: u32,
+    /// From how many triangles a px on those that cover no sample are left out before the others are drawn.
+    pub sift_from: f32,
 }
 
-/// Below, a rasteriser is done before the passes that would spare it are.
-const SIFT_FROM: u32 = 1 << 18;
+/// Where there are fewer triangles a px, a rasteriser is done with them before the passes are that would spare it some.
+const SIFT_FROM: f32 = 0.5;
 
 /// Bytes from a [`crate::gpu::layout::DrawArgs`]'s start to its arguments for pulled drawing.
 const PULL_ARGS: u64 = std::mem::offset_of!(crate::gpu::layout::DrawArgs, pull_vertex_count) as u64;
@@ -213,7 +213,8 @@ impl Renderer {
         surfaces: &Surfaces,
     ) -> bool {
         let (gpu, chunk) = (&self.gpu, scene.tessellator.chunk(chunk));
-        if surfaces.pulled || chunk.chunk.triangle_count < self.sift_from {
+        let (_, triangles) = scene.tessellator.totals();
+        if surfaces.pulled || (triangles as f32) < self.sift_from * target.viewport().element_product() {
             return false;
         }
         if !scene.coverage.as_ref().is_some_and(|coverage| coverage.has_room(&chunk)) {
@@ -222,7 +223,8 @@ impl Renderer {
         }
         let Some(coverage) = &scene.coverage else { return false };
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
-        let view = CoverageView::new(clip_from_object, target.viewport(), gpu.samples, surfaces.fronts);
+        let view =
+            CoverageView::new(clip_from_object, target.viewport(), gpu.samples, surfaces.fronts, gpu.subpixel_bits);
         coverage.keep(recorder, &self.coverage, gpu, &chunk, view);
         true
     }

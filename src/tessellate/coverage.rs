@@ -17,15 +17,28 @@ pub struct CoverageView {
     pub sample_count: u32,
     /// 1 where what faces away isn't drawn either.
     pub fronts_only: u32,
+    /// How far a corner is moved when it is rounded to the rasteriser's grid, in px.
+    pub snap: f32,
+    pub _pad: [u32; 3],
 }
 
 impl CoverageView {
-    pub fn new(clip_from_object: Mat4, viewport: Vec2, sample_count: u32, fronts_only: bool) -> Self {
+    /// `subpixel_bits` as an adapter has them: see [`crate::gpu::Gpu::subpixel_bits`].
+    pub fn new(
+        clip_from_object: Mat4,
+        viewport: Vec2,
+        sample_count: u32,
+        fronts_only: bool,
+        subpixel_bits: u32,
+    ) -> Self {
         // Four products are added up here and by whoever draws, each in an order of its own: either is within 4 roundings of
         // what is right. As much again is for what follows, the division among it.
         const ROUNDING: f32 = 16.0 * f32::EPSILON / 2.0;
         let slack = Mat4::from_cols_array(&clip_from_object.to_cols_array().map(|x| x.abs() * ROUNDING));
-        Self { clip_from_object, slack, viewport, sample_count, fronts_only: u32::from(fronts_only) }
+        // Vulkan doesn't say whether corners are rounded or cut off.
+        let snap = (-(subpixel_bits as f32)).exp2();
+        let fronts_only = u32::from(fronts_only);
+        Self { clip_from_object, slack, viewport, sample_count, fronts_only, snap, _pad: [0; 3] }
     }
 }
 
@@ -39,11 +52,9 @@ pub struct ScreenCorner {
     pub reach: f32,
 }
 
-/// The coarsest grid that corners are rounded to is of 1/16 px (Vulkan specification, `subPixelPrecisionBits` of at least 4).
-const SNAP: f32 = 1.0 / 32.0;
-
-/// Where Vulkan, Metal and Direct3D have a pixel's four samples, in px.
-const SAMPLES: [Vec2; 4] = [vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625), vec2(0.625, 0.875)];
+/// Samples lie in rows, one a pixel in each: how many rows a pixel has (1 or 4), and how far a row's samples are from their
+/// pixels' left. A row is half a row's height below its upper side. So have it Vulkan, Metal and Direct3D.
+const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
 
 pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     let clip = view.clip_from_object * position.extend(1.0);
@@ -57,7 +68,7 @@ pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     let half_size = 0.5 * view.viewport;
     let reach = (vec2(off.x, off.y) + (place.abs() + 1.0) * off.w) / least_w * half_size;
     let at = half_size + place * vec2(half_size.x, -half_size.y);
-    ScreenCorner { at, reach: SNAP + reach.max_element() }
+    ScreenCorner { at, reach: view.snap + reach.max_element() }
 }
 
 fn cross_2d(a: Vec2, b: Vec2) -> f32 {
@@ -75,8 +86,8 @@ fn turns_away(a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
     cross_2d(ab, ac) > 2.0 * reach * (taxicab(ab) + taxicab(ac) + 4.0 * reach)
 }
 
-/// Whether a triangle may cover a place if its corners are within reach: the place is then within its box, and twice the areas
-/// that the place spans with its sides have one sign.
+/// Whether a triangle may cover a place within its box if its corners are within reach: twice the areas that the place spans
+/// with its sides have one sign then.
 fn may_cover(at: Vec2, a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
     let to_a = a - at;
     let to_b = b - at;
@@ -84,16 +95,15 @@ fn may_cover(at: Vec2, a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
     let areas = vec3(cross_2d(to_a, to_b), cross_2d(to_b, to_c), cross_2d(to_c, to_a));
     let lengths = vec3(taxicab(to_a), taxicab(to_b), taxicab(to_c));
     let change = reach * (lengths + vec3(lengths.y, lengths.z, lengths.x) + 2.0 * reach);
-    let is_in_box = to_a.min(to_b).min(to_c).cmple(Vec2::splat(reach)).all()
-        && to_a.max(to_b).max(to_c).cmpge(Vec2::splat(-reach)).all();
-    is_in_box && (areas.cmpge(-change).all() || areas.cmple(change).all())
+    areas.cmpge(-change).all() || areas.cmple(change).all()
 }
 
-fn may_cover_pixel(view: &CoverageView, px: Vec2, a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
+/// How far a row's samples are from their pixels' left.
+fn row_sample(view: &CoverageView, row: f32) -> f32 {
     if view.sample_count == 1 {
-        return may_cover(px + 0.5, a, b, c, reach);
+        return 0.5;
     }
-    SAMPLES.iter().any(|sample| may_cover(px + *sample, a, b, c, reach))
+    ROW_SAMPLES[row as usize & 3]
 }
 
 /// Whether nothing of a triangle can be seen. Triangles of more than two px either way are not looked at closely.
@@ -110,17 +120,25 @@ pub fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: 
     if view.fronts_only != 0 && turns_away(a.at, b.at, c.at, reach) {
         return true;
     }
-    let first = low.floor();
-    let last = high.floor();
-    if (last - first).cmpgt(Vec2::ONE).any() {
+    if (high - low).cmpgt(Vec2::splat(2.0)).any() {
         return false;
     }
-    let rows = [first.y, last.y].into_iter().take(1 + usize::from(last.y > first.y));
-    let covered = |y: f32| {
-        let columns = [first.x, last.x].into_iter().take(1 + usize::from(last.x > first.x));
-        columns.into_iter().any(|x| may_cover_pixel(view, vec2(x, y), a.at, b.at, c.at, reach))
-    };
-    !rows.into_iter().any(covered)
+    // Above the picture and left of it are no samples.
+    let rows = view.sample_count as f32;
+    let last = high.y * rows - 0.5;
+    let mut row = (low.y.max(0.0) * rows - 0.5).ceil();
+    while row <= last {
+        let sample = row_sample(view, row);
+        let mut x = (low.x - sample).ceil() + sample;
+        while x <= high.x {
+            if may_cover(vec2(x, (row + 0.5) / rows), a.at, b.at, c.at, reach) {
+                return false;
+            }
+            x += 1.0;
+        }
+        row += 1.0;
+    }
+    true
 }
 
 #[cfg(test)]
@@ -132,8 +150,14 @@ mod tests {
 
     const SIZE: f32 = 64.0;
 
+    /// The coarsest grid that there is (Vulkan specification, required limits).
+    const BITS: u32 = 4;
+    const SNAP: f32 = 1.0 / 16.0;
+    /// Where Vulkan, Metal and Direct3D have a pixel's samples, in px.
+    const SAMPLES: [Vec2; 4] = [vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625), vec2(0.625, 0.875)];
+
     fn view(sample_count: u32, fronts_only: bool) -> CoverageView {
-        CoverageView::new(Mat4::IDENTITY, Vec2::splat(SIZE), sample_count, fronts_only)
+        CoverageView::new(Mat4::IDENTITY, Vec2::splat(SIZE), sample_count, fronts_only, BITS)
     }
 
     /// A position at a place in px, under [`view`].
@@ -232,7 +256,7 @@ mod tests {
 
     #[test]
     fn corners_nearer_than_the_near_plane_are_not_known() {
-        let view = CoverageView::new(perspective_infinite_reverse(1.0, 1.0, 0.1), Vec2::splat(SIZE), 4, false);
+        let view = CoverageView::new(perspective_infinite_reverse(1.0, 1.0, 0.1), Vec2::splat(SIZE), 4, false, BITS);
         for z in [-0.05, 0.0, 1.0, f32::NAN] {
             assert_eq!(screen_corner(&view, vec3(0.0, 0.0, z)).reach, -1.0);
         }
@@ -245,7 +269,7 @@ mod tests {
         // A coordinate of 100,000 has steps of 1/128 there, a seventh of a px at this distance.
         let far = Vec3::splat(1e5);
         let clip = perspective_infinite_reverse(1.0, 1.0, 0.1) * Mat4::from_translation(-far);
-        let view = CoverageView::new(clip, Vec2::splat(SIZE), 4, false);
+        let view = CoverageView::new(clip, Vec2::splat(SIZE), 4, false, BITS);
         let reach = screen_corner(&view, far - vec3(0.0, 0.0, 3.0)).reach;
         assert!(reach > 0.15, "{reach}");
     }

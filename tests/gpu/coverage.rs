@@ -12,8 +12,8 @@ use pnaen::tessellate::{CoverageView, Lod, Surface, covers_nothing, screen_corne
 
 use crate::{engine, scene};
 
-/// An engine that leaves out what covers nothing, from so many triangles on.
-fn sifting(from: u32) -> Engine {
+/// An engine that leaves out what covers nothing, from so many triangles a px on.
+fn sifting(from: f32) -> Engine {
     let mut engine = engine().clone();
     let mut renderer = Renderer::new(&engine.gpu);
     renderer.sift_from = from;
@@ -28,7 +28,7 @@ fn seen(engine: &Engine, scene: &mut Scene, target: &Target, camera: &Camera, se
 
 #[test]
 fn no_pixel_differs_without_the_triangles_that_cover_nothing() {
-    let engines = [sifting(u32::MAX), sifting(1)];
+    let engines = [sifting(f32::INFINITY), sifting(0.0)];
     let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
     let shapes = [Shape::Torus, Shape::CubeSplit, Shape::Icosphere, Shape::Cylinder, Shape::Saddle, Shape::Cone];
     let (mut emitted, mut drawn) = (0, 0);
@@ -64,7 +64,7 @@ fn no_pixel_differs_without_the_triangles_that_cover_nothing() {
 
 #[test]
 fn as_many_triangles_are_kept_as_the_reference_keeps() {
-    let (size, engine) = ([200, 150], sifting(1));
+    let (size, engine) = ([200, 150], sifting(0.0));
     let target = Target::new(&engine.gpu, size).expect("a small picture");
     for (shape, factor) in [(Shape::Torus, 23.0), (Shape::Bicubic, 48.0), (Shape::CubeSplit, 64.0)] {
         let (_, mut scene) = scene(shape);
@@ -73,7 +73,8 @@ fn as_many_triangles_are_kept_as_the_reference_keeps() {
         seen(&engine, &mut scene, &target, &camera, &settings);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts_only = scene.tessellator.shows_fronts_only(clip_from_object);
-        let view = CoverageView::new(clip_from_object, target.viewport(), engine.gpu.samples, fronts_only);
+        let (samples, bits) = (engine.gpu.samples, engine.gpu.subpixel_bits);
+        let view = CoverageView::new(clip_from_object, target.viewport(), samples, fronts_only, bits);
         let output = engine.read_tessellated(&mut scene).expect("a readback");
         let corner = |index: u32| screen_corner(&view, output.vertices[index as usize].position.into());
         let is_kept = |triangle: &&[u32; 3]| {

@@ -120,7 +120,7 @@ fn shared_structs_have_one_layout() {
         px_per_unit,
         scale,
     });
-    same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only });
+    same!(CoverageView { clip_from_object, slack, viewport, sample_count, fronts_only, snap });
     same!(Material { base_color });
     same!(Sieve { view, triangle_count, material_count, first_draw });
     same!(Pick { vertices, found, patch_index, triangle, weight });

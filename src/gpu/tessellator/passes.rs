@@ -61,13 +61,9 @@ impl Tessellator {
             relief.record_levels(recorder, pipelines, &self.buffers);
         }
         recorder.compute("counts", |pass| {
-            dispatch(pass, &pipelines.counts, &groups.counts, grid(slab.slab.patch_count + 1));
+            dispatch(pass, &pipelines.counts, &groups.counts, blocks);
         });
-        recorder.compute("scan", |pass| {
-            dispatch(pass, &pipelines.scan_blocks, &groups.scan[0], blocks);
-            dispatch(pass, &pipelines.scan_sums, &groups.scan[1], [1, 1, 1]);
-            dispatch(pass, &pipelines.scan_add, &groups.scan[2], blocks);
-        });
+        recorder.compute("scan", |pass| dispatch(pass, &pipelines.scan, &groups.scan, blocks));
         recorder.compute("chunks", |pass| dispatch(pass, &pipelines.chunks, &groups.chunks, [1, 1, 1]));
     }
 

@@ -98,7 +98,8 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
     let (factors, triangles) = (Factors::ByDistance(FractionalOdd), scale.triangles[0]);
     let in_chunks = compare(engine, peer.as_ref(), &scale, factors, triangles, ARENA_BYTES)?;
     report.versus("the same in the window's arena", in_chunks);
-    report.end_versus();
+    let mut subject = subjects::subject(engine, subjects::tori(16, 1), scale.size, ARENA_BYTES)?;
+    report.end_versus(&subject.time_nothing(engine, scale.effort)?);
     report.growth(&growth::measure(engine, peer.as_ref(), &scale)?);
     report.equal_error(&error::measure(engine, peer.as_ref(), &scale)?);
     report.goals();

@@ -8,6 +8,7 @@ use pnaen::gpu::layout::{CurveNet, Patch, Vertex};
 use pnaen::gpu::{DRAWING, GpuError, PassTime, Timing, read_buffer, take_times, wait};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
+use pnaen::tessellate::Clip;
 
 use super::numbers::Spread;
 use super::peer::{Frame, NetCorner};
@@ -133,6 +134,23 @@ impl Subject {
             wall: Spread::of(wall.into_iter()),
             passes: passes.into_iter().filter(|time| time.ms > 0.0).collect(),
         })
+    }
+
+    /// Ms that a picture of nothing takes: clearing and resolving, which is part of every frame.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn time_nothing(&mut self, engine: &Engine, effort: Effort) -> Result<Spread, GpuError> {
+        let mut timing = Timing::on(&engine.gpu);
+        let beside = self.camera.target + Vec3::splat(1e3 * self.scene.bounds.radius());
+        let camera = Camera { target: beside, ..self.camera };
+        let settings = Settings { clip: Clip::Frustum, ..self.settings };
+        let runs = effort.repeat(|_| {
+            engine.draw(&mut self.scene, &self.target, &camera, &settings, &mut timing)?;
+            wait(&engine.gpu);
+            Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
+        })?;
+        Ok(Spread::of(runs.iter().map(|run| run.sum(&["draw"])).filter(|ms| *ms > 0.0)))
     }
 
     /// Bytes that our tessellation passes can't do without: what they emit; everything of the mesh that they read, once; and

@@ -5,7 +5,7 @@ use pnaen::engine::Engine;
 use super::Scale;
 use super::copy::Copies;
 use super::error::{self, EqualError, PAPER_PIXELS};
-use super::numbers::{table, whole};
+use super::numbers::{Spread, table, whole};
 use super::rows::{self, Named, rate_of};
 use super::versus::Versus;
 use super::vulkan::VulkanError;
@@ -38,6 +38,7 @@ impl Report {
         println!("# Tessellation in compute passes against the driver's tessellation stages\n");
         println!("- adapter: {} ({:?}, {:?})", info.name, info.device_type, info.backend);
         println!("- driver: {} {}", info.driver, info.driver_info);
+        println!("- date: {}", pnaen::numbers::utc(std::time::SystemTime::now()));
         println!("- pictures: {width} x {height} px, {samples} samples a px, cleared and resolved by both");
         println!("- times: ms, medians of {runs} runs after warm-up (least..most), by {clock}");
         println!("{METHOD}");
@@ -61,11 +62,13 @@ impl Report {
         self.rows.push((name.to_owned(), versus));
     }
 
-    pub fn end_versus(&self) {
+    /// `nothing` is what a picture of nothing takes.
+    pub fn end_versus(&self, nothing: &Spread) {
         println!("## Tessellation alone\n\n{}", rows::tessellation(&self.rows, self.copies.as_ref()));
         println!("{BYTES}\n");
         println!("## Whole frames\n\n{}", rows::frames(&self.rows));
-        println!("Host: from the first call to the last pixel; ours waits for its counts on the way.\n");
+        println!("Host: from the first call to the last pixel; ours waits for its counts on the way.");
+        println!("Clearing and resolving a picture of nothing, which is part of every frame: {nothing} ms.\n");
         println!("## What was drawn\n\n{}", rows::drawn(&self.rows));
         self.rows.iter().for_each(warn);
         println!("## Our passes\n\n{}", rows::passes(&self.rows));

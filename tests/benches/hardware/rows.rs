@@ -67,13 +67,14 @@ pub fn drawn(rows: &[Named]) -> String {
             whole(row.vertices),
             or_none(counted.map(|counted| whole(counted.evaluations))),
             row.chunks.to_string(),
+            or_none(row.covering.filter(|_| row.chunks == 1).map(whole)),
             or_none(peer.map(|peer| format!("{:.5}", peer.difference))),
             way(0),
             way(1),
         ]
     };
     let head = "factors | ours, triangles | theirs, triangles | ours, vertices | theirs, evaluations | ours, chunks \
-                | pictures differ by | nets handed on: alone, frame | nets in memory: alone, frame";
+                | of ours, covering a sample | pictures differ by | nets handed on: alone, frame | nets in memory: alone, frame";
     table(head, &rows.iter().map(row).collect::<Vec<_>>())
 }
 

@@ -44,6 +44,8 @@ pub struct Versus {
     pub triangles: u64,
     /// That our output took to go through the arena.
     pub chunks: usize,
+    /// Of the last chunk, those that cover a sample and were drawn, if the others were left out.
+    pub covering: Option<u64>,
     /// See [`Subject::compulsory_bytes`].
     pub bytes: u64,
     pub ours: OurTimes,
@@ -67,7 +69,8 @@ impl Versus {
         let peer = peer.map(|peer| time_peer(engine, peer, subject, effort)).transpose()?;
         let ours = subject.time(engine, effort)?;
         let patches = subject.scene.tessellator.buffers().patch_count;
-        Ok(Self { patches, vertices, triangles, chunks, bytes, ours, peer })
+        let covering = subject.scene.covering_triangles()?;
+        Ok(Self { patches, vertices, triangles, chunks, covering, bytes, ours, peer })
     }
 }
 
