@@ -43,6 +43,8 @@ pub struct Renderer {
 
 /// Where there are fewer triangles a px, a rasteriser is done with them before the passes are that would spare it some.
 const SIFT_FROM: f32 = 0.5;
+/// One in software takes no longer for a small triangle than those passes do.
+const SIFT_FROM_IN_SOFTWARE: f32 = f32::INFINITY;
 
 /// Bytes from a [`crate::gpu::layout::DrawArgs`]'s start to its arguments for pulled drawing.
 const PULL_ARGS: u64 = std::mem::offset_of!(crate::gpu::layout::DrawArgs, pull_vertex_count) as u64;
@@ -113,7 +115,7 @@ impl Renderer {
             deviation_layout,
             unknown: Deviations::unknown(gpu),
             coverage: CoveragePipelines::new(gpu),
-            sift_from: SIFT_FROM,
+            sift_from: if gpu.is_software() { SIFT_FROM_IN_SOFTWARE } else { SIFT_FROM },
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pnaen::engine::{Loaded, Preparation, Runs};
-use pnaen::gpu::{DRAWING, Timing, read_buffer, take_times};
+use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
 use pnaen::mesh::{Corner, Material, Mesh, Progress, Rim, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
@@ -343,7 +343,8 @@ fn output_is_the_same_on_every_run() {
 fn only_what_changed_is_recomputed() {
     let engine = engine();
     let (_, mut scene) = scene(Shape::Torus);
-    let target = Target::new(&engine.gpu, [64, 64]).expect("a small picture");
+    let target = Target::new(&engine.gpu, [512, 512]).expect("a small picture");
+    // So few triangles a px that none is left out before it is drawn.
     let mut camera = Camera::framing(&scene.bounds, target.viewport());
     let mut settings = Settings::default();
     let passes = |scene: &mut Scene, camera: &Camera, settings: &Settings| {
@@ -351,14 +352,14 @@ fn only_what_changed_is_recomputed() {
         engine.draw(scene, &target, camera, settings, &mut timing).expect("a draw");
         take_times(&engine.gpu, &mut timing).iter().map(|time| time.pass).collect::<Vec<_>>()
     };
-    let all = ["nets", "factors", "counts", "scan", "chunks", "emit", "coverage", "draw"];
+    let all = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
     let counts = &all[1..];
     assert_eq!(passes(&mut scene, &camera, &settings), all);
-    assert_eq!(passes(&mut scene, &camera, &settings), DRAWING, "nothing changed");
+    assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "nothing changed");
     camera.azimuth += 10.0;
-    assert_eq!(passes(&mut scene, &camera, &settings), DRAWING, "the camera moved under uniform LOD");
+    assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "the camera moved under uniform LOD");
     settings.pixels = 3.0;
-    assert_eq!(passes(&mut scene, &camera, &settings), DRAWING, "px a segment mean nothing under uniform LOD");
+    assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "px a segment mean nothing under uniform LOD");
     settings.factor = 3.0;
     assert_eq!(passes(&mut scene, &camera, &settings), counts, "the factor changed");
     settings.lod = Lod::Paper;

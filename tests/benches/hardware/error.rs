@@ -6,7 +6,7 @@ use pnaen::settings::{Settings, TOLERANCE_RANGE};
 use pnaen::tessellate::{Clip, Lod, Partitioning};
 
 use super::Scale;
-use super::numbers::{or_none, ratio, table, whole};
+use super::numbers::{ms, or_none, ratio, table, whole};
 use super::ours::{OurTimes, Subject};
 use super::peer::Peer;
 use super::subjects::{subject, tori};
@@ -27,12 +27,21 @@ pub struct EqualError {
     pub px: [f64; 2],
     pub tolerance: f32,
     pub ours: OurTimes,
+    /// Ms of the same picture of the mesh as it came: what clearing, resolving and shading take, whatever is tessellated.
+    pub least: f64,
     /// Ours with the white paper's LOD, for comparison.
     pub ours_paper: OurTimes,
     pub peer: Option<PeerTimes>,
 }
 
 impl EqualError {
+    /// Theirs by ours in what a frame takes beyond the mesh as it came.
+    fn faster_beyond(&self) -> Option<f64> {
+        let peer = self.peer.as_ref()?;
+        let [theirs, ours] = [peer.frame.median, self.ours.frame.median].map(|ms| ms - self.least);
+        (ours > 0.0).then_some(theirs / ours)
+    }
+
     /// Theirs by ours, by the GPU's clock and by the host's.
     pub fn faster(&self) -> Option<[f64; 2]> {
         let ratios =
@@ -56,13 +65,15 @@ pub fn table_of(scenes: &[EqualError]) -> String {
             scene.ours_paper.frame.to_string(),
             ours.frame.to_string(),
             or_none(theirs.map(|peer| ratio(peer.frame.median, ours.frame.median))),
+            ms(scene.least),
+            or_none(scene.faster_beyond().map(|faster| format!("{faster:.2}"))),
             or_none(theirs.map(|peer| peer.wall.to_string())),
             ours.wall.to_string(),
             or_none(theirs.map(|peer| ratio(peer.wall.median, ours.wall.median))),
         ]
     };
     let head = "scene | theirs, px a segment | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px | theirs, GPU \
-                | ours with their LOD, GPU | ours, GPU | theirs / ours | theirs, host | ours, host | theirs / ours";
+                | ours with their LOD, GPU | ours, GPU | theirs / ours | the mesh as it came, GPU | theirs / ours beyond that | theirs, host | ours, host | theirs / ours";
     table(head, &scenes.iter().map(row).collect::<Vec<_>>())
 }
 
@@ -104,6 +115,10 @@ fn equal(
     };
     let (tolerance, px) = largest_tolerance(engine, subject, paper_px)?;
     let ours = Versus::measure(engine, None, subject, scale.effort)?;
+    let error = subject.settings;
+    subject.settings = Settings { lod: Lod::Uniform, factor: 1.0, ..error };
+    let least = Versus::measure(engine, None, subject, scale.effort)?.ours.draw.median;
+    subject.settings = error;
     Ok(EqualError {
         scene,
         paper_pixels,
@@ -111,6 +126,7 @@ fn equal(
         px: [paper_px, px],
         tolerance,
         ours: ours.ours,
+        least,
         ours_paper: paper.ours,
         peer: paper.peer,
     })

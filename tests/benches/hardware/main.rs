@@ -60,10 +60,13 @@ impl Scale {
     }
 }
 
-/// Triangles of a patch, about, where factors are 5 to 20.
+/// Triangles of a patch, about, where factors are 5 to 20, and where they are 10 to 40.
 const TRIANGLES_A_PATCH: u64 = 300;
+const MORE_TRIANGLES_A_PATCH: u64 = 1_100;
 /// And where they are all 63.
 const MOST_TRIANGLES_A_PATCH: u64 = 6_000;
+
+const UNIFORM: Factors = Factors::Uniform(FractionalOdd);
 
 fn main() -> ExitCode {
     let result = Engine::headless().map_err(BenchError::from).and_then(|engine| run(&engine));
@@ -85,18 +88,21 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
         report.copies(Copies::measure(&peer.vulkan, scale.copy_bytes, scale.effort)?);
     }
     for triangles in scale.triangles {
-        for factors in [
-            Factors::ByDistance(FractionalOdd),
-            Factors::Hashed(FractionalOdd),
-            Factors::ByDistance(Integer),
-            Factors::Uniform(FractionalOdd),
-        ] {
-            report
-                .versus(factors.name(), compare(engine, peer.as_ref(), &scale, factors, triangles, scale.arena_bytes)?);
+        for factors in
+            [Factors::ByDistance(FractionalOdd), Factors::Hashed(FractionalOdd), Factors::ByDistance(Integer), UNIFORM]
+        {
+            let a_patch = if factors == UNIFORM { MOST_TRIANGLES_A_PATCH } else { TRIANGLES_A_PATCH };
+            let patches = triangles / a_patch;
+            let versus = compare(engine, peer.as_ref(), &scale, factors, [triangles, patches], scale.arena_bytes)?;
+            report.versus(factors.name(), versus);
         }
     }
     let (factors, triangles) = (Factors::ByDistance(FractionalOdd), scale.triangles[0]);
-    let in_chunks = compare(engine, peer.as_ref(), &scale, factors, triangles, ARENA_BYTES)?;
+    let larger = [triangles, triangles / MORE_TRIANGLES_A_PATCH];
+    let larger = compare(engine, peer.as_ref(), &scale, factors, larger, scale.arena_bytes)?;
+    report.versus("fractional, by distance, twice as large", larger);
+    let as_before = [triangles, triangles / TRIANGLES_A_PATCH];
+    let in_chunks = compare(engine, peer.as_ref(), &scale, factors, as_before, ARENA_BYTES)?;
     report.versus("the same in the window's arena", in_chunks);
     let mut subject = subjects::subject(engine, subjects::tori(16, 1), scale.size, ARENA_BYTES)?;
     report.end_versus(&subject.time_nothing(engine, scale.effort)?);
@@ -106,17 +112,15 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
     Ok(())
 }
 
-/// One torus, tessellated to about so many triangles.
+/// One torus of about so many patches, tessellated to about so many triangles.
 fn compare(
     engine: &Engine,
     peer: Option<&Peer>,
     scale: &Scale,
     factors: Factors,
-    triangles: u64,
+    [triangles, patches]: [u64; 2],
     arena_bytes: u64,
 ) -> Result<Versus, BenchError> {
-    let is_uniform = matches!(factors, Factors::Uniform(_));
-    let patches = triangles / if is_uniform { MOST_TRIANGLES_A_PATCH } else { TRIANGLES_A_PATCH };
     let mesh = subjects::tori(subjects::columns(patches), 1);
     let mut subject = subjects::subject(engine, mesh, scale.size, arena_bytes)?;
     factors.take_for(engine, &mut subject, triangles)?;
