@@ -16,7 +16,7 @@ use super::lines::shown;
 use super::merge::LooseCorner;
 use super::{Material, Mesh, Progress};
 use header::{Element, Kind, Property};
-use values::Values;
+use values::{Values, plain};
 
 /// What is read of a vertex. Texture coordinates have three names.
 const ATTRIBUTES: [(&[u8], usize); 12] = [
@@ -81,7 +81,8 @@ impl Vertices {
         let vertex = index as usize;
         // What is negative, broken or not finite becomes another number.
         let position = self.positions.get(vertex).filter(|_| vertex as f64 == index).ok_or_else(|| {
-            place.fault(format!("the face uses vertex {index}, and there are {}, counted from 0", self.positions.len()))
+            let (index, count) = (plain(index), self.positions.len());
+            place.fault(format!("the face uses vertex {index}, and there are {count}, counted from 0"))
         })?;
         let uv = self.uvs.get(vertex).copied().unwrap_or_default();
         Ok(LooseCorner { position: *position, normal: self.normals.get(vertex).copied(), uv })

@@ -181,7 +181,7 @@ impl<'a> Values<'a> {
         let place = self.place();
         let said = self.next(count)?;
         if said < 0.0 || said.fract() != 0.0 || !said.is_finite() {
-            return Err(place.fault(format!("a list has {said} values")));
+            return Err(place.fault(format!("a list has {} values", plain(said))));
         }
         let (left, needed) = match self.encoding {
             Encoding::Text => (words(self.left).count(), said),
@@ -189,7 +189,7 @@ impl<'a> Values<'a> {
         };
         if needed > left as f64 {
             let unit = if self.encoding == Encoding::Text { "are in its line" } else { "bytes are left" };
-            return Err(place.fault(format!("a list has {said} values, and {left} {unit}")));
+            return Err(place.fault(format!("a list has {} values, and {left} {unit}", plain(said))));
         }
         Ok(said as usize)
     }
@@ -222,4 +222,9 @@ impl<'a> Values<'a> {
             _ => self.bytes.len(),
         }
     }
+}
+
+/// A number fit for a message, whatever it is.
+pub fn plain(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e15).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
