@@ -66,7 +66,7 @@ fn one_mesh_is_the_same_in_every_format() {
 
 #[test]
 fn what_is_exported_as_obj_loads_back_with_the_same_triangles() {
-    let folder = Folder::new("round-trip");
+    let folder = Folder::new("obj-round-trip");
     let [first, second] = ["first.obj", "second.obj"].map(|name| folder.path(name));
     output(&["tessellate", "shape:torus", "--factor", "3", "--device", "cpu", "-o", &first]);
     let again = ["tessellate", &first, "--surface", "flat", "--factor", "1", "--device", "cpu", "-o", &second];
