@@ -226,7 +226,7 @@ fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
     settle(&mut harness);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
     harness
-        .get_by_label("A .gltf or .glb file, shape:NAME, or a height image (.png, .jpg)")
+        .get_by_label("A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, or a height image (.png, .jpg)")
         .type_text(&path.display().to_string());
     settle(&mut harness);
     click(&mut harness, "Open");

@@ -4,6 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
 use super::heights::HEIGHT_IMAGE;
+use super::windows::MESHES;
 use crate::mesh::{Shape, Source};
 use crate::render::{Camera, Standpoint};
 use crate::settings::{FACTOR_RANGE, Overlay};
@@ -114,7 +115,7 @@ impl App {
         let hover = "Holds the mesh against what it should have been: the high-poly original, say.";
         if ui.button("Truth…").on_hover_text(hover).clicked() && self.dialog.is_none() {
             self.asks_for_truth = true;
-            self.dialog("Choose what the mesh should have been", "glTF", &["gltf", "glb"], ui.ctx());
+            self.dialog("Choose what the mesh should have been", "Meshes", &MESHES, ui.ctx());
         }
         if ui.button("Truth path…").on_hover_text(hover).clicked() {
             self.type_path();

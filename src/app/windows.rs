@@ -7,6 +7,9 @@ use super::App;
 use super::menu::KEYS;
 use crate::mesh::Source;
 
+/// Ends of names of files that hold meshes.
+pub(super) const MESHES: [&str; 5] = ["gltf", "glb", "obj", "stl", "ply"];
+
 impl App {
     /// Opens the window that takes a path, with that of the open file in it.
     pub(super) fn type_path(&mut self) {
@@ -22,7 +25,7 @@ impl App {
         if self.dialog.is_none() {
             self.asks_for_truth = false;
         }
-        self.dialog("Open a mesh", "glTF", &["gltf", "glb"], context);
+        self.dialog("Open a mesh", "Meshes", &MESHES, context);
     }
 
     /// The desktop's file dialog, on a thread of its own.
@@ -80,7 +83,7 @@ impl App {
         let kinds = if self.asks_for_truth { "" } else { ", or a height image (.png, .jpg)" };
         let window = egui::Window::new(asks).resizable(false).collapsible(false);
         window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(context, |ui| {
-            let label = ui.label(format!("A .gltf or .glb file, shape:NAME{kinds}"));
+            let label = ui.label(format!("A .gltf, .glb, .obj, .stl or .ply file, shape:NAME{kinds}"));
             let edit = egui::TextEdit::singleline(path).desired_width(420.0).hint_text("model.glb");
             let response = ui.add(edit).labelled_by(label.id);
             if !response.has_focus() && !response.lost_focus() {

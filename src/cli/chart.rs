@@ -24,8 +24,8 @@ use crate::truth::Truth;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// .gltf or .glb files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with --report, by default
-    /// seven shapes, and assets/vase.glb where there is one
+    /// .gltf, .glb, .obj, .stl or .ply files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with
+    /// --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,
     /// Mesh that what is emitted should have been, such as the high-poly original, where the mesh is no shape with an exact

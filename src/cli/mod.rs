@@ -44,8 +44,8 @@ use crate::mesh::{LoadError, Progress, Source};
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// What the window opens on: a .gltf or .glb file, or a shape made in code such as shape:cube-split, or shape:torus@2
-    /// (finer)
+    /// What the window opens on: a .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split,
+    /// or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
 }

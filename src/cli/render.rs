@@ -21,7 +21,7 @@ use crate::tessellate::{HullFactors, Inputs, Lod};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf or .glb file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
+    /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Picture to write, a PNG file

@@ -17,8 +17,8 @@ use crate::truth::Truth;
 
 #[derive(Clone, Debug, Default, Args)]
 pub struct TruthOption {
-    /// What the mesh should have been, for the deviation overlay and the stats: a .gltf or .glb file, such as the high-poly
-    /// original, or a shape. By default the surface that a shape is sampled from; else, for the overlay, the surface that
+    /// What the mesh should have been, for the deviation overlay and the stats: a .gltf, .glb, .obj, .stl or .ply file, such as
+    /// the high-poly original, or a shape. By default the surface that a shape is sampled from; else, for the overlay, the surface that
     /// the tessellation converges to
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub truth: Option<Source>,

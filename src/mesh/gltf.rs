@@ -11,13 +11,13 @@ mod binder;
 mod buffers;
 mod document;
 mod hanging;
-mod materials;
+pub(super) mod materials;
 mod nodes;
 mod primitive;
 mod problem;
 mod skin;
 mod space;
-mod uri;
+pub(super) mod uri;
 mod vertices;
 
 use std::path::Path;
@@ -37,7 +37,7 @@ use primitive::Primitives;
 pub use problem::Problem;
 
 /// A scene of more triangles than this is refused: its indices would no longer fit 32 bits, nor its data most memories.
-const MAX_TRIANGLES: usize = 1 << 27;
+pub(super) const MAX_TRIANGLES: usize = 1 << 27;
 
 /// Makes a mesh of a document's bytes.
 ///

@@ -3,24 +3,30 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::Mesh;
+use super::fault::Fault;
 use super::gltf::{self, Problem};
 use super::heights::HeightError;
 use super::progress::{Cancelled, Progress};
+use super::{Mesh, obj, ply, stl};
+
+/// Ends of names of files that can be read, for messages.
+const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
 
 /// Why a file became no mesh.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{} can't be read because its name ends in {extension}; choose a .gltf or .glb file (glTF 2.0)", path.display())]
+    #[error("{} can't be read because its name ends in {extension}; choose a {KNOWN} file", path.display())]
     UnknownFormat { path: PathBuf, extension: String },
-    #[error("{} is not a file; choose a .gltf or .glb file", path.display())]
+    #[error("{} is not a file; choose a {KNOWN} file", path.display())]
     NoFile { path: PathBuf },
     #[error("{} can't be read: {source}", path.display())]
     Io { path: PathBuf, source: io::Error },
     #[error("{}: {problem}", path.display())]
     Gltf { path: PathBuf, problem: Box<Problem> },
+    #[error("{}: {fault}", path.display())]
+    Broken { path: PathBuf, fault: Box<Fault> },
     #[error(transparent)]
     Heights(HeightError),
     #[error("{} has no triangles to show: {holds}", path.display())]
@@ -36,7 +42,7 @@ impl From<HeightError> for LoadError {
     }
 }
 
-/// Reads a file: glTF 2.0, as `.gltf` or `.glb` (in either case).
+/// Reads a file: glTF 2.0, as `.gltf` or `.glb`; `.obj`, `.stl` or `.ply` (all in either case).
 ///
 /// `progress` goes from 0 to 1 meanwhile. Buffers and textures in files of their own are looked for in the model's
 /// folder and below it.
@@ -54,6 +60,7 @@ pub fn load(path: &Path, progress: &Progress) -> Result<Mesh, LoadError> {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
     let mesh = match extension.as_deref() {
         Some("gltf" | "glb") => load_gltf(path, progress)?,
+        Some(format @ ("obj" | "stl" | "ply")) => load_plain(format, path, progress)?,
         other => {
             let extension = other.map_or("no extension".to_owned(), |extension| format!(".{extension}"));
             return Err(LoadError::UnknownFormat { path: path.to_owned(), extension });
@@ -74,6 +81,22 @@ fn load_gltf(path: &Path, progress: &Progress) -> Result<Mesh, LoadError> {
     })
 }
 
+/// What has no document: a format by the end of its name.
+fn load_plain(format: &str, path: &Path, progress: &Progress) -> Result<Mesh, LoadError> {
+    let bytes = std::fs::read(path).map_err(|source| LoadError::Io { path: path.to_owned(), source })?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let mesh = match format {
+        "obj" => obj::read(&bytes, path.parent().unwrap_or(Path::new("")), &name, progress),
+        "stl" => stl::read(&bytes, &name, progress),
+        _ => ply::read(&bytes, &name, progress),
+    };
+    mesh.map_err(|fault| match fault {
+        Fault::Cancelled(cancelled) => cancelled.into(),
+        Fault::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+        fault => LoadError::Broken { path: path.to_owned(), fault: Box::new(fault) },
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,7 +108,7 @@ mod tests {
     #[test]
     fn unknown_formats_name_the_known_ones() {
         let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-        let expected = "can't be read because its name ends in .toml; choose a .gltf or .glb file (glTF 2.0)";
+        let expected = "can't be read because its name ends in .toml; choose a .gltf, .glb, .obj, .stl or .ply file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
         assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
     }

@@ -6,6 +6,7 @@ mod chart;
 mod deviation;
 mod domain;
 mod factors;
+mod formats;
 mod gallery;
 mod info;
 mod lod;

@@ -16,7 +16,7 @@ use crate::mesh::{Material, Texture};
 const MAX_SIZE: u32 = 16384;
 
 /// The largest image file, in bytes.
-const MAX_FILE: u64 = 1 << 30;
+pub const MAX_FILE: u64 = 1 << 30;
 
 /// The builder's index of a material, and the set of texture coordinates that goes with it.
 #[derive(Clone, Copy)]
@@ -96,7 +96,10 @@ impl<'a> Materials<'a> {
 }
 
 /// PNG or JPEG (its first bytes tell which) as RGBA.
-fn decode(bytes: &[u8]) -> Result<Texture, String> {
+///
+/// # Errors
+/// A clause that says what is wrong.
+pub fn decode(bytes: &[u8]) -> Result<Texture, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
     let mut limits = Limits::default();
     (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIZE), Some(MAX_SIZE));

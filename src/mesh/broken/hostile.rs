@@ -1,0 +1,51 @@
+//! One broken file after another, with the sentence that it gets.
+
+mod obj;
+mod ply;
+mod stl;
+
+use std::borrow::Cow;
+
+use super::{Format, read};
+
+enum Gets {
+    /// The problem's message.
+    Refused(&'static str),
+    /// So many triangles, and a warning that contains this.
+    Mended(usize, &'static str),
+}
+use Gets::{Mended, Refused};
+
+type Case = (Format, Cow<'static, [u8]>, Gets);
+
+fn case(format: Format, text: impl Into<Cow<'static, str>>, gets: Gets) -> Case {
+    let bytes = match text.into() {
+        Cow::Borrowed(text) => Cow::Borrowed(text.as_bytes()),
+        Cow::Owned(text) => Cow::Owned(text.into_bytes()),
+    };
+    (format, bytes, gets)
+}
+
+#[test]
+fn every_hostile_file_gets_its_sentence() {
+    let cases: Vec<Case> = obj::cases().into_iter().chain(stl::cases()).chain(ply::cases()).collect();
+    assert!(cases.len() >= 90, "{}", cases.len());
+    let wrong: Vec<String> = cases.into_iter().filter_map(wrong).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What a file got in place of what it was to get.
+fn wrong((format, bytes, gets): Case) -> Option<String> {
+    let result = read(format, &bytes);
+    let is_right = match (&result, &gets) {
+        (Err(fault), Refused(expected)) => fault.to_string() == *expected,
+        (Ok(mesh), Mended(triangles, warning)) => {
+            mesh.triangles.len() == *triangles && mesh.warnings.iter().any(|said| said.contains(warning))
+        }
+        _ => false,
+    };
+    let got = result.map(|mesh| (mesh.triangles.len(), mesh.warnings)).map_err(|fault| fault.to_string());
+    let (Refused(expected) | Mended(_, expected)) = gets;
+    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(60)]);
+    (!is_right).then(|| format!("{format:?} {start:?}\n  got {got:?}\n  in place of {expected:?}"))
+}

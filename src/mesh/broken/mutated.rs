@@ -1,0 +1,78 @@
+//! Copies of good files with bits, ends and numbers changed: a mesh or a sentence, never a panic, never long.
+
+use super::Format::{Obj, Ply, Stl};
+use super::{Format, read};
+use crate::mesh::{obj, ply, stl};
+
+/// What takes the place of a number.
+const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
+
+/// Xorshift, from a seed that isn't 0.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.next() % count.max(1) as u64) as usize
+    }
+}
+
+fn originals() -> Vec<(Format, Vec<u8>)> {
+    let mut originals = vec![
+        (Obj, obj::tests::cube().into_bytes()),
+        (Obj, obj::tests::everything().into_bytes()),
+        (Stl, stl::tests::text().into_bytes()),
+        (Stl, stl::tests::binary(b"solid cube")),
+        (Ply, ply::tests::strip("0 1 2 -1 3 4 5").into_bytes()),
+    ];
+    originals.extend((0..3).map(|encoding| (Ply, ply::tests::cube(encoding, 6, 4))));
+    originals
+}
+
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    for _ in 0..=random.below(4) {
+        let at = random.below(bytes.len());
+        match random.below(8) {
+            0 => bytes.truncate(at),
+            1 | 2 => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << random.below(8)),
+            3 => {
+                let number = [0, u32::MAX, 1 << 30, f32::NAN.to_bits(), f32::MAX.to_bits()][random.below(5)];
+                bytes.iter_mut().skip(at).zip(number.to_le_bytes()).for_each(|(byte, new)| *byte = new);
+            }
+            _ => replace_number(bytes, at, NUMBERS[random.below(NUMBERS.len())]),
+        }
+    }
+}
+
+/// Replaces the first run of digits from there on.
+fn replace_number(bytes: &mut Vec<u8>, from: usize, by: &str) {
+    let Some(start) = bytes.iter().skip(from).position(u8::is_ascii_digit).map(|i| i + from) else { return };
+    let length = bytes[start..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    bytes.splice(start..start + length, by.bytes());
+}
+
+#[test]
+fn mutated_copies_are_read_or_refused() {
+    let copies = std::env::var("PNAEN_MUTATIONS").ok().and_then(|copies| copies.parse().ok()).unwrap_or(300);
+    let originals = originals();
+    for (format, bytes) in &originals {
+        assert!(read(*format, bytes).is_ok(), "{format:?}");
+    }
+    let (mut random, mut refused) = (Random(0x9e37_79b9_7f4a_7c15), 0);
+    for i in 0..copies {
+        let (format, mut bytes) = originals[i % originals.len()].clone();
+        mutate(&mut bytes, &mut random);
+        if let Err(fault) = read(format, &bytes) {
+            let message = fault.to_string();
+            assert!(message.len() < 300 && !message.contains(char::is_control), "{message}");
+            refused += 1;
+        }
+    }
+    assert!(refused > copies / 10 && refused < copies, "{refused} of {copies} were refused");
+}

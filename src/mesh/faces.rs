@@ -1,0 +1,153 @@
+//! Faces of files that have no document, as triangles: checked, cut, counted.
+
+use glam::{Vec2, Vec3};
+
+use super::fault::{Fault, Place};
+use super::gltf::MAX_TRIANGLES;
+use super::merge::{LooseCorner, MeshBuilder};
+use super::polygon::{Budget, Cut, triangulate};
+use super::rig::LARGEST_COORDINATE;
+use super::{Material, Mesh, Progress};
+
+/// A file of more materials than this is refused: each takes memory, and a draw.
+const MAX_MATERIALS: usize = 1 << 16;
+
+/// What a mesh is made of meanwhile.
+pub struct Faces {
+    builder: MeshBuilder,
+    materials: usize,
+    triangles: usize,
+    budget: Budget,
+    /// Faces of fewer than 3 corners, corners on the place of the one before, faces cut somehow.
+    too_small: usize,
+    repeated: usize,
+    somehow: usize,
+    bad_uvs: usize,
+    cut: Vec<[usize; 3]>,
+}
+
+impl Faces {
+    /// For a file of so many bytes.
+    pub fn new(bytes: usize) -> Self {
+        Self {
+            builder: MeshBuilder::new(),
+            materials: 0,
+            triangles: 0,
+            budget: Budget::new(bytes),
+            too_small: 0,
+            repeated: 0,
+            somehow: 0,
+            bad_uvs: 0,
+            cut: Vec::new(),
+        }
+    }
+
+    /// Adds a material, for [`add`](Self::add).
+    ///
+    /// # Errors
+    /// [`Fault::TooMany`].
+    pub fn material(&mut self, material: Material) -> Result<usize, Fault> {
+        self.materials += 1;
+        if self.materials > MAX_MATERIALS {
+            return Err(Fault::TooMany { limit: MAX_MATERIALS, what: "materials" });
+        }
+        Ok(self.builder.material(material))
+    }
+
+    /// Adds a face of any number of corners; what can be mended is, in `corners` too. `place` is where the file has it.
+    ///
+    /// # Errors
+    /// [`Fault::Broken`] for positions that no mesh can have, [`Fault::TooMany`].
+    pub fn add(&mut self, material: usize, corners: &mut Vec<LooseCorner>, place: Place) -> Result<(), Fault> {
+        for corner in corners.iter_mut() {
+            check(corner.position).map_err(|reason| place.fault(reason))?;
+            if !corner.uv.is_finite() {
+                corner.uv = Vec2::ZERO;
+                self.bad_uvs += 1;
+            }
+        }
+        if corners.len() > 3 {
+            let given = corners.len();
+            corners.dedup_by_key(|corner| corner.position);
+            if corners.len() > 1 && corners.first().map(|c| c.position) == corners.last().map(|c| c.position) {
+                corners.pop();
+            }
+            self.repeated += given - corners.len();
+        }
+        if corners.len() < 3 {
+            self.too_small += 1;
+            return Ok(());
+        }
+        self.triangles += corners.len() - 2;
+        if self.triangles > MAX_TRIANGLES {
+            return Err(Fault::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
+        }
+        self.cut(material, corners);
+        Ok(())
+    }
+
+    fn cut(&mut self, material: usize, corners: &[LooseCorner]) {
+        if let Ok(triangle) = corners.try_into() {
+            self.builder.triangle(material, triangle);
+            return;
+        }
+        let outline: Vec<Vec3> = corners.iter().map(|corner| corner.position).collect();
+        self.cut.clear();
+        let cut = triangulate(&outline, &mut self.budget, &mut self.cut);
+        self.somehow += usize::from(cut == Cut::Somehow);
+        for triangle in &self.cut {
+            self.builder.triangle(material, triangle.map(|i| corners[i]));
+        }
+    }
+
+    /// The mesh. `holds` is what the file has in place of triangles, `warnings` what else is to be known.
+    ///
+    /// # Errors
+    /// [`Fault::Empty`] and [`Fault::Cancelled`].
+    pub fn finish(
+        self,
+        name: &str,
+        holds: String,
+        mut warnings: Vec<String>,
+        progress: &Progress,
+    ) -> Result<Mesh, Fault> {
+        if self.builder.is_empty() {
+            let small = match self.too_small {
+                0 => String::new(),
+                count => format!(", and {count} faces of fewer than 3 corners"),
+            };
+            return Err(Fault::Empty { holds: holds + &small });
+        }
+        warnings.extend(counted([
+            (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
+            (self.too_small, "faces of fewer than 3 corners, left out"),
+            (self.repeated, "corners of polygons where the one before is, left out"),
+            (
+                self.somehow,
+                "polygons without area, or whose sides cross, or too large, cut into triangles that may overlap",
+            ),
+        ]));
+        let mut mesh = self.builder.finish(name.to_owned(), progress)?;
+        mesh.warnings.splice(0..0, warnings);
+        Ok(mesh)
+    }
+}
+
+/// A sentence for each of what there is some of.
+pub fn counted(sentences: impl IntoIterator<Item = (usize, &'static str)>) -> impl Iterator<Item = String> {
+    let found = sentences.into_iter().filter(|(count, _)| *count > 0);
+    found.map(|(count, sentence)| format!("{sentence}: {count}."))
+}
+
+fn check(position: Vec3) -> Result<(), String> {
+    if !position.is_finite() {
+        return Err("the face has a position that isn't finite".to_owned());
+    }
+    if position.abs().max_element() > LARGEST_COORDINATE {
+        return Err(format!("the face has a coordinate beyond {LARGEST_COORDINATE:e}"));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+pub(super) mod tests;

@@ -1,0 +1,122 @@
+//! OBJ, STL and PLY files: opened as glTF's are, and refused in one sentence.
+
+use serde_json::Value;
+
+use crate::{Folder, output, read_obj, sentence};
+
+fn info(path: &str) -> Value {
+    serde_json::from_str(&output(&["info", path, "--json"])).expect("JSON")
+}
+
+/// Triangles by the bits of their positions, whichever corner they begin at.
+fn triangles(obj: &str) -> Vec<[[u32; 3]; 3]> {
+    let (positions, faces) = read_obj(obj);
+    let from_the_least = |mut triangle: [[u32; 3]; 3]| {
+        let least = (0..3).min_by_key(|&k| triangle[k]).unwrap_or_default();
+        triangle.rotate_left(least);
+        triangle
+    };
+    faces.iter().map(|face| from_the_least(face.map(|point| positions[point]))).collect()
+}
+
+/// The triangles of an OBJ file as STL in text, and as PLY with three vertices each.
+fn rewrite(folder: &Folder, obj: &str) -> [String; 2] {
+    let triangles: Vec<_> = triangles(obj).into_iter().map(|t| t.map(|p| p.map(f32::from_bits))).collect();
+    let (mut stl, mut rows, mut faces) = ("solid a\n".to_owned(), String::new(), String::new());
+    for (i, triangle) in triangles.iter().enumerate() {
+        stl += "facet normal 0 0 0\nouter loop\n";
+        for [x, y, z] in triangle {
+            stl += &format!("vertex {x} {y} {z}\n");
+            rows += &format!("{x} {y} {z}\n");
+        }
+        stl += "endloop\nendfacet\n";
+        faces += &format!("3 {} {} {}\n", 3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\n\
+         property list uchar int vertex_indices\nend_header\n{rows}{faces}",
+        3 * triangles.len(),
+        triangles.len()
+    );
+    let paths = [("a.STL", stl + "endsolid a\n"), ("a.Ply", ply)];
+    paths.map(|(name, text)| {
+        std::fs::write(folder.path(name), text).expect("a writable folder");
+        folder.path(name)
+    })
+}
+
+#[test]
+fn one_mesh_is_the_same_in_every_format() {
+    let folder = Folder::new("formats");
+    let [glb, obj] = ["a.glb", "a.obj"].map(|name| folder.path(name));
+    let tessellate = ["tessellate", "shape:cube-split", "--surface", "flat", "--factor", "1", "--device", "cpu", "-o"];
+    for path in [&glb, &obj] {
+        output(&[&tessellate[..], &[path]].concat());
+    }
+    let expected = info(&glb);
+    assert_eq!((&expected["triangles"], &expected["points"]), (&12.into(), &8.into()));
+    let [stl, ply] = rewrite(&folder, &obj);
+    for path in [&obj, &stl, &ply] {
+        let found = info(path);
+        for key in ["triangles", "points", "edges", "closed", "euler_characteristic", "bounds", "degenerate"] {
+            assert_eq!(found[key], expected[key], "{key} of {path}");
+        }
+    }
+}
+
+#[test]
+fn what_is_exported_as_obj_loads_back_with_the_same_triangles() {
+    let folder = Folder::new("obj-round-trip");
+    let [first, second] = ["first.obj", "second.obj"].map(|name| folder.path(name));
+    output(&["tessellate", "shape:torus", "--factor", "3", "--device", "cpu", "-o", &first]);
+    let again = ["tessellate", &first, "--surface", "flat", "--factor", "1", "--device", "cpu", "-o", &second];
+    output(&again);
+    let expected = triangles(&first);
+    assert!(expected.len() > 1000);
+    assert!(triangles(&second) == expected, "in their order, to the bit");
+    let info = info(&first);
+    assert_eq!((&info["closed"], &info["warnings"]), (&true.into(), &Value::Array(Vec::new())));
+}
+
+#[test]
+fn broken_files_are_refused_in_one_sentence() {
+    let folder = Folder::new("broken-formats");
+    let cases: [(&str, &[u8], &str); 6] = [
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "a.obj: line 4: the face uses position 4, and there are 3"),
+        ("points.OBJ", b"v 0 0 0\np 1\n", "points.OBJ has no triangles to show: it holds 1 positions, 1 points (p)"),
+        ("a.stl", &[0; 100], "a.stl has no triangles to show: its header counts 0 triangles"),
+        (
+            "cut.stl",
+            &[1; 100],
+            "cut.stl: byte 80: its header says 16843009 triangles, which take 842150534 bytes, and the file has 100",
+        ),
+        (
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 4611686018427387904\nproperty float x\nend_header\n",
+            "a.ply: line 5: the header says",
+        ),
+        ("empty.ply", b"", "empty.ply: it is no PLY"),
+    ];
+    for (name, bytes, expected) in cases {
+        std::fs::write(folder.path(name), bytes).expect("a writable folder");
+        sentence(&["info", &folder.path(name)], &[expected]);
+        sentence(&["render", &folder.path(name), "-o", &folder.path("out.png")], &[expected]);
+    }
+}
+
+#[test]
+fn materials_beside_an_obj_are_read_and_told() {
+    let folder = Folder::new("materials");
+    let text = "mtllib colours.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl lost\nf 3 2 1\n";
+    std::fs::write(folder.path("a.obj"), text).expect("a writable folder");
+    std::fs::write(folder.path("colours.mtl"), "newmtl red\nKd 1 0 0\nmap_Kd lost.png\n").expect("a writable folder");
+    let said = output(&["info", &folder.path("a.obj")]);
+    for line in [
+        "material      red: 1 triangles\n",
+        "material      lost: 1 triangles\n",
+        "the texture \"lost.png\" of material \"red\" is left out: ",
+        "materials that no material file describes, shown white: 1.",
+    ] {
+        assert!(said.contains(line), "{line:?} is not in {said}");
+    }
+}
