@@ -27,6 +27,7 @@ use ::gltf::{Document, Node};
 use glam::DMat4;
 
 use super::Mesh;
+use super::load::Limits;
 use super::merge::MeshBuilder;
 use super::progress::Progress;
 use accessor::Accessors;
@@ -35,20 +36,22 @@ use materials::Materials;
 use nodes::Placed;
 use primitive::Primitives;
 pub use problem::Problem;
+use uri::Files;
 
 /// A scene of more triangles than this is refused: its indices would no longer fit 32 bits, nor its data most memories.
 const MAX_TRIANGLES: usize = 1 << 27;
 
 /// Makes a mesh of a document's bytes.
 ///
-/// `folder` is where the document lies, `name` becomes the mesh's.
+/// `folder` is where the document lies, `name` becomes the mesh's. `limits` are those of files that it names.
 ///
 /// # Errors
 /// [`Problem`].
-pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Result<Mesh, Problem> {
-    let document::Parsed { document, blob, animations, mut warnings } = document::parse(bytes)?;
+pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Problem> {
+    let document::Parsed { document, blob, animations, mut warnings } = document::parse(&bytes)?;
     progress.check()?;
-    let buffers = buffers::load(&document, folder, blob, progress)?;
+    let files = Files { folder, limits };
+    let buffers = buffers::load(&document, files, blob, progress)?;
     progress.set(0.3);
     let placed = nodes::place(&document, &mut warnings);
     let accessors = Accessors::new(&document, &buffers);
@@ -58,7 +61,7 @@ pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Res
         document: &document,
         placed: &placed,
         accessors: &accessors,
-        materials: Materials::new(&document, &accessors, folder),
+        materials: Materials::new(&document, &accessors, files),
         builder: MeshBuilder::new(),
         primitives: Primitives::default(),
         binder: Binder::new(clips, &document, &placed, &mut warnings),

@@ -108,3 +108,19 @@ fn a_picture_is_not_named_what_it_is_not() {
     let errors = failure(&["render", "shape:cube-split", "-o", &folder.path("out.jpg")], 2);
     assert!(errors.contains("PNG") && errors.contains("name it .png"), "{errors}");
 }
+
+#[test]
+fn files_beyond_the_limit_are_refused() {
+    let vase = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb");
+    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "and 10240 are read at most", "--max-size"]);
+    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "and 10240 are read at most"]);
+    sentence(
+        &["render", "shape:torus", "--truth", vase, "--max-size", "1", "-o", "unwritten.png"],
+        &["vase.glb has ", "and 1 are read at most"],
+    );
+    output(&["info", vase, "--max-size", "11 KiB"]);
+    for size in ["0", "1.5GiB", "much"] {
+        let errors = failure(&["info", vase, "--max-size", size], 2);
+        assert!(errors.contains("or of KiB, MiB or GiB"), "{errors}");
+    }
+}

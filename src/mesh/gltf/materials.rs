@@ -2,21 +2,18 @@
 
 use std::collections::HashMap;
 use std::io::Cursor;
-use std::path::Path;
 use std::sync::Arc;
 
 use ::gltf::Document;
 use image::{ImageReader, Limits};
 
-use super::{Accessors, uri};
+use super::Accessors;
+use super::uri::{self, Files};
 use crate::mesh::merge::MeshBuilder;
 use crate::mesh::{Material, Texture};
 
 /// The largest width and height of a texture, in px: what common GPUs take.
 const MAX_SIZE: u32 = 16384;
-
-/// The largest image file, in bytes.
-const MAX_FILE: u64 = 1 << 30;
 
 /// The builder's index of a material, and the set of texture coordinates that goes with it.
 #[derive(Clone, Copy)]
@@ -29,7 +26,7 @@ pub struct Resolved {
 pub struct Materials<'a> {
     document: &'a Document,
     accessors: &'a Accessors<'a>,
-    folder: &'a Path,
+    files: Files<'a>,
     /// By the document's index; none for the default material.
     resolved: HashMap<Option<usize>, Resolved>,
     /// By the document's index of the image; none for one that can't be read.
@@ -38,9 +35,9 @@ pub struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(document: &'a Document, accessors: &'a Accessors<'a>, folder: &'a Path) -> Self {
+    pub fn new(document: &'a Document, accessors: &'a Accessors<'a>, files: Files<'a>) -> Self {
         let (resolved, textures) = (HashMap::new(), HashMap::new());
-        Self { document, accessors, folder, resolved, textures, warnings: Vec::new() }
+        Self { document, accessors, files, resolved, textures, warnings: Vec::new() }
     }
 
     /// Finds a material, or adds it to the builder. A texture that is missing or broken becomes a warning.
@@ -88,7 +85,9 @@ impl<'a> Materials<'a> {
             return bytes.map_err(|reason| format!("image {image} {reason}"));
         }
         match &json.uri {
-            Some(uri) => uri::read(uri, self.folder, MAX_FILE)
+            Some(uri) => self
+                .files
+                .read(uri)
                 .map_err(|reason| format!("image {image} ({}) can't be read: {reason}", uri::shown(uri))),
             None => Err(format!("image {image} has neither a file nor a buffer view")),
         }

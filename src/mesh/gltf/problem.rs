@@ -11,7 +11,7 @@ pub enum Problem {
     NotGltf { reason: String },
     #[error("the document requires the extension {name}, which isn't supported; export the model without it")]
     Extension { name: String },
-    #[error("buffer {buffer} ({uri}) can't be read: {reason}; put the file where the document says, or export as .glb")]
+    #[error("buffer {buffer} ({uri}) can't be read: {reason}")]
     Buffer { buffer: usize, uri: String, reason: String },
     #[error("accessor {accessor} ({role}) {reason}; export the model again")]
     Accessor { accessor: usize, role: String, reason: String },

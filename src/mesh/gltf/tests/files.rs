@@ -45,7 +45,7 @@ fn textures_are_decoded_wherever_they_are() {
 fn missing_and_broken_textures_are_warnings() {
     let images = [
         (json!({ "uri": "missing%20one.png" }), "missing one.png"),
-        (json!({ "uri": "/elsewhere.png" }), "outside"),
+        (json!({ "uri": "/elsewhere.png" }), "an absolute path"),
         (json!({ "uri": "data:image/png;base64,AAAA" }), "can't be decoded"),
         (json!({ "bufferView": 0 }), "can't be decoded"),
         (json!({}), "neither"),
@@ -87,16 +87,16 @@ fn files_next_to_the_document_are_found() {
     let path = folder.0.join("model.GLTF");
     std::fs::write(&path, document.to_string()).unwrap();
     let progress = Progress::new();
-    let error = load(&path, &progress).unwrap_err().to_string();
+    let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
     assert!(error.contains("model.GLTF: buffer 0 (data.bin) can't be read"), "{error}");
     std::fs::write(folder.0.join("data.bin"), &draft.bytes).unwrap();
     std::fs::write(folder.0.join("my skin.png"), png()).unwrap();
-    let mesh = load(&path, &progress).unwrap();
+    let mesh = load(&path, &Limits::default(), &progress).unwrap();
     assert!(mesh.materials[0].texture.is_some());
     assert_eq!((mesh.name.as_str(), progress.fraction()), ("model", 1.0));
     std::fs::write(folder.0.join("data.bin"), &draft.bytes[1..]).unwrap();
-    let error = load(&path, &progress).unwrap_err().to_string();
+    let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
     assert!(error.contains("it should have 96 bytes and has 95"), "{error}");
     progress.cancel();
-    assert!(matches!(load(&path, &progress), Err(LoadError::Cancelled(Cancelled))));
+    assert!(matches!(load(&path, &Limits::default(), &progress), Err(LoadError::Cancelled(Cancelled))));
 }
