@@ -6,13 +6,15 @@ use super::Problem;
 use super::uri::{self, Files};
 use crate::mesh::progress::Progress;
 
-/// All buffers, each cut to the length that the document gives it. `blob` is the binary chunk of a `.glb`.
+/// All buffers, each cut to the length that the document gives it. `blob` is the binary chunk of a `.glb`. Those that are
+/// `fallback` are empty: what they are for is decompressed from others.
 ///
 /// # Errors
 /// [`Problem::Buffer`] for one that is missing or too short, and [`Problem::Cancelled`].
 pub fn load(
     document: &Document,
-    files: Files,
+    files: &Files,
+    fallback: &[bool],
     mut blob: Option<Vec<u8>>,
     progress: &Progress,
 ) -> Result<Vec<Vec<u8>>, Problem> {
@@ -20,9 +22,13 @@ pub fn load(
     let mut buffers = Vec::with_capacity(json.len());
     for (i, buffer) in json.iter().enumerate() {
         progress.check()?;
+        if fallback.get(i) == Some(&true) {
+            buffers.push(Vec::new());
+            continue;
+        }
         let length = buffer.byte_length.0;
         let bytes = match &buffer.uri {
-            Some(uri) => files.read(uri),
+            Some(uri) => files.read(uri, true),
             None => {
                 blob.take().ok_or_else(|| "the document has no binary chunk for it; export the model again".to_owned())
             }

@@ -4,7 +4,9 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive};
 
 use super::binder::NodeBinder;
+use super::materials::Uvs;
 pub use super::vertices::Pose;
+use super::vertices::Vertices;
 use super::{Accessors, Problem, vertices};
 use crate::mesh::merge::LooseCorner;
 
@@ -24,11 +26,19 @@ pub struct Primitives {
     pub rescaled: u32,
 }
 
-/// A primitive's triangles.
+/// A primitive's triangles, by its vertices.
 pub struct Triangles {
-    pub corners: Vec<[LooseCorner; 3]>,
-    /// Numbers of the corners' bindings; none at all if nothing moves.
-    pub bindings: Vec<[u32; 3]>,
+    vertices: Vertices,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Triangles {
+    /// Corners, and the numbers of their bindings: 0 for all if nothing moves.
+    pub fn iter(&self) -> impl Iterator<Item = ([LooseCorner; 3], [u32; 3])> {
+        let Vertices { corners, bindings, .. } = &self.vertices;
+        let binding = |vertex: u32| bindings.get(vertex as usize).copied().unwrap_or_default();
+        self.triangles.iter().map(move |t| (t.map(|vertex| corners[vertex as usize]), t.map(binding)))
+    }
 }
 
 impl Primitives {
@@ -52,12 +62,12 @@ impl Primitives {
         mesh: &Mesh,
         primitive: &Primitive,
         pose: &Pose,
-        uv_set: u32,
+        uvs: Uvs,
         accessors: &Accessors,
         binder: Option<&mut NodeBinder>,
     ) -> Result<Triangles, Problem> {
         let name = name(mesh, primitive);
-        let vertices = vertices::read(primitive, &name, pose, uv_set, accessors, binder)?;
+        let vertices = vertices::read(primitive, &name, pose, uvs, accessors, binder)?;
         let indices = match primitive.indices() {
             Some(accessor) => accessors.indices(&accessor, &format!("indices of {name}"))?,
             None => (0..vertices.corners.len() as u32).collect(),
@@ -72,10 +82,7 @@ impl Primitives {
         let triangles: Vec<_> = triangles(primitive.mode(), &indices).into_iter().map(outward).collect();
         let vertex_rescaled = |vertex: &&u32| vertices.rescaled[**vertex as usize];
         self.rescaled += triangles.as_flattened().iter().filter(vertex_rescaled).count() as u32;
-        let bound = !vertices.bindings.is_empty();
-        let bindings = triangles.iter().filter(|_| bound).map(|t| t.map(|vertex| vertices.bindings[vertex as usize]));
-        let corners = triangles.iter().map(|t| t.map(|vertex| vertices.corners[vertex as usize]));
-        Ok(Triangles { corners: corners.collect(), bindings: bindings.collect() })
+        Ok(Triangles { vertices, triangles })
     }
 
     fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
@@ -113,10 +120,10 @@ impl Primitives {
     }
 }
 
-/// A primitive's name for messages.
-fn name(mesh: &Mesh, primitive: &Primitive) -> String {
-    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" \"{name}\""));
-    format!("mesh {}{mesh_name}, primitive {}", mesh.index(), primitive.index())
+/// A primitive's place in the document, for messages.
+pub fn name(mesh: &Mesh, primitive: &Primitive) -> String {
+    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", super::uri::shown(name)));
+    format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
 }
 
 /// Indices as triangles (specification, section 3.7.2.1). Triangles of a strip or fan that use a vertex twice only

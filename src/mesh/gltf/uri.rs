@@ -1,33 +1,51 @@
 //! URIs of buffers and images: data in the document itself, or files next to it.
 
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
+use super::budget::Budget;
 use crate::mesh::load::{Limits, read_file};
 
 /// The largest data URI, in bytes that it stands for.
 const MAX_DATA: usize = 512 << 20;
 
 /// The files that a document may name.
-#[derive(Clone, Copy)]
 pub struct Files<'a> {
     /// Where the document lies.
-    pub folder: &'a Path,
-    pub limits: &'a Limits,
+    folder: &'a Path,
+    limits: &'a Limits,
+    budget: &'a Budget,
+    /// Those that have brought their allowance.
+    counted: RefCell<HashSet<PathBuf>>,
 }
 
-impl Files<'_> {
-    /// The bytes that a URI stands for.
+impl<'a> Files<'a> {
+    pub fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget) -> Self {
+        Self { folder, limits, budget, counted: RefCell::default() }
+    }
+
+    /// The bytes that a URI stands for, kept until the end or not.
     ///
     /// Files must lie in the document's folder or below it, also after links are followed: a model can't make the program
     /// read anything else.
     ///
     /// # Errors
     /// A clause that says what is wrong, and what to do.
-    pub fn read(&self, uri: &str) -> Result<Vec<u8>, String> {
+    pub fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
+        let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
         if let Some(data) = strip_scheme(uri, "data:") {
+            take(data.len() as u64)?;
             return read_data(data, MAX_DATA);
         }
         let path = self.found(&relative_path(uri)?)?;
+        // What is too large is refused by its name and size, whatever memory there is.
+        let bytes = path.metadata().map_or(0, |about| about.len()).min(self.limits.file);
+        // A file that is named a thousand times brings what it allows once.
+        if self.counted.borrow_mut().insert(path.clone()) {
+            self.budget.allow(bytes);
+        }
+        take(bytes)?;
         read_file(&path, self.limits).map_err(|error| error.to_string())
     }
 
@@ -98,6 +116,9 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
     }
     if decoded.contains('\\') {
         return refused("it has a backslash, where a URI has /");
+    }
+    if decoded.contains(char::is_control) {
+        return refused("it has a control character");
     }
     if decoded.contains(':') {
         return refused("it has a colon");
@@ -211,6 +232,7 @@ mod tests {
             ("a%5C..%5Cb", "backslash"),
             ("a\\b", "backslash"),
             ("a/b.bin:c", "colon"),
+            ("a%00b", "control character"),
         ];
         for (uri, reason) in outside {
             let said = relative_path(uri).unwrap_err();

@@ -88,7 +88,7 @@ fn files_next_to_the_document_are_found() {
     std::fs::write(&path, document.to_string()).unwrap();
     let progress = Progress::new();
     let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
-    assert!(error.contains("model.GLTF: buffer 0 (data.bin) can't be read"), "{error}");
+    assert!(error.contains("model.GLTF: /buffers/0 (data.bin) can't be read"), "{error}");
     std::fs::write(folder.0.join("data.bin"), &draft.bytes).unwrap();
     std::fs::write(folder.0.join("my skin.png"), png()).unwrap();
     let mesh = load(&path, &Limits::default(), &progress).unwrap();
