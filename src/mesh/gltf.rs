@@ -68,7 +68,7 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
     progress.check()?;
     let binder = Binder::new(clips, &document, &placed, &mut warnings);
-    extent::check(&document, &placed, &accessors, &budget, binder.is_some())?;
+    let corners = extent::check(&document, &placed, &accessors, &budget, binder.is_some())?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
@@ -78,24 +78,28 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
         primitives: Primitives::default(),
         binder,
     };
+    scene.builder.reserve(corners);
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
     }
-    if scene.builder.is_empty() {
-        return Err(Problem::Empty { holds: scene.primitives.holds(&document) });
+    let Scene { materials, builder, primitives, binder, .. } = scene;
+    if builder.is_empty() {
+        return Err(Problem::Empty { holds: primitives.holds(&document) });
     }
-    warnings.extend(scene.materials.warnings);
-    warnings.extend(scene.primitives.warnings());
+    warnings.extend(materials.warnings);
+    warnings.extend(primitives.warnings());
+    drop(accessors);
+    drop(buffers);
     progress.set(0.8);
-    let (mut mesh, bindings) = scene.builder.finish_bound(name.to_owned(), progress)?;
-    match scene.binder.map(|binder| binder.finish(&mesh, &bindings)) {
+    let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), progress)?;
+    match binder.map(|binder| binder.finish(&mesh, &bindings)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
         Some(Err(warning)) => warnings.push(warning),
         None => {}
     }
     // What reaches the builder has been turned and is of unit length: only the reader knows what the file said.
-    mesh.repairs.normals_rescaled += scene.primitives.rescaled;
+    mesh.repairs.normals_rescaled += primitives.rescaled;
     if warnings.len() > MAX_WARNINGS {
         let more = warnings.len() - MAX_WARNINGS;
         warnings.truncate(MAX_WARNINGS);
@@ -129,7 +133,7 @@ impl<'a> Scene<'a> {
         let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         for primitive in mesh.primitives() {
             progress.check()?;
-            self.accessors.budget.pass();
+            self.accessors.budget.pass(0);
             if self.primitives.skip(&primitive) {
                 continue;
             }
@@ -137,6 +141,7 @@ impl<'a> Scene<'a> {
             let pose = primitive::Pose { global, joints: &joints, weights: weights(&node) };
             let accessors = self.accessors;
             let triangles = self.primitives.read(&mesh, &primitive, &pose, material.uvs, accessors, binder.as_mut())?;
+            self.builder.reserve_triangles(material.index, triangles.iter().size_hint().0);
             for (corners, bindings) in triangles.iter() {
                 self.builder.bound_triangle(material.index, corners, bindings);
             }

@@ -95,6 +95,9 @@ pub fn read_file(path: &Path, limits: &Limits) -> Result<Vec<u8>, LoadError> {
         return Err(too_large(said));
     }
     let mut bytes = Vec::new();
+    // At once: growing bit by bit would take up to twice as much.
+    let room = usize::try_from(said).unwrap_or(usize::MAX).saturating_add(1);
+    bytes.try_reserve_exact(room).map_err(|error| io(error.into()))?;
     file.take(limits.file.saturating_add(1)).read_to_end(&mut bytes).map_err(io)?;
     match bytes.len() as u64 {
         read if read > limits.file => Err(too_large(read)),

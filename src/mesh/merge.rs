@@ -44,6 +44,21 @@ impl MeshBuilder {
         Self::default()
     }
 
+    /// Makes room for so many distinct corners at once: growing bit by bit would take half as much again.
+    pub fn reserve(&mut self, corners: usize) {
+        self.distinct.corners.reserve_exact(corners);
+        self.distinct.bindings.reserve_exact(corners);
+        self.distinct.ids.reserve(corners);
+    }
+
+    /// The same for so many triangles of one material.
+    ///
+    /// # Panics
+    /// As [`triangle`](Self::triangle).
+    pub fn reserve_triangles(&mut self, material: usize, triangles: usize) {
+        self.groups[material].1.reserve(triangles);
+    }
+
     /// Adds a material (its `triangles` are set at the end) and returns its index for [`triangle`](Self::triangle).
     /// The mesh has its materials in the order of these calls.
     pub fn material(&mut self, material: Material) -> usize {

@@ -104,6 +104,11 @@ impl<'a> Accessors<'a> {
         self.read(accessor, 0, unsigned_integer).map_err(fail)
     }
 
+    /// Of all buffers.
+    pub fn buffer_bytes(&self) -> u64 {
+        self.buffers.iter().map(|buffer| buffer.len() as u64).sum()
+    }
+
     /// The bytes of a buffer view.
     ///
     /// # Errors

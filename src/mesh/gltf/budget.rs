@@ -50,9 +50,14 @@ impl Budget {
         Ok(())
     }
 
-    /// What was borrowed is free again.
-    pub fn pass(&self) {
-        self.passing.set(0);
+    /// What is borrowed now.
+    pub fn borrowed(&self) -> u64 {
+        self.passing.get()
+    }
+
+    /// What was borrowed beyond that is free again.
+    pub fn pass(&self, borrowed: u64) {
+        self.passing.set(borrowed);
     }
 
     /// What may still be taken.
@@ -84,7 +89,7 @@ mod tests {
         assert!(budget.borrow(FREE).is_ok() && budget.hold(43 << 20).is_ok());
         let said = budget.hold(1).unwrap_err();
         assert!(said.contains("would take 301 MiB of memory, and files of this size may take 300 MiB"), "{said}");
-        budget.pass();
+        budget.pass(0);
         assert_eq!(budget.left(), FREE);
         assert!(budget.hold(u64::MAX).is_err());
     }

@@ -54,7 +54,7 @@ pub fn parse(mut bytes: Vec<u8>, budget: &Budget) -> Result<Parsed, Problem> {
     let warnings = complete_textures(root);
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(first_fault)?;
-    budget.pass();
+    budget.pass(0);
     Ok(Parsed { document, blob, extensions, animations, warnings })
 }
 

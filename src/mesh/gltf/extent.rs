@@ -14,9 +14,10 @@ const MAX_TRIANGLES: u64 = 1 << 27;
 /// Vertices, displacements of them and indices that are read at most, each as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
 
-/// Memory for what becomes of a corner and of a triangle, in bytes, up to the whole mesh; and for what moves a corner.
-const PER_CORNER: u64 = 150;
-const PER_TRIANGLE: u64 = 40;
+/// Memory for a corner and for a triangle while they are gathered, in bytes; as much again for each triangle at the end, when
+/// the buffers are no longer held; and for what moves a corner.
+const PER_CORNER: u64 = 85;
+const PER_TRIANGLE: u64 = 12;
 const PER_BOUND: u64 = 240;
 /// As much as reading a primitive takes beside its elements, and a node.
 const PER_PRIMITIVE: u64 = 200;
@@ -30,7 +31,8 @@ struct Extent {
     primitives: u64,
 }
 
-/// Makes sure that all that is shown is there, and that there is room for it, which is held.
+/// Makes sure that all that is shown is there, and that there is room for it, which is held. How many corners there are at
+/// most.
 ///
 /// # Errors
 /// [`Problem::Accessor`], and [`Problem::TooLarge`].
@@ -40,7 +42,7 @@ pub fn check(
     accessors: &Accessors,
     budget: &Budget,
     moves: bool,
-) -> Result<(), Problem> {
+) -> Result<usize, Problem> {
     let mut known: HashMap<usize, Extent> = HashMap::new();
     let mut all = Extent::default();
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
@@ -68,10 +70,12 @@ pub fn check(
         return refuse(all.elements, "vertices, displacements of them and indices", MAX_ELEMENTS);
     }
     let per_corner = PER_CORNER + if moves { PER_BOUND } else { 0 };
-    let bytes = all.corners * per_corner + all.triangles * PER_TRIANGLE;
+    let triangles = all.triangles * PER_TRIANGLE;
+    let bytes = all.corners * per_corner + triangles + triangles.saturating_sub(accessors.buffer_bytes());
     let bytes = bytes.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
     let too_large = |reason| Problem::TooLarge { what: format!("the scene of {} triangles", all.triangles), reason };
-    budget.hold(bytes).map_err(too_large)
+    budget.hold(bytes).map_err(too_large)?;
+    Ok(all.corners as usize)
 }
 
 impl Extent {

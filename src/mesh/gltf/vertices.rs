@@ -84,6 +84,7 @@ pub fn read(
     binder: Option<&mut NodeBinder>,
 ) -> Result<Vertices, Problem> {
     let attributes = Source { primitive, name, accessors };
+    let borrowed = accessors.budget.borrowed();
     let mut values = attributes.read(uvs.set)?;
     // Before morphing, which leaves no normal at unit length and is no fault.
     let rescaled = rescaled(values.normals.as_deref(), values.positions.len());
@@ -93,7 +94,8 @@ pub fn read(
     let count = values.positions.len();
     let influences = attributes.influences(pose, count)?;
     let too_large = |reason| Problem::Primitive { primitive: name.to_owned(), reason };
-    accessors.budget.borrow(count as u64 * (size_of::<LooseCorner>() + 2) as u64).map_err(too_large)?;
+    let bytes = count as u64 * (size_of::<LooseCorner>() + 2) as u64;
+    accessors.budget.borrow(bytes).map_err(too_large)?;
     let (corners, mirrored) = (Vec::with_capacity(count), Vec::with_capacity(count));
     let mut vertices = Vertices { corners, mirrored, rescaled, bindings: Vec::new(), repairs: Repairs::default() };
     for i in 0..count {
@@ -113,6 +115,9 @@ pub fn read(
         });
         vertices.bindings = binder.bind(Undeformed { positions, normals, influences, deltas }, &vertices.corners);
     }
+    // The attributes as the file has them are free again.
+    accessors.budget.pass(borrowed);
+    accessors.budget.borrow(bytes).map_err(too_large)?;
     Ok(vertices)
 }
 

@@ -5,8 +5,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use super::hostile::time;
 use super::moving::rich;
 use super::*;
 
@@ -134,10 +135,10 @@ fn mutations_become_a_mesh_or_a_sentence() {
         (0..8).for_each(|_| _ = random.next());
         let mut bytes = subject.bytes.clone();
         mutate(&mut bytes, &mut random);
-        let start = Instant::now();
+        let start = time();
         let reading = || read(bytes.clone(), &subject.folder, "mutated", &Limits::default(), &Progress::new());
         let result = catch_unwind(AssertUnwindSafe(reading));
-        let took = start.elapsed();
+        let took = time() - start;
         slowest = slowest.max(took);
         let about = || format!("copy {copy}, of {}", subject.name);
         let result = result.unwrap_or_else(|_| panic!("{} panics", about()));
