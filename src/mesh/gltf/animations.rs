@@ -153,13 +153,20 @@ impl Reader<'_> {
         })?;
         let left = accessor.count().checked_mul(N).and_then(|count| self.numbers_left.checked_sub(count));
         self.numbers_left = left.ok_or_else(|| format!("takes the document beyond {MAX_NUMBERS} animated numbers"))?;
-        let numbers = self.accessors.numbers::<N>(&accessor, role).map_err(|problem| match problem {
+        let budget = self.accessors.budget;
+        let borrowed = budget.borrowed();
+        let numbers = self.accessors.numbers::<N>(&accessor, role);
+        budget.pass(borrowed);
+        let numbers = numbers.map_err(|problem| match problem {
             Problem::Accessor { accessor, reason, .. } => {
                 format!("has {role} in /accessors/{accessor}, which {reason}")
             }
             problem => problem.to_string(),
         })?;
         let numbers = numbers.into_flattened();
+        // They stay as long as the mesh.
+        let kept = budget.hold(size_of_val(&numbers[..]) as u64);
+        kept.map_err(|reason| format!("has {role} in /accessors/{index}, which {reason}"))?;
         if numbers.iter().any(|number| !number.is_finite()) {
             return Err(format!("has {role} that aren't finite"));
         }

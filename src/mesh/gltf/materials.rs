@@ -1,5 +1,6 @@
 //! Materials: base colour and its texture, each made when a primitive first uses it.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::io::Cursor;
 use std::sync::Arc;
@@ -95,19 +96,20 @@ impl<'a> Materials<'a> {
     }
 
     /// The bytes of an image file, wherever it is.
-    fn read(&self, image: usize) -> Result<Vec<u8>, String> {
+    fn read(&self, image: usize) -> Result<Cow<'_, [u8]>, String> {
         // From the document's JSON: the crate's own access panics on an image without a type.
         let Some(json) = self.document.as_json().images.get(image) else {
             return Err(format!("there is no /images/{image}"));
         };
         if let Some(view) = json.buffer_view.and_then(|view| self.accessors.view(view.value())) {
-            let bytes = self.accessors.view_bytes(&view).map(<[u8]>::to_vec);
+            let bytes = self.accessors.view_bytes(&view).map(Cow::Borrowed);
             return bytes.map_err(|reason| format!("/images/{image} {reason}"));
         }
         match &json.uri {
             Some(uri) => self
                 .files
                 .read(uri, false)
+                .map(Cow::Owned)
                 .map_err(|reason| format!("/images/{image} ({}) can't be read: {reason}", uri::shown(uri))),
             None => Err(format!("/images/{image} has neither a file nor a buffer view")),
         }

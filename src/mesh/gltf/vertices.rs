@@ -12,6 +12,9 @@ use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
 use crate::mesh::rig::{Delta, LARGEST_COORDINATE};
 
+/// Memory for a displacement of a vertex that is bound, and for telling it from others, in bytes.
+const PER_DELTA: u64 = 250;
+
 /// How the primitive's node stands.
 pub struct Pose<'a> {
     /// The node's own space to the scene's.
@@ -225,7 +228,7 @@ impl Source<'_> {
         let targets = self.primitive.morph_targets();
         binder.look_at(targets.clone().count().saturating_mul(count))?;
         let mut deltas = vec![Vec::new(); count];
-        let mut found = 0;
+        let (mut found, mut held) = (0, 0);
         for (target, weight) in targets.zip(first_weight..) {
             let positions = self.displacements(target.positions(), "POSITION of a morph target", count)?;
             let normals = self.displacements(target.normals(), "NORMAL of a morph target", count)?;
@@ -240,6 +243,9 @@ impl Source<'_> {
             if found > MAX_BOUND {
                 return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
             }
+            let kept = self.accessors.budget.hold((found - held) as u64 * PER_DELTA);
+            kept.map_err(|reason| format!("{found} displacements of vertices {reason}"))?;
+            held = found;
         }
         Ok(deltas)
     }

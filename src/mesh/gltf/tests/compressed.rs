@@ -1,4 +1,5 @@
-//! Compressed buffer views: every mode and filter, with data that meshoptimizer's own encoders made.
+//! Extensions that are read: compressed buffer views, in every mode and with every filter, by data that meshoptimizer's own
+//! encoders made; quantised attributes; texture coordinates that are transformed.
 
 use ::meshopt as encoder;
 
@@ -153,4 +154,44 @@ fn texture_coordinates_are_transformed() {
         "{:?}",
         mesh.corners
     );
+}
+
+#[test]
+fn every_quantised_type_is_read() {
+    let little = |values: &[i32], size: usize| -> Vec<u8> {
+        values.iter().flat_map(|value| value.to_le_bytes()[..size].to_vec()).collect()
+    };
+    let types = [(5120, 1, 127), (5121, 1, 255), (5122, 2, 32767), (5123, 2, 65535)];
+    for (component, size, most) in types {
+        let is_signed = component % 2 == 0;
+        for normalized in [false, true] {
+            let least = if is_signed { -most } else { 0 };
+            let one = if normalized { most as f32 } else { 1.0 };
+            let mut draft = Draft::new();
+            let mut add = |values: &[i32], kind: &str| {
+                let accessor = draft.accessor(&little(values, size), component, kind, 3);
+                draft.root["accessors"][accessor]["normalized"] = json!(normalized);
+                accessor
+            };
+            let at = add(&[least, 0, 0, most, 0, 0, 0, most, 0], "VEC3");
+            let uv = add(&[least, 0, most, 0, 0, most], "VEC2");
+            let normal = add(&[0, 0, most, 0, 0, most, 0, 0, most], "VEC3");
+            let mut attributes = json!({ "POSITION": at, "TEXCOORD_0": uv });
+            // Normals are signed and normalised.
+            if is_signed && normalized {
+                attributes["NORMAL"] = json!(normal);
+            }
+            draft.primitive(json!({ "attributes": attributes, "targets": [{ "POSITION": at }] }));
+            draft.root["meshes"][0]["weights"] = json!([1.0]);
+            draft.root["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+            let mesh = draft.read().unwrap();
+            let (low, high) = (least as f32 / one, most as f32 / one);
+            let twice = [[low, 0.0, 0.0], [high, 0.0, 0.0], [0.0, high, 0.0]].map(|at| at.map(|x| 2.0 * x));
+            assert_eq!(positions(&mesh), twice, "{component} {normalized}");
+            let uvs: Vec<_> = mesh.corners.iter().map(|corner| corner.uv.to_array()).collect();
+            assert_eq!(uvs, [[low, 0.0], [high, 0.0], [0.0, high]], "{component} {normalized}");
+            assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z), "{component} {normalized}");
+            assert_eq!(mesh.warnings.is_empty(), is_signed && normalized, "{:?}", mesh.warnings);
+        }
+    }
 }

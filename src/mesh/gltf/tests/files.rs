@@ -100,3 +100,40 @@ fn files_next_to_the_document_are_found() {
     progress.cancel();
     assert!(matches!(load(&path, &Limits::default(), &progress), Err(LoadError::Cancelled(Cancelled))));
 }
+
+#[test]
+fn files_that_are_named_have_the_same_limit() {
+    let folder = Folder::new("limits");
+    let draft = textured(json!({ "uri": "large.png" }));
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("data.bin");
+    let path = folder.0.join("model.gltf");
+    let text = document.to_string();
+    let [own, data] = [text.len() as u64, draft.bytes.len() as u64];
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(folder.0.join("large.png"), [&png()[..], &vec![0; 100_000]].concat()).unwrap();
+    std::fs::write(folder.0.join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
+    let load = |file| load(&path, &Limits { file }, &Progress::new());
+    let said = load(own).unwrap_err().to_string();
+    let expected = format!("data.bin has {} bytes, and {own} are read at most", own + data);
+    assert!(said.contains("/buffers/0 (data.bin) can't be read") && said.contains(&expected), "{said}");
+    let mesh = load(own + data).unwrap();
+    let said = mesh.warnings.first().unwrap();
+    assert!(mesh.materials[0].texture.is_none() && said.contains("large.png has 1000"), "{said}");
+    assert!(load(200_000).unwrap().materials[0].texture.is_some());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_within_the_folder_are_followed() {
+    let folder = Folder::new("links");
+    let draft = triangle();
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("link/data.bin");
+    let path = folder.0.join("model.gltf");
+    std::fs::write(&path, document.to_string()).unwrap();
+    std::fs::create_dir_all(folder.0.join("there")).unwrap();
+    std::fs::write(folder.0.join("there/data.bin"), &draft.bytes).unwrap();
+    std::os::unix::fs::symlink("there", folder.0.join("link")).unwrap();
+    assert_eq!(load(&path, &Limits::default(), &Progress::new()).unwrap().triangles.len(), 1);
+}

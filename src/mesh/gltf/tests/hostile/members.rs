@@ -261,6 +261,7 @@ pub fn cases() -> Vec<Case> {
             json!(["KHR_mesh_quantization", "KHR_draco_mesh_compression"]),
             "/extensionsRequired/1 is KHR_draco_mesh_compression, which isn't supported; export the model without Draco compression, or decompress it first (gltf-transform, for one, can)",
         ),
+        Case::with("a node without a mesh", "/nodes/0", json!({}), "no triangles: no node of its scene has a mesh"),
         Case::draft(
             "a name that is no text, and an unknown extension",
             &{
