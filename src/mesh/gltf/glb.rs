@@ -54,6 +54,9 @@ pub fn parts(bytes: &[u8]) -> Result<Parts, Problem> {
     Ok(Parts { json, bin: None })
 }
 
+/// A chunk's kind, and where its data lies.
+type Chunk<'a> = (&'a [u8; 4], Range<usize>);
+
 struct Chunks<'a> {
     bytes: &'a [u8],
     next: usize,
@@ -61,8 +64,8 @@ struct Chunks<'a> {
 }
 
 impl<'a> Chunks<'a> {
-    /// The next chunk's kind, and where its data lies; none at the end.
-    fn next(&mut self) -> Result<Option<(&'a [u8; 4], Range<usize>)>, Problem> {
+    /// None at the end.
+    fn next(&mut self) -> Result<Option<Chunk<'a>>, Problem> {
         let left = self.bytes.len() - self.next;
         if left == 0 {
             return Ok(None);

@@ -26,7 +26,7 @@ impl Decompressed {
 /// A clause: its sizes don't fit its mode or filter, it would take too much memory, or it can't be decompressed.
 pub fn decompress(view: &Compressed, bytes: &[u8], budget: &Budget) -> Result<Decompressed, String> {
     check(view)?;
-    let length = view.count.checked_mul(view.stride as u64).unwrap_or(u64::MAX);
+    let length = view.count.saturating_mul(view.stride as u64);
     budget.hold(length)?;
     // Within the budget, which no memory's size exceeds.
     let (count, length) = (view.count as usize, length as usize);
@@ -67,7 +67,7 @@ pub fn decompress(view: &Compressed, bytes: &[u8], budget: &Budget) -> Result<De
 fn check(view: &Compressed) -> Result<(), String> {
     let stride = view.stride;
     let fits = match view.mode {
-        Mode::Attributes => stride % 4 == 0 && (4..=256).contains(&stride),
+        Mode::Attributes => stride.is_multiple_of(4) && (4..=256).contains(&stride),
         Mode::Triangles | Mode::Indices => stride == 2 || stride == 4,
     };
     if !fits {
