@@ -336,32 +336,3 @@ proptest! {
         }
     }
 }
-
-/// A triangle with a skin, a morph target, a strip of indices and sparse values: something of everything.
-pub fn rich() -> Draft {
-    let mut draft = triangle();
-    let (places, indices) = (draft.view(&[2]), draft.indices(&[0, 1, 2]));
-    let joints = draft.accessor(&[0; 12], 5121, "VEC4", 3);
-    let weights = draft.floats("VEC4", &[0.25; 12]);
-    let binds = draft.floats("MAT4", &glam::Mat4::IDENTITY.to_cols_array());
-    let primitive = &mut draft.root["meshes"][0]["primitives"][0];
-    primitive["attributes"]["JOINTS_0"] = json!(joints);
-    primitive["attributes"]["WEIGHTS_0"] = json!(weights);
-    primitive["indices"] = json!(indices);
-    primitive["mode"] = json!(5);
-    primitive["targets"] = json!([{ "POSITION": 0, "NORMAL": 1 }]);
-    draft.root["accessors"][0]["sparse"] = json!({
-        "count": 1,
-        "indices": { "bufferView": places, "componentType": 5121 },
-        "values": { "bufferView": 1 },
-    });
-    draft.root["meshes"][0]["weights"] = json!([0.5]);
-    draft.root["nodes"] = json!([{ "mesh": 0, "skin": 0 }, {}]);
-    draft.root["skins"] = json!([{ "joints": [1], "inverseBindMatrices": binds }]);
-    draft
-}
-
-#[test]
-fn the_rich_draft_is_read() {
-    assert_eq!(rich().read().unwrap().triangles.len(), 1);
-}
