@@ -9,7 +9,7 @@ use crate::gpu::{
     ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of, wait,
 };
 use crate::measure::AskedFactors;
-use crate::mesh::{HeightSource, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
+use crate::mesh::{HeightSource, Limits, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Half, Settings};
 use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex};
@@ -39,7 +39,7 @@ impl Loaded {
     }
 }
 
-/// What becomes of a mesh after it was read.
+/// How a mesh is read, and what becomes of it after.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Preparation {
     /// Within which part of the bounding diagonal points are welded.
@@ -48,6 +48,7 @@ pub struct Preparation {
     pub rim: f32,
     /// What it can be displaced by.
     pub heights: Option<HeightSource>,
+    pub limits: Limits,
 }
 
 /// Reads a mesh, prepares it, and builds its topology. Needs no device.
@@ -58,7 +59,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let read = Arc::new(source.load(&of_mesh)?);
+    let read = Arc::new(source.load(&preparation.limits, &of_mesh)?);
     let loaded = Instant::now();
     let mut topology = Topology::build_within(&read, preparation.weld, progress)?;
     let (mut mesh, mut made) = (read.clone(), Rim::default());

@@ -24,7 +24,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::mesh::{Shape, Source};
+use pnaen::mesh::{Limits, Shape, Source};
 use pnaen::settings::Colors;
 use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 
@@ -32,10 +32,9 @@ use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
-    let mut harness = Harness::builder()
-        .with_size([1200.0, 960.0])
-        .wgpu()
-        .build_eframe(move |context| App::new(context, source).expect("these tests need a graphics adapter"));
+    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
+        App::new(context, source, Limits::default()).expect("these tests need a graphics adapter")
+    });
     settle(&mut harness);
     harness
 }
@@ -291,11 +290,10 @@ fn every_shape_is_in_the_menu() {
 #[test]
 fn both_themes_show_the_picture_and_legible_controls() {
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
-        let mut harness = Harness::builder()
-            .with_size([1200.0, 800.0])
-            .with_theme(theme)
-            .wgpu()
-            .build_eframe(|context| App::new(context, Some(vase())).expect("these tests need a graphics adapter"));
+        let mut harness =
+            Harness::builder().with_size([1200.0, 800.0]).with_theme(theme).wgpu().build_eframe(|context| {
+                App::new(context, Some(vase()), Limits::default()).expect("these tests need a graphics adapter")
+            });
         settle(&mut harness);
         let picture = harness.render().expect("a picture of the window");
         let panel = picture.get_pixel(8, 700).0;

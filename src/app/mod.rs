@@ -40,7 +40,7 @@ use thiserror::Error;
 use crate::engine::{Engine, Loaded, Preparation};
 use crate::gpu::{Gpu, GpuError, device_descriptor};
 use crate::measure::{Cracks, Sizes};
-use crate::mesh::Source;
+use crate::mesh::{Limits, Source};
 use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};
@@ -65,11 +65,12 @@ pub enum WindowError {
     Failed(String),
 }
 
-/// Opens the window on `source`, or on a cube made in code, and returns when it is closed.
+/// Opens the window on `source`, or on a cube made in code, and returns when it is closed. Files larger than
+/// `limits` says aren't opened.
 ///
 /// # Errors
 /// There is no display, or none that a window can be drawn on.
-pub fn run(source: Option<Source>) -> Result<(), WindowError> {
+pub fn run(source: Option<Source>, limits: Limits) -> Result<(), WindowError> {
     if cfg!(target_os = "linux") && !["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some())
     {
         return Err(WindowError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".into()));
@@ -84,7 +85,8 @@ pub fn run(source: Option<Source>) -> Result<(), WindowError> {
         wgpu_options: wgpu_configuration(),
         ..Default::default()
     };
-    let window = eframe::run_native("pnaen", options, Box::new(|context| Ok(Box::new(App::new(context, source)?))));
+    let window =
+        eframe::run_native("pnaen", options, Box::new(|context| Ok(Box::new(App::new(context, source, limits)?))));
     window.map_err(|error| match error {
         // Their texts are about the window library's own files.
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
@@ -120,6 +122,8 @@ pub struct App {
     frozen: Option<LodView>,
     document: Option<Document>,
     load: Option<Load>,
+    /// Of files that are opened.
+    limits: Limits,
     dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
     /// Whether the dialog, or the window that takes a path, is for a truth.
     asks_for_truth: bool,
@@ -149,7 +153,7 @@ pub struct App {
 impl App {
     /// # Errors
     /// The window isn't drawn through wgpu.
-    pub fn new(context: &eframe::CreationContext, source: Option<Source>) -> Result<Self, GpuError> {
+    pub fn new(context: &eframe::CreationContext, source: Option<Source>, limits: Limits) -> Result<Self, GpuError> {
         let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
         let gpu = Gpu::new(&render_state.adapter, render_state.device.clone(), render_state.queue.clone());
         let engine = Engine::new(gpu);
@@ -166,6 +170,7 @@ impl App {
             frozen: None,
             document: None,
             load: None,
+            limits,
             dialog: None,
             asks_for_truth: false,
             truth: None,
@@ -193,7 +198,8 @@ impl App {
         let same = self.document.as_ref().filter(|document| document.loaded.source == source);
         let preparation = same.map(|document| document.loaded.preparation.clone());
         let keep_view = preparation.is_some();
-        self.load = Some(Load::start(&self.engine, context, source, preparation.unwrap_or_default(), keep_view));
+        let preparation = preparation.unwrap_or_else(|| self.plain());
+        self.load = Some(Load::start(&self.engine, context, source, preparation, keep_view));
     }
 
     /// Loads the same mesh again with something else made of it: `change` changes what is, or is on its way.
@@ -208,7 +214,12 @@ impl App {
     fn preparation(&self) -> Preparation {
         let again = self.load.as_ref().filter(|load| load.keep_view).map(|load| &load.preparation);
         let shown = self.document.as_ref().map(|document| &document.loaded.preparation);
-        again.or(shown).cloned().unwrap_or_default()
+        again.or(shown).cloned().unwrap_or_else(|| self.plain())
+    }
+
+    /// Nothing is made of a mesh but what the file holds.
+    fn plain(&self) -> Preparation {
+        Preparation { limits: self.limits, ..Preparation::default() }
     }
 
     /// Loads the same mesh again; settings and camera stay.

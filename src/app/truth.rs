@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::App;
-use crate::mesh::{LoadError, Progress, Source};
+use crate::mesh::{Limits, LoadError, Progress, Source};
 use crate::settings::Colors;
 use crate::tessellate::Displacement;
 use crate::truth::Truth;
@@ -26,14 +26,14 @@ pub struct TruthLoad {
 
 impl TruthLoad {
     /// Loads on a thread of its own.
-    fn start(context: &egui::Context, source: Source) -> Self {
+    fn start(context: &egui::Context, source: Source, limits: Limits) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(2);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let (sender, done) = channel();
         let progress = Progress::new();
         let (wanted, own_progress, context) = (source.clone(), progress.clone(), context.clone());
         std::thread::spawn(move || {
-            let result = match Truth::load(&wanted, &own_progress) {
+            let result = match Truth::load(&wanted, &limits, &own_progress) {
                 Ok(Some(truth)) => Ok(Chosen { source: wanted, truth: Arc::new(truth), generation }),
                 Ok(None) => Err(Some(format!("{wanted} can't be a truth: it has no triangles"))),
                 Err(LoadError::Cancelled(_)) => Err(None),
@@ -56,7 +56,7 @@ impl Drop for TruthLoad {
 impl App {
     /// Starts to load what the mesh should have been beside the window; what it was held against before stays until then.
     pub fn open_truth(&mut self, context: &egui::Context, source: Source) {
-        self.truth_load = Some(TruthLoad::start(context, source));
+        self.truth_load = Some(TruthLoad::start(context, source, self.limits));
     }
 
     /// The truth that was chosen for what is shown.

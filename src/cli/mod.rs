@@ -28,7 +28,7 @@ use thiserror::Error;
 
 pub use animation::AnimationOption;
 pub use given::GivenOption;
-pub use options::{SurfaceOptions, WeldOption};
+pub use options::{LimitOption, SurfaceOptions, WeldOption};
 pub use split::SplitOption;
 pub use truth::TruthOption;
 
@@ -48,6 +48,8 @@ pub struct Cli {
     /// or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
+    #[command(flatten)]
+    pub limit: LimitOption,
 }
 
 #[derive(Debug, Subcommand)]
@@ -174,9 +176,9 @@ pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
 }
 
 /// Writes the picture that the window would have shown, for machines without a display.
-pub fn preview(source: Option<Source>, path: &Path) -> Result<(), CliError> {
+pub fn preview(source: Option<Source>, limit: LimitOption, path: &Path) -> Result<(), CliError> {
     let source = source.unwrap_or_default();
-    render::run(&render::Args::preview(source, path))
+    render::run(&render::Args::preview(source, limit, path))
 }
 
 /// The whole of a text file, or of standard input if the path is `-`.

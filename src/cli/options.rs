@@ -10,7 +10,7 @@ use glam::Vec2;
 
 use super::{AnimationOption, CliError};
 use crate::engine::Preparation;
-use crate::mesh::{Bounds, HeightSource, Source};
+use crate::mesh::{Bounds, HeightSource, Limits, Source};
 use crate::mesh::{Mesh, rim::WIDEST};
 use crate::render::Camera;
 use crate::settings::{
@@ -271,11 +271,34 @@ pub struct WeldOption {
     /// diagonal, 0 to 0.1; 0 is no rim. No wider than a third of an edge, or than half-way to the middle of a triangle's incircle
     #[arg(long, value_name = "WIDTH", default_value_t = 0.0, value_parser = rim, allow_hyphen_values = true)]
     pub rim: f32,
+    #[command(flatten)]
+    pub limit: LimitOption,
 }
 
 impl WeldOption {
     pub fn preparation(&self) -> Preparation {
-        Preparation { weld: self.weld, rim: self.rim, heights: None }
+        Preparation { weld: self.weld, rim: self.rim, heights: None, limits: self.limit.limits() }
+    }
+}
+
+/// How much is read.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct LimitOption {
+    /// Refuse a file larger than this, and larger buffers and images that it names; a number of bytes, or one of KiB, MiB or
+    /// GiB
+    #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
+    pub max_size: u64,
+}
+
+impl Default for LimitOption {
+    fn default() -> Self {
+        Self { max_size: Limits::default().file }
+    }
+}
+
+impl LimitOption {
+    pub fn limits(&self) -> Limits {
+        Limits { file: self.max_size }
     }
 }
 
@@ -353,6 +376,21 @@ pub fn color(text: &str) -> Result<[u8; 3], String> {
     Ok([r, g, b])
 }
 
+/// A number of bytes, with a unit or without.
+fn bytes(text: &str) -> Result<u64, String> {
+    let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
+    let unit = match unit.trim().to_lowercase().as_str() {
+        "" | "b" => Some(1),
+        "kib" => Some(1_u64 << 10),
+        "mib" => Some(1 << 20),
+        "gib" => Some(1 << 30),
+        _ => None,
+    };
+    let bytes = unit.zip(number.parse().ok()).and_then(|(unit, number): (u64, u64)| unit.checked_mul(number));
+    let expected = "expected a whole number of bytes above 0, or of KiB, MiB or GiB, such as 500MiB";
+    bytes.filter(|bytes| *bytes > 0).ok_or_else(|| expected.into())
+}
+
 /// A difference from 0 to 1.
 pub fn threshold(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
@@ -421,6 +459,11 @@ mod tests {
         assert_eq!("1.5, 8".parse(), Ok(Distances { near: 1.5, far: 8.0 }));
         for bad in ["2", "8,2", "2,2", "0,5", "2,1001", "nan,3", "2,3,4"] {
             assert!(bad.parse::<Distances>().is_err(), "{bad}");
+        }
+        assert_eq!(["1", "2KiB", "3 mib", "2GiB"].map(bytes), [1, 2 << 10, 3 << 20, 2 << 30].map(Ok));
+        assert_eq!(Limits::default(), LimitOption::default().limits());
+        for bad in ["", "0", "0GiB", "-1", "1.5GiB", "GiB", "1GB", "1e9", "99999999999GiB", "+1"] {
+            assert!(bytes(bad).is_err(), "{bad}");
         }
         assert!(weld("0").is_ok() && weld("1e-7") == Ok(1e-7) && weld("0.1").is_ok());
         assert!(weld("0.11").is_err() && weld("-1e-7").is_err() && weld("nan").is_err() && weld("").is_err());

@@ -6,8 +6,8 @@ use super::split::LeftStats;
 use super::stats::{AnimationStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, Held};
 use super::{
-    CliError, GivenOption, SplitOption, SurfaceOptions, TruthOption, load, options, reference, to_json, write_picture,
-    write_text,
+    CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, load, options, reference,
+    to_json, write_picture, write_text,
 };
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
@@ -61,12 +61,13 @@ pub struct Args {
 
 impl Args {
     /// What the window shows when it opens.
-    pub fn preview(file: Source, output: &Path) -> Self {
+    pub fn preview(file: Source, limit: LimitOption, output: &Path) -> Self {
         let Settings { lod, partitioning, clip, cull_back_faces, background, .. } = Settings::opening();
+        let weld = WeldOption { limit, ..WeldOption::default() };
         Self {
             file,
             output: output.to_owned(),
-            surface: SurfaceOptions { lod, partitioning, clip, cull_back_faces, ..SurfaceOptions::default() },
+            surface: SurfaceOptions { lod, partitioning, clip, cull_back_faces, weld, ..SurfaceOptions::default() },
             given: GivenOption::default(),
             overlay: vec![Overlay::Wireframe],
             truth: TruthOption::default(),

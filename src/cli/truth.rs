@@ -47,7 +47,7 @@ impl TruthOption {
                 return Err(CliError::Usage("--truth is at rest, and can't be held against an --animation"));
             }
             let none = || CliError::NoTruth { file: source.to_string() };
-            let truth = Truth::load(source, &Progress::new())?.ok_or_else(none)?;
+            let truth = Truth::load(source, &surface.weld.limit.limits(), &Progress::new())?.ok_or_else(none)?;
             return Ok(Some(Held::Truth(source.to_string(), Arc::new(truth))));
         }
         if !is_shown {

@@ -6,7 +6,7 @@ mod mutated;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::{Fault, Mesh, Progress, obj, ply, stl};
+use super::{Fault, Limits, Mesh, Progress, obj, ply, stl};
 
 /// What no file of a test may take longer than; as a test runs beside others, twice what a person gets.
 const LIMIT: Duration = Duration::from_secs(2);
@@ -22,7 +22,7 @@ fn read(format: Format, bytes: &[u8]) -> Result<Mesh, Fault> {
     let start = Instant::now();
     let progress = Progress::new();
     let mesh = match format {
-        Format::Obj => obj::read(bytes, Path::new("nowhere"), "broken", &progress),
+        Format::Obj => obj::read(bytes, Path::new("nowhere"), "broken", &Limits::default(), &progress),
         Format::Stl => stl::read(bytes, "broken", &progress),
         Format::Ply => ply::read(bytes, "broken", &progress),
     };

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::fault::{Fault, Place};
-use super::gltf::MAX_TRIANGLES;
+use super::gltf::extent::MAX_TRIANGLES;
 use super::merge::{LooseCorner, MeshBuilder};
 use super::polygon::{Budget, Cut, triangulate};
 use super::rig::LARGEST_COORDINATE;
@@ -49,7 +49,7 @@ impl Faces {
     pub fn material(&mut self, material: Material) -> Result<usize, Fault> {
         self.materials += 1;
         if self.materials > MAX_MATERIALS {
-            return Err(Fault::TooMany { limit: MAX_MATERIALS, what: "materials" });
+            return Err(Fault::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
         Ok(self.builder.material(material))
     }
@@ -79,7 +79,7 @@ impl Faces {
             return Ok(());
         }
         self.triangles += corners.len() - 2;
-        if self.triangles > MAX_TRIANGLES {
+        if self.triangles as u64 > MAX_TRIANGLES {
             return Err(Fault::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
         }
         self.cut(material, corners);

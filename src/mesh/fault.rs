@@ -12,7 +12,7 @@ pub enum Fault {
     #[error("{place}{reason}; export the model again")]
     Broken { place: Place, reason: String },
     #[error("it has more than {limit} {what}; split it into several files")]
-    TooMany { limit: usize, what: &'static str },
+    TooMany { limit: u64, what: &'static str },
     #[error("no triangles: {holds}")]
     Empty { holds: String },
 }

@@ -8,13 +8,21 @@
 mod accessor;
 mod animations;
 mod binder;
+pub(super) mod budget;
 mod buffers;
+mod check;
 mod document;
+mod extensions;
+pub(super) mod extent;
+mod glb;
 mod hanging;
+mod json;
 pub(super) mod materials;
+mod meshopt;
 mod nodes;
 mod primitive;
 mod problem;
+mod schema;
 mod skin;
 mod space;
 pub(super) mod uri;
@@ -27,60 +35,76 @@ use ::gltf::{Document, Node};
 use glam::DMat4;
 
 use super::Mesh;
+use super::load::Limits;
 use super::merge::MeshBuilder;
 use super::progress::Progress;
 use accessor::Accessors;
 use binder::Binder;
+use budget::Budget;
 use materials::Materials;
 use nodes::Placed;
 use primitive::Primitives;
 pub use problem::Problem;
+use uri::Files;
 
-/// A scene of more triangles than this is refused: its indices would no longer fit 32 bits, nor its data most memories.
-pub(super) const MAX_TRIANGLES: usize = 1 << 27;
+/// Sentences that are said of a document at most.
+const MAX_WARNINGS: usize = 100;
 
 /// Makes a mesh of a document's bytes.
 ///
-/// `folder` is where the document lies, `name` becomes the mesh's.
+/// `folder` is where the document lies, `name` becomes the mesh's. `limits` are those of files that it names.
 ///
 /// # Errors
 /// [`Problem`].
-pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Result<Mesh, Problem> {
-    let document::Parsed { document, blob, animations, mut warnings } = document::parse(bytes)?;
+pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Problem> {
+    let budget = Budget::new(bytes.len());
+    let document::Parsed { document, blob, extensions, animations, mut warnings } = document::parse(bytes, &budget)?;
     progress.check()?;
-    let buffers = buffers::load(&document, folder, blob, progress)?;
+    let files = Files::new(folder, limits, &budget);
+    let buffers = buffers::load(&document, &files, &extensions.fallback, blob, progress)?;
     progress.set(0.3);
-    let placed = nodes::place(&document, &mut warnings);
-    let accessors = Accessors::new(&document, &buffers);
+    let placed = nodes::place(&document)?;
+    let accessors = Accessors::new(&document, &extensions, &buffers, &budget)?;
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
     progress.check()?;
+    let binder = Binder::new(clips, &document, &placed, &mut warnings);
+    let corners = extent::check(&document, &placed, &accessors, &budget, binder.is_some())?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
         accessors: &accessors,
-        materials: Materials::new(&document, &accessors, folder),
+        materials: Materials::new(&document, &accessors, &files, &extensions.transforms, &budget),
         builder: MeshBuilder::new(),
         primitives: Primitives::default(),
-        binder: Binder::new(clips, &document, &placed, &mut warnings),
+        binder,
     };
+    scene.builder.reserve(corners);
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
     }
-    if scene.builder.is_empty() {
-        return Err(Problem::Empty { holds: scene.primitives.holds(&document) });
+    let Scene { materials, builder, primitives, binder, .. } = scene;
+    if builder.is_empty() {
+        return Err(Problem::Empty { holds: primitives.holds(&document) });
     }
-    warnings.extend(scene.materials.warnings);
-    warnings.extend(scene.primitives.warnings());
+    warnings.extend(materials.warnings);
+    warnings.extend(primitives.warnings());
+    drop(accessors);
+    drop(buffers);
     progress.set(0.8);
-    let (mut mesh, bindings) = scene.builder.finish_bound(name.to_owned(), progress)?;
-    match scene.binder.map(|binder| binder.finish(&mesh, &bindings)) {
+    let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), progress)?;
+    match binder.map(|binder| binder.finish(&mesh, &bindings)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
         Some(Err(warning)) => warnings.push(warning),
         None => {}
     }
     // What reaches the builder has been turned and is of unit length: only the reader knows what the file said.
-    mesh.repairs.normals_rescaled += scene.primitives.rescaled;
+    mesh.repairs.normals_rescaled += primitives.rescaled;
+    if warnings.len() > MAX_WARNINGS {
+        let more = warnings.len() - MAX_WARNINGS;
+        warnings.truncate(MAX_WARNINGS);
+        warnings.push(format!("{more} more such sentences are left out."));
+    }
     warnings.extend(mesh.repairs.warnings());
     mesh.warnings = warnings;
     Ok(mesh)
@@ -109,20 +133,18 @@ impl<'a> Scene<'a> {
         let global = self.placed.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         for primitive in mesh.primitives() {
             progress.check()?;
+            self.accessors.budget.pass(0);
             if self.primitives.skip(&primitive) {
                 continue;
             }
             let material = self.materials.resolve(&primitive.material(), &mut self.builder);
             let pose = primitive::Pose { global, joints: &joints, weights: weights(&node) };
-            let (set, accessors) = (material.uv_set, self.accessors);
-            let triangles = self.primitives.read(&mesh, &primitive, &pose, set, accessors, binder.as_mut())?;
-            if self.builder.len() + triangles.corners.len() > MAX_TRIANGLES {
-                return Err(Problem::TooLarge { limit: MAX_TRIANGLES });
+            let accessors = self.accessors;
+            let triangles = self.primitives.read(&mesh, &primitive, &pose, material.uvs, accessors, binder.as_mut())?;
+            self.builder.reserve_triangles(material.index, triangles.iter().size_hint().0);
+            for (corners, bindings) in triangles.iter() {
+                self.builder.bound_triangle(material.index, corners, bindings);
             }
-            for triangle in triangles.corners {
-                self.builder.triangle(material.index, triangle);
-            }
-            self.builder.bind(material.index, triangles.bindings);
         }
         Ok(())
     }

@@ -1,6 +1,11 @@
 //! From loose triangles to a [`Mesh`]: grouped by material, every distinct corner once.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::fmt;
+use std::hash::BuildHasher;
+
+use foldhash::fast::RandomState;
 
 use super::normals::{self, Given};
 use super::weld::{plus_zero2, plus_zero3};
@@ -24,12 +29,14 @@ impl From<Corner> for LooseCorner {
     }
 }
 
-/// Collects triangles, material by material, and makes a mesh of them.
+/// Collects triangles, material by material, and makes a mesh of them. Each distinct corner is kept once: what it holds
+/// grows with them, and with 12 bytes a triangle.
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
-    groups: Vec<(Material, Vec<[LooseCorner; 3]>)>,
-    /// A group's, as many as it has triangles; or none at all, which are all 0.
-    bindings: Vec<Vec<[u32; 3]>>,
+    groups: Vec<(Material, Vec<[u32; 3]>)>,
+    distinct: Distinct,
+    /// What has been mended.
+    repairs: Repairs,
 }
 
 impl MeshBuilder {
@@ -37,11 +44,25 @@ impl MeshBuilder {
         Self::default()
     }
 
+    /// Makes room for so many distinct corners at once: growing bit by bit would take half as much again.
+    pub fn reserve(&mut self, corners: usize) {
+        self.distinct.corners.reserve_exact(corners);
+        self.distinct.bindings.reserve_exact(corners);
+        self.distinct.ids.reserve(corners);
+    }
+
+    /// The same for so many triangles of one material.
+    ///
+    /// # Panics
+    /// As [`triangle`](Self::triangle).
+    pub fn reserve_triangles(&mut self, material: usize, triangles: usize) {
+        self.groups[material].1.reserve(triangles);
+    }
+
     /// Adds a material (its `triangles` are set at the end) and returns its index for [`triangle`](Self::triangle).
     /// The mesh has its materials in the order of these calls.
     pub fn material(&mut self, material: Material) -> usize {
         self.groups.push((material, Vec::new()));
-        self.bindings.push(Vec::new());
         self.groups.len() - 1
     }
 
@@ -50,16 +71,20 @@ impl MeshBuilder {
     /// # Panics
     /// When `material` isn't an index that [`material`](Self::material) gave.
     pub fn triangle(&mut self, material: usize, corners: [LooseCorner; 3]) {
-        self.groups[material].1.push(corners);
+        self.bound_triangle(material, corners, [0; 3]);
     }
 
-    /// Tells corners of one material's next triangles apart by what they are bound to: those with different numbers aren't
-    /// merged. For all triangles or for none.
+    /// Adds a triangle whose corners are told apart by what they are bound to as well: those with different numbers aren't
+    /// merged.
     ///
     /// # Panics
     /// As [`triangle`](Self::triangle).
-    pub fn bind(&mut self, material: usize, bindings: Vec<[u32; 3]>) {
-        self.bindings[material].extend(bindings);
+    pub fn bound_triangle(&mut self, material: usize, corners: [LooseCorner; 3], bindings: [u32; 3]) {
+        let ids = [0, 1, 2].map(|k| {
+            let corner = repaired(corners[k], &mut self.repairs);
+            self.distinct.id(corner, bindings[k])
+        });
+        self.groups[material].1.push(ids);
     }
 
     /// How many triangles there are so far.
@@ -83,29 +108,38 @@ impl MeshBuilder {
         Ok(self.finish_bound(name, progress)?.0)
     }
 
-    /// The same, and the number of each corner's binding (see [`bind`](Self::bind)).
+    /// The same, and the number of each corner's binding (see [`bound_triangle`](Self::bound_triangle)).
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn finish_bound(mut self, name: String, progress: &Progress) -> Result<(Mesh, Vec<u32>), Cancelled> {
-        let bindings = std::mem::take(&mut self.bindings);
-        let mut corner_bindings = Vec::new();
-        let repairs = self.repair();
-        self.make_missing_normals(progress)?;
+        if self.distinct.corners.iter().any(|corner| corner.normal.is_none()) {
+            self.make_missing_normals(progress)?;
+        }
+        let repairs = self.repairs;
         let mut mesh = Mesh { name, repairs, warnings: repairs.warnings(), ..Mesh::default() };
-        let mut ids = HashMap::new();
-        for ((mut material, triangles), bindings) in self.groups.into_iter().zip(bindings) {
+        let Distinct { corners, bindings, ids } = self.distinct;
+        drop(ids);
+        let mut numbers = vec![u32::MAX; corners.len()];
+        let mut corner_bindings = Vec::with_capacity(corners.len());
+        mesh.corners.reserve_exact(corners.len());
+        mesh.triangles.reserve_exact(self.groups.iter().map(|(_, triangles)| triangles.len()).sum());
+        for (mut material, triangles) in self.groups {
             progress.check()?;
             if triangles.is_empty() {
                 continue;
             }
             let first = mesh.triangles.len() as u32;
-            for (triangle, corners) in triangles.into_iter().enumerate() {
-                let bound = bindings.get(triangle).copied().unwrap_or_default();
-                mesh.triangles.push([0, 1, 2].map(|k| {
-                    let corner = corner_id(&mut ids, &mut mesh.corners, corners[k], bound[k]);
-                    corner_bindings.resize(mesh.corners.len(), bound[k]);
-                    corner
+            for triangle in triangles {
+                mesh.triangles.push(triangle.map(|id| {
+                    let number = &mut numbers[id as usize];
+                    if *number == u32::MAX {
+                        *number = mesh.corners.len() as u32;
+                        let LooseCorner { position, normal, uv } = corners[id as usize];
+                        mesh.corners.push(Corner { position, normal: normal.unwrap_or(Vec3::Z), uv });
+                        corner_bindings.push(bindings[id as usize]);
+                    }
+                    *number
                 }));
             }
             material.triangles = first..mesh.triangles.len() as u32;
@@ -114,49 +148,87 @@ impl MeshBuilder {
         Ok((mesh, corner_bindings))
     }
 
-    /// Makes positions and normals fit for use. Normals without a direction are none afterwards.
-    fn repair(&mut self) -> Repairs {
-        let mut repairs = Repairs::default();
-        for corner in self.groups.iter_mut().flat_map(|(_, triangles)| triangles).flatten() {
-            let flushed = Vec3::from(corner.position.to_array().map(|x| if x.is_subnormal() { 0.0 } else { x }));
-            repairs.denormals += u32::from(flushed != corner.position);
-            corner.position = flushed;
-            let given = corner.normal.map(Given::new);
-            match given {
-                None => repairs.normals_made += 1,
-                Some(Given::None) => repairs.normals_replaced += 1,
-                Some(Given::Rescaled(_)) => repairs.normals_rescaled += 1,
-                Some(Given::Unit(_)) => {}
-            }
-            corner.normal = given.and_then(Given::unit);
-        }
-        repairs
-    }
-
+    /// Gives normals to corners without: each triangle its own, so that a corner may become several.
     fn make_missing_normals(&mut self, progress: &Progress) -> Result<(), Cancelled> {
+        let Distinct { corners, bindings, .. } = std::mem::take(&mut self.distinct);
         let triangles = || self.groups.iter().flat_map(|(_, triangles)| triangles);
-        if triangles().flatten().all(|corner| corner.normal.is_some()) {
-            return Ok(());
-        }
-        let positions: Vec<_> = triangles().map(|triangle| triangle.map(|corner| corner.position)).collect();
+        let positions: Vec<_> = triangles().map(|t| t.map(|id| corners[id as usize].position)).collect();
         let made = normals::smooth(&positions, progress)?;
-        let corners = self.groups.iter_mut().flat_map(|(_, triangles)| triangles).flatten();
-        for (corner, normal) in corners.zip(made.into_iter().flatten()) {
-            corner.normal.get_or_insert(normal);
+        drop(positions);
+        let triangles = self.groups.iter_mut().flat_map(|(_, triangles)| triangles);
+        for (triangle, made) in triangles.zip(made) {
+            for (id, made) in triangle.iter_mut().zip(made) {
+                let corner = corners[*id as usize];
+                let normal = corner.normal.unwrap_or(plus_zero3(made));
+                *id = self.distinct.id(LooseCorner { normal: Some(normal), ..corner }, bindings[*id as usize]);
+            }
         }
         Ok(())
     }
 }
 
-fn corner_id(ids: &mut HashMap<[u32; 9], u32>, corners: &mut Vec<Corner>, loose: LooseCorner, binding: u32) -> u32 {
-    let position = plus_zero3(loose.position);
-    let normal = plus_zero3(loose.normal.unwrap_or(Vec3::Z));
-    let uv = plus_zero2(loose.uv);
-    let [[x, y, z], [a, b, c]] = [position, normal].map(|v| v.to_array().map(f32::to_bits));
-    *ids.entry([x, y, z, a, b, c, uv.x.to_bits(), uv.y.to_bits(), binding]).or_insert_with(|| {
-        corners.push(Corner { position, normal, uv });
-        corners.len() as u32 - 1
-    })
+/// A corner with a position and a normal that are fit for use: a normal without a direction is none afterwards.
+fn repaired(corner: LooseCorner, repairs: &mut Repairs) -> LooseCorner {
+    let position = Vec3::from(corner.position.to_array().map(|x| if x.is_subnormal() { 0.0 } else { x }));
+    repairs.denormals += u32::from(position != corner.position);
+    let given = corner.normal.map(Given::new);
+    match given {
+        None => repairs.normals_made += 1,
+        Some(Given::None) => repairs.normals_replaced += 1,
+        Some(Given::Rescaled(_)) => repairs.normals_rescaled += 1,
+        Some(Given::Unit(_)) => {}
+    }
+    let normal = given.and_then(Given::unit).map(plus_zero3);
+    LooseCorner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }
+}
+
+/// Corners that differ in some bit, or in what they are bound to, in the order of their first appearance.
+#[derive(Default)]
+struct Distinct {
+    corners: Vec<LooseCorner>,
+    bindings: Vec<u32>,
+    /// By a hash of all of it, or the next free number after that: a third of the memory that keys of their own would take.
+    ids: HashMap<u64, u32, RandomState>,
+}
+
+impl Distinct {
+    fn id(&mut self, corner: LooseCorner, binding: u32) -> u32 {
+        let bits = bits(&corner);
+        let [a, b, c, d] = bits;
+        let mut hash = self.ids.hasher().hash_one((a, b, c, d, binding));
+        loop {
+            match self.ids.entry(hash) {
+                Entry::Vacant(vacant) => {
+                    let id = self.corners.len() as u32;
+                    vacant.insert(id);
+                    self.corners.push(corner);
+                    self.bindings.push(binding);
+                    return id;
+                }
+                Entry::Occupied(occupied) => {
+                    let id = *occupied.get() as usize;
+                    if self.bindings[id] == binding && self::bits(&self.corners[id]) == bits {
+                        return id as u32;
+                    }
+                    hash = hash.wrapping_add(1);
+                }
+            }
+        }
+    }
+}
+
+impl fmt::Debug for Distinct {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} corners", self.corners.len())
+    }
+}
+
+/// All of a corner; no normal is what no number is.
+fn bits(corner: &LooseCorner) -> [u64; 4] {
+    let pair = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
+    let LooseCorner { position: p, normal, uv } = corner;
+    let n = normal.unwrap_or(Vec3::NAN);
+    [pair(p.x, p.y), pair(p.z, n.x), pair(n.y, n.z), pair(uv.x, uv.y)]
 }
 
 impl Material {

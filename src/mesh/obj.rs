@@ -18,7 +18,10 @@ use glam::{Vec2, Vec3};
 
 use super::faces::{Faces, counted};
 use super::fault::Fault;
+use super::gltf::budget::Budget;
+use super::gltf::uri::Files;
 use super::lines::{Line, Lines, first_word, numbers, shown, words};
+use super::load::Limits;
 use super::merge::LooseCorner;
 use super::{Mesh, Progress};
 use materials::Materials;
@@ -57,14 +60,16 @@ const SILENT: [&[u8]; 24] = [
 ///
 /// # Errors
 /// [`Fault`]. A missing material or texture is none: it becomes a warning.
-pub fn read(bytes: &[u8], folder: &Path, name: &str, progress: &Progress) -> Result<Mesh, Fault> {
+pub fn read(bytes: &[u8], folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Fault> {
+    let budget = Budget::new(bytes.len());
+    let files = Files::new(folder, limits, &budget);
     let mut vertices = Vertices::default();
     each(bytes, &progress.part(0.0, 0.2), |line| vertices.take(line).map_err(|reason| line.place().fault(reason)))?;
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
         faces: Faces::new(bytes.len()),
-        materials: Materials::new(folder),
+        materials: Materials::new(&files, &budget),
         corners: Vec::new(),
         found: Found::default(),
     };

@@ -5,7 +5,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use super::load::{LoadError, load};
+use super::load::{Limits, LoadError, load};
 use super::shapes::{MAX_LEVEL, Shape, ShapeError};
 use super::{Mesh, Progress};
 
@@ -28,15 +28,15 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Builds the shape or reads the file.
+    /// Builds the shape or reads the file, if it isn't larger than `limits` says.
     ///
     /// # Errors
     /// Those of [`load`]; a shape has none.
-    pub fn load(&self, progress: &Progress) -> Result<Mesh, LoadError> {
+    pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<Mesh, LoadError> {
         match self {
             Self::Shape(shape) => Ok(shape.build()),
             Self::FineShape(shape, level) => Ok(shape.build_at(*level)),
-            Self::File(path) => load(path, progress),
+            Self::File(path) => load(path, limits, progress),
         }
     }
 
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn shapes_load() {
-        let mesh = Source::Shape(Shape::Icosphere).load(&Progress::new()).unwrap();
+        let mesh = Source::Shape(Shape::Icosphere).load(&Limits::default(), &Progress::new()).unwrap();
         assert_eq!(mesh.triangles.len(), 80);
     }
 }

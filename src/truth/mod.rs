@@ -19,7 +19,7 @@ pub use reference::Reference;
 pub(crate) use spread::radical_inverse;
 pub use triangles::{Closest, Triangles};
 
-use crate::mesh::{LoadError, Mesh, Progress, Shape, Source};
+use crate::mesh::{Limits, LoadError, Mesh, Progress, Shape, Source};
 
 /// The point of a surface that is nearest to some place. Where several are equally near it is one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,10 +54,10 @@ impl Truth {
     ///
     /// # Errors
     /// What the file holds can't be shown, or `progress` was cancelled.
-    pub fn load(source: &Source, progress: &Progress) -> Result<Option<Self>, LoadError> {
+    pub fn load(source: &Source, limits: &Limits, progress: &Progress) -> Result<Option<Self>, LoadError> {
         match source.shape().and_then(Self::of_shape) {
             Some(exact) => Ok(Some(exact)),
-            None => Ok(Self::of_mesh(&source.load(progress)?)),
+            None => Ok(Self::of_mesh(&source.load(limits, progress)?)),
         }
     }
 

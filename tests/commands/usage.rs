@@ -108,3 +108,51 @@ fn a_picture_is_not_named_what_it_is_not() {
     let errors = failure(&["render", "shape:cube-split", "-o", &folder.path("out.jpg")], 2);
     assert!(errors.contains("PNG") && errors.contains("name it .png"), "{errors}");
 }
+
+#[test]
+fn files_beyond_the_limit_are_refused() {
+    let vase = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb");
+    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "and 10240 are read at most", "--max-size"]);
+    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "and 10240 are read at most"]);
+    sentence(
+        &["render", "shape:torus", "--truth", vase, "--max-size", "1", "-o", "unwritten.png"],
+        &["vase.glb has ", "and 1 are read at most"],
+    );
+    output(&["info", vase, "--max-size", "11 KiB"]);
+    for size in ["0", "1.5GiB", "much"] {
+        let errors = failure(&["info", vase, "--max-size", size], 2);
+        assert!(errors.contains("or of KiB, MiB or GiB"), "{errors}");
+    }
+}
+
+/// A triangle as JSON, with one member put in.
+fn document(member: &str) -> String {
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+        "accessors":[{{"componentType":5126,"type":"VEC3","count":3,"bufferView":0{member}}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],
+        "buffers":[{{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}}]}}"#
+    )
+}
+
+#[test]
+fn hostile_files_are_one_sentence_and_exit_code_1() {
+    let folder = Folder::new("hostile");
+    let write = |name: &str, bytes: &[u8]| {
+        std::fs::write(folder.path(name), bytes).expect("a writable folder");
+        folder.path(name)
+    };
+    output(&["info", &write("sound.gltf", document("").as_bytes())]);
+    let past = write("past.gltf", document(r#","byteOffset":4611686018427387904"#).as_bytes());
+    let expected =
+        ["past.gltf: /accessors/0 (POSITION of /meshes/0/primitives/0) needs ", "/bufferViews/0, which has 36"];
+    sentence(&["info", &past], &expected);
+    let deep = write("deep.gltf", "[".repeat(100_000).as_bytes());
+    sentence(&["render", &deep, "-o", &folder.path("none.png")], &["nested 100000 deep, and 100 are read"]);
+    let elsewhere = document("").replace("data:;base64,", "../%2e%2e/");
+    sentence(&["info", &write("elsewhere.gltf", elsewhere.as_bytes())], &["/buffers/0", "leads out of a folder"]);
+    let draco = document("").replace(r#""nodes""#, r#""extensionsRequired":["KHR_draco_mesh_compression"],"nodes""#);
+    sentence(&["info", &write("draco.gltf", draco.as_bytes())], &["KHR_draco_mesh_compression", "decompress it first"]);
+    let chunk = [&b"glTF"[..], &[2, 0, 0, 0], &[24, 0, 0, 0], &[255; 4], b"JSON", b"{}  "].concat();
+    sentence(&["info", &write("chunk.glb", &chunk)], &["chunk 0 says 4294967295 bytes, and 4 are left"]);
+}

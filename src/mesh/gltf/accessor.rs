@@ -5,6 +5,9 @@ use ::gltf::accessor::{Accessor, DataType, Dimensions};
 use ::gltf::{Document, buffer};
 
 use super::Problem;
+use super::budget::Budget;
+use super::extensions::{Compressed, Extensions, Mode};
+use super::meshopt::{Decompressed, decompress};
 
 /// The largest list without a buffer view behind it (all zeros but for its sparse values): nothing else bounds those.
 const MAX_ZEROS: usize = 1 << 24;
@@ -13,6 +16,9 @@ const MAX_ZEROS: usize = 1 << 24;
 pub struct Accessors<'a> {
     document: &'a Document,
     buffers: &'a [Vec<u8>],
+    /// By buffer view: those that are compressed, and from one element to the next.
+    decompressed: Vec<Option<(Decompressed, usize)>>,
+    pub budget: &'a Budget,
 }
 
 /// Elements in a buffer view: `stride` bytes from one to the next, and all there.
@@ -31,8 +37,37 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    pub fn new(document: &'a Document, buffers: &'a [Vec<u8>]) -> Self {
-        Self { document, buffers }
+    /// Decompresses what is compressed.
+    ///
+    /// # Errors
+    /// [`Problem::Document`] when something can't be.
+    pub fn new(
+        document: &'a Document,
+        extensions: &Extensions,
+        buffers: &'a [Vec<u8>],
+        budget: &'a Budget,
+    ) -> Result<Self, Problem> {
+        let mut accessors = Self { document, buffers, decompressed: Vec::new(), budget };
+        for (view, compressed) in document.views().zip(&extensions.compressed) {
+            let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
+            accessors.decompressed.push(made.map_err(|reason| {
+                let pointer = format!("/bufferViews/{}/extensions/{}", view.index(), super::schema::MESHOPT);
+                Problem::Document { pointer, reason }
+            })?);
+        }
+        Ok(accessors)
+    }
+
+    fn decompress(&self, view: &buffer::View, compressed: &Compressed) -> Result<(Decompressed, usize), String> {
+        let Compressed { buffer, offset, length, stride, count, mode, .. } = *compressed;
+        let made = decompress(compressed, self.range(buffer, offset, length)?, self.budget)?;
+        let (said, has) = (view.length(), made.bytes().len());
+        if said != has {
+            return Err(format!("has {count} elements of {stride} bytes, {has}, and its view's byteLength is {said}"));
+        }
+        // Indices lie tight; attributes as the view says, and if it doesn't as they were compressed.
+        let stride = if mode == Mode::Attributes { stride } else { 0 };
+        Ok((made, stride))
     }
 
     /// Lists of N numbers, normalised integers as -1 to 1 or 0 to 1. `role` says what for, in messages.
@@ -69,18 +104,47 @@ impl<'a> Accessors<'a> {
         self.read(accessor, 0, unsigned_integer).map_err(fail)
     }
 
+    /// Of all buffers.
+    pub fn buffer_bytes(&self) -> u64 {
+        self.buffers.iter().map(|buffer| buffer.len() as u64).sum()
+    }
+
     /// The bytes of a buffer view.
     ///
     /// # Errors
     /// A clause that names the view when its buffer is too short.
-    pub fn view_bytes(&self, view: &buffer::View) -> Result<&'a [u8], String> {
-        let buffer = self.buffers.get(view.buffer().index()).map_or(&[][..], Vec::as_slice);
-        let end = view.offset().checked_add(view.length());
-        let bytes = end.and_then(|end| buffer.get(view.offset()..end));
-        bytes.ok_or_else(|| {
-            let (i, offset, length, has) = (view.index(), view.offset(), view.length(), buffer.len());
-            format!("uses buffer view {i}, which takes {length} bytes from byte {offset} of a buffer of {has}")
+    pub fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
+        let i = view.index();
+        if let Some(Some((decompressed, _))) = self.decompressed.get(i) {
+            return Ok(decompressed.bytes());
+        }
+        let bytes = self.range(view.buffer().index(), view.offset() as u64, view.length() as u64);
+        bytes.map_err(|reason| format!("uses /bufferViews/{i}, which {reason}"))
+    }
+
+    /// # Errors
+    /// A clause when the buffer is too short.
+    fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&'a [u8], String> {
+        let bytes = self.buffers.get(buffer).map_or(&[][..], Vec::as_slice);
+        let start = usize::try_from(offset).ok();
+        let end = start.zip(usize::try_from(length).ok()).and_then(|(start, length)| start.checked_add(length));
+        let range = start.zip(end).and_then(|(start, end)| bytes.get(start..end));
+        range.ok_or_else(|| {
+            format!("takes {length} bytes from byte {offset} of /buffers/{buffer}, which has {}", bytes.len())
         })
+    }
+
+    /// Whether an accessor's elements are where it says, and so many; the rest is seen when they are read.
+    ///
+    /// # Errors
+    /// As [`Self::numbers`].
+    pub fn check(&self, accessor: &Accessor, role: &str) -> Result<(), Problem> {
+        let found = match accessor.view() {
+            Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
+            None => zeros(accessor.count()),
+        };
+        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        found.map_err(fail)
     }
 
     /// The view with this index, if there is one.
@@ -90,10 +154,20 @@ impl<'a> Accessors<'a> {
 
     fn read<T: Clone>(&self, accessor: &Accessor, zero: T, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
         let (size, count) = (accessor.size(), accessor.count());
+        let take = || self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64));
         let mut values = match accessor.view() {
-            Some(view) => self.elements(&view, accessor.offset(), size, count)?.iter().map(&decode).collect(),
-            None if count > MAX_ZEROS => return Err(format!("has {count} elements but no data")),
-            None => vec![zero; count],
+            Some(view) => {
+                let elements = self.elements(&view, accessor.offset(), size, count)?;
+                take()?;
+                let mut values = Vec::with_capacity(count);
+                values.extend(elements.iter().map(&decode));
+                values
+            }
+            None => {
+                zeros(count)?;
+                take()?;
+                vec![zero; count]
+            }
         };
         if let Some(sparse) = accessor.sparse() {
             self.replace(&mut values, &sparse, size, decode)?;
@@ -120,17 +194,20 @@ impl<'a> Accessors<'a> {
         let count = values.len();
         for (place, bytes) in places.iter().map(unsigned_integer).zip(new.iter()) {
             let value = values.get_mut(place as usize);
-            *value.ok_or_else(|| format!("replaces element {place} of {count}"))? = decode(bytes);
+            *value.ok_or_else(|| format!("replaces element {place} of {count}, in /sparse/indices"))? = decode(bytes);
         }
         Ok(())
     }
 
     /// `count` elements of `size` bytes in a view, from a byte offset on.
-    fn elements(&self, view: &buffer::View, offset: usize, size: usize, count: usize) -> Result<Elements<'a>, String> {
+    fn elements(&self, view: &buffer::View, offset: usize, size: usize, count: usize) -> Result<Elements<'_>, String> {
         let bytes = self.view_bytes(view)?;
-        let stride = view.stride().unwrap_or(size);
+        let compressed = self.decompressed.get(view.index()).and_then(Option::as_ref);
+        let stride = view.stride().or(compressed.map(|(_, stride)| *stride).filter(|stride| *stride > 0));
+        let stride = stride.unwrap_or(size);
         if stride < size {
-            return Err(format!("has elements of {size} bytes, {stride} bytes apart"));
+            let i = view.index();
+            return Err(format!("has elements of {size} bytes, and /bufferViews/{i} has them {stride} bytes apart"));
         }
         let needed = match count {
             0 => Some(0),
@@ -141,10 +218,18 @@ impl<'a> Accessors<'a> {
                 Ok(Elements { bytes: bytes.get(offset..).unwrap_or(&[]), stride, size, count })
             }
             _ => {
-                let needed = needed.map_or("more than any memory".to_owned(), |needed| needed.to_string());
-                Err(format!("needs {needed} bytes of buffer view {}, which has {}", view.index(), bytes.len()))
+                let needed = needed.map_or("more than 2^64".to_owned(), |needed| needed.to_string());
+                Err(format!("needs {needed} bytes of /bufferViews/{}, which has {}", view.index(), bytes.len()))
             }
         }
+    }
+}
+
+/// Whether so many elements may be zeros.
+fn zeros(count: usize) -> Result<(), String> {
+    match count {
+        0..=MAX_ZEROS => Ok(()),
+        _ => Err(format!("has {count} elements but no data, and {MAX_ZEROS} such are read at most")),
     }
 }
 

@@ -94,7 +94,10 @@ impl Reader<'_> {
     fn channel(&mut self, entry: &ChannelEntry, samplers: &[Sampler]) -> Result<Option<Channel>, String> {
         let Some(index) = entry.target.node else { return Ok(None) };
         let node = self.document.nodes().nth(index);
-        let node = node.ok_or_else(|| format!("moves node {index}, which isn't there"))?;
+        let node = node.ok_or_else(|| {
+            let count = self.document.nodes().len();
+            format!("moves node {index}, and /nodes has {count}")
+        })?;
         let (property, width) = match entry.target.path.as_str() {
             "translation" => (Property::Translation, 3),
             "rotation" => (Property::Rotation, 4),
@@ -144,14 +147,26 @@ impl Reader<'_> {
     /// All numbers of an accessor, which are finite.
     fn numbers<const N: usize>(&mut self, index: usize, role: &str) -> Result<Vec<f32>, String> {
         let accessor = self.document.accessors().nth(index);
-        let accessor = accessor.ok_or_else(|| format!("names accessor {index}, which isn't there"))?;
+        let accessor = accessor.ok_or_else(|| {
+            let count = self.document.accessors().len();
+            format!("names accessor {index}, and /accessors has {count}")
+        })?;
         let left = accessor.count().checked_mul(N).and_then(|count| self.numbers_left.checked_sub(count));
         self.numbers_left = left.ok_or_else(|| format!("takes the document beyond {MAX_NUMBERS} animated numbers"))?;
-        let numbers = self.accessors.numbers::<N>(&accessor, role).map_err(|problem| match problem {
-            Problem::Accessor { accessor, reason, .. } => format!("has {role} in accessor {accessor}, which {reason}"),
+        let budget = self.accessors.budget;
+        let borrowed = budget.borrowed();
+        let numbers = self.accessors.numbers::<N>(&accessor, role);
+        budget.pass(borrowed);
+        let numbers = numbers.map_err(|problem| match problem {
+            Problem::Accessor { accessor, reason, .. } => {
+                format!("has {role} in /accessors/{accessor}, which {reason}")
+            }
             problem => problem.to_string(),
         })?;
         let numbers = numbers.into_flattened();
+        // They stay as long as the mesh.
+        let kept = budget.hold(size_of_val(&numbers[..]) as u64);
+        kept.map_err(|reason| format!("has {role} in /accessors/{index}, which {reason}"))?;
         if numbers.iter().any(|number| !number.is_finite()) {
             return Err(format!("has {role} that aren't finite"));
         }

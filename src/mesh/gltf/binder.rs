@@ -55,6 +55,9 @@ impl Binder {
     /// None if none of the clips (whose targets are nodes of the document) moves anything that is shown; those that don't
     /// are among the warnings.
     pub fn new(clips: Vec<Clip>, document: &Document, placed: &Placed, warnings: &mut Vec<String>) -> Option<Self> {
+        if clips.is_empty() {
+            return None;
+        }
         let mut moved = vec![false; placed.global.len()];
         for channel in clips.iter().flat_map(|clip| &clip.channels) {
             moved[channel.target as usize] |= channel.property != Property::Weights;

@@ -1,19 +1,20 @@
 //! The bytes of a document's buffers.
 
-use std::path::Path;
-
 use ::gltf::Document;
 
-use super::{Problem, uri};
+use super::Problem;
+use super::uri::{self, Files};
 use crate::mesh::progress::Progress;
 
-/// All buffers, each cut to the length that the document gives it. `blob` is the binary chunk of a `.glb`.
+/// All buffers, each cut to the length that the document gives it. `blob` is the binary chunk of a `.glb`. Those that are
+/// `fallback` are empty: what they are for is decompressed from others.
 ///
 /// # Errors
 /// [`Problem::Buffer`] for one that is missing or too short, and [`Problem::Cancelled`].
 pub fn load(
     document: &Document,
-    folder: &Path,
+    files: &Files,
+    fallback: &[bool],
     mut blob: Option<Vec<u8>>,
     progress: &Progress,
 ) -> Result<Vec<Vec<u8>>, Problem> {
@@ -21,10 +22,16 @@ pub fn load(
     let mut buffers = Vec::with_capacity(json.len());
     for (i, buffer) in json.iter().enumerate() {
         progress.check()?;
+        if fallback.get(i) == Some(&true) {
+            buffers.push(Vec::new());
+            continue;
+        }
         let length = buffer.byte_length.0;
         let bytes = match &buffer.uri {
-            Some(uri) => uri::read(uri, folder, length),
-            None => blob.take().ok_or_else(|| "the document has no binary chunk for it".to_owned()),
+            Some(uri) => files.read(uri, true),
+            None => {
+                blob.take().ok_or_else(|| "the document has no binary chunk for it; export the model again".to_owned())
+            }
         };
         buffers.push(bytes.and_then(|bytes| cut(bytes, length)).map_err(|reason| {
             let uri = buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
@@ -41,6 +48,6 @@ fn cut(mut bytes: Vec<u8>, length: u64) -> Result<Vec<u8>, String> {
             bytes.truncate(length);
             Ok(bytes)
         }
-        _ => Err(format!("it should have {length} bytes and has {}", bytes.len())),
+        _ => Err(format!("it should have {length} bytes and has {}; export the model again", bytes.len())),
     }
 }

@@ -4,6 +4,7 @@ use ::gltf::scene::Transform;
 use ::gltf::{Document, Node};
 use glam::{DMat4, Mat4};
 
+use super::Problem;
 use crate::mesh::rig::Placement;
 
 /// The nodes of a document in place.
@@ -12,44 +13,60 @@ pub struct Placed {
     pub global: Vec<DMat4>,
     /// The nodes that the scene shows: parents before children, siblings in order, each once.
     pub shown: Vec<usize>,
-    /// Each node's own; none for those that are their own ancestors.
     pub parents: Vec<Option<usize>>,
-    /// All nodes but those that are their own ancestors, parents before children.
+    /// All nodes, parents before children.
     pub order: Vec<usize>,
 }
 
 /// Places all nodes and lists those of the default scene: the one that the document names, else its first, else all
 /// nodes without a parent. No recursion: chains may be as long as the file.
-pub fn place(document: &Document, warnings: &mut Vec<String>) -> Placed {
+///
+/// # Errors
+/// [`Problem::Document`] for nodes with two parents and for those that are their own ancestors.
+pub fn place(document: &Document) -> Result<Placed, Problem> {
     let nodes: Vec<Node> = document.nodes().collect();
-    let parents = parents(&nodes, warnings);
+    let parents = parents(&nodes)?;
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
     let mut global = vec![DMat4::IDENTITY; nodes.len()];
     let order = walk(&nodes, &roots);
+    if order.len() < nodes.len() {
+        return Err(circle(&parents, &order));
+    }
     for &node in &order {
         let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
         global[node] = above * local(&nodes[node]);
     }
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let roots = scene.map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
-    Placed { global, shown: walk(&nodes, &roots), parents, order }
+    Ok(Placed { global, shown: walk(&nodes, &roots), parents, order })
 }
 
-/// The parent of each node; of several, the first.
-fn parents(nodes: &[Node], warnings: &mut Vec<String>) -> Vec<Option<usize>> {
+/// The parent of each node.
+fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, Problem> {
     let mut parents = vec![None; nodes.len()];
     for node in nodes {
-        for child in node.children() {
+        for (place, child) in node.children().enumerate() {
             let (child, parent) = (child.index(), node.index());
-            match parents[child] {
-                Some(first) => warnings.push(format!(
-                    "node {child} hangs below node {first} and node {parent}; it is shown once, below the first."
-                )),
-                None => parents[child] = Some(parent),
+            if let Some(first) = parents[child].replace(parent) {
+                let pointer = format!("/nodes/{parent}/children/{place}");
+                let reason = format!("is {child}, which is among /nodes/{first}/children already");
+                return Err(Problem::Document { pointer, reason });
             }
         }
     }
-    parents
+    Ok(parents)
+}
+
+/// Says which nodes go round in a circle, if not all were reached from one without a parent.
+fn circle(parents: &[Option<usize>], reached: &[usize]) -> Problem {
+    let mut met = vec![false; parents.len()];
+    reached.iter().for_each(|&node| met[node] = true);
+    let mut node = met.iter().position(|met| !met).unwrap_or(0);
+    while !std::mem::replace(&mut met[node], true) {
+        node = parents[node].unwrap_or(node);
+    }
+    let reason = format!("lead back to node {node}, which would be its own ancestor");
+    Problem::Document { pointer: format!("/nodes/{node}/children"), reason }
 }
 
 fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {

@@ -4,7 +4,9 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive};
 
 use super::binder::NodeBinder;
+use super::materials::Uvs;
 pub use super::vertices::Pose;
+use super::vertices::Vertices;
 use super::{Accessors, Problem, vertices};
 use crate::mesh::merge::LooseCorner;
 
@@ -24,11 +26,26 @@ pub struct Primitives {
     pub rescaled: u32,
 }
 
-/// A primitive's triangles.
+/// A primitive's triangles, by its vertices.
 pub struct Triangles {
-    pub corners: Vec<[LooseCorner; 3]>,
-    /// Numbers of the corners' bindings; none at all if nothing moves.
-    pub bindings: Vec<[u32; 3]>,
+    vertices: Vertices,
+    mode: Mode,
+    indices: Vec<u32>,
+}
+
+impl Triangles {
+    /// Corners, and the numbers of their bindings: 0 for all if nothing moves.
+    pub fn iter(&self) -> impl Iterator<Item = ([LooseCorner; 3], [u32; 3])> {
+        let Vertices { corners, bindings, .. } = &self.vertices;
+        let binding = |vertex: u32| bindings.get(vertex as usize).copied().unwrap_or_default();
+        self.outward().map(move |t| (t.map(|vertex| corners[vertex as usize]), t.map(binding)))
+    }
+
+    /// Vertices of triangles, counter-clockwise seen from outside.
+    fn outward(&self) -> impl Iterator<Item = [u32; 3]> {
+        let outward = |[a, b, c]: [u32; 3]| if self.vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
+        triangles(self.mode, &self.indices).map(outward)
+    }
 }
 
 impl Primitives {
@@ -52,12 +69,12 @@ impl Primitives {
         mesh: &Mesh,
         primitive: &Primitive,
         pose: &Pose,
-        uv_set: u32,
+        uvs: Uvs,
         accessors: &Accessors,
         binder: Option<&mut NodeBinder>,
     ) -> Result<Triangles, Problem> {
         let name = name(mesh, primitive);
-        let vertices = vertices::read(primitive, &name, pose, uv_set, accessors, binder)?;
+        let vertices = vertices::read(primitive, &name, pose, uvs, accessors, binder)?;
         let indices = match primitive.indices() {
             Some(accessor) => accessors.indices(&accessor, &format!("indices of {name}"))?,
             None => (0..vertices.corners.len() as u32).collect(),
@@ -68,14 +85,10 @@ impl Primitives {
             let reason = format!("uses vertex {index} of {count}, at index {i}");
             return Err(Problem::Primitive { primitive: name, reason });
         }
-        let outward = |[a, b, c]: [u32; 3]| if vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
-        let triangles: Vec<_> = triangles(primitive.mode(), &indices).into_iter().map(outward).collect();
-        let vertex_rescaled = |vertex: &&u32| vertices.rescaled[**vertex as usize];
-        self.rescaled += triangles.as_flattened().iter().filter(vertex_rescaled).count() as u32;
-        let bound = !vertices.bindings.is_empty();
-        let bindings = triangles.iter().filter(|_| bound).map(|t| t.map(|vertex| vertices.bindings[vertex as usize]));
-        let corners = triangles.iter().map(|t| t.map(|vertex| vertices.corners[vertex as usize]));
-        Ok(Triangles { corners: corners.collect(), bindings: bindings.collect() })
+        let triangles = Triangles { vertices, mode: primitive.mode(), indices };
+        let vertex_rescaled = |vertex: &u32| triangles.vertices.rescaled[*vertex as usize];
+        self.rescaled += triangles.outward().flatten().filter(vertex_rescaled).count() as u32;
+        Ok(triangles)
     }
 
     fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
@@ -113,26 +126,26 @@ impl Primitives {
     }
 }
 
-/// A primitive's name for messages.
-fn name(mesh: &Mesh, primitive: &Primitive) -> String {
-    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" \"{name}\""));
-    format!("mesh {}{mesh_name}, primitive {}", mesh.index(), primitive.index())
+/// A primitive's place in the document, for messages.
+pub fn name(mesh: &Mesh, primitive: &Primitive) -> String {
+    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", super::uri::shown(name)));
+    format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
 }
 
 /// Indices as triangles (specification, section 3.7.2.1). Triangles of a strip or fan that use a vertex twice only
 /// carry it to its next part and are dropped; those of a list are kept.
-fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+fn triangles(mode: Mode, indices: &[u32]) -> Box<dyn Iterator<Item = [u32; 3]> + '_> {
     let whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
     match mode {
         Mode::TriangleStrip => {
             let windows = indices.array_windows().enumerate();
-            windows.map(|(i, &[a, b, c])| if i % 2 == 0 { [a, b, c] } else { [a, c, b] }).filter(whole).collect()
+            Box::new(windows.map(|(i, &[a, b, c])| if i % 2 == 0 { [a, b, c] } else { [a, c, b] }).filter(whole))
         }
         Mode::TriangleFan => {
-            let Some((&hub, rim)) = indices.split_first() else { return Vec::new() };
-            rim.array_windows().map(|&[a, b]| [a, b, hub]).filter(whole).collect()
+            let Some((&hub, rim)) = indices.split_first() else { return Box::new(std::iter::empty()) };
+            Box::new(rim.array_windows().map(move |&[a, b]| [a, b, hub]).filter(whole))
         }
-        _ => indices.as_chunks().0.to_vec(),
+        _ => Box::new(indices.as_chunks().0.iter().copied()),
     }
 }
 
@@ -140,19 +153,23 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
 mod tests {
     use super::*;
 
+    fn all(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+        triangles(mode, indices).collect()
+    }
+
     #[test]
     fn strips_alternate_and_fans_turn() {
         let indices = [0, 1, 2, 3, 4];
-        assert_eq!(triangles(Mode::TriangleStrip, &indices), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
-        assert_eq!(triangles(Mode::TriangleFan, &indices), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
-        assert_eq!(triangles(Mode::Triangles, &indices), [[0, 1, 2]]);
+        assert_eq!(all(Mode::TriangleStrip, &indices), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(all(Mode::TriangleFan, &indices), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
+        assert_eq!(all(Mode::Triangles, &indices), [[0, 1, 2]]);
     }
 
     #[test]
     fn stitches_of_strips_are_dropped() {
-        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]), [[0, 1, 2], [3, 5, 4]]);
+        assert_eq!(all(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]), [[0, 1, 2], [3, 5, 4]]);
         for mode in [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan] {
-            assert!(triangles(mode, &[]).is_empty() && triangles(mode, &[7]).is_empty());
+            assert!(all(mode, &[]).is_empty() && all(mode, &[7]).is_empty());
         }
     }
 }

@@ -1,6 +1,8 @@
+mod compressed;
 mod files;
+mod hostile;
 mod moving;
-mod refused;
+mod mutations;
 
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
@@ -13,6 +15,8 @@ use crate::mesh::topology::Topology;
 struct Draft {
     root: Value,
     bytes: Vec<u8>,
+    /// A second buffer.
+    fallback: Option<Value>,
 }
 
 impl Draft {
@@ -28,7 +32,7 @@ impl Draft {
             "bufferViews": [],
             "accessors": [],
         });
-        Self { root, bytes: Vec::new() }
+        Self { root, bytes: Vec::new(), fallback: None }
     }
 
     fn push(&mut self, list: &str, value: Value) -> usize {
@@ -74,17 +78,21 @@ impl Draft {
     fn document(&self) -> Value {
         let uri = format!("data:application/octet-stream;base64,{}", uri::to_base64(&self.bytes));
         let mut root = self.root.clone();
-        root["buffers"] = json!([{ "byteLength": self.bytes.len(), "uri": uri }]);
+        // A test may have said something of its own.
+        let mut buffer = root["buffers"].get(0).cloned().unwrap_or(json!({ "byteLength": self.bytes.len() }));
+        buffer["uri"] = json!(uri);
+        root["buffers"] = [buffer].into_iter().chain(self.fallback.clone()).collect();
         root
     }
 
     fn read(&self) -> Result<Mesh, Problem> {
-        read(self.document().to_string().as_bytes(), Path::new("nowhere"), "draft", &Progress::new())
+        read_bytes(self.document().to_string().as_bytes())
     }
 
     fn glb(&self) -> Vec<u8> {
         let mut root = self.root.clone();
-        root["buffers"] = json!([{ "byteLength": self.bytes.len() }]);
+        root["buffers"] =
+            [json!({ "byteLength": self.bytes.len() })].into_iter().chain(self.fallback.clone()).collect();
         let mut json = root.to_string().into_bytes();
         json.resize(json.len().next_multiple_of(4), b' ');
         let mut bin = self.bytes.clone();
@@ -94,6 +102,11 @@ impl Draft {
         let header = [&b"glTF"[..], &2_u32.to_le_bytes(), &total.to_le_bytes()].concat();
         [&header, &length(&json)[..], b"JSON", &json, &length(&bin), b"BIN\0", &bin].concat()
     }
+}
+
+/// Reads a document that names no files.
+fn read_bytes(bytes: &[u8]) -> Result<Mesh, Problem> {
+    read(bytes.to_vec(), Path::new("nowhere"), "draft", &Limits::default(), &Progress::new())
 }
 
 const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -131,8 +144,7 @@ fn a_triangle_arrives_as_it_is() {
 #[test]
 fn glb_and_gltf_give_the_same() {
     let draft = triangle();
-    let progress = Progress::new();
-    let mesh = read(&draft.glb(), Path::new(""), "draft", &progress).unwrap();
+    let mesh = read_bytes(&draft.glb()).unwrap();
     assert_eq!(mesh.corners, draft.read().unwrap().corners);
 }
 
@@ -160,16 +172,6 @@ fn transforms_stack_and_normals_stay_perpendicular() {
     let mesh = draft.read().unwrap();
     assert!(mesh.corners.iter().all(|c| c.normal.distance(face_normal(&mesh)) < 1e-6));
     assert_eq!(mesh.bounds().max.z, 5.0);
-}
-
-#[test]
-fn loops_among_nodes_end() {
-    let mut draft = triangle();
-    draft.root["nodes"] = json!([{ "mesh": 0, "children": [1] }, { "children": [0] }]);
-    assert_eq!(draft.read().unwrap().triangles.len(), 1);
-    draft.root["nodes"] = json!([{ "mesh": 0 }, { "children": [0] }, { "children": [0] }]);
-    let mesh = draft.read().unwrap();
-    assert!(mesh.warnings[0].contains("hangs below node 1 and node 2"), "{:?}", mesh.warnings);
 }
 
 #[test]
@@ -226,7 +228,10 @@ fn sparse_values_replace_the_base_and_zeros() {
     assert_eq!(positions(&draft.read().unwrap())[2], [0.0, 3.0, 0.0], "the node's weights come first");
     let far = draft.view(&[9]);
     draft.root["accessors"][0]["sparse"] = sparse(far);
-    assert!(message(&draft).contains("accessor 0 (POSITION of mesh 0 \"thing\", primitive 0) replaces element 9 of 3"));
+    assert!(
+        message(&draft)
+            .contains("/accessors/0 (POSITION of /meshes/0/primitives/0 (\"thing\")) replaces element 9 of 3")
+    );
 }
 
 #[test]

@@ -1,59 +1,134 @@
 //! URIs of buffers and images: data in the document itself, or files next to it.
 
-use std::fs::File;
-use std::io::Read;
+use std::cell::RefCell;
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
-/// The bytes that a URI stands for, `limit` of them at most.
-///
-/// Files must lie in the document's folder or below it: a model can't make the program read anything else.
-///
-/// # Errors
-/// A clause that says what is wrong.
-pub fn read(uri: &str, folder: &Path, limit: u64) -> Result<Vec<u8>, String> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return read_data(data);
+use super::budget::Budget;
+use crate::mesh::load::{Limits, read_file};
+
+/// The largest data URI, in bytes that it stands for.
+const MAX_DATA: usize = 512 << 20;
+
+/// The files that a document may name.
+pub struct Files<'a> {
+    /// Where the document lies.
+    folder: &'a Path,
+    limits: &'a Limits,
+    budget: &'a Budget,
+    /// Those that have brought their allowance.
+    counted: RefCell<HashSet<PathBuf>>,
+}
+
+impl<'a> Files<'a> {
+    pub fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget) -> Self {
+        Self { folder, limits, budget, counted: RefCell::default() }
     }
-    let path = folder.join(relative_path(uri)?);
-    let named = |error: std::io::Error| format!("{}: {error}", path.display());
-    // A pipe or a device could block for ever.
-    if !path.metadata().map_err(named)?.is_file() {
-        return Err(format!("{} is not a file", path.display()));
+
+    /// The bytes that a URI stands for, kept until the end or not.
+    ///
+    /// Files must lie in the document's folder or below it, also after links are followed: a model can't make the program
+    /// read anything else.
+    ///
+    /// # Errors
+    /// A clause that says what is wrong, and what to do.
+    pub fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
+        let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
+        if let Some(data) = strip_scheme(uri, "data:") {
+            take(data.len() as u64)?;
+            return read_data(data, MAX_DATA);
+        }
+        let path = self.found(&relative_path(uri)?)?;
+        // What is too large is refused by its name and size, whatever memory there is.
+        let bytes = path.metadata().map_or(0, |about| about.len()).min(self.limits.file);
+        // A file that is named a thousand times brings what it allows once.
+        if self.counted.borrow_mut().insert(path.clone()) {
+            self.budget.allow(bytes);
+        }
+        take(bytes)?;
+        read_file(&path, self.limits).map_err(|error| error.to_string())
     }
-    let mut bytes = Vec::new();
-    File::open(&path).and_then(|file| file.take(limit).read_to_end(&mut bytes)).map_err(named)?;
-    Ok(bytes)
+
+    /// The file itself, wherever links lead.
+    fn found(&self, relative: &Path) -> Result<PathBuf, String> {
+        let missing = |path: &Path, error: std::io::Error| {
+            format!("{}: {error}; put the file where the document says, or export as .glb", path.display())
+        };
+        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
+        let path = folder.join(relative);
+        let real = path.canonicalize().map_err(|error| missing(&path, error))?;
+        let root = folder.canonicalize().map_err(|error| missing(folder, error))?;
+        if !real.starts_with(&root) {
+            return Err(format!(
+                "{} is a link out of the document's folder, and only files below that are read; put the file itself there",
+                path.display()
+            ));
+        }
+        // A pipe or a device could block for ever.
+        if !real.metadata().map_err(|error| missing(&path, error))?.is_file() {
+            return Err(format!("{} is not a file; name one, or export as .glb", path.display()));
+        }
+        Ok(real)
+    }
 }
 
 /// A URI fit for a message: data URIs are long.
 pub fn shown(uri: &str) -> String {
     let (start, rest) = uri.split_at(uri.char_indices().nth(60).map_or(uri.len(), |(i, _)| i));
-    if rest.is_empty() { start.to_owned() } else { format!("{start}...") }
+    // On one line, whatever it is.
+    let start = start.replace(char::is_control, "\u{fffd}");
+    if rest.is_empty() { start } else { format!("{start}...") }
 }
 
-fn read_data(data: &str) -> Result<Vec<u8>, String> {
-    let (header, body) = data.split_once(',').ok_or("the data URI has no comma")?;
-    match header.ends_with(";base64") {
-        true => base64(body),
-        false => Ok(percent_decoded(body)),
+/// What follows a scheme, which may be written in either case.
+fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
+    let (start, rest) = uri.split_at_checked(scheme.len())?;
+    start.eq_ignore_ascii_case(scheme).then_some(rest)
+}
+
+fn read_data(data: &str, limit: usize) -> Result<Vec<u8>, String> {
+    let (header, body) = data.split_once(',').ok_or("the data URI has no comma; export the model again")?;
+    let is_base64 = header.ends_with(";base64");
+    let size = if is_base64 { body.len() / 4 * 3 } else { body.len() };
+    if size > limit {
+        return Err(format!("the data URI holds {size} bytes, and {limit} are read at most; export as .glb"));
     }
+    if is_base64 { base64(body) } else { Ok(percent_decoded(body)) }
 }
 
+/// A path without anything in it that could lead elsewhere, on any system.
 fn relative_path(uri: &str) -> Result<PathBuf, String> {
-    // A scheme ends at a colon before any slash; the drive of a Windows path looks the same.
-    if uri.split('/').next().is_some_and(|first| first.contains(':')) {
-        return Err("only files next to the document are read, and it names another place".to_owned());
+    let refused = |reason: &str| Err(format!("{reason}; only files in the document's folder and below are read"));
+    let Ok(decoded) = String::from_utf8(percent_decoded(uri)) else {
+        return Err("its name is not UTF-8 once its % signs are decoded; rename the file".to_owned());
+    };
+    let mut parts = decoded.split('/');
+    // A scheme ends at a colon before any slash, a drive of Windows does, and so does a file that hides behind another.
+    match parts.next() {
+        Some(first) if first.contains(':') => {
+            return refused(&format!("it names another place, with {}:", shown(first.split(':').next().unwrap_or(""))));
+        }
+        Some("") if !decoded.is_empty() => return refused("it is an absolute path"),
+        _ => {}
     }
-    let decoded = String::from_utf8(percent_decoded(uri)).map_err(|_| "its name is not UTF-8".to_owned())?;
+    if decoded.is_empty() {
+        return Err("its name is empty; export the model again".to_owned());
+    }
+    if decoded.contains('\\') {
+        return refused("it has a backslash, where a URI has /");
+    }
+    if decoded.contains(char::is_control) {
+        return refused("it has a control character");
+    }
+    if decoded.contains(':') {
+        return refused("it has a colon");
+    }
+    if parts.any(|part| part == "..") || decoded.starts_with("../") || decoded == ".." {
+        return refused("it leads out of a folder, with ..");
+    }
     let path = PathBuf::from(decoded);
     let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
-    if path.as_os_str().is_empty() {
-        return Err("its name is empty".to_owned());
-    }
-    if !path.components().all(inside) {
-        return Err("only files in the document's folder are read, and it lies outside".to_owned());
-    }
-    Ok(path)
+    if path.components().all(inside) { Ok(path) } else { refused("it leads elsewhere") }
 }
 
 /// %XX as the byte it stands for; a % that no two hexadecimal digits follow stays.
@@ -87,7 +162,12 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
             b'0'..=b'9' => byte - b'0' + 52,
             b'+' => 62,
             b'/' => 63,
-            _ => return Err(format!("the data URI has a character that isn't base64: {:?}", char::from(byte))),
+            _ => {
+                return Err(format!(
+                    "the data URI has a character that isn't base64, {:?}; export the model again",
+                    char::from(byte)
+                ));
+            }
         };
         // Six bits in, eight out whenever there are enough; what was given out is shifted out of sight.
         bits = (bits << 6) | u32::from(digit);
@@ -132,15 +212,46 @@ mod tests {
     fn percent_signs() {
         assert_eq!(relative_path("a%20b/c.bin"), Ok("a b/c.bin".into()));
         assert_eq!(percent_decoded("100%_%4"), b"100%_%4");
-        assert!(relative_path("%ff").is_err());
     }
 
     #[test]
     fn only_files_below_the_folder() {
-        for uri in ["../a", "/elsewhere/a", "file:///elsewhere/a", "https://example.org/a.bin", "a/%2e%2e/../b", ""] {
-            assert!(relative_path(uri).is_err(), "{uri}");
+        let outside = [
+            ("../a", "with .."),
+            ("a/%2e%2e/b", "with .."),
+            ("%2E%2e%2fa", "with .."),
+            ("a/..", "with .."),
+            ("/elsewhere/a", "an absolute path"),
+            ("%2felsewhere/a", "an absolute path"),
+            ("//host/a", "an absolute path"),
+            ("file:///elsewhere/a", "with file:"),
+            ("FILE:a", "with FILE:"),
+            ("https://example.org/a.bin", "with https:"),
+            ("C:/a.bin", "with C:"),
+            ("c%3A%5Ca.bin", "with c:"),
+            ("a%5C..%5Cb", "backslash"),
+            ("a\\b", "backslash"),
+            ("a/b.bin:c", "colon"),
+            ("a%00b", "control character"),
+        ];
+        for (uri, reason) in outside {
+            let said = relative_path(uri).unwrap_err();
+            assert!(said.contains(reason) && said.ends_with("folder and below are read"), "{uri}: {said}");
         }
-        assert!(relative_path("./textures/a.png").is_ok());
+        assert!(relative_path("").unwrap_err().contains("empty"));
+        assert!(relative_path("a/%c3%28").unwrap_err().contains("not UTF-8"));
+        for uri in ["./textures/a.png", "a..b/c...d", "..a"] {
+            assert!(relative_path(uri).is_ok(), "{uri}");
+        }
+    }
+
+    #[test]
+    fn data_has_a_limit() {
+        assert_eq!(read_data("application/octet-stream;base64,Zm9v", 3), Ok(b"foo".to_vec()));
+        let said = read_data(";base64,Zm9vZm9v", 5).unwrap_err();
+        assert!(said.contains("holds 6 bytes, and 5 are read at most"), "{said}");
+        assert_eq!(read_data(",a%20b", 5), Ok(b"a b".to_vec()));
+        assert!(read_data(";base64Zm9v", 5).unwrap_err().contains("no comma"));
     }
 
     proptest! {

@@ -5,10 +5,15 @@ use ::gltf::{Primitive, Semantic};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use super::binder::{MAX_BOUND, NodeBinder, Undeformed};
+use super::extensions::UvTransform;
+use super::materials::Uvs;
 use super::{Accessors, Problem};
 use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
 use crate::mesh::rig::{Delta, LARGEST_COORDINATE};
+
+/// Memory for a displacement of a vertex that is bound, and for telling it from others, in bytes.
+const PER_DELTA: u64 = 250;
 
 /// How the primitive's node stands.
 pub struct Pose<'a> {
@@ -68,7 +73,7 @@ impl Influences {
     }
 }
 
-/// Reads and poses a primitive's vertices. `name` is the primitive's, for messages; `uv_set` the n of TEXCOORD_n. They are
+/// Reads and poses a primitive's vertices. `name` is the primitive's, for messages; `uvs` says which texture coordinates. They are
 /// bound to what moves them where there is a `binder`.
 ///
 /// # Errors
@@ -77,24 +82,31 @@ pub fn read(
     primitive: &Primitive,
     name: &str,
     pose: &Pose,
-    uv_set: u32,
+    uvs: Uvs,
     accessors: &Accessors,
     binder: Option<&mut NodeBinder>,
 ) -> Result<Vertices, Problem> {
     let attributes = Source { primitive, name, accessors };
-    let mut values = attributes.read(uv_set)?;
+    let borrowed = accessors.budget.borrowed();
+    let mut values = attributes.read(uvs.set)?;
     // Before morphing, which leaves no normal at unit length and is no fault.
     let rescaled = rescaled(values.normals.as_deref(), values.positions.len());
     let first_weight = binder.as_ref().and_then(|binder| binder.first_weight());
     let unmorphed = first_weight.map(|_| values.clone());
     attributes.morph(&mut values, pose.weights)?;
-    let mut repairs = Repairs::default();
-    let influences = attributes.influences(pose, values.positions.len())?;
-    let matrices = influences.as_ref().map_or_else(Vec::new, |influences| matrices(pose, influences, &mut repairs));
-    let mut vertices = Vertices { corners: Vec::new(), mirrored: Vec::new(), rescaled, bindings: Vec::new(), repairs };
-    for i in 0..values.positions.len() {
-        let matrix = matrices.get(i).unwrap_or(&pose.global);
-        vertices.push(&values, i, matrix, name)?;
+    let count = values.positions.len();
+    let influences = attributes.influences(pose, count)?;
+    let too_large = |reason| Problem::Primitive { primitive: name.to_owned(), reason };
+    let bytes = count as u64 * (size_of::<LooseCorner>() + 2) as u64;
+    accessors.budget.borrow(bytes).map_err(too_large)?;
+    let (corners, mirrored) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut vertices = Vertices { corners, mirrored, rescaled, bindings: Vec::new(), repairs: Repairs::default() };
+    for i in 0..count {
+        let matrix = match &influences {
+            Some(influences) => skinned(pose, influences, i, &mut vertices.repairs),
+            None => pose.global,
+        };
+        vertices.push(&values, i, &matrix, uvs.transform, name)?;
     }
     if let Some(binder) = binder {
         let Attributes { positions, normals, .. } = unmorphed.as_ref().unwrap_or(&values);
@@ -106,11 +118,21 @@ pub fn read(
         });
         vertices.bindings = binder.bind(Undeformed { positions, normals, influences, deltas }, &vertices.corners);
     }
+    // The attributes as the file has them are free again.
+    accessors.budget.pass(borrowed);
+    accessors.budget.borrow(bytes).map_err(too_large)?;
     Ok(vertices)
 }
 
 impl Vertices {
-    fn push(&mut self, values: &Attributes, i: usize, matrix: &DMat4, name: &str) -> Result<(), Problem> {
+    fn push(
+        &mut self,
+        values: &Attributes,
+        i: usize,
+        matrix: &DMat4,
+        transform: Option<UvTransform>,
+        name: &str,
+    ) -> Result<(), Problem> {
         let position = matrix.transform_point3(values.positions[i].as_dvec3()).as_vec3();
         if !position.is_finite() {
             let reason = format!("has a position that isn't finite, at vertex {i}");
@@ -127,6 +149,9 @@ impl Vertices {
         self.repairs.no_normals += usize::from(normal.is_none());
         self.rescaled[i] &= normal != Some(Vec3::ZERO);
         let mut uv = values.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs[i].into());
+        if let Some(transform) = transform {
+            uv = transform.apply(uv);
+        }
         if !uv.is_finite() {
             uv = Vec2::ZERO;
             self.repairs.bad_uvs += 1;
@@ -203,7 +228,7 @@ impl Source<'_> {
         let targets = self.primitive.morph_targets();
         binder.look_at(targets.clone().count().saturating_mul(count))?;
         let mut deltas = vec![Vec::new(); count];
-        let mut found = 0;
+        let (mut found, mut held) = (0, 0);
         for (target, weight) in targets.zip(first_weight..) {
             let positions = self.displacements(target.positions(), "POSITION of a morph target", count)?;
             let normals = self.displacements(target.normals(), "NORMAL of a morph target", count)?;
@@ -218,6 +243,9 @@ impl Source<'_> {
             if found > MAX_BOUND {
                 return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
             }
+            let kept = self.accessors.budget.hold((found - held) as u64 * PER_DELTA);
+            kept.map_err(|reason| format!("{found} displacements of vertices {reason}"))?;
+            held = found;
         }
         Ok(deltas)
     }
@@ -278,14 +306,11 @@ fn add(values: &mut [Vec3], changes: &[Vec3], weight: f32) {
     }
 }
 
-/// Each skinned vertex's own matrix: the mean of its joints' by weight.
-fn matrices(pose: &Pose, influences: &Influences, repairs: &mut Repairs) -> Vec<DMat4> {
-    let blend = |vertex| {
-        let Some(joints) = influences.of(vertex, pose.joints.len()) else {
-            repairs.bad_weights += 1;
-            return DMat4::IDENTITY;
-        };
-        joints.fold(DMat4::ZERO, |sum, (joint, weight)| sum + pose.joints[joint] * weight)
+/// A skinned vertex's own matrix: the mean of its joints' by weight.
+fn skinned(pose: &Pose, influences: &Influences, vertex: usize, repairs: &mut Repairs) -> DMat4 {
+    let Some(joints) = influences.of(vertex, pose.joints.len()) else {
+        repairs.bad_weights += 1;
+        return DMat4::IDENTITY;
     };
-    (0..influences.joints.len()).map(blend).collect()
+    joints.fold(DMat4::ZERO, |sum, (joint, weight)| sum + pose.joints[joint] * weight)
 }

@@ -1,25 +1,24 @@
 //! The materials of an OBJ file: described by files in its folder, each made when a face first wears it.
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use super::mtl::{self, Described};
 use crate::mesh::faces::{Faces, counted};
 use crate::mesh::fault::Fault;
-use crate::mesh::gltf::{materials, uri};
+use crate::mesh::gltf::budget::Budget;
+use crate::mesh::gltf::materials;
+use crate::mesh::gltf::uri::Files;
 use crate::mesh::lines::{shown, words};
 use crate::mesh::{Material, Texture};
 
 /// Material files that are read.
 const MAX_LIBRARIES: usize = 64;
 
-/// The largest of them, in bytes.
-const MAX_LIBRARY: u64 = 1 << 24;
-
 /// What faces wear.
 pub struct Materials<'a> {
-    folder: &'a Path,
+    files: &'a Files<'a>,
+    budget: &'a Budget,
     /// Names of the material files.
     libraries: Vec<String>,
     described: HashMap<Vec<u8>, Described>,
@@ -37,9 +36,10 @@ pub struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(folder: &'a Path) -> Self {
+    pub fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
         Self {
-            folder,
+            files,
+            budget,
             libraries: Vec::new(),
             described: HashMap::new(),
             name: Vec::new(),
@@ -79,7 +79,8 @@ impl<'a> Materials<'a> {
             self.libraries_left_out += 1;
             return;
         }
-        match beside(&name, self.folder, MAX_LIBRARY).and_then(|bytes| mtl::read(&bytes)) {
+        let borrowed = self.budget.borrowed();
+        match self.beside(&name).and_then(|bytes| mtl::read(&bytes)) {
             Ok((materials, bad)) => {
                 self.bad_statements += bad;
                 // The first of a name is the one, as in most programs.
@@ -92,6 +93,7 @@ impl<'a> Materials<'a> {
                 self.problems.push(format!("the material file {name} is left out: {reason}."));
             }
         }
+        self.budget.pass(borrowed);
         self.libraries.push(name);
     }
 
@@ -136,8 +138,9 @@ impl<'a> Materials<'a> {
         if let Some(texture) = self.textures.get(name) {
             return texture.clone();
         }
-        let bytes = beside(name, self.folder, materials::MAX_FILE);
-        let texture = bytes.and_then(|bytes| materials::decode(&bytes)).map(Arc::new);
+        let borrowed = self.budget.borrowed();
+        let texture = self.beside(name).and_then(|bytes| materials::decode(&bytes, self.budget)).map(Arc::new);
+        self.budget.pass(borrowed);
         let texture = texture.map_err(|reason| {
             let image = shown(name.as_bytes());
             self.problems.push(format!("the texture {image} of material \"{material}\" is left out: {reason}."));
@@ -156,11 +159,11 @@ impl<'a> Materials<'a> {
         ]));
         warnings
     }
-}
 
-/// The bytes of a file in the folder or below it: as glTF's, whose names are URIs.
-fn beside(name: &str, folder: &Path, limit: u64) -> Result<Vec<u8>, String> {
-    uri::read(&name.replace('%', "%25").replace('\\', "/"), folder, limit)
+    /// The bytes of a file in the folder or below it: as glTF's, whose names are URIs.
+    fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
+        self.files.read(&name.replace('%', "%25").replace('\\', "/"), false)
+    }
 }
 
 #[cfg(test)]

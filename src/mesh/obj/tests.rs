@@ -4,7 +4,7 @@ use super::*;
 use crate::mesh::faces::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> Mesh {
-    super::read(text.as_bytes(), Path::new("nowhere"), "cube", &Progress::new()).unwrap()
+    super::read(text.as_bytes(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// A cube of quadrilaterals without normals.
@@ -109,5 +109,8 @@ fn what_is_no_face_is_left_out_and_counted() {
 fn a_cancel_is_heard() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(b"v 0 0 0\n", Path::new(""), "", &progress), Err(Fault::Cancelled(_))));
+    assert!(matches!(
+        super::read(b"v 0 0 0\n", Path::new(""), "", &Limits::default(), &progress),
+        Err(Fault::Cancelled(_))
+    ));
 }

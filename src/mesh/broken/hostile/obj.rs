@@ -117,12 +117,15 @@ pub fn cases() -> Vec<Case> {
             "mtllib ../../secret.mtl\nf 1 2 3\n",
             Mended(
                 1,
-                "the material file \"../../secret.mtl\" is left out: only files in the document's folder are read"
+                "the material file \"../../secret.mtl\" is left out: it leads out of a folder, with ..; only files in the document's folder and below are read"
             )
         ),
         obj!(
             "mtllib /dev/zero\nf 1 2 3\n",
-            Mended(1, "the material file \"/dev/zero\" is left out: only files in the document's folder are read")
+            Mended(
+                1,
+                "the material file \"/dev/zero\" is left out: it is an absolute path; only files in the document's folder and below are read"
+            )
         ),
         (
             Obj,

@@ -45,7 +45,7 @@ fn textures_are_decoded_wherever_they_are() {
 fn missing_and_broken_textures_are_warnings() {
     let images = [
         (json!({ "uri": "missing%20one.png" }), "missing one.png"),
-        (json!({ "uri": "/elsewhere.png" }), "outside"),
+        (json!({ "uri": "/elsewhere.png" }), "an absolute path"),
         (json!({ "uri": "data:image/png;base64,AAAA" }), "can't be decoded"),
         (json!({ "bufferView": 0 }), "can't be decoded"),
         (json!({}), "neither"),
@@ -87,16 +87,53 @@ fn files_next_to_the_document_are_found() {
     let path = folder.0.join("model.GLTF");
     std::fs::write(&path, document.to_string()).unwrap();
     let progress = Progress::new();
-    let error = load(&path, &progress).unwrap_err().to_string();
-    assert!(error.contains("model.GLTF: buffer 0 (data.bin) can't be read"), "{error}");
+    let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
+    assert!(error.contains("model.GLTF: /buffers/0 (data.bin) can't be read"), "{error}");
     std::fs::write(folder.0.join("data.bin"), &draft.bytes).unwrap();
     std::fs::write(folder.0.join("my skin.png"), png()).unwrap();
-    let mesh = load(&path, &progress).unwrap();
+    let mesh = load(&path, &Limits::default(), &progress).unwrap();
     assert!(mesh.materials[0].texture.is_some());
     assert_eq!((mesh.name.as_str(), progress.fraction()), ("model", 1.0));
     std::fs::write(folder.0.join("data.bin"), &draft.bytes[1..]).unwrap();
-    let error = load(&path, &progress).unwrap_err().to_string();
+    let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
     assert!(error.contains("it should have 96 bytes and has 95"), "{error}");
     progress.cancel();
-    assert!(matches!(load(&path, &progress), Err(LoadError::Cancelled(Cancelled))));
+    assert!(matches!(load(&path, &Limits::default(), &progress), Err(LoadError::Cancelled(Cancelled))));
+}
+
+#[test]
+fn files_that_are_named_have_the_same_limit() {
+    let folder = Folder::new("limits");
+    let draft = textured(json!({ "uri": "large.png" }));
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("data.bin");
+    let path = folder.0.join("model.gltf");
+    let text = document.to_string();
+    let [own, data] = [text.len() as u64, draft.bytes.len() as u64];
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(folder.0.join("large.png"), [&png()[..], &vec![0; 100_000]].concat()).unwrap();
+    std::fs::write(folder.0.join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
+    let load = |file| load(&path, &Limits { file }, &Progress::new());
+    let said = load(own).unwrap_err().to_string();
+    let expected = format!("data.bin has {} bytes, and {own} are read at most", own + data);
+    assert!(said.contains("/buffers/0 (data.bin) can't be read") && said.contains(&expected), "{said}");
+    let mesh = load(own + data).unwrap();
+    let said = mesh.warnings.first().unwrap();
+    assert!(mesh.materials[0].texture.is_none() && said.contains("large.png has 1000"), "{said}");
+    assert!(load(200_000).unwrap().materials[0].texture.is_some());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_within_the_folder_are_followed() {
+    let folder = Folder::new("links");
+    let draft = triangle();
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("link/data.bin");
+    let path = folder.0.join("model.gltf");
+    std::fs::write(&path, document.to_string()).unwrap();
+    std::fs::create_dir_all(folder.0.join("there")).unwrap();
+    std::fs::write(folder.0.join("there/data.bin"), &draft.bytes).unwrap();
+    std::os::unix::fs::symlink("there", folder.0.join("link")).unwrap();
+    assert_eq!(load(&path, &Limits::default(), &Progress::new()).unwrap().triangles.len(), 1);
 }

@@ -184,20 +184,20 @@ fn morph_targets_that_part_an_edge_part_its_points() {
 #[test]
 fn bad_animations_are_left_out_and_told() {
     let changes: [(&str, Value, &str); 14] = [
-        ("/samplers/0/input", json!(77), "channel 0 names accessor 77, which isn't there"),
+        ("/samplers/0/input", json!(77), "channel 0 names accessor 77, and /accessors has 4"),
         ("/samplers/0/input", json!("no"), "it can't be read (invalid type: string \"no\", expected usize)"),
         ("/samplers/0/interpolation", json!("CUBIC"), "channel 0 has an interpolation \"CUBIC\", which isn't known"),
         ("/samplers/0/interpolation", json!("CUBICSPLINE"), "channel 0 has 6 numbers for 2 keys of 9"),
         ("/channels/0/sampler", json!(3), "channel 0 uses sampler 3 of 1"),
-        ("/channels/0/target/node", json!(9), "channel 0 moves node 9, which isn't there"),
+        ("/channels/0/target/node", json!(9), "channel 0 moves node 9, and /nodes has 1"),
         (
             "/channels/0/target/path",
             json!("rotation"),
-            "channel 0 has values in accessor 3, which has Vec3 elements where 4 numbers are needed",
+            "channel 0 has values in /accessors/3, which has Vec3 elements where 4 numbers are needed",
         ),
         ("/channels/0/target/path", json!("weights"), "channel 0 weighs morph targets of node 0, which has none"),
         ("/accessors/2/count", json!(1), "channel 0 has 6 numbers for 1 keys of 3"),
-        ("/accessors/2/count", json!(4), "which needs 16 bytes of buffer view 2, which has 8"),
+        ("/accessors/2/count", json!(4), "which needs 16 bytes of /bufferViews/2, which has 8"),
         ("/accessors/3/count", json!(1u64 << 60), "takes the document beyond 67108864 animated numbers"),
         ("/nodes/0/matrix", json!(glam::Mat4::IDENTITY.to_cols_array()), "moves node 0, which is placed by a matrix"),
         ("/times", json!([2.0, 2.0]), "channel 0 has times that don't rise from 0 or later"),
@@ -267,7 +267,7 @@ fn bad_morph_targets_leave_the_mesh_at_rest() {
     draft.animate(0, "weights", "SCALAR", &[0.0, 1.0], &[0.0, 1.0]);
     let mesh = draft.read().unwrap();
     let [warning] = &mesh.warnings[..] else { panic!("{:?}", mesh.warnings) };
-    assert!(warning.starts_with("animations are left out: accessor 2 (POSITION of a morph target of"), "{warning}");
+    assert!(warning.starts_with("animations are left out: /accessors/2 (POSITION of a morph target of"), "{warning}");
     assert!(mesh.rig.is_none());
 }
 

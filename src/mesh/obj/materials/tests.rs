@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::mesh::Limits;
 use crate::mesh::{Mesh, Progress, load};
 
 /// A folder of this test's own, removed at the end.
@@ -23,7 +24,7 @@ impl Folder {
         let faces: String = materials.iter().map(|name| format!("usemtl {name}\nf 1/1/1 2/1/1 3/1/1\n")).collect();
         let text = format!("{start}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n{faces}");
         self.write("model.OBJ", text.as_bytes());
-        load(&self.0.join("model.OBJ"), &Progress::new()).unwrap()
+        load(&self.0.join("model.OBJ"), &Limits::default(), &Progress::new()).unwrap()
     }
 }
 
@@ -71,12 +72,12 @@ fn what_is_missing_broken_or_elsewhere_is_a_warning() {
     let mesh = folder.read(libraries, &["a", "b", "c"]);
     assert!(mesh.materials.iter().all(|material| material.texture.is_none()));
     let expected = [
-        ("the material file \"/etc/passwd\" is left out: ", "outside"),
-        ("the material file \"../m.mtl\" is left out: ", "outside"),
+        ("the material file \"/etc/passwd\" is left out: ", "an absolute path"),
+        ("the material file \"../m.mtl\" is left out: ", "with .."),
         ("the material file \"gone.mtl\" is left out: ", "gone.mtl"),
         ("the material file \"C:\\\\m.mtl\" is left out: ", "another place"),
         ("the material file \"maps\" is left out: ", "is not a file"),
-        ("the texture \"../up.png\" of material \"a\" is left out: ", "outside"),
+        ("the texture \"../up.png\" of material \"a\" is left out: ", "with .."),
         ("the texture \"maps/b.png\" of material \"b\" is left out: ", "b.png"),
         ("the texture \"c.png\" of material \"c\" is left out: ", "can't be decoded"),
         ("colours in material files that can't be read, left out: 1.", ""),

@@ -1,0 +1,131 @@
+//! Which of a machine's adapters does the work.
+
+use std::str::FromStr;
+
+use super::GpuError;
+
+/// What is asked for.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// The one that the system thinks the fastest.
+    #[default]
+    Best,
+    /// One that runs on the CPU.
+    Software,
+    /// The first with this in its name, in capitals or not.
+    Named(String),
+}
+
+impl FromStr for AdapterChoice {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "software" => Self::Software,
+            name => Self::Named(name.to_lowercase()),
+        })
+    }
+}
+
+impl AdapterChoice {
+    fn takes(&self, info: &wgpu::AdapterInfo) -> bool {
+        match self {
+            Self::Best => true,
+            Self::Software => info.device_type == wgpu::DeviceType::Cpu,
+            Self::Named(name) => info.name.to_lowercase().contains(name),
+        }
+    }
+
+    /// The first of these that was asked for.
+    ///
+    /// # Errors
+    /// There is none, or none at all.
+    pub fn among<'a>(&self, adapters: &'a [wgpu::Adapter]) -> Result<&'a wgpu::Adapter, GpuError> {
+        let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
+        self.place(&infos).map(|place| &adapters[place])
+    }
+
+    fn place(&self, infos: &[wgpu::AdapterInfo]) -> Result<usize, GpuError> {
+        if let Some(place) = infos.iter().position(|info| self.takes(info)) {
+            return Ok(place);
+        }
+        let has = infos.iter().map(|info| info.name.as_str()).collect::<Vec<_>>().join(", ");
+        Err(match self {
+            _ if infos.is_empty() => GpuError::NoAdapter,
+            Self::Software => GpuError::NoSoftwareAdapter { has },
+            Self::Best => GpuError::NoAdapter,
+            Self::Named(name) => GpuError::NoSuchAdapter { name: name.clone(), has },
+        })
+    }
+}
+
+/// The machine's fastest, as the system has it.
+///
+/// # Errors
+/// There is none.
+pub fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let options = wgpu::RequestAdapterOptions {
+        power_preference: wgpu::PowerPreference::HighPerformance,
+        ..Default::default()
+    };
+    pollster::block_on(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)
+}
+
+/// All adapters that there are, graphics cards first and software last.
+pub fn adapters() -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let mut all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    all.sort_by_key(|adapter| match adapter.get_info().device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    });
+    all
+}
+
+/// What an adapter is, in words.
+pub fn kind(device_type: wgpu::DeviceType) -> &'static str {
+    match device_type {
+        wgpu::DeviceType::DiscreteGpu => "graphics card",
+        wgpu::DeviceType::IntegratedGpu => "integrated",
+        wgpu::DeviceType::VirtualGpu => "virtual",
+        wgpu::DeviceType::Cpu => "software",
+        wgpu::DeviceType::Other => "of unknown kind",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn info(name: &str, device_type: wgpu::DeviceType) -> wgpu::AdapterInfo {
+        wgpu::AdapterInfo { name: name.to_owned(), ..wgpu::AdapterInfo::new(device_type, wgpu::Backend::Vulkan) }
+    }
+
+    fn place(choice: &str, infos: &[wgpu::AdapterInfo]) -> Result<usize, String> {
+        let Ok(choice) = choice.parse::<AdapterChoice>();
+        choice.place(infos).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn adapters_are_chosen_by_part_of_their_name_or_as_software() {
+        let infos =
+            [info("GeForce RTX 4090", wgpu::DeviceType::DiscreteGpu), info("llvmpipe", wgpu::DeviceType::Cpu)];
+        assert_eq!(AdapterChoice::Best.place(&infos).ok(), Some(0));
+        assert_eq!(place("rtx", &infos), Ok(0));
+        assert_eq!(place("LLVMpipe", &infos), Ok(1));
+        assert_eq!(place("software", &infos), Ok(1));
+    }
+
+    #[test]
+    fn what_is_not_there_is_refused_with_what_is() {
+        let infos = [info("GeForce RTX 4090", wgpu::DeviceType::DiscreteGpu)];
+        let expected = "no graphics adapter has \"radeon\" in its name: there are GeForce RTX 4090 (pnaen adapters)";
+        assert_eq!(place("Radeon", &infos), Err(expected.to_owned()));
+        assert!(place("software", &infos).is_err_and(|error| error.contains("mesa-vulkan-drivers")));
+        assert!(place("software", &[]).is_err_and(|error| error.contains("no graphics adapter was found")));
+    }
+}

@@ -1,0 +1,119 @@
+//! How much a scene will be, before any of it is read: what a document repeats is what a small file asks much with.
+
+use std::collections::HashMap;
+
+use ::gltf::mesh::Mode;
+use ::gltf::{Document, Mesh, Semantic};
+
+use super::budget::Budget;
+use super::nodes::Placed;
+use super::{Accessors, Problem, primitive};
+
+/// A scene of more triangles than this is refused: its indices would no longer fit 32 bits, nor its data most memories.
+pub const MAX_TRIANGLES: u64 = 1 << 27;
+/// Vertices, displacements of them and indices that are read at most, each as often as it is used.
+const MAX_ELEMENTS: u64 = 1 << 29;
+
+/// Memory for a corner and for a triangle while they are gathered, in bytes; as much again for each triangle at the end, when
+/// the buffers are no longer held; and for what moves a corner.
+const PER_CORNER: u64 = 85;
+const PER_TRIANGLE: u64 = 12;
+const PER_BOUND: u64 = 240;
+/// As much as reading a primitive takes beside its elements, and a node.
+const PER_PRIMITIVE: u64 = 200;
+
+/// Of a mesh, or of all that is shown.
+#[derive(Clone, Copy, Debug, Default)]
+struct Extent {
+    triangles: u64,
+    corners: u64,
+    elements: u64,
+    primitives: u64,
+}
+
+/// Makes sure that all that is shown is there, and that there is room for it, which is held. How many corners there are at
+/// most.
+///
+/// # Errors
+/// [`Problem::Accessor`], and [`Problem::TooLarge`].
+pub fn check(
+    document: &Document,
+    placed: &Placed,
+    accessors: &Accessors,
+    budget: &Budget,
+    moves: bool,
+) -> Result<usize, Problem> {
+    let mut known: HashMap<usize, Extent> = HashMap::new();
+    let mut all = Extent::default();
+    for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
+        let Some(mesh) = node.mesh() else { continue };
+        let extent = match known.get(&mesh.index()) {
+            Some(extent) => *extent,
+            None => {
+                let extent = Extent::of(&mesh, accessors)?;
+                known.insert(mesh.index(), extent);
+                extent
+            }
+        };
+        all.add(extent);
+        let joints = node.skin().map_or(0, |skin| skin.joints().len() as u64);
+        all.elements = all.elements.saturating_add(joints);
+    }
+    let refuse = |count: u64, what: &str, most: u64| {
+        let reason = format!("{count} {what}, and {most} are read at most");
+        Err(Problem::TooLarge { what: "the scene has".to_owned(), reason })
+    };
+    if all.triangles > MAX_TRIANGLES {
+        return refuse(all.triangles, "triangles", MAX_TRIANGLES);
+    }
+    if all.elements > MAX_ELEMENTS {
+        return refuse(all.elements, "vertices, displacements of them and indices", MAX_ELEMENTS);
+    }
+    let per_corner = PER_CORNER + if moves { PER_BOUND } else { 0 };
+    let triangles = all.triangles * PER_TRIANGLE;
+    let bytes = all.corners * per_corner + triangles + triangles.saturating_sub(accessors.buffer_bytes());
+    let bytes = bytes.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
+    let too_large = |reason| Problem::TooLarge { what: format!("the scene of {} triangles", all.triangles), reason };
+    budget.hold(bytes).map_err(too_large)?;
+    Ok(all.corners as usize)
+}
+
+impl Extent {
+    fn of(mesh: &Mesh, accessors: &Accessors) -> Result<Self, Problem> {
+        let mut extent = Self::default();
+        for primitive in mesh.primitives() {
+            extent.primitives += 1;
+            let Some(positions) = primitive.get(&Semantic::Positions).filter(|_| is_read(primitive.mode())) else {
+                continue;
+            };
+            let name = primitive::name(mesh, &primitive);
+            accessors.check(&positions, &format!("POSITION of {name}"))?;
+            let vertices = positions.count() as u64;
+            let mut indices = vertices;
+            if let Some(accessor) = primitive.indices() {
+                accessors.check(&accessor, &format!("indices of {name}"))?;
+                indices = accessor.count() as u64;
+            }
+            let triangles = if primitive.mode() == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) };
+            let targets = primitive.morph_targets().len() as u64;
+            extent.add(Self {
+                triangles,
+                corners: vertices.min(triangles.saturating_mul(3)),
+                elements: vertices.saturating_mul(1 + targets).saturating_add(indices),
+                primitives: 0,
+            });
+        }
+        Ok(extent)
+    }
+
+    fn add(&mut self, other: Self) {
+        self.triangles = self.triangles.saturating_add(other.triangles);
+        self.corners = self.corners.saturating_add(other.corners);
+        self.elements = self.elements.saturating_add(other.elements);
+        self.primitives = self.primitives.saturating_add(other.primitives);
+    }
+}
+
+fn is_read(mode: Mode) -> bool {
+    matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+}

@@ -1,0 +1,153 @@
+//! What a load takes, by an allocator that counts: at most four times the file's size, and 256 MiB. Alone in this binary, so
+//! that nothing else is counted.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use pnaen::mesh::{Limits, LoadError, Mesh, Progress, load};
+use serde_json::{Value, json};
+
+static TAKEN: AtomicUsize = AtomicUsize::new(0);
+static PEAK: AtomicUsize = AtomicUsize::new(0);
+
+struct Counting;
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+// SAFETY: all is the system's own allocator; beside it, sizes are counted.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        let taken = TAKEN.fetch_add(layout.size(), Relaxed) + layout.size();
+        PEAK.fetch_max(taken, Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        TAKEN.fetch_sub(layout.size(), Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+/// A file in the temporary folder, gone with its test.
+struct Temporary(PathBuf);
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_file(&self.0);
+    }
+}
+
+/// Loads a document, and holds what that took against what its size allows. What it took, in MiB.
+fn measured(name: &str, bytes: Vec<u8>) -> (Result<Mesh, LoadError>, usize) {
+    let path = std::env::temp_dir().join(format!("pnaen-memory-{}-{name}.glb", std::process::id()));
+    std::fs::write(&path, &bytes).expect("a writable temporary folder");
+    let (file, size) = (Temporary(path), bytes.len());
+    drop(bytes);
+    let before = TAKEN.load(Relaxed);
+    PEAK.store(before, Relaxed);
+    let result = load(&file.0, &Limits::default(), &Progress::new());
+    let took = PEAK.load(Relaxed) - before;
+    let allowed = 4 * size + (256 << 20);
+    println!("{name}: {} of {} MiB, loaded: {}", took >> 20, allowed >> 20, result.is_ok());
+    assert!(took <= allowed, "{name}: {took} of {allowed} bytes");
+    (result, took >> 20)
+}
+
+/// A `.glb` of a square with so many vertices a side, or of a smaller one on many nodes.
+fn grid(side: u32, nodes: usize) -> Vec<u8> {
+    let at = (0..side * side).flat_map(|i| [(i % side) as f32, (i / side) as f32, 0.0]);
+    let normals = (0..side * side).flat_map(|_| [0.0, 0.0, 1.0_f32]);
+    let positions: Vec<u8> = at.flat_map(f32::to_le_bytes).collect();
+    let normals: Vec<u8> = normals.flat_map(f32::to_le_bytes).collect();
+    let corners = (0..(side - 1) * (side - 1)).map(|i| i / (side - 1) * side + i % (side - 1));
+    let indices = corners.flat_map(|a| [a, a + 1, a + side, a + 1, a + side + 1, a + side]);
+    let indices: Vec<u8> = indices.flat_map(u32::to_le_bytes).collect();
+    let (vertices, count) = (side * side, indices.len() / 4);
+    let view = |offset: usize, bytes: &[u8]| json!({ "buffer": 0, "byteOffset": offset, "byteLength": bytes.len() });
+    let root = json!({
+        "asset": { "version": "2.0" },
+        "scenes": [{ "nodes": (0..nodes).collect::<Vec<_>>() }],
+        "nodes": (0..nodes).map(|i| json!({ "mesh": 0, "translation": [0, 0, i] })).collect::<Vec<_>>(),
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1 }, "indices": 2 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": vertices },
+            { "bufferView": 1, "componentType": 5126, "type": "VEC3", "count": vertices },
+            { "bufferView": 2, "componentType": 5125, "type": "SCALAR", "count": count },
+        ],
+        "bufferViews": [
+            view(0, &positions), view(positions.len(), &normals), view(positions.len() + normals.len(), &indices),
+        ],
+        "buffers": [{ "byteLength": positions.len() + normals.len() + indices.len() }],
+    });
+    glb(&root, &[positions, normals, indices].concat())
+}
+
+fn glb(root: &Value, bin: &[u8]) -> Vec<u8> {
+    let mut json = root.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let total = (28 + json.len() + bin.len()) as u32;
+    let number = |number: usize| (number as u32).to_le_bytes();
+    let header = [&b"glTF"[..], &2_u32.to_le_bytes(), &total.to_le_bytes()].concat();
+    [&header, &number(json.len())[..], b"JSON", &json, &number(bin.len()), b"BIN\0", bin].concat()
+}
+
+/// A triangle with a texture of so many px a side, all of one colour.
+fn textured(side: u32) -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::new(side, side).write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+    let at: Vec<u8> =
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32].into_iter().flat_map(f32::to_le_bytes).collect();
+    let bin = [at, png.into_inner()].concat();
+    let root = json!({
+        "asset": { "version": "2.0" },
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
+        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }],
+        "textures": [{ "source": 0 }],
+        "images": [{ "bufferView": 1 }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3 }],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 36 },
+            { "buffer": 0, "byteOffset": 36, "byteLength": bin.len() - 36 },
+        ],
+        "buffers": [{ "byteLength": bin.len() }],
+    });
+    glb(&root, &bin)
+}
+
+/// A chain of nodes, each below the last.
+fn chain(count: usize) -> Vec<u8> {
+    let nodes: Vec<String> = (1..count).map(|i| format!(r#"{{"children":[{i}]}}"#)).collect();
+    let start = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":["#;
+    format!("{start}{},{{}}]}}", nodes.join(",")).into_bytes()
+}
+
+#[test]
+fn loads_take_no_more_than_their_size_allows() {
+    let vase = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")).expect("the vase");
+    assert!(measured("vase", vase).0.is_ok());
+    // What a file holds fits without what is allowed beside its size.
+    let large = grid(600, 1);
+    let size = large.len() >> 20;
+    let (result, took) = measured("large", large);
+    assert!(result.is_ok() && took <= 4 * size + 8, "{took} MiB for {size}");
+    // 720,000 triangles of 2,000 vertices' data.
+    let (result, took) = measured("repeated", grid(31, 400));
+    assert!(result.is_ok_and(|mesh| mesh.triangles.len() == 720_000) && took > 40);
+    // Six times that is refused, before any of it is read.
+    let (result, took) = measured("repeated-more", grid(31, 2500));
+    assert!(result.is_err_and(|error| error.to_string().contains("of 4500000 triangles would take")) && took < 20);
+    let (result, took) = measured("image", textured(5000));
+    assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_some()) && took > 150);
+    let (result, took) = measured("larger-image", textured(8000));
+    assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_none()) && took < 20);
+    assert!(measured("nodes", chain(200_000)).0.is_err_and(|error| error.to_string().contains("no meshes")));
+    let many = format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}0]}}"#, "0,".repeat(4_000_000));
+    assert!(measured("numbers", many.into_bytes()).0.is_err());
+    let many = format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}0]}}"#, r#"{"a":"b"},"#.repeat(250_000));
+    assert!(measured("objects", many.into_bytes()).0.is_err());
+}
