@@ -17,6 +17,8 @@ mod stability;
 mod techniques;
 mod tessellate;
 mod usage;
+#[cfg(unix)]
+mod writing;
 
 use std::path::PathBuf;
 use std::process::{Command, Output};

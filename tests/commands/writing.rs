@@ -1,0 +1,116 @@
+//! What becomes of a file that is written over: all of it or nothing.
+
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::{Folder, output, run, sentence};
+
+const OLD: &str = "what was there";
+
+/// Writes indices over `path`.
+fn writes(path: &str) -> [&str; 4] {
+    ["adjacency", "shape:torus", "-o", path]
+}
+
+/// A file that is there already.
+fn old(folder: &Folder, name: &str) -> String {
+    let path = folder.path(name);
+    std::fs::write(&path, OLD).expect("a writable folder");
+    path
+}
+
+fn is_old(path: &str) -> bool {
+    std::fs::read_to_string(path).expect("a text") == OLD
+}
+
+fn names(folder: &Path) -> Vec<PathBuf> {
+    std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect()
+}
+
+fn permit(path: &str, mode: u32) {
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)).expect("one's own file");
+}
+
+#[test]
+fn a_read_only_file_stays_what_it_is() {
+    let folder = Folder::new("read-only");
+    let path = old(&folder, "out.json");
+    permit(&path, 0o444);
+    sentence(&writes(&path), &["out.json", "could not be written", "it is read-only"]);
+    assert!(is_old(&path));
+    permit(&path, 0o640);
+    output(&writes(&path));
+    assert!(!is_old(&path));
+    let mode = std::fs::metadata(&path).expect("a file").permissions().mode();
+    assert_eq!(mode & 0o777, 0o640, "who may read it stays so");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_keeps_what_it_has() {
+    let folder = Folder::new("closed");
+    let path = old(&folder, "out.json");
+    sentence(&writes(&format!("{path}/below.json")), &["below.json", "could not be written"]);
+    permit(&folder.path(""), 0o555);
+    // Whoever may write anywhere may write here.
+    let may_write = std::fs::write(folder.path("tried"), "").is_ok();
+    let done = run(&writes(&path));
+    permit(&folder.path(""), 0o755);
+    assert_eq!(done.status.code(), Some(i32::from(!may_write)));
+    assert_eq!(is_old(&path), !may_write);
+    assert_eq!(names(&folder.0).len(), 1 + usize::from(may_write), "nothing is left beside it");
+}
+
+#[test]
+fn a_link_stays_one_and_what_it_names_is_written() {
+    let folder = Folder::new("links");
+    std::fs::create_dir(folder.path("there")).expect("a writable folder");
+    let target = old(&folder, "there/target.json");
+    let [near, far, dangling] = ["near.json", "far.json", "dangling.json"].map(|name| folder.path(name));
+    for (link, names) in [(&near, "there/target.json"), (&far, "near.json"), (&dangling, "there/new.json")] {
+        symlink(names, link).expect("a file system with links");
+    }
+    output(&writes(&far));
+    assert!(!is_old(&target));
+    output(&writes(&dangling));
+    let whole = std::fs::read(&target).expect("a file");
+    assert_eq!(std::fs::read(folder.path("there/new.json")).expect("a file"), whole);
+    for link in [near, far, dangling] {
+        assert!(Path::new(&link).is_symlink(), "{link}");
+    }
+    let circle = folder.path("circle.json");
+    symlink("circle.json", &circle).expect("a file system with links");
+    sentence(&writes(&format!("{circle}/below.json")), &["below.json", "could not be written"]);
+}
+
+/// Runs the program where no file can have more than a few kilobytes, after `before`.
+fn with_little_room(before: &str, path: &str) -> std::process::Output {
+    let script = format!("{before} ulimit -f 4; exec \"$0\" \"$@\"");
+    let mut shell = Command::new("sh");
+    shell.args(["-c", &script, env!("CARGO_BIN_EXE_pnaen")]).args(writes(path));
+    shell.output().expect("a shell")
+}
+
+#[test]
+fn a_full_disk_leaves_the_old_file_whole_and_nothing_beside_it() {
+    let folder = Folder::new("full");
+    let path = old(&folder, "out.json");
+    // Without its signal the limit is an error of the write, as a full disk is.
+    let done = with_little_room("trap '' XFSZ;", &path);
+    let errors = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(1), "{errors}");
+    assert!(errors.contains("out.json: could not be written") && errors.lines().count() == 1, "{errors}");
+    assert!(is_old(&path));
+    assert_eq!(names(&folder.0), [PathBuf::from(&path)]);
+}
+
+#[test]
+fn a_kill_in_the_middle_of_writing_leaves_the_old_file_whole() {
+    let folder = Folder::new("killed");
+    let path = old(&folder, "out.json");
+    let done = with_little_room("", &path);
+    assert_eq!(done.status.code(), None, "a signal ends it");
+    assert!(is_old(&path));
+    output(&writes(&path));
+    assert!(!is_old(&path));
+}
