@@ -1,9 +1,9 @@
 //! Speed against accuracy of what is shown: what is tried when, whether it still is of what is shown, and saving it.
 
 use std::path::Path;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::App;
+use super::beside::Beside;
 use super::charting::{Charted, Charting, Job, Of};
 use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 use crate::settings::Settings;
@@ -19,7 +19,7 @@ pub struct Chart {
     pub(super) charting: Charting,
     /// What the window last had that isn't in the chart, and since when, on the window's clock in s.
     still: Option<(Settings, f64)>,
-    pub(super) saving: Option<Receiver<Result<(), String>>>,
+    pub(super) saving: Option<Beside<Result<(), String>>>,
 }
 
 /// How long settings that aren't in the chart are left alone before they are measured too, in s.
@@ -137,13 +137,10 @@ impl App {
         if let Err(error) = self.chart.charting.take() {
             self.error = Some(error);
         }
-        match self.chart.saving.as_ref().map(Receiver::try_recv) {
-            Some(Ok(saved)) => {
-                self.chart.saving = None;
-                self.error = saved.err().or(self.error.take());
-            }
-            Some(Err(TryRecvError::Disconnected)) => self.chart.saving = None,
-            Some(Err(TryRecvError::Empty)) | None => {}
+        if let Some(ended) = self.chart.saving.as_ref().and_then(Beside::take) {
+            self.chart.saving = None;
+            let saved = ended.unwrap_or_else(|stopped| Err(format!("saving the chart {stopped}")));
+            self.error = saved.err().or(self.error.take());
         }
         self.measure_current(context);
     }
@@ -178,17 +175,15 @@ impl App {
     /// The desktop's file dialog, and the writing, on a thread of their own.
     pub(super) fn save_dialog(&mut self, context: &egui::Context) {
         let Some(charted) = self.chart.charted() else { return };
-        let (subject, context) = (charted.subject.clone(), context.clone());
-        let (sender, saved) = channel();
-        std::thread::spawn(move || {
+        let subject = charted.subject.clone();
+        let choose_and_save = move || {
             let dialog = rfd::FileDialog::new().set_title("Save the chart").set_file_name("chart.svg");
             let kinds = [("SVG picture", "svg"), ("PNG picture", "png"), ("CSV table", "csv")];
             let dialog = kinds.into_iter().fold(dialog, |dialog, (name, ending)| dialog.add_filter(name, &[ending]));
             let path = dialog.save_file();
-            let _ = sender.send(path.map_or(Ok(()), |path| save(&path, &subject).map_err(|error| error.to_string())));
-            context.request_repaint();
-        });
-        self.chart.saving = Some(saved);
+            path.map_or(Ok(()), |path| save(&path, &subject).map_err(|error| error.to_string()))
+        };
+        self.chart.saving = Some(Beside::start(context, choose_and_save));
     }
 }
 

@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use super::beside::{caught, spawn};
 use crate::chart::{Bench, Effort, Probe, Row, Setting, Subject};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::{Gpu, GpuError};
@@ -109,7 +110,8 @@ enum Found {
     Row(Box<Row>),
     LeftOut(Setting),
     Current(Box<Settings>, Option<Probe>),
-    Failed(GpuError),
+    /// Why, in a sentence.
+    Failed(String),
 }
 
 impl Charting {
@@ -127,14 +129,18 @@ impl Charting {
         let (engine, last, context) = (self.engine.clone(), self.last.take(), context.clone());
         let worker = Worker { sender, wanted: wanted.clone(), held: held.clone(), context };
         self.running = Some(Running { found, wanted, held, done: 0, all });
-        self.last = Some(std::thread::spawn(move || {
+        self.last = spawn(move || {
             // One that failed has said so.
             let _ = last.map(JoinHandle::join);
-            if let Err(error) = worker.run(job, engine) {
-                worker.say(Found::Failed(error));
+            let failed = match caught(|| worker.run(job, engine)) {
+                Ok(run) => run.err().map(|error| format!("The chart could not be measured: {error}")),
+                Err(stopped) => Some(format!("Measuring the chart {stopped}")),
+            };
+            if let Some(why) = failed {
+                worker.say(Found::Failed(why));
             }
             worker.context.request_repaint();
-        }));
+        });
     }
 
     /// Stops what is under way; what is known stays known.
@@ -171,9 +177,9 @@ impl Charting {
                 Ok(Found::Row(row)) => charted.add(*row),
                 Ok(Found::LeftOut(setting)) => charted.left_out.push(setting),
                 Ok(Found::Current(settings, probe)) => charted.current = Some((*settings, probe)),
-                Ok(Found::Failed(error)) => {
+                Ok(Found::Failed(why)) => {
                     self.close();
-                    return Err(format!("The chart could not be measured: {error}"));
+                    return Err(why);
                 }
                 Err(TryRecvError::Empty) => return Ok(()),
                 Err(TryRecvError::Disconnected) => {

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::beside::{Beside, Stopped};
 use crate::engine::Loaded;
 use crate::mesh::{Joins, NormalFaults, Progress, TJunction, joins, t_junctions};
 
@@ -10,6 +11,8 @@ use crate::mesh::{Joins, NormalFaults, Progress, TJunction, joins, t_junctions};
 pub struct Checks {
     found: Arc<Found>,
     wanted: Progress,
+    /// None once it has ended.
+    job: Option<Beside<()>>,
 }
 
 #[derive(Default)]
@@ -22,20 +25,19 @@ struct Found {
 impl Checks {
     /// Starts them on a thread of their own; each result repaints the window.
     pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
-        let checks = Self::default();
+        let mut checks = Self::default();
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
-        let (found, wanted, context) = (checks.found.clone(), checks.wanted.clone(), context.clone());
-        std::thread::spawn(move || {
+        let (found, wanted, repainted) = (checks.found.clone(), checks.wanted.clone(), context.clone());
+        checks.job = Some(Beside::start(context, move || {
             let _ = found.normal_faults.set(NormalFaults::of(&mesh, &topology));
             if let Ok(all) = t_junctions(&topology, &wanted) {
                 let _ = found.t_junctions.set(all);
             }
-            context.request_repaint();
+            repainted.request_repaint();
             if let Ok(all) = joins(&read, &wanted) {
                 let _ = found.joins.set(all);
             }
-            context.request_repaint();
-        });
+        }));
         checks
     }
 
@@ -55,7 +57,14 @@ impl Checks {
     }
 
     pub fn is_busy(&self) -> bool {
-        self.found.joins.get().is_none()
+        self.job.is_some()
+    }
+
+    /// Whether they have ended, and if before they were done, why; said once.
+    pub fn take_stopped(&mut self) -> Option<Stopped> {
+        let ended = self.job.as_ref()?.take()?;
+        self.job = None;
+        ended.err()
     }
 }
 

@@ -2,8 +2,9 @@
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel, sync_channel};
 
-use super::measuring::{Copying, Part, PartKind, WAITING, copy_chunk, copy_on};
-use crate::gpu::{Gpu, GpuError, mapped_bytes, vertices_of};
+use super::beside::{Stopped, caught, spawn};
+use super::measuring::{Copying, Part, PartKind, Trouble, WAITING, copy_chunk, copy_on};
+use crate::gpu::{Gpu, mapped_bytes, vertices_of};
 use crate::measure::{Field, Place, Yardstick};
 use crate::mesh::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
@@ -54,7 +55,7 @@ impl Found {
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<Field>,
+    found: Receiver<Result<Field, Stopped>>,
     wanted: Progress,
 }
 
@@ -101,14 +102,14 @@ impl Deviating {
     /// what comes of it.
     ///
     /// # Errors
-    /// The device was lost.
+    /// The device was lost, or measuring this stopped.
     pub fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,
         of: Of,
         yardstick: impl FnOnce() -> Yardstick,
-    ) -> Result<(), GpuError> {
+    ) -> Result<(), Trouble> {
         if self.of != Some(of) {
             self.start(gpu, scene, yardstick());
             self.of = Some(of);
@@ -116,7 +117,7 @@ impl Deviating {
         }
         copy_on(&mut self.copying, gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok(field)) => {
+            Some(Ok(Ok(field))) => {
                 self.comparing = None;
                 let scale = deviation_scale(field.worst().map_or(0.0, |worst| worst.value), scene.ulp());
                 scene.set_deviation(gpu, Some((&field, scale)));
@@ -124,15 +125,21 @@ impl Deviating {
                 let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);
                 self.found = Some(Found { of, worst, rms, left_out });
             }
-            Some(Err(TryRecvError::Disconnected)) => {
-                // It failed: what waits for distances is drawn without.
-                self.comparing = None;
-                scene.set_deviation(gpu, Some((&Field::new(0), DEVIATION_PX_SCALE)));
-                self.generation += 1;
+            Some(Ok(Err(stopped))) => {
+                self.do_without(gpu, scene);
+                return Err(Trouble::Deviating(stopped));
             }
+            Some(Err(TryRecvError::Disconnected)) => self.do_without(gpu, scene),
             Some(Err(TryRecvError::Empty)) | None => {}
         }
         Ok(())
+    }
+
+    /// It failed: what waits for distances is drawn without.
+    fn do_without(&mut self, gpu: &Gpu, scene: &mut Scene) {
+        self.comparing = None;
+        scene.set_deviation(gpu, Some((&Field::new(0), DEVIATION_PX_SCALE)));
+        self.generation += 1;
     }
 
     fn start(&mut self, gpu: &Gpu, scene: &mut Scene, yardstick: Yardstick) {
@@ -142,10 +149,11 @@ impl Deviating {
         let wanted = Progress::default();
         let (posed, still_wanted) = (scene.tessellator.posed().clone(), wanted.clone());
         let (triangles, chunks) = (scene.tessellator.totals().1, scene.tessellator.chunk_count());
-        std::thread::spawn(move || {
-            let field = field(&received, &posed, &yardstick, triangles, &still_wanted);
-            if let Some(field) = field.filter(|field| field.chunks.len() == chunks) {
-                let _ = sender.send(field);
+        spawn(move || {
+            let measure = || field(&received, &posed, &yardstick, triangles, &still_wanted);
+            let whole = |field: &Field| field.chunks.len() == chunks;
+            if let Some(result) = caught(|| measure().filter(whole)).transpose() {
+                let _ = sender.send(result);
             }
         });
         // Without a sender the thread knows of the end.

@@ -7,6 +7,7 @@ use super::App;
 use super::choices::surface_name;
 use super::deviating::{Deviating, Found, Of};
 use super::legend::Distances;
+use super::measuring::Trouble;
 use super::text::{grouped, short, shortened};
 use super::widgets::{fact, heading, number, swatch};
 use crate::measure::{MOST_TRIANGLES, Yardstick};
@@ -51,7 +52,7 @@ impl App {
 
     /// Lets measuring go on, if the overlay is on and nothing is under way that it would disturb. Without a truth both halves
     /// are held against the limit of the right one, which has these inputs: what flat triangles converge to they are already.
-    pub(super) fn deviate(&mut self, inputs: &Inputs) -> Result<(), crate::gpu::GpuError> {
+    pub(super) fn deviate(&mut self, inputs: &Inputs) -> Result<(), Trouble> {
         if !self.shows_deviation() || self.playback.is_playing() {
             self.deviating.stop();
             self.left.deviating.stop();

@@ -1,8 +1,8 @@
 //! A mesh in the window, and its loading beside the window.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
+use super::beside::Beside;
 use super::checks::Checks;
 use crate::engine::{self, Engine, Loaded, Preparation};
 use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source};
@@ -61,7 +61,7 @@ pub struct Load {
     /// Whether the camera stays where it is: the same mesh is loaded again.
     pub keep_view: bool,
     pub progress: Progress,
-    done: Receiver<Result<Document, Option<String>>>,
+    job: Beside<Result<Document, Option<String>>>,
 }
 
 impl Load {
@@ -75,29 +75,17 @@ impl Load {
     ) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        let (sender, done) = channel();
         let progress = Progress::default();
-        let (engine, context) = (engine.clone(), context.clone());
+        let (engine, own_context) = (engine.clone(), context.clone());
         let (wanted, prepared, own_progress) = (source.clone(), preparation.clone(), progress.clone());
-        std::thread::spawn(move || {
-            let result = load(&engine, &context, &wanted, &prepared, &own_progress, generation);
-            // Nobody is waiting any more if the load was replaced.
-            let _ = sender.send(result);
-            context.request_repaint();
-        });
-        Self { source, preparation, keep_view, progress, done }
+        let load = move || load(&engine, &own_context, &wanted, &prepared, &own_progress, generation);
+        Self { job: Beside::start(context, load), source, preparation, keep_view, progress }
     }
 
     /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
     pub fn take(&mut self) -> Option<Result<Document, Option<String>>> {
-        match self.done.try_recv() {
-            Ok(result) => Some(result),
-            Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => {
-                let title = self.source.title();
-                Some(Err(Some(format!("{title}: loading it stopped unexpectedly; the file may be damaged"))))
-            }
-        }
+        let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", self.source.title());
+        Some(self.job.take()?.unwrap_or_else(|error| Err(Some(stopped(error)))))
     }
 }
 
@@ -126,4 +114,31 @@ fn load(
     let diagonal = scene.bounds.diagonal();
     let exact = source.shape().and_then(Truth::of_shape).map(Arc::new);
     Ok(Document { loaded, scene, edges, moment: None, checks, diagonal, exact, generation })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_load_that_panics_is_a_sentence_about_the_file() {
+        let indices: &[u32] = std::hint::black_box(&[]);
+        let mut load = Load {
+            job: Beside::start(&egui::Context::default(), move || panic!("index {} of {}", 7, indices.len())),
+            source: Source::File("models/odd.glb".into()),
+            preparation: Preparation::default(),
+            keep_view: false,
+            progress: Progress::default(),
+        };
+        let start = std::time::Instant::now();
+        let result = loop {
+            assert!(start.elapsed() < std::time::Duration::from_secs(30), "it hasn't ended");
+            match load.take() {
+                Some(result) => break result,
+                None => std::thread::sleep(std::time::Duration::from_millis(1)),
+            }
+        };
+        let said = result.map(|_| ()).expect_err("it panicked").expect("nobody cancelled it");
+        assert_eq!(said, "odd.glb: loading it stopped unexpectedly (index 7 of 0); the file may be damaged");
+    }
 }

@@ -1,13 +1,13 @@
 //! Left of the split: another surface of the mesh, made beside the window and only while it is shown, and what is known of it.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use super::App;
+use super::beside::Beside;
 use super::choices::surface_name;
 use super::deviating::Deviating;
 use super::document::arena_bytes;
-use super::measuring::Measuring;
+use super::measuring::{Measuring, Trouble};
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
 use crate::render::Scene;
@@ -30,7 +30,7 @@ pub struct Left {
 struct Making {
     document: u64,
     start: Instant,
-    done: Receiver<Result<Scene, GpuError>>,
+    job: Beside<Result<Scene, GpuError>>,
 }
 
 impl Left {
@@ -77,14 +77,14 @@ impl App {
             self.left.making = Some(Making::start(context, scene, arena_bytes(&self.engine), document.generation));
             return Ok(());
         };
-        match making.done.try_recv() {
-            Ok(Ok(left)) => {
+        match making.job.take() {
+            Some(Ok(Ok(left))) => {
                 self.left.made += 1;
                 scene.set_left(Some(left))?;
             }
-            Err(TryRecvError::Empty) => self.left.making = Some(making),
-            Ok(Err(error)) => self.leave_as_it_came(&error.to_string()),
-            Err(TryRecvError::Disconnected) => self.leave_as_it_came("making it stopped unexpectedly"),
+            None => self.left.making = Some(making),
+            Some(Ok(Err(error))) => self.leave_as_it_came(&error.to_string()),
+            Some(Err(stopped)) => self.leave_as_it_came(&format!("making it {stopped}")),
         }
         Ok(())
     }
@@ -95,7 +95,7 @@ impl App {
     }
 
     /// Measures the left half's cracks and the points of its edges as long as they are shown.
-    pub(super) fn measure_left(&mut self, view: ScreenView) -> Result<(), GpuError> {
+    pub(super) fn measure_left(&mut self, view: ScreenView) -> Result<(), Trouble> {
         let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
         let is_wanted = self.settings.half(Half::Left).is_some() && (self.settings.overlays.cracks || is_selected);
         let Some(document) = self.document.as_mut() else { return Ok(()) };
@@ -130,13 +130,6 @@ impl App {
 
 impl Making {
     fn start(context: &egui::Context, scene: &Scene, arena_bytes: u64, document: u64) -> Self {
-        let (sender, done) = channel();
-        let (make, context) = (scene.beside(arena_bytes), context.clone());
-        std::thread::spawn(move || {
-            // Nobody is waiting any more if it isn't wanted by now.
-            let _ = sender.send(make());
-            context.request_repaint();
-        });
-        Self { document, start: Instant::now(), done }
+        Self { document, start: Instant::now(), job: Beside::start(context, scene.beside(arena_bytes)) }
     }
 }

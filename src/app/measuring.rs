@@ -4,11 +4,25 @@
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
+use thiserror::Error;
+
+use super::beside::{Stopped, caught, spawn};
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer, vertices_of};
 use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Progress, Topology};
 use crate::render::Scene;
 use crate::tessellate::{Convention, Edges, PatchFactors, Vertex};
+
+/// Why nothing more is learnt of what is shown.
+#[derive(Debug, Error)]
+pub enum Trouble {
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    #[error("measuring what is shown {0}; another setting is measured anew")]
+    Measuring(Stopped),
+    #[error("measuring the deviation {0}; another setting is measured anew")]
+    Deviating(Stopped),
+}
 
 /// What is known about the shown tessellation.
 #[derive(Default)]
@@ -28,7 +42,7 @@ pub struct Measuring {
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<(Measured, Sizes)>,
+    found: Receiver<Result<(Measured, Sizes), Stopped>>,
     wanted: Progress,
 }
 
@@ -99,7 +113,7 @@ impl Measuring {
     /// `follows` is set also if it is seen from elsewhere. True when what is known has changed.
     ///
     /// # Errors
-    /// The device was lost.
+    /// The device was lost, or measuring this stopped.
     pub fn go_on(
         &mut self,
         gpu: &Gpu,
@@ -107,7 +121,7 @@ impl Measuring {
         document: u64,
         view: ScreenView,
         follows: bool,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<bool, Trouble> {
         let of = Some((document, scene.tessellator.generation()));
         if self.of != of {
             *self = Self { of, generation: self.generation + 1, ..Self::start(gpu, scene, view) };
@@ -121,12 +135,16 @@ impl Measuring {
         }
         copy_on(&mut self.copying, gpu, scene)?;
         match self.comparing.as_ref().map(|comparing| comparing.found.try_recv()) {
-            Some(Ok((found, sizes))) => {
+            Some(Ok(Ok((found, sizes)))) => {
                 self.comparing = None;
                 self.generation += u64::from(self.found.is_none());
                 self.found = Some(found);
                 self.sizes = Some(sizes);
                 Ok(true)
+            }
+            Some(Ok(Err(stopped))) => {
+                self.comparing = None;
+                Err(Trouble::Measuring(stopped))
             }
             Some(Err(TryRecvError::Disconnected)) => {
                 self.comparing = None;
@@ -147,9 +165,12 @@ impl Measuring {
         let wanted = Progress::default();
         let posed = scene.tessellator.posed().clone();
         let still_wanted = wanted.clone();
-        std::thread::spawn(move || {
-            let (mesh, topology) = posed.deformed();
-            if let Some(result) = survey(&received, &mesh, &topology, view, &still_wanted) {
+        spawn(move || {
+            let measure = || {
+                let (mesh, topology) = posed.deformed();
+                survey(&received, &mesh, &topology, view, &still_wanted)
+            };
+            if let Some(result) = caught(measure).transpose() {
                 let _ = sender.send(result);
             }
         });

@@ -1,6 +1,7 @@
 //! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
 
 mod animation;
+mod beside;
 mod chart;
 mod chart_panel;
 mod charting;
@@ -46,6 +47,7 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};
 
 use animation::Playback;
+use beside::Beside;
 use chart::Chart;
 use deviating::Deviating;
 use document::{Document, Load};
@@ -124,7 +126,7 @@ pub struct App {
     load: Option<Load>,
     /// Of files that are opened.
     limits: Limits,
-    dialog: Option<std::sync::mpsc::Receiver<Option<std::path::PathBuf>>>,
+    dialog: Option<Beside<Option<std::path::PathBuf>>>,
     /// Whether the dialog, or the window that takes a path, is for a truth.
     asks_for_truth: bool,
     /// What the mesh should have been, if that was chosen.
@@ -329,19 +331,22 @@ impl App {
     }
 
     fn take_dialog(&mut self, context: &egui::Context) {
-        if let Some(path) = self.dialog.as_ref().map(std::sync::mpsc::Receiver::try_recv) {
-            match path {
-                Err(std::sync::mpsc::TryRecvError::Empty) => {}
-                Ok(Some(path)) => {
-                    self.dialog = None;
-                    if std::mem::take(&mut self.asks_for_truth) {
-                        self.open_truth(context, Source::File(path));
-                    } else {
-                        self.open_path(context, path);
-                    }
-                }
-                Ok(None) | Err(_) => self.dialog = None,
+        let Some(ended) = self.dialog.as_ref().and_then(Beside::take) else { return };
+        self.dialog = None;
+        match ended {
+            Ok(Some(path)) if std::mem::take(&mut self.asks_for_truth) => self.open_truth(context, Source::File(path)),
+            Ok(Some(path)) => self.open_path(context, path),
+            Ok(None) => {}
+            Err(stopped) => {
+                self.error = Some(format!("the desktop's file dialog {stopped}; type a path instead (Ctrl+L)"));
             }
+        }
+    }
+
+    fn take_checks(&mut self) {
+        let stopped = self.document.as_mut().and_then(|document| document.checks.take_stopped());
+        if let Some(stopped) = stopped {
+            self.error = Some(format!("looking through the mesh {stopped}: what it found until then is shown"));
         }
     }
 
@@ -356,6 +361,7 @@ impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
         self.take_loaded(context);
         self.take_truth();
+        self.take_checks();
         self.take_dialog(context);
         self.take_chart(context);
         self.take_device_problem();

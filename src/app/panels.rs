@@ -157,7 +157,8 @@ impl App {
                         ));
                     }
                 }
-                None => drop(ui.weak("trying tolerances…")),
+                None if document.checks.is_busy() => drop(ui.weak("trying tolerances…")),
+                None => drop(ui.weak("not tried")),
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(

@@ -1,9 +1,9 @@
 //! What the mesh should have been: which truth it is held against, and its loading.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use super::App;
+use super::beside::Beside;
 use crate::mesh::{Limits, LoadError, Progress, Source};
 use crate::settings::Colors;
 use crate::tessellate::Displacement;
@@ -21,7 +21,7 @@ pub struct Chosen {
 pub struct TruthLoad {
     pub source: Source,
     pub progress: Progress,
-    done: Receiver<Result<Chosen, Option<String>>>,
+    job: Beside<Result<Chosen, Option<String>>>,
 }
 
 impl TruthLoad {
@@ -29,21 +29,15 @@ impl TruthLoad {
     fn start(context: &egui::Context, source: Source, limits: Limits) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(2);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        let (sender, done) = channel();
         let progress = Progress::new();
-        let (wanted, own_progress, context) = (source.clone(), progress.clone(), context.clone());
-        std::thread::spawn(move || {
-            let result = match Truth::load(&wanted, &limits, &own_progress) {
-                Ok(Some(truth)) => Ok(Chosen { source: wanted, truth: Arc::new(truth), generation }),
-                Ok(None) => Err(Some(format!("{wanted} can't be a truth: it has no triangles"))),
-                Err(LoadError::Cancelled(_)) => Err(None),
-                Err(error) => Err(Some(error.to_string())),
-            };
-            // Nobody is waiting any more if the load was replaced.
-            let _ = sender.send(result);
-            context.request_repaint();
-        });
-        Self { source, progress, done }
+        let (wanted, own_progress) = (source.clone(), progress.clone());
+        let load = move || match Truth::load(&wanted, &limits, &own_progress) {
+            Ok(Some(truth)) => Ok(Chosen { source: wanted, truth: Arc::new(truth), generation }),
+            Ok(None) => Err(Some(format!("{wanted} can't be a truth: it has no triangles"))),
+            Err(LoadError::Cancelled(_)) => Err(None),
+            Err(error) => Err(Some(error.to_string())),
+        };
+        Self { job: Beside::start(context, load), source, progress }
     }
 }
 
@@ -72,14 +66,9 @@ impl App {
 
     pub(super) fn take_truth(&mut self) {
         let Some(load) = &self.truth_load else { return };
-        let result = match load.done.try_recv() {
-            Err(TryRecvError::Empty) => return,
-            Ok(result) => result,
-            Err(TryRecvError::Disconnected) => {
-                let title = load.source.title();
-                Err(Some(format!("{title}: loading it stopped unexpectedly; the file may be damaged")))
-            }
-        };
+        let Some(result) = load.job.take() else { return };
+        let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", load.source.title());
+        let result = result.unwrap_or_else(|error| Err(Some(stopped(error))));
         self.truth_load = None;
         match result {
             Ok(chosen) => {

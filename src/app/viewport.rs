@@ -7,6 +7,7 @@ use glam::{Vec2, vec2};
 
 use super::App;
 use super::legend::legend;
+use super::measuring::Trouble;
 use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
@@ -50,7 +51,7 @@ impl App {
     }
 
     /// Lets everything beside the window go on, and draws what is wanted.
-    fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), GpuError> {
+    fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), Trouble> {
         // Callbacks of readbacks run here; a lost device reports through its own callback.
         let _ = self.engine.gpu.device.poll(wgpu::PollType::Poll);
         self.viewport.fit(&self.render_state, &self.engine, size)?;

@@ -4,6 +4,7 @@ use egui::Key;
 use egui::text::CCursor;
 
 use super::App;
+use super::beside::Beside;
 use super::menu::KEYS;
 use crate::mesh::Source;
 
@@ -39,14 +40,8 @@ impl App {
         if self.dialog.is_some() {
             return;
         }
-        let (sender, receiver) = std::sync::mpsc::channel();
-        let context = context.clone();
-        std::thread::spawn(move || {
-            let dialog = rfd::FileDialog::new().set_title(title).add_filter(kind, extensions);
-            let _ = sender.send(dialog.pick_file());
-            context.request_repaint();
-        });
-        self.dialog = Some(receiver);
+        let choose = move || rfd::FileDialog::new().set_title(title).add_filter(kind, extensions).pick_file();
+        self.dialog = Some(Beside::start(context, choose));
     }
 
     /// What lies over everything: typing a path, the keys, an error.
