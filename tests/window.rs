@@ -6,6 +6,8 @@ mod animation;
 mod chart;
 #[path = "window/deviation.rs"]
 mod deviation;
+#[path = "window/lasting.rs"]
+mod lasting;
 #[path = "window/lists.rs"]
 mod lists;
 #[path = "documents/moving.rs"]

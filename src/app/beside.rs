@@ -45,6 +45,13 @@ impl<T: Send + 'static> Beside<T> {
     }
 }
 
+impl<T> Beside<T> {
+    /// Waits for it to end.
+    pub fn wait(self) {
+        let _ = self.0.recv();
+    }
+}
+
 /// A thread; none if the system gives no more.
 pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
     std::thread::Builder::new().spawn(job).ok()

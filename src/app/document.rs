@@ -1,5 +1,6 @@
 //! A mesh in the window, and its loading beside the window.
 
+use std::io::ErrorKind;
 use std::sync::Arc;
 
 use super::beside::Beside;
@@ -61,7 +62,21 @@ pub struct Load {
     /// Whether the camera stays where it is: the same mesh is loaded again.
     pub keep_view: bool,
     pub progress: Progress,
-    job: Beside<Result<Document, Option<String>>>,
+    job: Beside<Result<Document, Option<NotLoaded>>>,
+}
+
+/// What went wrong.
+pub struct NotLoaded {
+    /// In a sentence.
+    pub why: String,
+    /// Whether the file isn't there.
+    pub is_gone: bool,
+}
+
+impl NotLoaded {
+    fn because(why: String) -> Self {
+        Self { why, is_gone: false }
+    }
 }
 
 impl Load {
@@ -83,9 +98,9 @@ impl Load {
     }
 
     /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
-    pub fn take(&mut self) -> Option<Result<Document, Option<String>>> {
+    pub fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
         let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", self.source.title());
-        Some(self.job.take()?.unwrap_or_else(|error| Err(Some(stopped(error)))))
+        Some(self.job.take()?.unwrap_or_else(|error| Err(Some(NotLoaded::because(stopped(error))))))
     }
 }
 
@@ -102,13 +117,17 @@ fn load(
     preparation: &Preparation,
     progress: &Progress,
     generation: u64,
-) -> Result<Document, Option<String>> {
+) -> Result<Document, Option<NotLoaded>> {
     let loaded = match engine::load(source, preparation, progress) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
-        Err(error) => return Err(Some(error.to_string())),
+        Err(error) => {
+            let is_gone = matches!(&error, LoadError::Io { source, .. } if source.kind() == ErrorKind::NotFound);
+            return Err(Some(NotLoaded { why: error.to_string(), is_gone }));
+        }
     };
-    let scene = engine.scene(&loaded, arena_bytes(engine)).map_err(|error| Some(error.to_string()))?;
+    let scene =
+        engine.scene(&loaded, arena_bytes(engine)).map_err(|error| Some(NotLoaded::because(error.to_string())))?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
     let diagonal = scene.bounds.diagonal();
@@ -138,7 +157,7 @@ mod tests {
                 None => std::thread::sleep(std::time::Duration::from_millis(1)),
             }
         };
-        let said = result.map(|_| ()).expect_err("it panicked").expect("nobody cancelled it");
+        let said = result.map(|_| ()).expect_err("it panicked").expect("nobody cancelled it").why;
         assert_eq!(said, "odd.glb: loading it stopped unexpectedly (index 7 of 0); the file may be damaged");
     }
 }

@@ -103,6 +103,7 @@ impl App {
         if entry(ui, "Open path…", &OPEN_PATH) {
             self.type_path();
         }
+        self.recent_menu(ui);
         let height_image = ui.add_enabled(self.document.is_some(), egui::Button::new("Height image…"));
         if height_image.on_hover_text(HEIGHT_IMAGE).clicked() {
             self.height_dialog(ui.ctx());
@@ -135,6 +136,12 @@ impl App {
                 }
             }
         });
+        ui.separator();
+        let hover = "Goes back to how the window first opened: settings, theme, size, recent files and their cameras. The \
+                     mesh stays.";
+        if ui.button("Forget all settings").on_hover_text(hover).clicked() {
+            self.forget_all(ui.ctx());
+        }
         ui.separator();
         if entry(ui, "Quit", &QUIT) {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);

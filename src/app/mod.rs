@@ -14,6 +14,7 @@ mod document;
 mod facts;
 mod heights;
 mod labels;
+mod lasting;
 mod left;
 mod legend;
 mod marked;
@@ -50,13 +51,16 @@ use animation::Playback;
 use beside::Beside;
 use chart::Chart;
 use deviating::Deviating;
-use document::{Document, Load};
+use document::{Document, Load, NotLoaded};
+use lasting::{LEAST_SIZE, folder};
 use left::Left;
 use marked::Marked;
 use measuring::Measuring;
 use pick::Selection;
 use picture::Viewport;
 use truth::{Chosen, TruthLoad};
+
+pub use lasting::Lasting;
 
 #[derive(Debug, Error)]
 pub enum WindowError {
@@ -77,18 +81,25 @@ pub fn run(source: Option<Source>, limits: Limits) -> Result<(), WindowError> {
     {
         return Err(WindowError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".into()));
     }
+    let lasting = Lasting::read(folder().as_deref());
+    let frame = lasting.frame();
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("pnaen")
             .with_app_id("pnaen")
-            .with_inner_size([1400.0, 860.0])
-            .with_min_inner_size([760.0, 480.0]),
+            .with_inner_size(frame.size)
+            .with_maximized(frame.is_maximized)
+            .with_min_inner_size(LEAST_SIZE),
         renderer: eframe::Renderer::Wgpu,
         wgpu_options: wgpu_configuration(),
         ..Default::default()
     };
-    let window =
-        eframe::run_native("pnaen", options, Box::new(|context| Ok(Box::new(App::new(context, source, limits)?))));
+    let create: eframe::AppCreator = Box::new(|context| {
+        let mut app = App::new(context, source, limits)?;
+        app.resume(&context.egui_ctx, lasting);
+        Ok(Box::new(app))
+    });
+    let window = eframe::run_native("pnaen", options, create);
     window.map_err(|error| match error {
         // Their texts are about the window library's own files.
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
@@ -148,6 +159,7 @@ pub struct App {
     /// What is being typed as a path to open, while that window is open.
     typed_path: Option<String>,
     shows_keys: bool,
+    lasting: Lasting,
     /// What went wrong last, until it is closed.
     error: Option<String>,
 }
@@ -188,6 +200,7 @@ impl App {
             selection: Selection::default(),
             typed_path: None,
             shows_keys: false,
+            lasting: Lasting::default(),
             error: None,
         };
         app.open(&context.egui_ctx, source.unwrap_or_default());
@@ -294,7 +307,7 @@ impl App {
         }
         let Some(load) = &mut self.load else { return };
         let Some(result) = load.take() else { return };
-        let keep_view = load.keep_view;
+        let (keep_view, source) = (load.keep_view, load.source.clone());
         self.load = None;
         match result {
             Ok(document) => {
@@ -313,13 +326,17 @@ impl App {
                 self.keep_playback(keep_view);
                 if !keep_view {
                     self.frame();
+                    self.look_as_before();
                 }
                 self.measuring = Measuring::default();
                 self.left.forget();
                 self.deselect();
             }
-            Err(Some(error)) => {
-                self.error = Some(error);
+            Err(Some(NotLoaded { mut why, is_gone })) => {
+                if is_gone && self.lasting.gone(&source) {
+                    why += "; it isn't listed as recent any more";
+                }
+                self.error = Some(why);
                 // A window shows something, also if the first file can't be.
                 if self.document.is_none() {
                     self.open(context, Source::default());
@@ -382,5 +399,13 @@ impl eframe::App for App {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
         self.hold_chart();
+        self.keep(ui.ctx());
+    }
+
+    fn on_exit(&mut self) {
+        if let Err(error) = self.keep_for_good() {
+            // There is no window any more to say it in.
+            let _ = std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("pnaen: {error}\n"));
+        }
     }
 }

@@ -47,7 +47,7 @@ pub use gltf::Problem as GltfProblem;
 pub use heights::{HeightError, HeightMap, HeightSource, Heights, MAX_LEVELS, MAX_MAPS};
 pub use info::Info;
 pub use joins::{Joins, joins};
-pub use load::{Limits, LoadError, load};
+pub use load::{Limits, LoadError, load, read_file};
 pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress, Stage};
 pub use repairs::Repairs;

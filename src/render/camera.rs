@@ -17,6 +17,8 @@ const FITTED: f64 = 0.93;
 const LEAST_CLEARANCE: f64 = 0.1;
 /// Steps towards slopes that touch what is fitted.
 const FIT_STEPS: usize = 16;
+/// Between the target and the eye, in object units.
+const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 /// Steeper than this, "up" would turn over.
 const MAX_ELEVATION: f32 = 89.9;
 
@@ -132,6 +134,12 @@ impl Camera {
             self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
             self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
         }
+    }
+
+    /// Whether it looks from somewhere to somewhere, as every camera does that was moved here.
+    pub fn is_sound(&self) -> bool {
+        let turned = self.azimuth.is_finite() && (-MAX_ELEVATION..=MAX_ELEVATION).contains(&self.elevation);
+        turned && self.target.is_finite() && DISTANCES.contains(&self.distance)
     }
 
     /// Turns to look along an axis.

@@ -90,6 +90,24 @@ fn without_a_display_the_window_becomes_a_picture() {
 }
 
 #[test]
+fn commands_never_read_the_settings_of_the_window() {
+    let folder = Folder::new("kept");
+    std::fs::write(folder.path("window.json"), r#"{"settings": {"surface": "flat", "background": [255, 0, 0]}}"#)
+        .expect("a writable folder");
+    let pictures = ["", &folder.path("")].map(|kept| {
+        let mut preview = command(&[]);
+        let output = preview.env("PNAEN_CONFIG", kept).current_dir(&folder.0).output().expect("the program starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(folder.path("pnaen-preview.png")).expect("a picture")
+    });
+    assert!(pictures[0] == pictures[1], "the same picture with settings and without");
+    std::fs::write(folder.path("window.json"), "damaged").expect("a writable folder");
+    let mut info = command(&["info", "shape:torus"]);
+    assert!(info.env("PNAEN_CONFIG", folder.path("")).output().expect("the program starts").status.success());
+    assert_eq!(std::fs::read(folder.path("window.json")).expect("it is still there"), b"damaged");
+}
+
+#[test]
 fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let folder = Folder::new("overlays");
     let picture = folder.path("out.png");

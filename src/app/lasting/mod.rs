@@ -1,0 +1,235 @@
+//! What lasts: settings, the window's size, recent files and their cameras, kept from one window to the next.
+
+mod kept;
+mod place;
+#[cfg(test)]
+mod tests;
+mod written;
+
+use std::path::{Path, PathBuf};
+
+use egui::ViewportCommand;
+
+use super::App;
+use super::beside::Beside;
+use crate::mesh::Source;
+use crate::render::Camera;
+use crate::settings::Settings;
+use kept::{Kept, KeptFile, MAX_FILES, Seen};
+
+pub use kept::{Frame, LEAST_SIZE};
+pub use place::folder;
+
+/// Files that are offered to be opened again.
+const RECENT: usize = 10;
+/// How long what changes is left to change on before it is written, in s.
+const REST: f64 = 3.0;
+
+/// What is kept, and its writing beside the window.
+#[derive(Default)]
+pub struct Lasting {
+    /// None where nothing is kept.
+    place: Option<PathBuf>,
+    kept: Kept,
+    /// What the file holds, or will once it is written.
+    written: Kept,
+    /// Since when that isn't what is kept, on the window's clock in s.
+    changed: Option<f64>,
+    writing: Option<Beside<Result<(), String>>>,
+    /// What is wrong with the file; said once.
+    said: Option<String>,
+    /// The file that is open, among those that are kept.
+    open: Option<String>,
+}
+
+impl Lasting {
+    /// What was kept in a folder; without one nothing was, and nothing will be.
+    pub fn read(folder: Option<&Path>) -> Self {
+        let Some(folder) = folder else { return Self::default() };
+        let place::Found { kept, place, said } = place::read(folder);
+        Self { place, written: kept.clone(), kept, said, ..Self::default() }
+    }
+
+    /// What the window opens with.
+    pub fn settings(&self) -> &Settings {
+        &self.kept.settings
+    }
+
+    pub fn frame(&self) -> &Frame {
+        &self.kept.frame
+    }
+
+    /// Paths of files that were opened last, the last one first.
+    pub fn recent(&self) -> impl Iterator<Item = &str> {
+        self.kept.files.iter().take(RECENT).map(|file| file.path.as_str())
+    }
+
+    /// Another mesh is open: where it was last looked at from, if that is known and of use.
+    pub(super) fn opened(&mut self, source: &Source, diagonal: f32) -> Option<Camera> {
+        self.open = path_of(source);
+        let path = self.open.clone()?;
+        let files = &mut self.kept.files;
+        let known = files.iter().position(|file| file.path == path);
+        let file = known.map_or(KeptFile { path, seen: None }, |index| files.remove(index));
+        let camera = file.seen.and_then(|seen| seen.camera_for(diagonal));
+        files.insert(0, file);
+        files.truncate(MAX_FILES);
+        camera
+    }
+
+    /// A file is there no more: whether it leaves the list by that.
+    pub(super) fn gone(&mut self, source: &Source) -> bool {
+        let count = self.kept.files.len();
+        if let Some(path) = path_of(source) {
+            self.kept.files.retain(|file| file.path != path);
+        }
+        self.kept.files.len() < count
+    }
+
+    /// Takes what the window has by now.
+    fn take(&mut self, context: &egui::Context, settings: &Settings, seen: Option<Seen>) {
+        self.kept.take_settings(settings);
+        self.kept.frame = frame_now(context, &self.kept.frame);
+        let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
+        if let Some((file, seen)) = open.zip(seen) {
+            file.seen = Some(seen);
+        }
+    }
+
+    /// Writes what has changed, once it has had time to change on. What went wrong with that is said once.
+    fn write_on(&mut self, context: &egui::Context) -> Option<String> {
+        let place = self.place.as_ref()?;
+        if let Some(ended) = self.writing.as_ref().and_then(Beside::take) {
+            self.writing = None;
+            let failed = ended.unwrap_or_else(|stopped| Err(format!("keeping settings {stopped}"))).err();
+            if failed.is_some() && self.said.is_none() {
+                self.said.clone_from(&failed);
+                return failed;
+            }
+        }
+        if self.kept == self.written {
+            self.changed = None;
+            return None;
+        }
+        let now = context.input(|input| input.time);
+        let since = now - *self.changed.get_or_insert(now);
+        if since < REST {
+            context.request_repaint_after(std::time::Duration::from_secs_f64(REST - since));
+        } else if self.writing.is_none() {
+            let (place, kept) = (place.clone(), self.kept.clone());
+            self.written = kept.clone();
+            self.writing = Some(Beside::start(context, move || place::write(&place, &kept)));
+        }
+        None
+    }
+
+    /// Writes what is left to be written.
+    ///
+    /// # Errors
+    /// What and why, in a sentence.
+    fn finish(&mut self) -> Result<(), String> {
+        let Some(place) = &self.place else { return Ok(()) };
+        if let Some(writing) = self.writing.take() {
+            writing.wait();
+        }
+        if self.kept == self.written { Ok(()) } else { place::write(place, &self.kept) }
+    }
+}
+
+/// What files are known by: their absolute path, if it can be written down.
+fn path_of(source: &Source) -> Option<String> {
+    let Source::File(path) = source else { return None };
+    Some(std::path::absolute(path).ok()?.to_str()?.to_owned())
+}
+
+/// The window as it is; while it is maximised it keeps the size that it goes back to.
+fn frame_now(context: &egui::Context, before: &Frame) -> Frame {
+    let (zoom, size) = (context.zoom_factor(), context.viewport_rect().size());
+    let window = context.input(|input| {
+        let window = input.viewport();
+        (window.maximized.unwrap_or(false), window.fullscreen.unwrap_or(false), window.minimized.unwrap_or(false))
+    });
+    let (is_maximized, is_fullscreen, is_minimized) = window;
+    // Whole points, which a window that opens with them has again.
+    let sized = [(size.x * zoom).round(), (size.y * zoom).round()];
+    let is_large = sized.iter().zip(LEAST_SIZE).all(|(side, least)| *side >= least);
+    let is_own = is_large && !(is_maximized || is_fullscreen || is_minimized);
+    let theme = context.options(|options| options.theme_preference);
+    Frame { size: if is_own { sized } else { before.size }, is_maximized, theme, zoom }
+}
+
+impl App {
+    /// Goes on where the last window ended: with its settings, and with the camera of the file that is being opened.
+    pub fn resume(&mut self, context: &egui::Context, mut lasting: Lasting) {
+        self.settings = *lasting.settings();
+        self.last_split = self.settings.split.unwrap_or(self.last_split);
+        context.set_theme(lasting.kept.frame.theme);
+        context.set_zoom_factor(lasting.kept.frame.zoom);
+        self.error = lasting.said.take().or(self.error.take());
+        self.lasting = lasting;
+    }
+
+    /// Takes the camera that the mesh was last looked at with, where that is known.
+    pub(super) fn look_as_before(&mut self) {
+        let Some(document) = &self.document else { return };
+        let camera = self.lasting.opened(&document.loaded.source, document.diagonal);
+        self.camera = camera.unwrap_or(self.camera);
+    }
+
+    /// Keeps what the window has by now; called once a frame, when all that it does is done.
+    pub(super) fn keep(&mut self, context: &egui::Context) {
+        let diagonal = self.document.as_ref().map(|document| document.diagonal);
+        let seen = diagonal.map(|diagonal| Seen { camera: self.camera, diagonal });
+        self.lasting.take(context, &self.settings, seen);
+        let failed = self.lasting.write_on(context);
+        self.error = self.error.take().or(failed);
+    }
+
+    /// Writes what was changed last, when the window is closed.
+    pub(super) fn keep_for_good(&mut self) -> Result<(), String> {
+        self.lasting.finish()
+    }
+
+    /// The files that were opened last; one is opened again.
+    pub(super) fn recent_menu(&mut self, ui: &mut egui::Ui) {
+        let recent: Vec<PathBuf> = self.lasting.recent().map(PathBuf::from).collect();
+        ui.add_enabled_ui(!recent.is_empty(), |ui| {
+            ui.menu_button("Open recent", |ui| {
+                for path in recent {
+                    if recent_entry(ui, &path).clicked() {
+                        self.open(ui.ctx(), Source::File(path));
+                        ui.close();
+                    }
+                }
+            });
+        });
+    }
+
+    /// Goes back to how the window first opened; the mesh stays, and is framed.
+    pub(super) fn forget_all(&mut self, context: &egui::Context) {
+        let frame = Frame::default();
+        self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
+        self.last_split = 0.5;
+        self.frozen = None;
+        self.camera = Camera::framing(&Default::default(), glam::Vec2::ONE);
+        self.frame();
+        context.set_theme(frame.theme);
+        context.set_zoom_factor(frame.zoom);
+        context.send_viewport_cmd(ViewportCommand::Maximized(frame.is_maximized));
+        context.send_viewport_cmd(ViewportCommand::InnerSize(frame.size.into()));
+        self.lasting.kept.files.clear();
+        self.lasting.open = None;
+    }
+}
+
+/// A file by its name, and the folder that it is in.
+fn recent_entry(ui: &mut egui::Ui, path: &Path) -> egui::Response {
+    const NAME: usize = 48;
+    const FOLDER: usize = 32;
+    let text = |name: Option<&std::ffi::OsStr>, most| {
+        super::text::shortened(&name.unwrap_or_default().to_string_lossy(), most)
+    };
+    let folder = text(path.parent().and_then(Path::file_name), FOLDER);
+    let button = egui::Button::new(text(path.file_name(), NAME)).shortcut_text(folder);
+    ui.add(button).on_hover_text(path.display().to_string())
+}

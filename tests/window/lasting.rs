@@ -1,0 +1,224 @@
+//! What lasts from one window to the next: settings, recent files and their cameras.
+
+use std::path::{Path, PathBuf};
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use pnaen::app::{App, Lasting};
+use pnaen::mesh::{Limits, Shape, Source};
+use pnaen::settings::Settings;
+use pnaen::tessellate::{Displacement, Surface};
+
+use crate::{choose, click, press, settle, vase};
+
+/// A folder of this test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a writable temporary folder");
+        Self(path)
+    }
+
+    /// What settings are kept in.
+    fn file(&self) -> PathBuf {
+        self.0.join("kept/window.json")
+    }
+
+    /// The vase under another name.
+    fn mesh(&self, name: &str) -> Source {
+        let Source::File(vase) = vase() else { unreachable!("it is a file") };
+        let path = self.0.join(name);
+        std::fs::copy(vase, &path).expect("a writable temporary folder");
+        Source::File(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A window that keeps what it has in a folder.
+fn window(folder: &Folder, source: Option<Source>) -> Harness<'static, App> {
+    let kept = folder.0.join("kept");
+    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
+        let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
+        app.resume(&context.egui_ctx, Lasting::read(Some(&kept)));
+        app
+    });
+    settle(&mut harness);
+    harness
+}
+
+/// Closes a window as a person does.
+fn close(mut harness: Harness<App>) {
+    eframe::App::on_exit(harness.state_mut());
+}
+
+fn open(harness: &mut Harness<App>, source: &Source) {
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, source.clone());
+    settle(harness);
+    assert_eq!(harness.state().source(), Some(source));
+}
+
+fn recent_menu(harness: &mut Harness<App>) {
+    click(harness, "File");
+    harness.get_by_label_contains("Open recent").click();
+    settle(harness);
+}
+
+#[test]
+fn settings_cameras_and_recent_files_survive_a_restart() {
+    let folder = Folder::new("restart");
+    let (first, second) = (folder.mesh("first.glb"), folder.mesh("second.glb"));
+    let mut harness = window(&folder, None);
+    assert_eq!(harness.state().settings(), &Settings::opening(), "the first time");
+    choose(&mut harness, "Surface", "Phong AEN");
+    harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
+    open(&mut harness, &first);
+    let framed = *harness.state().camera();
+    press(&mut harness, egui::Key::Num3);
+    press(&mut harness, egui::Key::PageUp);
+    let looked = *harness.state().camera();
+    open(&mut harness, &second);
+    assert_ne!(*harness.state().camera(), looked, "another file is framed");
+    let settings = *harness.state().settings();
+    assert_eq!((settings.surface, settings.overlays.cracks), (Surface::PhongAen, true));
+    close(harness);
+
+    let mut harness = window(&folder, None);
+    assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::CubeSplit)), "not the last file");
+    assert_eq!(harness.state().settings(), &settings);
+    recent_menu(&mut harness);
+    harness.get_by_label_contains("second.glb");
+    harness.get_by_label_contains("first.glb").click();
+    settle(&mut harness);
+    assert_eq!((harness.state().source(), *harness.state().camera()), (Some(&first), looked));
+    press(&mut harness, egui::Key::F);
+    assert_ne!(*harness.state().camera(), looked, "framing is at hand");
+    assert_eq!(harness.state().camera().distance, framed.distance);
+    close(harness);
+
+    let harness = window(&folder, Some(first.clone()));
+    assert_eq!((harness.state().source(), harness.state().settings()), (Some(&first), &settings));
+    assert_eq!(harness.state().camera().azimuth, looked.azimuth, "its own camera, also as an argument");
+}
+
+#[test]
+fn what_changed_is_written_after_a_while_and_the_picture_stays() {
+    let folder = Folder::new("written");
+    let mut harness = window(&folder, Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "Surface", "Nagata");
+    let (pictures, start) = (harness.state().pictures(), std::time::Instant::now());
+    let written = || Lasting::read(folder.file().parent()).settings().surface;
+    while written() != Surface::Nagata {
+        assert!(start.elapsed() < crate::PATIENCE, "it isn't written");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    assert_eq!(harness.state().pictures(), pictures);
+    let is_file = |name: &std::ffi::OsString| name == "window.json";
+    let names: Vec<_> = std::fs::read_dir(folder.0.join("kept")).expect("a folder").flatten().collect();
+    assert!(names.iter().map(|entry| entry.file_name()).all(|name| is_file(&name)), "whole, and nothing beside it");
+}
+
+#[test]
+fn a_recent_file_that_is_gone_says_so_and_leaves_the_list() {
+    let folder = Folder::new("gone");
+    let (first, second) = (folder.mesh("first.glb"), folder.mesh("second.glb"));
+    let mut harness = window(&folder, Some(first));
+    open(&mut harness, &second);
+    std::fs::remove_file(folder.0.join("first.glb")).expect("it is there");
+    recent_menu(&mut harness);
+    harness.get_by_label_contains("first.glb").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&second), "what is open stays");
+    harness.get_by_label_contains("first.glb can't be read");
+    harness.get_by_label_contains("it isn't listed as recent any more");
+    click(&mut harness, "Close");
+    recent_menu(&mut harness);
+    assert!(harness.query_by_label_contains("first.glb").is_none());
+    assert_eq!(harness.get_all_by_label_contains("second.glb").count(), 2, "the title, and the list's entry");
+}
+
+#[test]
+fn recent_files_are_reached_by_keys() {
+    let folder = Folder::new("keys");
+    let first = folder.mesh("first.glb");
+    let mut harness = window(&folder, Some(first.clone()));
+    open(&mut harness, &Source::Shape(Shape::Torus));
+    harness.get_by_role_and_label(Role::Button, "File").focus();
+    press(&mut harness, egui::Key::Enter);
+    harness.get_by_label_contains("Open recent").focus();
+    press(&mut harness, egui::Key::Enter);
+    harness.get_by_label_contains("first.glb").focus();
+    press(&mut harness, egui::Key::Enter);
+    assert_eq!(harness.state().source(), Some(&first));
+}
+
+#[test]
+fn forgetting_goes_back_to_how_it_first_opened() {
+    let folder = Folder::new("forget");
+    let mut harness = window(&folder, None);
+    click(&mut harness, "File");
+    assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled(), "there is none yet");
+    press(&mut harness, egui::Key::Escape);
+    let mesh = folder.mesh("first.glb");
+    open(&mut harness, &mesh);
+    let framed = *harness.state().camera();
+    choose(&mut harness, "Surface", "PN");
+    press(&mut harness, egui::Key::Num1);
+    press(&mut harness, egui::Key::S);
+    harness.ctx.set_theme(egui::Theme::Light);
+    settle(&mut harness);
+    click(&mut harness, "File");
+    click(&mut harness, "Forget all settings");
+    assert_eq!((harness.state().settings(), harness.state().source()), (&Settings::opening(), Some(&mesh)));
+    assert_eq!(*harness.state().camera(), framed);
+    assert_eq!(harness.ctx.options(|options| options.theme_preference), egui::ThemePreference::System);
+    close(harness);
+    let text = std::fs::read_to_string(folder.file()).expect("what is kept");
+    assert!(!text.contains("first.glb"), "{text}");
+    let mut harness = window(&folder, None);
+    assert_eq!(harness.state().settings(), &Settings::opening());
+    click(&mut harness, "File");
+    assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled());
+}
+
+#[test]
+fn damaged_settings_are_set_aside_and_the_window_opens() {
+    let folder = Folder::new("damaged");
+    std::fs::create_dir(folder.0.join("kept")).expect("a writable folder");
+    std::fs::write(folder.file(), "{\"settings\": {\"surf").expect("a writable folder");
+    let mut harness = window(&folder, None);
+    assert_eq!(harness.state().settings(), &Settings::opening());
+    harness.get_by_label_contains("window.json is damaged: it is window.damaged.json now");
+    assert!(folder.file().with_file_name("window.damaged.json").exists());
+    click(&mut harness, "Close");
+    choose(&mut harness, "Surface", "Flat");
+    close(harness);
+    assert_eq!(window(&folder, None).state().settings().surface, Surface::Flat, "and keeps settings as before");
+}
+
+#[test]
+fn what_is_bound_to_a_mesh_is_not_kept() {
+    let folder = Folder::new("bound");
+    let mut harness = window(&folder, Some(vase()));
+    let waves = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/waves.png");
+    let context = harness.ctx.clone();
+    harness.state_mut().open_path(&context, waves);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().displacement, Displacement::On);
+    harness.state_mut().select_edge(3);
+    press(&mut harness, egui::Key::Z);
+    close(harness);
+    let harness = window(&folder, Some(vase()));
+    let app = harness.state();
+    assert_eq!((app.settings().displacement, app.selected_edge()), (Displacement::Off, None));
+    assert_eq!(app.loaded().and_then(|loaded| loaded.preparation.heights.clone()), None);
+}
