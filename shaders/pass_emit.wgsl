@@ -61,6 +61,7 @@ struct PatchRun {
 
 var<workgroup> run_first: u32;
 var<workgroup> run_count: u32;
+var<workgroup> run_is_whole: u32;
 // Where the patches after the first begin.
 var<workgroup> run_starts: array<u32, EMIT_ITEMS>;
 
@@ -84,13 +85,21 @@ fn find_run(component: u32, first_item: u32, last_item: u32, local: u32, width: 
         run_count = 0u;
     }
     workgroupBarrier();
-    for (var i = local; i < EMIT_ITEMS; i += width) {
+    // Mostly one round finds them all.
+    for (var filled = 0u; filled < EMIT_ITEMS; filled += width) {
+        let i = filled + local;
         let entry = low + 1u + i;
         let start = offsets[min(entry, end)][component];
         run_starts[i] = start;
         let is_last = i == EMIT_ITEMS - 1u || entry + 1u >= end || offsets[min(entry + 1u, end)][component] > last_item;
         if entry < end && start <= last_item && is_last {
             run_count = i + 1u;
+        }
+        if local == width - 1u {
+            run_is_whole = u32(entry >= end || start > last_item);
+        }
+        if workgroupUniformLoad(&run_is_whole) == 1u {
+            break;
         }
     }
     return PatchRun(low, workgroupUniformLoad(&run_count));

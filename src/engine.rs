@@ -6,7 +6,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::gpu::{
-    ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of, wait,
+    AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of,
+    wait,
 };
 use crate::measure::AskedFactors;
 use crate::mesh::{HeightSource, Limits, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
@@ -131,6 +132,14 @@ impl Engine {
     /// No adapter.
     pub fn headless() -> Result<Self, GpuError> {
         Gpu::headless().map(Self::new)
+    }
+
+    /// The same on the adapter that was asked for.
+    ///
+    /// # Errors
+    /// There is none such, or it gives no device.
+    pub fn chosen(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        Gpu::chosen(choice).map(Self::new)
     }
 
     /// Uploads a mesh. May run beside a window.

@@ -12,17 +12,17 @@ use pnaen::cli::{self, Cli};
 const PREVIEW: &str = "pnaen-preview.png";
 
 fn main() -> ExitCode {
-    let Cli { command, file, limit } = Cli::parse();
+    let Cli { command, file, limit, adapter } = Cli::parse();
     quiet_driver();
     if let Some(command) = command {
         return cli::run(command);
     }
-    let reason = match app::run(file.clone(), limit.limits()) {
+    let reason = match app::run(file.clone(), limit.limits(), adapter.choice()) {
         Ok(()) => return ExitCode::SUCCESS,
         Err(WindowError::NoDisplay(reason)) => reason,
         Err(error @ WindowError::Failed(_)) => return cli::fail(&error),
     };
-    if let Err(error) = cli::preview(file, limit, Path::new(PREVIEW)) {
+    if let Err(error) = cli::preview(file, limit, adapter, Path::new(PREVIEW)) {
         return cli::fail(&error);
     }
     let said = "There is no display to open a window on";

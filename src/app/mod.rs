@@ -40,7 +40,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use crate::engine::{Engine, Loaded, Preparation};
-use crate::gpu::{Gpu, GpuError, device_descriptor};
+use crate::gpu::{AdapterChoice, BACKENDS, Gpu, GpuError, device_descriptor};
 use crate::measure::{Cracks, Sizes};
 use crate::mesh::{Limits, Source};
 use crate::render::Camera;
@@ -71,12 +71,12 @@ pub enum WindowError {
     Failed(String),
 }
 
-/// Opens the window on `source`, or on a cube made in code, and returns when it is closed. Files larger than
-/// `limits` says aren't opened.
+/// Opens the window on `source`, or on a cube made in code, and returns when it is closed; on the adapter that was asked
+/// for. Files larger than `limits` says aren't opened.
 ///
 /// # Errors
 /// There is no display, or none that a window can be drawn on.
-pub fn run(source: Option<Source>, limits: Limits) -> Result<(), WindowError> {
+pub fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
     if cfg!(target_os = "linux") && !["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some())
     {
         return Err(WindowError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".into()));
@@ -91,7 +91,7 @@ pub fn run(source: Option<Source>, limits: Limits) -> Result<(), WindowError> {
             .with_maximized(frame.is_maximized)
             .with_min_inner_size(LEAST_SIZE),
         renderer: eframe::Renderer::Wgpu,
-        wgpu_options: wgpu_configuration(),
+        wgpu_options: wgpu_configuration(adapter),
         ..Default::default()
     };
     let create: eframe::AppCreator = Box::new(|context| {
@@ -110,11 +110,20 @@ pub fn run(source: Option<Source>, limits: Limits) -> Result<(), WindowError> {
 }
 
 /// The device that egui draws with is the engine's own.
-fn wgpu_configuration() -> egui_wgpu::WgpuConfiguration {
+fn wgpu_configuration(choice: AdapterChoice) -> egui_wgpu::WgpuConfiguration {
     let mut configuration = egui_wgpu::WgpuConfiguration::default();
     if let egui_wgpu::WgpuSetup::CreateNew(new) = &mut configuration.wgpu_setup {
+        new.instance_descriptor.backends = BACKENDS;
         new.power_preference = wgpu::PowerPreference::HighPerformance;
         new.device_descriptor = Arc::new(device_descriptor);
+        if choice != AdapterChoice::Best {
+            new.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
+                let shows =
+                    |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
+                let able: Vec<_> = adapters.iter().filter(shows).cloned().collect();
+                choice.among(&able).cloned().map_err(|error| error.to_string())
+            }));
+        }
     }
     configuration
 }

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::options::{CameraOption, Size};
-use super::{CliError, SurfaceOptions, Telling, WeldOption, file_error, load, options, write_text};
+use super::{AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, load, options, write_text};
 use crate::chart::report::{LeftOut, Part, TABLE};
 use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
 use crate::engine::{Engine, Loaded};
@@ -81,6 +81,8 @@ pub struct Args {
     /// made if it isn't there
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 /// The exit code after Ctrl-C, as shells have it.
@@ -172,7 +174,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let sources = args.meshes();
     let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;
     let folder = args.report.as_deref().map(report::make_folder).transpose()?;
-    let engine = Engine::headless()?;
+    let engine = Engine::chosen(&args.adapter.choice())?;
     let tables = args.csv.iter().cloned().chain(folder.as_ref().map(|folder| folder.join(TABLE)));
     let mut session = Session {
         target: Target::new(&engine.gpu, args.size.0)?,

@@ -4,7 +4,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::tessellate::Device;
-use super::{CliError, read_text};
+use super::{AdapterOption, CliError, read_text};
 use crate::gpu::{DomainPass, DomainPattern, Gpu};
 use crate::tessellate::{
     HullFactors, Partitioning, domain_plan, domain_point, domain_triangle, point_count, process, triangle_count,
@@ -31,6 +31,8 @@ pub struct Args {
     /// Where to compute; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 /// Three edge factors and the inside factor.
@@ -55,7 +57,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     match args.device {
         Device::Cpu => sets.iter().try_for_each(|set| write(&on_cpu(args.partitioning, set)))?,
         Device::Gpu => {
-            let gpu = Gpu::headless()?;
+            let gpu = Gpu::chosen(&args.adapter.choice())?;
             let pass = DomainPass::new(&gpu);
             for batch in sets.chunks(BATCH) {
                 pass.run(&gpu, args.partitioning, batch)?.iter().try_for_each(&mut write)?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::tessellate::Device;
-use super::{CliError, SurfaceOptions, load, write_text};
+use super::{AdapterOption, CliError, SurfaceOptions, load, write_text};
 use crate::engine::Engine;
 use crate::factors_file::to_csv;
 use crate::gpu::Timing;
@@ -24,6 +24,8 @@ pub struct Args {
     /// Where to compute; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
@@ -40,7 +42,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             tessellate::hull_factors(mesh, topology, &args.surface.within_budget(count)?.inputs(view))
         }
         Device::Gpu => {
-            let engine = Engine::headless()?;
+            let engine = Engine::chosen(&args.adapter.choice())?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
             scene.set_moment(moment)?;
             let settings = args.surface.within_budget(|settings| {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
+use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
 use crate::engine::{Engine, Preparation};
 use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
 use crate::mesh::{HeightSource, Source};
@@ -35,6 +35,8 @@ pub struct Args {
     /// Degrees from the front to the right, and degrees upwards
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,20", allow_hyphen_values = true)]
     pub camera: options::CameraOption,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
@@ -52,7 +54,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         azimuth: args.camera.azimuth,
         elevation: args.camera.elevation.clamp(-89.9, 89.9),
     };
-    let engine = Engine::headless()?;
+    let engine = Engine::chosen(&args.adapter.choice())?;
     std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &error))?;
     let mut gallery = Gallery::new(look, &engine);
     warn(&gallery.warnings()?);

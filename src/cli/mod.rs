@@ -1,5 +1,6 @@
 //! The commands: no window, no display. One file a command; this one reads the command line and says what went wrong.
 
+mod adapters;
 mod adjacency;
 mod animation;
 mod chart;
@@ -26,6 +27,7 @@ use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
+pub use adapters::AdapterOption;
 pub use animation::AnimationOption;
 pub use given::GivenOption;
 pub use options::{LimitOption, SurfaceOptions, WeldOption};
@@ -50,6 +52,8 @@ pub struct Cli {
     pub file: Option<Source>,
     #[command(flatten)]
     pub limit: LimitOption,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 #[derive(Debug, Subcommand)]
@@ -83,6 +87,8 @@ pub enum Command {
     Chart(chart::Args),
     /// Say what a file holds, and what of it was left out
     Info(info::Args),
+    /// List the graphics adapters
+    Adapters(adapters::Args),
 }
 
 /// Why a command failed, in one sentence.
@@ -152,6 +158,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Gallery(args) => gallery::run(&args),
         Command::Chart(args) => chart::run(&args),
         Command::Info(args) => info::run(&args),
+        Command::Adapters(args) => adapters::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -176,9 +183,14 @@ pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
 }
 
 /// Writes the picture that the window would have shown, for machines without a display.
-pub fn preview(source: Option<Source>, limit: LimitOption, path: &Path) -> Result<(), CliError> {
+pub fn preview(
+    source: Option<Source>,
+    limit: LimitOption,
+    adapter: AdapterOption,
+    path: &Path,
+) -> Result<(), CliError> {
     let source = source.unwrap_or_default();
-    render::run(&render::Args::preview(source, limit, path))
+    render::run(&render::Args::preview(source, limit, adapter, path))
 }
 
 /// The whole of a text file, or of standard input if the path is `-`.

@@ -6,8 +6,8 @@ use super::split::LeftStats;
 use super::stats::{AnimationStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, Held};
 use super::{
-    CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, load, options, reference,
-    to_json, write_picture, write_text,
+    AdapterOption, CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, load,
+    options, reference, to_json, write_picture, write_text,
 };
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
@@ -57,11 +57,13 @@ pub struct Args {
     /// Difference that is still the same picture: 0 is none, 1 is all (1 minus structural similarity)
     #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::threshold)]
     pub threshold: f64,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 impl Args {
     /// What the window shows when it opens.
-    pub fn preview(file: Source, limit: LimitOption, output: &Path) -> Self {
+    pub fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
         let Settings { lod, partitioning, clip, cull_back_faces, background, .. } = Settings::opening();
         let weld = WeldOption { limit, ..WeldOption::default() };
         Self {
@@ -78,6 +80,7 @@ impl Args {
             measure_error: true,
             reference: None,
             threshold: 0.01,
+            adapter,
         }
     }
 
@@ -151,7 +154,7 @@ impl Shot {
         given: Option<Vec<HullFactors>>,
     ) -> Result<Self, CliError> {
         let moment = args.surface.animation.moment(&at_rest)?;
-        let engine = Engine::headless()?;
+        let engine = Engine::chosen(&args.adapter.choice())?;
         let mut scene = engine.scene(&at_rest, args.surface.arena_bytes())?;
         scene.tessellator.give(given.clone())?;
         scene.frame_clip(moment.map(|moment| moment.clip));

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::builder::PossibleValuesParser;
 
 use super::tessellate::Device;
-use super::{CliError, WeldOption, file_error, to_json, write_text};
+use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
 use crate::mesh::Source;
 use crate::stability::{
@@ -36,6 +36,8 @@ pub struct Args {
     /// Folder for a picture of each case (if the GPU runs), and a page that explains them, stability.md; made if it isn't there
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 impl Args {
@@ -61,7 +63,7 @@ impl Args {
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     let subjects = args.subjects()?;
-    let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::headless()?) };
+    let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };
     let effort = Effort { cameras: args.cameras, cpu: args.device != Some(Device::Gpu), ..Effort::default() };
     if let Some(folder) = &args.output {
         std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &error))?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::{CliError, GivenOption, SurfaceOptions, load};
+use super::{AdapterOption, CliError, GivenOption, SurfaceOptions, load};
 use crate::engine::Engine;
 use crate::export::Exported;
 use crate::gpu::Timing;
@@ -27,6 +27,8 @@ pub struct Args {
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
+    #[command(flatten)]
+    pub adapter: AdapterOption,
 }
 
 /// Where the mathematics runs.
@@ -62,7 +64,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             }
         }
         Device::Gpu => {
-            let engine = Engine::headless()?;
+            let engine = Engine::chosen(&args.adapter.choice())?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
             scene.tessellator.give(given)?;
             scene.set_moment(moment)?;

@@ -59,23 +59,29 @@ impl AdapterChoice {
     }
 }
 
+/// What adapters are looked for by. OpenGL shows no texture in another format than it has, which pictures need.
+pub const BACKENDS: wgpu::Backends = wgpu::Backends::PRIMARY;
+
+fn instance() -> wgpu::Instance {
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    wgpu::Instance::new(wgpu::InstanceDescriptor { backends: BACKENDS, ..descriptor })
+}
+
 /// The machine's fastest, as the system has it.
 ///
 /// # Errors
 /// There is none.
 pub fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let options = wgpu::RequestAdapterOptions {
-        power_preference: wgpu::PowerPreference::HighPerformance,
-        ..Default::default()
-    };
+    let instance = instance();
+    let options =
+        wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..Default::default() };
     pollster::block_on(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)
 }
 
 /// All adapters that there are, graphics cards first and software last.
 pub fn adapters() -> Vec<wgpu::Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let mut all = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
+    let instance = instance();
+    let mut all = pollster::block_on(instance.enumerate_adapters(BACKENDS));
     all.sort_by_key(|adapter| match adapter.get_info().device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,
@@ -112,8 +118,7 @@ mod tests {
 
     #[test]
     fn adapters_are_chosen_by_part_of_their_name_or_as_software() {
-        let infos =
-            [info("GeForce RTX 4090", wgpu::DeviceType::DiscreteGpu), info("llvmpipe", wgpu::DeviceType::Cpu)];
+        let infos = [info("GeForce RTX 4090", wgpu::DeviceType::DiscreteGpu), info("llvmpipe", wgpu::DeviceType::Cpu)];
         assert_eq!(AdapterChoice::Best.place(&infos).ok(), Some(0));
         assert_eq!(place("rtx", &infos), Ok(0));
         assert_eq!(place("LLVMpipe", &infos), Ok(1));

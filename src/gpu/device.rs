@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::GpuError;
+use super::adapters::{AdapterChoice, adapters, best_adapter};
 
 /// A device that tessellates and draws.
 #[derive(Clone, Debug)]
@@ -106,13 +107,18 @@ impl Gpu {
     /// # Errors
     /// No adapter, or one that gives no device.
     pub fn headless() -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        let adapter = pollster::block_on(instance.request_adapter(&options)).map_err(|_| GpuError::NoAdapter)?;
-        Self::on(&adapter)
+        Self::on(&best_adapter()?)
+    }
+
+    /// The adapter that was asked for, without a window.
+    ///
+    /// # Errors
+    /// There is none such, or it gives no device.
+    pub fn chosen(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        match choice {
+            AdapterChoice::Best => Self::headless(),
+            choice => Self::on(choice.among(&adapters())?),
+        }
     }
 
     /// A device of its own on an adapter, beside others there: what waits for one doesn't make another wait.

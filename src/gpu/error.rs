@@ -8,6 +8,12 @@ pub enum GpuError {
         "no graphics adapter was found: install a Vulkan driver (the software one is in Debian's mesa-vulkan-drivers)"
     )]
     NoAdapter,
+    #[error("no graphics adapter has \"{name}\" in its name: there are {has} (pnaen adapters)")]
+    NoSuchAdapter { name: String, has: String },
+    #[error(
+        "no graphics adapter runs in software: there are {has}; install a driver that does (Debian's mesa-vulkan-drivers)"
+    )]
+    NoSoftwareAdapter { has: String },
     #[error("the adapter {adapter} gave no device ({reason}): update its driver, or choose another adapter")]
     NoDevice { adapter: String, reason: String },
     #[error(

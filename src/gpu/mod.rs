@@ -3,6 +3,7 @@
 //! Once a pose: deform. Once a mesh, pose and surface: nets. When settings or view change: factors, counts, scan, chunks. Then, for every chunk of
 //! patches that fits the arena: emit, and whatever is done with it (a draw, a readback).
 
+mod adapters;
 mod arena;
 mod buffers;
 mod counts;
@@ -19,6 +20,7 @@ mod rig;
 mod slab;
 mod tessellator;
 
+pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, kind};
 pub use arena::{VERTEX_HALF, vertices_of};
 pub use buffers::{MeshBuffers, empty};
 pub use device::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, device_descriptor};

@@ -1,5 +1,6 @@
 //! The commands as a person or a pipeline meets them: the program itself, its output, its pictures, its exit codes.
 
+mod adapters;
 mod adjacency;
 mod animation;
 mod chart;

@@ -13,7 +13,7 @@ use pnaen::tessellate::{CoverageView, Lod, Surface, covers_nothing, screen_corne
 use crate::{engine, scene};
 
 /// An engine that leaves out what covers nothing, from so many triangles a px on.
-fn sifting(from: f32) -> Engine {
+pub fn sifting(from: f32) -> Engine {
     let mut engine = engine().clone();
     let mut renderer = Renderer::new(&engine.gpu);
     renderer.sift_from = from;

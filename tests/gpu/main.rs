@@ -11,6 +11,7 @@ mod displacement;
 mod domain;
 mod error;
 mod layout;
+mod limits;
 #[path = "../documents/moving.rs"]
 mod moving;
 mod passes;

@@ -1,0 +1,52 @@
+//! `pnaen adapters`, `--adapter`, and what works without any.
+
+use crate::{Folder, command, failure, output, sentence};
+
+#[test]
+fn adapters_are_listed_and_one_of_them_is_taken() {
+    let text = output(&["adapters"]);
+    let taken: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("* ")).collect();
+    assert_eq!(taken.len(), 2, "an adapter, and what the star means: {text}");
+    let name = taken[0].split(':').next().expect("a name").to_uppercase();
+    let points = output(&["domain", "--partitioning", "integer", "--factors", "2,2,2,2"]);
+    let chosen = output(&["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", &name]);
+    assert_eq!(chosen, points, "by its name in capitals");
+    sentence(
+        &["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", "no such thing"],
+        &["no graphics adapter has \"no such thing\" in its name", "pnaen adapters"],
+    );
+}
+
+#[test]
+fn without_an_adapter_what_needs_none_still_works() {
+    let folder = Folder::new("no-adapter");
+    let [obj, indices] = ["out.obj", "out.json"].map(|name| folder.path(name));
+    let without = |arguments: &[&str]| {
+        let mut command = command(arguments);
+        // No driver is there for any loader.
+        for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            command.env(name, "nowhere.json");
+        }
+        let output = command.output().expect("the program starts");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    for arguments in [
+        &["info", "shape:torus"][..],
+        &["domain", "--partitioning", "pow2", "--factors", "3,3,3,3", "--device", "cpu"],
+        &["adjacency", "shape:torus", "-o", &indices],
+        &["tessellate", "shape:torus", "-o", &obj, "--device", "cpu"],
+    ] {
+        let (code, said) = without(arguments);
+        assert_eq!(code, Some(0), "{arguments:?}: {said}");
+    }
+    // Direct3D and Metal are there without a driver's file.
+    if cfg!(target_os = "linux") {
+        for arguments in [&["adapters"][..], &["render", "shape:torus", "-o", &folder.path("out.png")]] {
+            let (code, said) = without(arguments);
+            assert_eq!(code, Some(1), "{arguments:?}: {said}");
+            assert!(said.contains("no graphics adapter was found: install a Vulkan driver"), "{said}");
+            assert_eq!(said.lines().count(), 1, "{said}");
+        }
+    }
+    assert!(failure(&["adapters", "surplus"], 2).contains("surplus"));
+}
