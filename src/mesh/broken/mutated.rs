@@ -1,27 +1,11 @@
 //! Copies of good files with bits, ends and numbers changed: a mesh or a sentence, never a panic, never long.
 
 use super::Format::{Obj, Ply, Stl};
-use super::{Format, read};
+use super::{Format, Random, read};
 use crate::mesh::{obj, ply, stl};
 
 /// What takes the place of a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
-
-/// Xorshift, from a seed that isn't 0.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
-    }
-}
 
 fn originals() -> Vec<(Format, Vec<u8>)> {
     let mut originals = vec![

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use super::hostile::time;
 use super::*;
+use crate::mesh::broken::Random;
 
 /// Copies that every run of the tests tries.
 const COPIES: usize = 300;
@@ -17,22 +18,6 @@ const NUMBERS: [&str; 8] =
     ["0", "-1", "2147483648", "4294967295", "4611686018427387904", "18446744073709551615", "1e308", "0.5"];
 /// Longer files would make all others wait.
 const LONGEST: usize = 16 << 20;
-
-/// Xorshift, 64 bits (Marsaglia 2003).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-}
 
 /// A document, and where it lies.
 struct Subject {
