@@ -35,7 +35,8 @@ fn write_chunk(index: u32, first: u32, end: u32) {
     let base = offsets[first];
     let size = offsets[end] - base;
     chunks[index] = Chunk(slab.first_patch + first, slab.first_patch + end, base.x, base.y, size.x, size.y);
-    let workgroups = (size + EMIT_ITEMS - 1u) / EMIT_ITEMS;
+    let items = vec2<u32>(emit_items(size.x), emit_items(size.y));
+    let workgroups = (size + items - 1u) / items;
     emit_args[index] = EmitArgs(workgroup_grid(workgroups.x), workgroup_grid(workgroups.y), grid(size.x));
 }
 

@@ -1,4 +1,4 @@
-// The domain shader and the tessellator's output of one chunk. A workgroup makes EMIT_ITEMS vertices, or triangles, that
+// The domain shader and the tessellator's output of one chunk. A workgroup makes thousands of vertices, or triangles, that
 // follow each other, and each of its invocations several: finding out once which patches they are of is then little work.
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -28,8 +28,8 @@ const TRIANGLE_WORKGROUP: u32 = 256u;
 // Invocations that run in step on most devices: these have items side by side, and mostly of one patch.
 const LANES: u32 = 32u;
 
-fn emit_first(workgroup: vec3<u32>, workgroups: vec3<u32>) -> u32 {
-    return (workgroup.y * workgroups.x + workgroup.x) * EMIT_ITEMS;
+fn emit_first(workgroup: vec3<u32>, workgroups: vec3<u32>, items: u32) -> u32 {
+    return (workgroup.y * workgroups.x + workgroup.x) * items;
 }
 
 // The first item, from the workgroup's first on, of the `turns` that invocation `local` and those beside it make together.
@@ -53,76 +53,42 @@ fn find_patch(component: u32, item: u32, first: u32, end: u32) -> u32 {
     return low;
 }
 
-// The patches whose items a workgroup makes: the first, and how many begin after its first item.
-struct PatchRun {
-    first: u32,
-    count: u32,
+// The same, from an earlier item's entry on: in steps that double until they are too far (Bentley and Yao 1976).
+fn later_patch(component: u32, item: u32, before: u32, end: u32) -> u32 {
+    var low = before;
+    var stride = 1u;
+    while low + stride < end && offsets[low + stride][component] <= item {
+        low += stride;
+        stride *= 2u;
+    }
+    return find_patch(component, item, low, min(low + stride, end));
 }
 
-var<workgroup> run_first: u32;
-var<workgroup> run_count: u32;
-var<workgroup> run_is_whole: u32;
-// Where the patches after the first begin.
-var<workgroup> run_starts: array<u32, EMIT_ITEMS>;
+var<workgroup> first_found: u32;
 
-// All `width` invocations look for the first item's patch together: each round leaves one part of so many.
-fn find_run(component: u32, first_item: u32, last_item: u32, local: u32, width: u32) -> PatchRun {
-    let chunk = chunks[chunk_index];
-    let end = chunk.patch_end - slab.first_patch;
-    var low = chunk.first_patch - slab.first_patch;
+// The same of a workgroup's first item, for which all its `width` invocations look together: each round leaves one part of so
+// many.
+fn find_together(component: u32, item: u32, first: u32, end: u32, local: u32, width: u32) -> u32 {
+    var low = first;
     var high = end;
     while low + 1u < high {
         let stride = (high - low + width - 1u) / width;
         let at = low + local * stride;
         let next = at + stride;
-        if at < high && offsets[at][component] <= first_item && (next >= high || offsets[next][component] > first_item) {
-            run_first = at;
+        if at < high && offsets[at][component] <= item && (next >= high || offsets[next][component] > item) {
+            first_found = at;
         }
-        low = workgroupUniformLoad(&run_first);
+        low = workgroupUniformLoad(&first_found);
         high = min(low + stride, high);
     }
-    if local == 0u {
-        run_count = 0u;
-    }
-    workgroupBarrier();
-    // Mostly one round finds them all.
-    for (var filled = 0u; filled < EMIT_ITEMS; filled += width) {
-        let i = filled + local;
-        let entry = low + 1u + i;
-        let start = offsets[min(entry, end)][component];
-        run_starts[i] = start;
-        let is_last = i == EMIT_ITEMS - 1u || entry + 1u >= end || offsets[min(entry + 1u, end)][component] > last_item;
-        if entry < end && start <= last_item && is_last {
-            run_count = i + 1u;
-        }
-        if local == width - 1u {
-            run_is_whole = u32(entry >= end || start > last_item);
-        }
-        if workgroupUniformLoad(&run_is_whole) == 1u {
-            break;
-        }
-    }
-    return PatchRun(low, workgroupUniformLoad(&run_count));
+    return low;
 }
 
-// Whether a run's patches have so many items each that 32 invocations are worth one patch at a time. They then read it
-// once, and take one path all.
-fn is_of_large_patches(run: PatchRun) -> bool {
-    return run.count < EMIT_ITEMS / (2u * LANES);
-}
-
-// Of the run's patches, counted from its first, the one whose item this is; `before` is that of an earlier item.
-fn run_patch(run: PatchRun, component: u32, item: u32, before: u32) -> u32 {
-    var patch_index = before;
-    while patch_index < run.count && run_starts[patch_index] <= item {
-        patch_index += 1u;
-    }
-    if patch_index < EMIT_ITEMS {
-        return patch_index;
-    }
-    // So many begin here only where most are empty.
-    let chunk = chunks[chunk_index];
-    return find_patch(component, item, run.first + EMIT_ITEMS, chunk.patch_end - slab.first_patch) - run.first;
+// Whether the patches of `items` items, of which the last is `last`, have so many each that 32 invocations are worth one patch
+// at a time. They then read it once, and take one path all.
+fn is_of_large_patches(component: u32, items: u32, last: u32, first: u32, end: u32) -> bool {
+    let few = first + items / (2u * LANES);
+    return few >= end || offsets[few][component] > last;
 }
 
 fn patch_at(index: u32) -> Patch {
@@ -245,23 +211,26 @@ fn emit_vertices_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let chunk = chunks[chunk_index];
-    let first = emit_first(workgroup, workgroups);
-    let last = chunk.first_vertex + min(first + EMIT_ITEMS, chunk.vertex_count) - 1u;
-    let run = find_run(0u, chunk.first_vertex + first, last, local, VERTEX_WORKGROUP);
-    if is_of_large_patches(run) {
-        vertices_by_patch(chunk, run, first, local);
+    let items = emit_items(chunk.vertex_count);
+    let first = emit_first(workgroup, workgroups, items);
+    let last = chunk.first_vertex + min(first + items, chunk.vertex_count) - 1u;
+    let begin = chunk.first_patch - slab.first_patch;
+    let end = chunk.patch_end - slab.first_patch;
+    let entry = find_together(0u, chunk.first_vertex + first, begin, end, local, VERTEX_WORKGROUP);
+    let turns = items / VERTEX_WORKGROUP;
+    if is_of_large_patches(0u, items, last, entry, end) {
+        vertices_by_patch(chunk, entry, first, turns, local);
     } else {
-        vertices_by_item(chunk, run, first, local);
+        vertices_by_item(chunk, entry, first, turns, local);
     }
 }
 
-fn vertices_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
-    let turns = EMIT_ITEMS / VERTEX_WORKGROUP;
+// From the workgroup's first vertex on, whose patch is at `first_entry`.
+fn vertices_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, local: u32) {
     var at = first + emit_start(local, turns);
     let end = min(at + LANES * turns, chunk.vertex_count);
-    var in_run = run_patch(run, 0u, chunk.first_vertex + at, 0u);
+    var entry = later_patch(0u, chunk.first_vertex + at, first_entry, chunk.patch_end - slab.first_patch);
     while at < end {
-        let entry = run.first + in_run;
         let patch_index = slab.first_patch + entry;
         // Where the patch starts and ends, in the chunk: its start may lie before it.
         let start = offsets[entry].x - chunk.first_vertex;
@@ -274,24 +243,23 @@ fn vertices_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
         emit_patch_vertices(plan, hull, patch_index, start, at + local % LANES, inside);
         emit_patch_vertices(plan, hull, patch_index, start, inside + local % LANES, stop);
         at = stop;
-        in_run += 1u;
+        entry += 1u;
     }
 }
 
-fn vertices_by_item(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
+// The same, an item an invocation.
+fn vertices_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, local: u32) {
     var known = NO_PATCH;
-    var in_run = 0u;
+    var entry = first_entry;
     var start = 0u;
     var plan: DomainPlan;
-    let turns = EMIT_ITEMS / VERTEX_WORKGROUP;
     for (var turn = 0u; turn < turns; turn++) {
         let index = first + emit_start(local, turns) + turn * LANES + local % LANES;
         if index >= chunk.vertex_count {
             return;
         }
         let item = chunk.first_vertex + index;
-        in_run = run_patch(run, 0u, item, in_run);
-        let entry = run.first + in_run;
+        entry = later_patch(0u, item, entry, chunk.patch_end - slab.first_patch);
         if entry != known {
             known = entry;
             start = offsets[entry].x;
@@ -323,23 +291,25 @@ fn emit_triangles_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let chunk = chunks[chunk_index];
-    let first = emit_first(workgroup, workgroups);
-    let last = chunk.first_triangle + min(first + EMIT_ITEMS, chunk.triangle_count) - 1u;
-    let run = find_run(1u, chunk.first_triangle + first, last, local, TRIANGLE_WORKGROUP);
-    if is_of_large_patches(run) {
-        triangles_by_patch(chunk, run, first, local);
+    let items = emit_items(chunk.triangle_count);
+    let first = emit_first(workgroup, workgroups, items);
+    let last = chunk.first_triangle + min(first + items, chunk.triangle_count) - 1u;
+    let begin = chunk.first_patch - slab.first_patch;
+    let end = chunk.patch_end - slab.first_patch;
+    let entry = find_together(1u, chunk.first_triangle + first, begin, end, local, TRIANGLE_WORKGROUP);
+    let turns = items / TRIANGLE_WORKGROUP;
+    if is_of_large_patches(1u, items, last, entry, end) {
+        triangles_by_patch(chunk, entry, first, turns, local);
     } else {
-        triangles_by_item(chunk, run, first, local);
+        triangles_by_item(chunk, entry, first, turns, local);
     }
 }
 
-fn triangles_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
-    let turns = EMIT_ITEMS / TRIANGLE_WORKGROUP;
+fn triangles_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, local: u32) {
     var at = first + emit_start(local, turns);
     let end = min(at + LANES * turns, chunk.triangle_count);
-    var in_run = run_patch(run, 1u, chunk.first_triangle + at, 0u);
+    var entry = later_patch(1u, chunk.first_triangle + at, first_entry, chunk.patch_end - slab.first_patch);
     while at < end {
-        let entry = run.first + in_run;
         let starts = offsets[entry] - vec2<u32>(chunk.first_vertex, chunk.first_triangle);
         let factors = patch_factors[entry];
         let plan = domain_plan(factors);
@@ -349,24 +319,22 @@ fn triangles_by_patch(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
         emit_patch_triangles(plan, starts.x, starts.y, at + local % LANES, inside);
         emit_patch_triangles(plan, starts.x, starts.y, inside + local % LANES, stop);
         at = stop;
-        in_run += 1u;
+        entry += 1u;
     }
 }
 
-fn triangles_by_item(chunk: Chunk, run: PatchRun, first: u32, local: u32) {
+fn triangles_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, local: u32) {
     var known = NO_PATCH;
-    var in_run = 0u;
+    var entry = first_entry;
     var start = vec2<u32>(0u);
     var plan: DomainPlan;
-    let turns = EMIT_ITEMS / TRIANGLE_WORKGROUP;
     for (var turn = 0u; turn < turns; turn++) {
         let index = first + emit_start(local, turns) + turn * LANES + local % LANES;
         if index >= chunk.triangle_count {
             return;
         }
         let item = chunk.first_triangle + index;
-        in_run = run_patch(run, 1u, item, in_run);
-        let entry = run.first + in_run;
+        entry = later_patch(1u, item, entry, chunk.patch_end - slab.first_patch);
         if entry != known {
             known = entry;
             start = offsets[entry];

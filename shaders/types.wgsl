@@ -176,8 +176,10 @@ fn key_uv(key: vec2<u32>) -> vec2<u32> {
 
 const WORKGROUP: u32 = 256u;
 
-// Vertices, or triangles, that a workgroup of emission makes.
-const EMIT_ITEMS: u32 = 2048u;
+// Of so many vertices, or triangles, those that a workgroup of emission makes: as many as leave work for every processor.
+fn emit_items(count: u32) -> u32 {
+    return select(2048u, 4096u, count >= 0x700000u);
+}
 
 // Work of any size as a grid within 65,535 workgroups a dimension; the index of an invocation in such a grid.
 fn grid(items: u32) -> array<u32, 3> {

@@ -17,6 +17,7 @@ pub mod gpu;
 pub mod markdown;
 pub mod measure;
 pub mod mesh;
+pub mod names;
 pub mod numbers;
 pub mod plot;
 pub mod render;

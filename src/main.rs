@@ -20,7 +20,7 @@ fn main() -> ExitCode {
     let reason = match app::run(file.clone(), limit.limits(), adapter.choice()) {
         Ok(()) => return ExitCode::SUCCESS,
         Err(WindowError::NoDisplay(reason)) => reason,
-        Err(error @ WindowError::Failed(_)) => return cli::fail(&error),
+        Err(error) => return cli::fail(&error),
     };
     if let Err(error) = cli::preview(file, limit, adapter, Path::new(PREVIEW)) {
         return cli::fail(&error);

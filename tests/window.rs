@@ -6,10 +6,16 @@ mod animation;
 mod chart;
 #[path = "window/deviation.rs"]
 mod deviation;
+#[path = "window/driver.rs"]
+mod driver;
 #[path = "window/lasting.rs"]
 mod lasting;
 #[path = "window/lists.rs"]
 mod lists;
+#[path = "window/loading.rs"]
+mod loading;
+#[path = "window/lost.rs"]
+mod lost;
 #[path = "documents/moving.rs"]
 mod moving;
 #[path = "window/picking.rs"]
@@ -18,10 +24,12 @@ mod picking;
 mod spending;
 #[path = "window/techniques.rs"]
 mod techniques;
+#[path = "window/typing.rs"]
+mod typing;
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
+use driver::{PATIENCE, settle};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -29,9 +37,6 @@ use pnaen::app::App;
 use pnaen::mesh::{Limits, Shape, Source};
 use pnaen::settings::Colors;
 use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
-
-/// Longer than anything here takes on two slow cores.
-const PATIENCE: Duration = Duration::from_secs(60);
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
@@ -52,19 +57,6 @@ fn uniform(source: Option<Source>) -> Harness<'static, App> {
     }
     settle(&mut harness);
     harness
-}
-
-/// Steps until everything is loaded, drawn and measured.
-fn settle(harness: &mut Harness<App>) {
-    let start = Instant::now();
-    // What was just pressed takes effect in the next two steps.
-    harness.run_steps(3);
-    while harness.state().is_busy() {
-        assert!(start.elapsed() < PATIENCE, "the window is still busy");
-        std::thread::sleep(Duration::from_millis(2));
-        harness.step();
-    }
-    harness.run_steps(2);
 }
 
 fn press(harness: &mut Harness<App>, key: egui::Key) {
@@ -258,19 +250,9 @@ fn a_file_that_cannot_be_loaded_changes_nothing() {
 
 #[test]
 fn a_dropped_file_is_opened() {
-    #[derive(Debug)]
-    struct Dropped(PathBuf);
-    impl egui::DroppedFile for Dropped {
-        fn path(&self) -> &std::path::Path {
-            &self.0
-        }
-        fn bytes(&self) -> Result<Vec<u8>, String> {
-            std::fs::read(&self.0).map_err(|error| error.to_string())
-        }
-    }
     let mut harness = uniform(None);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
-    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
+    loading::drop_files(&mut harness, &[path]);
     settle(&mut harness);
     assert_eq!(harness.state().source(), Some(&vase()));
 }

@@ -37,6 +37,12 @@ impl Playback {
     pub fn is_playing(&self) -> bool {
         self.playing.is_some()
     }
+
+    /// Goes on by the clock of another window.
+    pub fn go_on_in(&mut self, context: &egui::Context) {
+        let now = context.input(|input| input.time);
+        self.playing = self.playing.map(|_| now);
+    }
 }
 
 impl App {

@@ -45,6 +45,23 @@ impl<T: Send + 'static> Beside<T> {
     }
 }
 
+impl<T: Send + 'static> Beside<T> {
+    /// The same job, which repaints another window when it ends.
+    pub fn waking(self, context: &egui::Context) -> Self {
+        let (sender, done) = channel();
+        let context = context.clone();
+        spawn(move || {
+            // Without a result there was no thread: then this one ends without as well.
+            if let Ok(result) = self.0.recv() {
+                let _ = sender.send(result);
+            }
+            drop(sender);
+            context.request_repaint();
+        });
+        Self(done)
+    }
+}
+
 impl<T> Beside<T> {
     /// Waits for it to end.
     pub fn wait(self) {
@@ -101,6 +118,22 @@ mod tests {
     fn a_job_gives_what_it_made_and_wakes_the_window() {
         let (result, repaints) = ended(|| 6 * 7);
         assert_eq!((result.ok(), repaints), (Some(42), 1));
+    }
+
+    #[test]
+    fn a_job_that_moves_to_another_window_wakes_that() {
+        let (go, wait) = channel::<()>();
+        let first = egui::Context::default();
+        let job = Beside::start(&first, move || wait.recv().is_ok());
+        let (second, (woken, wakes)) = (egui::Context::default(), channel());
+        second.set_request_repaint_callback(move |_| {
+            let _ = woken.send(());
+        });
+        let job = job.waking(&second);
+        assert!(job.take().is_none(), "it is under way");
+        go.send(()).expect("it waits");
+        wakes.recv_timeout(Duration::from_secs(30)).expect("the window is woken");
+        assert!(job.take().is_some_and(|result| result.is_ok_and(|went| went)));
     }
 
     #[test]

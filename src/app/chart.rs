@@ -1,11 +1,13 @@
 //! Speed against accuracy of what is shown: what is tried when, whether it still is of what is shown, and saving it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::App;
 use super::beside::Beside;
 use super::charting::{Charted, Charting, Job, Of};
+use super::typed::Purpose;
 use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
+use crate::names::shown_path;
 use crate::settings::Settings;
 
 /// What the chart's panel is about.
@@ -29,6 +31,13 @@ impl Chart {
     /// Stops what is under way; what is known stays.
     pub fn stop(&mut self) {
         self.charting.stop();
+    }
+
+    /// Stops, and frees its device, which may be as lost as the window's was; what is known stays.
+    pub(super) fn go_on_in(&mut self, context: &egui::Context) {
+        self.charting.close();
+        self.still = None;
+        self.saving = self.saving.take().map(|saving| saving.waking(context));
     }
 
     pub(super) fn charted(&self) -> Option<&Charted> {
@@ -172,18 +181,32 @@ impl App {
         self.chart.charting.hold(self.is_busy());
     }
 
-    /// The desktop's file dialog, and the writing, on a thread of their own.
     pub(super) fn save_dialog(&mut self, context: &egui::Context) {
-        let Some(charted) = self.chart.charted() else { return };
-        let subject = charted.subject.clone();
-        let choose_and_save = move || {
+        self.dialog(Purpose::SaveChart, context, || {
             let dialog = rfd::FileDialog::new().set_title("Save the chart").set_file_name("chart.svg");
             let kinds = [("SVG picture", "svg"), ("PNG picture", "png"), ("CSV table", "csv")];
             let dialog = kinds.into_iter().fold(dialog, |dialog, (name, ending)| dialog.add_filter(name, &[ending]));
-            let path = dialog.save_file();
-            path.map_or(Ok(()), |path| save(&path, &subject).map_err(|error| error.to_string()))
-        };
-        self.chart.saving = Some(Beside::start(context, choose_and_save));
+            dialog.save_file()
+        });
+    }
+
+    /// Saves the chart under a name that was typed, which nobody was asked about.
+    ///
+    /// # Errors
+    /// There is such a file, in a sentence.
+    pub(super) fn save_new_chart(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
+        if path.exists() {
+            return Err(format!("{} is there already: choose another name", shown_path(&path)));
+        }
+        self.save_chart_beside(context, path);
+        Ok(())
+    }
+
+    pub(super) fn save_chart_beside(&mut self, context: &egui::Context, path: PathBuf) {
+        let Some(charted) = self.chart.charted() else { return };
+        let subject = charted.subject.clone();
+        let write = move || save(&path, &subject).map_err(|error| error.to_string());
+        self.chart.saving = Some(Beside::start(context, write));
     }
 }
 

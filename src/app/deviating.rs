@@ -93,6 +93,11 @@ impl Deviating {
         }
     }
 
+    /// Copies no more of what is under way, which then ends without a result, and isn't tried again by itself.
+    pub fn give_up(&mut self) {
+        self.copying = None;
+    }
+
     /// Forgets everything, and stops what is under way.
     pub fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };

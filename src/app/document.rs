@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::beside::Beside;
 use super::checks::Checks;
 use crate::engine::{self, Engine, Loaded, Preparation};
+use crate::gpu::GpuError;
 use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source};
 use crate::render::Scene;
 use crate::settings::{ARENA_BYTES, Half};
@@ -54,6 +55,14 @@ pub fn arena_bytes(engine: &Engine) -> u64 {
     if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES }
 }
 
+/// A mesh on the device, unless the device has no room for it.
+///
+/// # Errors
+/// The mesh is larger than the adapter binds, the device is out of memory, or it was lost.
+pub fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
+    engine.gpu.attempt(|| engine.scene(loaded, arena_bytes(engine)))?
+}
+
 /// A load under way; dropping it cancels it.
 pub struct Load {
     pub source: Source,
@@ -62,6 +71,8 @@ pub struct Load {
     /// Whether the camera stays where it is: the same mesh is loaded again.
     pub keep_view: bool,
     pub progress: Progress,
+    /// What is said once the mesh is there.
+    pub remark: Option<String>,
     job: Beside<Result<Document, Option<NotLoaded>>>,
 }
 
@@ -94,7 +105,7 @@ impl Load {
         let (engine, own_context) = (engine.clone(), context.clone());
         let (wanted, prepared, own_progress) = (source.clone(), preparation.clone(), progress.clone());
         let load = move || load(&engine, &own_context, &wanted, &prepared, &own_progress, generation);
-        Self { job: Beside::start(context, load), source, preparation, keep_view, progress }
+        Self { job: Beside::start(context, load), source, preparation, keep_view, progress, remark: None }
     }
 
     /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
@@ -126,8 +137,8 @@ fn load(
             return Err(Some(NotLoaded { why: error.to_string(), is_gone }));
         }
     };
-    let scene =
-        engine.scene(&loaded, arena_bytes(engine)).map_err(|error| Some(NotLoaded::because(error.to_string())))?;
+    let no_room = |error: GpuError| Some(NotLoaded::because(format!("{}: {error}", source.title())));
+    let scene = scene_of(engine, &loaded).map_err(no_room)?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
     let diagonal = scene.bounds.diagonal();
@@ -148,6 +159,7 @@ mod tests {
             preparation: Preparation::default(),
             keep_view: false,
             progress: Progress::default(),
+            remark: None,
         };
         let start = std::time::Instant::now();
         let result = loop {

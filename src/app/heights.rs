@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::App;
 use super::text::short;
+use super::typed::Purpose;
 use super::widgets::value_chooser;
 use crate::mesh::{HeightSource, Source};
 use crate::settings::{HEIGHT_RANGE, MIDLEVEL_RANGE};
@@ -38,7 +39,10 @@ impl App {
 
     /// Asks for an image to displace the mesh by.
     pub(super) fn height_dialog(&mut self, context: &egui::Context) {
-        self.dialog("Open a height image", "Images", &["png", "jpg", "jpeg"], context);
+        self.dialog(Purpose::Heights, context, || {
+            let dialog = rfd::FileDialog::new().set_title("Open a height image");
+            dialog.add_filter("Images", &["png", "jpg", "jpeg"]).pick_file()
+        });
     }
 
     /// Loads the same mesh again with other heights, which displace it once they are there.

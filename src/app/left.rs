@@ -8,6 +8,7 @@ use super::choices::surface_name;
 use super::deviating::Deviating;
 use super::document::arena_bytes;
 use super::measuring::{Measuring, Trouble};
+use crate::engine::Engine;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
 use crate::render::Scene;
@@ -74,7 +75,7 @@ impl App {
         let making = self.left.making.take().filter(|making| making.document == document.generation);
         let Some(making) = making else {
             self.left.forget();
-            self.left.making = Some(Making::start(context, scene, arena_bytes(&self.engine), document.generation));
+            self.left.making = Some(Making::start(context, &self.engine, scene, document.generation));
             return Ok(());
         };
         match making.job.take() {
@@ -129,7 +130,8 @@ impl App {
 }
 
 impl Making {
-    fn start(context: &egui::Context, scene: &Scene, arena_bytes: u64, document: u64) -> Self {
-        Self { document, start: Instant::now(), job: Beside::start(context, scene.beside(arena_bytes)) }
+    fn start(context: &egui::Context, engine: &Engine, scene: &Scene, document: u64) -> Self {
+        let (gpu, make) = (engine.gpu.clone(), scene.beside(arena_bytes(engine)));
+        Self { document, start: Instant::now(), job: Beside::start(context, move || gpu.attempt(make)?) }
     }
 }

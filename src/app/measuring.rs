@@ -104,6 +104,11 @@ impl Measuring {
         }
     }
 
+    /// Stops what is under way, and doesn't try it again by itself.
+    pub fn give_up(&mut self) {
+        (self.comparing, self.copying) = (None, None);
+    }
+
     /// Forgets everything, and stops what is under way.
     pub fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
@@ -186,8 +191,9 @@ pub(super) fn copy_on(under_way: &mut Option<Copying>, gpu: &Gpu, scene: &mut Sc
     if !copying.is_mapped {
         match copying.mapped.try_recv() {
             Err(TryRecvError::Empty) => return Ok(()),
-            Err(TryRecvError::Disconnected) => return Err(GpuError::Readback("a copy was dropped".into())),
-            Ok(Err(error)) => return Err(GpuError::Readback(error.to_string())),
+            // Without a sender the comparing thread ends as well: it isn't tried again by itself.
+            Err(TryRecvError::Disconnected) => return failed(under_way, "a copy was dropped"),
+            Ok(Err(error)) => return failed(under_way, &error.to_string()),
             Ok(Ok(())) => copying.is_mapped = true,
         }
     }
@@ -200,6 +206,11 @@ pub(super) fn copy_on(under_way: &mut Option<Copying>, gpu: &Gpu, scene: &mut Sc
         *under_way = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
     }
     Ok(())
+}
+
+fn failed(under_way: &mut Option<Copying>, why: &str) -> Result<(), GpuError> {
+    *under_way = None;
+    Err(GpuError::Readback(why.to_owned()))
 }
 
 fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {

@@ -4,7 +4,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::App;
 use super::heights::HEIGHT_IMAGE;
-use super::windows::MESHES;
+use super::typed::{Purpose, taken_at};
 use crate::mesh::{Shape, Source};
 use crate::render::{Camera, Standpoint};
 use crate::settings::{FACTOR_RANGE, Overlay};
@@ -12,7 +12,7 @@ use crate::tessellate::{Edges, Lod};
 
 const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
 const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
-const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
+pub(super) const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
 pub const KEYS: [(&str, &str); 34] = [
@@ -101,7 +101,7 @@ impl App {
             self.open_dialog(ui.ctx());
         }
         if entry(ui, "Open path…", &OPEN_PATH) {
-            self.type_path();
+            self.type_path(Purpose::Open);
         }
         self.recent_menu(ui);
         let height_image = ui.add_enabled(self.document.is_some(), egui::Button::new("Height image…"));
@@ -114,13 +114,11 @@ impl App {
         }
         ui.separator();
         let hover = "Holds the mesh against what it should have been: the high-poly original, say.";
-        if ui.button("Truth…").on_hover_text(hover).clicked() && self.dialog.is_none() {
-            self.asks_for_truth = true;
-            self.dialog("Choose what the mesh should have been", "Meshes", &MESHES, ui.ctx());
+        if ui.button("Truth…").on_hover_text(hover).clicked() {
+            self.truth_dialog(ui.ctx());
         }
         if ui.button("Truth path…").on_hover_text(hover).clicked() {
-            self.type_path();
-            self.asks_for_truth = true;
+            self.type_path(Purpose::Truth);
         }
         let forget = egui::Button::new("No truth");
         let hover = "Goes back to the surface that a shape is sampled from, or that the tessellation converges to.";
@@ -137,11 +135,7 @@ impl App {
             }
         });
         ui.separator();
-        let hover = "Goes back to how the window first opened: settings, theme, size, recent files and their cameras. The \
-                     mesh stays.";
-        if ui.button("Forget all settings").on_hover_text(hover).clicked() {
-            self.forget_all(ui.ctx());
-        }
+        self.forget_menu(ui);
         ui.separator();
         if entry(ui, "Quit", &QUIT) {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
@@ -209,22 +203,24 @@ impl App {
                 self.load = None;
                 self.truth_load = None;
                 self.error = None;
-                self.typed_path = None;
+                self.typed = None;
                 self.shows_keys = false;
                 self.deselect();
             }
         }
-        let taken = |shortcut| context.input_mut(|input| input.consume_shortcut(shortcut));
-        if taken(&OPEN) {
+        if let Some(place) = taken_at(context, &OPEN) {
             self.open_dialog(context);
+            self.hold_from(context, place);
         }
-        if taken(&OPEN_PATH) {
-            self.type_path();
+        if let Some(place) = taken_at(context, &OPEN_PATH) {
+            self.type_path(Purpose::Open);
+            self.hold_from(context, place);
         }
-        if taken(&QUIT) {
+        if context.input_mut(|input| input.consume_shortcut(&QUIT)) {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        if context.egui_wants_keyboard_input() {
+        let asks = self.typed.is_some() || self.dialog.as_ref().is_some_and(|dialog| dialog.is_new(context));
+        if asks || context.egui_wants_keyboard_input() {
             return;
         }
         self.overlay_keys(context);

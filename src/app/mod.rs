@@ -7,16 +7,20 @@ mod chart_panel;
 mod charting;
 mod checks;
 mod choices;
+mod desktop;
 mod deviating;
 mod deviation;
 mod diagram;
 mod document;
 mod facts;
+mod farewell;
 mod heights;
 mod labels;
 mod lasting;
 mod left;
 mod legend;
+mod loading;
+mod lost;
 mod marked;
 mod measuring;
 mod menu;
@@ -27,20 +31,20 @@ mod pattern;
 mod pick;
 mod picture;
 mod rim;
+mod run;
 mod status;
 mod text;
 mod truth;
+mod typed;
 mod viewport;
 mod widgets;
 mod windows;
 mod worst;
 
-use std::sync::Arc;
+use image::RgbaImage;
 
-use thiserror::Error;
-
-use crate::engine::{Engine, Loaded, Preparation};
-use crate::gpu::{AdapterChoice, BACKENDS, Gpu, GpuError, device_descriptor};
+use crate::engine::{Engine, Loaded};
+use crate::gpu::{Gpu, GpuError};
 use crate::measure::{Cracks, Sizes};
 use crate::mesh::{Limits, Source};
 use crate::render::Camera;
@@ -48,85 +52,21 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};
 
 use animation::Playback;
-use beside::Beside;
 use chart::Chart;
 use deviating::Deviating;
-use document::{Document, Load, NotLoaded};
-use lasting::{LEAST_SIZE, folder};
+use document::{Document, Load};
+use farewell::Farewell;
 use left::Left;
+use lost::Losses;
 use marked::Marked;
 use measuring::Measuring;
 use pick::Selection;
 use picture::Viewport;
 use truth::{Chosen, TruthLoad};
+use typed::{Dialog, Typed};
 
 pub use lasting::Lasting;
-
-#[derive(Debug, Error)]
-pub enum WindowError {
-    /// Why, in a few words.
-    #[error("no window could be opened ({0})")]
-    NoDisplay(String),
-    #[error("the window can't be drawn ({0}): check the graphics driver, or use the commands (pnaen --help)")]
-    Failed(String),
-}
-
-/// Opens the window on `source`, or on a cube made in code, and returns when it is closed; on the adapter that was asked
-/// for. Files larger than `limits` says aren't opened.
-///
-/// # Errors
-/// There is no display, or none that a window can be drawn on.
-pub fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
-    if cfg!(target_os = "linux") && !["DISPLAY", "WAYLAND_DISPLAY"].iter().any(|name| std::env::var_os(name).is_some())
-    {
-        return Err(WindowError::NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".into()));
-    }
-    let lasting = Lasting::read(folder().as_deref());
-    let frame = lasting.frame();
-    let options = eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default()
-            .with_title("pnaen")
-            .with_app_id("pnaen")
-            .with_inner_size(frame.size)
-            .with_maximized(frame.is_maximized)
-            .with_min_inner_size(LEAST_SIZE),
-        renderer: eframe::Renderer::Wgpu,
-        wgpu_options: wgpu_configuration(adapter),
-        ..Default::default()
-    };
-    let create: eframe::AppCreator = Box::new(|context| {
-        let mut app = App::new(context, source, limits)?;
-        app.resume(&context.egui_ctx, lasting);
-        Ok(Box::new(app))
-    });
-    let window = eframe::run_native("pnaen", options, create);
-    window.map_err(|error| match error {
-        // Their texts are about the window library's own files.
-        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
-            WindowError::NoDisplay("the display that DISPLAY or WAYLAND_DISPLAY names can't be opened".into())
-        }
-        error => WindowError::Failed(error.to_string()),
-    })
-}
-
-/// The device that egui draws with is the engine's own.
-fn wgpu_configuration(choice: AdapterChoice) -> egui_wgpu::WgpuConfiguration {
-    let mut configuration = egui_wgpu::WgpuConfiguration::default();
-    if let egui_wgpu::WgpuSetup::CreateNew(new) = &mut configuration.wgpu_setup {
-        new.instance_descriptor.backends = BACKENDS;
-        new.power_preference = wgpu::PowerPreference::HighPerformance;
-        new.device_descriptor = Arc::new(device_descriptor);
-        if choice != AdapterChoice::Best {
-            new.native_adapter_selector = Some(Arc::new(move |adapters, surface| {
-                let shows =
-                    |adapter: &&wgpu::Adapter| surface.is_none_or(|surface| adapter.is_surface_supported(surface));
-                let able: Vec<_> = adapters.iter().filter(shows).cloned().collect();
-                choice.among(&able).cloned().map_err(|error| error.to_string())
-            }));
-        }
-    }
-    configuration
-}
+pub use run::{WindowError, run, run_watched};
 
 /// The window's state.
 pub struct App {
@@ -146,9 +86,7 @@ pub struct App {
     load: Option<Load>,
     /// Of files that are opened.
     limits: Limits,
-    dialog: Option<Beside<Option<std::path::PathBuf>>>,
-    /// Whether the dialog, or the window that takes a path, is for a truth.
-    asks_for_truth: bool,
+    dialog: Option<Dialog>,
     /// What the mesh should have been, if that was chosen.
     truth: Option<Chosen>,
     truth_load: Option<TruthLoad>,
@@ -165,10 +103,13 @@ pub struct App {
     /// The edge that is looked at, in the topology of what is shown.
     selected_edge: Option<u32>,
     selection: Selection,
-    /// What is being typed as a path to open, while that window is open.
-    typed_path: Option<String>,
+    /// The path that is being typed, while that window is open.
+    typed: Option<Typed>,
     shows_keys: bool,
     lasting: Lasting,
+    losses: Losses,
+    /// In place of all else, once the device isn't replaced any more.
+    farewell: Option<Farewell>,
     /// What went wrong last, until it is closed.
     error: Option<String>,
 }
@@ -195,7 +136,6 @@ impl App {
             load: None,
             limits,
             dialog: None,
-            asks_for_truth: false,
             truth: None,
             truth_load: None,
             dragged_rim: None,
@@ -207,50 +147,15 @@ impl App {
             marked: None,
             selected_edge: None,
             selection: Selection::default(),
-            typed_path: None,
+            typed: None,
             shows_keys: false,
             lasting: Lasting::default(),
+            losses: Losses::default(),
+            farewell: None,
             error: None,
         };
         app.open(&context.egui_ctx, source.unwrap_or_default());
         Ok(app)
-    }
-
-    /// Starts to load a mesh beside the window; a load that is under way is cancelled. The mesh that is open keeps its
-    /// view, and what was made of it.
-    pub fn open(&mut self, context: &egui::Context, source: Source) {
-        let same = self.document.as_ref().filter(|document| document.loaded.source == source);
-        let preparation = same.map(|document| document.loaded.preparation.clone());
-        let keep_view = preparation.is_some();
-        let preparation = preparation.unwrap_or_else(|| self.plain());
-        self.load = Some(Load::start(&self.engine, context, source, preparation, keep_view));
-    }
-
-    /// Loads the same mesh again with something else made of it: `change` changes what is, or is on its way.
-    pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
-        let Some(Loaded { source, .. }) = self.document.as_ref().map(|document| &document.loaded) else { return };
-        let mut preparation = self.preparation();
-        change(&mut preparation);
-        self.load = Some(Load::start(&self.engine, context, source.clone(), preparation, true));
-    }
-
-    /// What is made of the mesh, or will be once it is loaded again.
-    fn preparation(&self) -> Preparation {
-        let again = self.load.as_ref().filter(|load| load.keep_view).map(|load| &load.preparation);
-        let shown = self.document.as_ref().map(|document| &document.loaded.preparation);
-        again.or(shown).cloned().unwrap_or_else(|| self.plain())
-    }
-
-    /// Nothing is made of a mesh but what the file holds.
-    fn plain(&self) -> Preparation {
-        Preparation { limits: self.limits, ..Preparation::default() }
-    }
-
-    /// Loads the same mesh again; settings and camera stay.
-    pub fn reload(&mut self, context: &egui::Context) {
-        if let Some(source) = self.document.as_ref().map(|document| document.loaded.source.clone()) {
-            self.open(context, source);
-        }
     }
 
     pub fn settings(&self) -> &Settings {
@@ -292,6 +197,19 @@ impl App {
         self.document.as_ref().map(|document| &document.loaded.source)
     }
 
+    /// The device that everything is made and drawn on.
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// The picture in the middle as it is shown, without what is written over it; none before the first.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read_picture(&self) -> Result<Option<RgbaImage>, GpuError> {
+        self.viewport.target.as_ref().map(|(target, _)| target.read(&self.engine.gpu)).transpose()
+    }
+
     /// How many pictures have been drawn.
     pub fn pictures(&self) -> u64 {
         self.viewport.pictures()
@@ -309,97 +227,42 @@ impl App {
         self.document.as_ref().is_some_and(|document| document.checks.is_busy())
     }
 
-    fn take_loaded(&mut self, context: &egui::Context) {
-        // It is framed for the viewport, whose size the first frame tells.
-        if self.viewport.target.is_none() {
-            return;
-        }
-        let Some(load) = &mut self.load else { return };
-        let Some(result) = load.take() else { return };
-        let (keep_view, source) = (load.keep_view, load.source.clone());
-        self.load = None;
-        match result {
-            Ok(document) => {
-                if !keep_view {
-                    self.frozen = None;
-                    self.forget_truth();
-                }
-                self.chart.stop();
-                let title = format!("{} - pnaen", document.loaded.source.title());
-                context.send_viewport_cmd(egui::ViewportCommand::Title(title));
-                let before = self.document.replace(document);
-                if before.is_some() {
-                    self.error = None;
-                }
-                self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
-                self.keep_playback(keep_view);
-                if !keep_view {
-                    self.frame();
-                    self.look_as_before();
-                }
-                self.measuring = Measuring::default();
-                self.left.forget();
-                self.deselect();
-            }
-            Err(Some(NotLoaded { mut why, is_gone })) => {
-                if is_gone && self.lasting.gone(&source) {
-                    why += "; it isn't listed as recent any more";
-                }
-                self.error = Some(why);
-                // A window shows something, also if the first file can't be.
-                if self.document.is_none() {
-                    self.open(context, Source::default());
-                }
-            }
-            // Cancelled by the person in front of the window, who knows.
-            Err(None) => {}
-        }
-    }
-
-    fn take_dialog(&mut self, context: &egui::Context) {
-        let Some(ended) = self.dialog.as_ref().and_then(Beside::take) else { return };
-        self.dialog = None;
-        match ended {
-            Ok(Some(path)) if std::mem::take(&mut self.asks_for_truth) => self.open_truth(context, Source::File(path)),
-            Ok(Some(path)) => self.open_path(context, path),
-            Ok(None) => {}
-            Err(stopped) => {
-                self.error = Some(format!("the desktop's file dialog {stopped}; type a path instead (Ctrl+L)"));
-            }
-        }
-    }
-
     fn take_checks(&mut self) {
         let stopped = self.document.as_mut().and_then(|document| document.checks.take_stopped());
         if let Some(stopped) = stopped {
             self.error = Some(format!("looking through the mesh {stopped}: what it found until then is shown"));
         }
     }
-
-    fn take_device_problem(&mut self) {
-        if let Err(problem) = self.engine.gpu.check() {
-            self.error = Some(problem.to_string());
-        }
-    }
 }
 
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
+        if self.is_lost() {
+            // The window can't show anything any more; what follows it can.
+            return context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+        if self.farewell.is_some() {
+            return self.farewell_keys(context);
+        }
         self.take_loaded(context);
         self.take_truth();
         self.take_checks();
         self.take_dialog(context);
         self.take_chart(context);
         self.take_device_problem();
-        let dropped = context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).next());
-        if let Some(path) = dropped {
-            self.open_path(context, path);
-        }
+        self.take_dropped(context);
+        self.hold_typing(context);
         self.shortcuts(context);
         self.play_on(context);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if self.is_lost() {
+            return;
+        }
+        if self.farewell.is_some() {
+            return self.farewell(ui);
+        }
         egui::Panel::top("menu").show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").show(ui, |ui| self.status_line(ui));
         egui::Panel::left("settings").resizable(false).exact_size(264.0).show(ui, |ui| self.settings_panel(ui));
@@ -409,6 +272,11 @@ impl eframe::App for App {
         self.windows(ui.ctx());
         self.hold_chart();
         self.keep(ui.ctx());
+        if self.is_lost() {
+            // egui can't paint what was just made of it.
+            ui.ctx().request_discard("the device was lost");
+            ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+        }
     }
 
     fn on_exit(&mut self) {

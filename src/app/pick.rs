@@ -34,6 +34,11 @@ pub struct Outlined {
 }
 
 impl Selection {
+    /// Keeps what is looked at, and lets go of what is about one tessellation.
+    pub fn forget_tessellation(&mut self) {
+        *self = Self { triangle: self.triangle, ..Self::default() };
+    }
+
     /// Whether a click is still being answered.
     pub fn is_busy(&self) -> bool {
         self.clicked.is_some() || self.picking.is_some()

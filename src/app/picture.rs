@@ -279,6 +279,17 @@ impl Viewport {
         self.drawing.as_ref().is_some_and(|drawing| drawing.steps > SHORT)
     }
 
+    /// The device refused what was wanted: that isn't drawn again by itself, and what may be half drawn isn't shown.
+    pub fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
+        (self.drawn, self.drawing, self.counting) = (None, None, None);
+        self.cancelled = Some(*wanted);
+        for half in Half::BOTH {
+            if let Some(scene) = scene.half_mut(half) {
+                scene.tessellator.forget();
+            }
+        }
+    }
+
     /// Leaves the picture under way as it is: the last one stays until something else is wanted.
     pub fn cancel(&mut self) {
         self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);

@@ -1,5 +1,6 @@
 //! Numbers and names as people read them.
 
+pub use crate::names::shortened;
 pub use crate::numbers::{grouped, short};
 
 /// A number and its share of all.
@@ -11,14 +12,6 @@ pub fn part(number: u64, all: u64) -> String {
 /// Bytes in MiB.
 pub fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
-}
-
-/// A name that someone else gave, in so many characters at most.
-pub fn shortened(name: &str, most: usize) -> String {
-    if name.chars().count() <= most {
-        return name.to_owned();
-    }
-    name.chars().take(most.saturating_sub(1)).chain(['…']).collect()
 }
 
 /// A factor with so many decimals; some forms of LOD ask for huge ones.
@@ -34,7 +27,6 @@ mod tests {
     fn numbers_read_well() {
         assert_eq!([part(1234, 10000), part(0, 0)], ["1,234 (12.3 %)", "0 (0.0 %)"]);
         assert_eq!([factor(7.3125, 2), factor(64.0, 3), factor(1.5e9, 2)], ["7.31", "64.000", "1.50e9"]);
-        assert_eq!([shortened("Walk", 4), shortened("Walking", 4)], ["Walk", "Wal…"]);
         assert_eq!(mebibytes(3 << 19), "1.5 MiB");
     }
 }

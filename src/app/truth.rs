@@ -21,7 +21,8 @@ pub struct Chosen {
 pub struct TruthLoad {
     pub source: Source,
     pub progress: Progress,
-    job: Beside<Result<Chosen, Option<String>>>,
+    /// None only while it changes hands.
+    job: Option<Beside<Result<Chosen, Option<String>>>>,
 }
 
 impl TruthLoad {
@@ -37,7 +38,12 @@ impl TruthLoad {
             Err(LoadError::Cancelled(_)) => Err(None),
             Err(error) => Err(Some(error.to_string())),
         };
-        Self { job: Beside::start(context, load), source, progress }
+        Self { job: Some(Beside::start(context, load)), source, progress }
+    }
+
+    /// Goes on, and repaints another window when it ends.
+    pub(super) fn wake(&mut self, context: &egui::Context) {
+        self.job = self.job.take().map(|job| job.waking(context));
     }
 }
 
@@ -66,7 +72,7 @@ impl App {
 
     pub(super) fn take_truth(&mut self) {
         let Some(load) = &self.truth_load else { return };
-        let Some(result) = load.job.take() else { return };
+        let Some(result) = load.job.as_ref().and_then(Beside::take) else { return };
         let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", load.source.title());
         let result = result.unwrap_or_else(|error| Err(Some(stopped(error))));
         self.truth_load = None;

@@ -40,7 +40,9 @@ impl App {
         if let Err(error) = self.advance(ui.ctx(), size) {
             self.error = Some(error.to_string());
         }
-        if let Some((_, id)) = &self.viewport.target {
+        // What was refused may be half drawn.
+        let is_whole = self.viewport.drawn.is_some() || self.viewport.cancelled.is_none();
+        if let Some((_, id)) = self.viewport.target.as_ref().filter(|_| is_whole) {
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
             ui.painter().image(*id, rect, whole, egui::Color32::WHITE);
         }
@@ -53,7 +55,7 @@ impl App {
     /// Lets everything beside the window go on, and draws what is wanted.
     fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), Trouble> {
         // Callbacks of readbacks run here; a lost device reports through its own callback.
-        let _ = self.engine.gpu.device.poll(wgpu::PollType::Poll);
+        self.engine.gpu.poll(wgpu::PollType::Poll);
         self.viewport.fit(&self.render_state, &self.engine, size)?;
         self.viewport.land(&self.engine);
         self.keep_left(context)?;
@@ -76,7 +78,12 @@ impl App {
             clip_from_object: self.camera.clip_from_object(viewport, &document.scene.bounds),
             viewport,
         };
-        self.viewport.draw(&self.engine, document, &wanted)?;
+        let drawn = self.viewport.draw(&self.engine, document, &wanted);
+        // What the device says itself explains more than what it led to.
+        if let Err(problem) = self.engine.gpu.check().and(drawn) {
+            self.viewport.refuse(&mut document.scene, &wanted);
+            return Err(problem.into());
+        }
         self.measuring.keep_only(document.generation, document.scene.tessellator.generation());
         if let Some(left) = document.scene.half(Half::Left) {
             self.left.measuring.keep_only(document.generation, left.tessellator.generation());
@@ -92,6 +99,13 @@ impl App {
             self.measure_left(view)?;
         }
         self.deviate(&inputs)?;
+        if let Err(problem) = self.engine.gpu.check() {
+            self.measuring.give_up();
+            self.left.measuring.give_up();
+            self.deviating.give_up();
+            self.left.deviating.give_up();
+            return Err(problem.into());
+        }
         let measures = self.deviating.is_busy() || self.left.deviating.is_busy() || !self.left.is_made();
         let copies = self.measuring.is_busy() || self.left.measuring.is_busy();
         let measures_only = measures && self.viewport.is_free() && !copies;
@@ -211,7 +225,8 @@ impl App {
         }
         let is_old = self.document.as_ref().map(|document| document.generation)
             != self.viewport.drawn.as_ref().map(|drawn| drawn.document);
-        if self.document.is_some() && (is_old || self.left.takes_long()) {
+        let is_cancelled = self.viewport.cancelled.is_some();
+        if self.document.is_some() && !is_cancelled && (is_old || self.left.takes_long()) {
             note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
         }
         if let Some(load) = &self.load {

@@ -7,17 +7,18 @@ use image::ImageFormat;
 use thiserror::Error;
 
 use super::{COLUMNS, Subject, bitmap, svg};
+use crate::names::shown_path;
 use crate::plot::ChartError;
 
 #[derive(Debug, Error)]
 pub enum SaveError {
-    #[error("{} can't be a chart: name it .svg, .png or .csv", .0.display())]
+    #[error("{} can't be a chart: name it .svg, .png or .csv", shown_path(.0))]
     Ending(PathBuf),
     #[error(transparent)]
     Chart(#[from] ChartError),
     #[error("the chart could not be encoded: {0}")]
     Encode(#[from] image::ImageError),
-    #[error("{} could not be written: {reason}", .path.display())]
+    #[error("{} could not be written: {reason}", shown_path(.path))]
     Write { path: PathBuf, reason: String },
 }
 

@@ -49,6 +49,19 @@ pub struct AdapterOption {
 }
 
 impl AdapterOption {
+    /// Refuses an adapter where nothing runs on one.
+    ///
+    /// # Errors
+    /// There is one, and `is_cpu` is set.
+    pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
+        match is_cpu && self.adapter.is_some() {
+            true => Err(CliError::Usage(
+                "--adapter says which graphics adapter computes, and --device cpu that none does: leave one of them out",
+            )),
+            false => Ok(()),
+        }
+    }
+
     pub fn choice(&self) -> AdapterChoice {
         self.adapter.clone().unwrap_or_default()
     }

@@ -3,12 +3,13 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{CliError, WeldOption, file_error, load, read_bytes, write_bytes};
+use super::{CliError, WeldOption, file_of, keep_apart, load_apart, read_bytes, write_bytes};
 use crate::adjacency_file::{Format, read, to_bin, to_json};
 use crate::engine::Loaded;
 use crate::measure::{IndexDifference, Meaning, index_differences};
 use crate::mesh::Source;
 use crate::mesh::adjacency::{Layout, Part};
+use crate::names::shown_path;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -39,8 +40,9 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     if args.output.is_none() && args.against.is_none() {
         return Err(CliError::Usage("give -o to write a file, --against to hold one against the mesh, or both"));
     }
-    let given = args.against.as_deref().map(|path| read_against(args, path)).transpose()?;
-    let loaded = load(&args.file, &args.weld.preparation())?;
+    keep_apart([file_of(&args.file), args.against.as_deref()], [args.output.as_deref()])?;
+    let given = args.against.as_deref().map(read_bytes).transpose()?;
+    let loaded = load_apart(&args.file, &args.weld.preparation(), &[args.output.as_deref()])?;
     let computed = args.indices.indices(&loaded.topology);
     if let Some(path) = &args.output {
         write(args, path, &loaded, &computed)?;
@@ -49,20 +51,6 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         Some((path, bytes)) => hold_against(args.indices, path, &bytes, &loaded, &computed),
         None => Ok(()),
     }
-}
-
-/// Reads the file before anything is written.
-fn read_against(args: &Args, path: &Path) -> Result<Vec<u8>, CliError> {
-    let bytes = read_bytes(path)?;
-    let is_output = |output: &PathBuf| {
-        // Neither path resolves if there is no such file, and `-` is none.
-        let real = std::fs::canonicalize(path).ok();
-        real.is_some() && real == std::fs::canonicalize(output).ok()
-    };
-    if args.output.as_ref().is_some_and(is_output) {
-        return Err(file_error(path, "kept", &"the output would replace it: write the output elsewhere"));
-    }
-    Ok(bytes)
 }
 
 fn write(args: &Args, path: &Path, loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
@@ -92,7 +80,7 @@ fn write(args: &Args, path: &Path, loaded: &Loaded, computed: &[u32]) -> Result<
 /// They do, or they aren't indices of this mesh.
 fn hold_against(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
-    let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { path.display().to_string() };
+    let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { shown_path(path) };
     let given =
         read(path, bytes, mesh, topology, layout).map_err(|fault| CliError::Indices { path: name.clone(), fault })?;
     let differences = index_differences(mesh, topology, layout, &given, computed);

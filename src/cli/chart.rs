@@ -11,7 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::options::{CameraOption, Size};
-use super::{AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, load, options, write_text};
+use super::{
+    AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart, options,
+    write_text,
+};
 use crate::chart::report::{LeftOut, Part, TABLE};
 use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
 use crate::engine::{Engine, Loaded};
@@ -167,8 +170,11 @@ struct Loading {
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     let settings = args.settings()?;
+    let read = args.files.iter().chain(&args.truth).map(file_of);
+    keep_apart(read, [args.output.as_deref(), args.csv.as_deref()])?;
     let load_one = |source: &Source| {
-        let loaded = load(source, &args.weld.preparation())?;
+        let written = [args.output.as_deref(), args.csv.as_deref()];
+        let loaded = load_apart(source, &args.weld.preparation(), &written)?;
         Ok(Loading { truth: args.truth_of(source)?, loaded })
     };
     let sources = args.meshes();

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, read_text};
 use crate::gpu::{DomainPass, DomainPattern, Gpu};
+use crate::names::shown_path;
 use crate::tessellate::{
     HullFactors, Partitioning, domain_plan, domain_point, domain_triangle, point_count, process, triangle_count,
 };
@@ -42,6 +43,7 @@ pub type FactorSet = [f32; 4];
 const BATCH: usize = 256;
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    args.adapter.check(args.device == Device::Cpu)?;
     let (sets, numbered) = match (&args.input, args.factors) {
         (Some(path), _) => (read_sets(path, args.partitioning)?, true),
         (None, Some(set)) if !is_taken(args.partitioning, set) => return Err(CliError::Usage(NOT_EQUAL)),
@@ -108,8 +110,7 @@ fn read_sets(path: &Path, partitioning: Partitioning) -> Result<Vec<FactorSet>, 
     let text = read_text(path)?;
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let set = |(index, line): (usize, &str)| {
-        let at_line =
-            |reason: &str| CliError::Line { path: path.display().to_string(), line: index + 1, reason: reason.into() };
+        let at_line = |reason: &str| CliError::Line { path: shown_path(path), line: index + 1, reason: reason.into() };
         let set = factor_set(line.split_whitespace())
             .ok_or_else(|| at_line("expected four numbers separated by spaces, such as 3 2.5 inf 4"))?;
         if is_taken(partitioning, set) { Ok(set) } else { Err(at_line(NOT_EQUAL)) }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::tessellate::Device;
-use super::{AdapterOption, CliError, SurfaceOptions, load, write_text};
+use super::{AdapterOption, CliError, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, write_text};
 use crate::engine::Engine;
 use crate::factors_file::to_csv;
 use crate::gpu::Timing;
@@ -30,7 +30,10 @@ pub struct Args {
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
-    let loaded = load(&args.file, &args.surface.preparation())?;
+    args.adapter.check(args.device == Device::Cpu)?;
+    let heights = file_of_heights(args.surface.height.as_ref());
+    keep_apart([file_of(&args.file), heights], [Some(&*args.output)])?;
+    let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
     let (mesh, topology) = (&posed.mesh, &posed.topology);

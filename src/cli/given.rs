@@ -10,6 +10,7 @@ use super::{CliError, read_text};
 use crate::factors_file::from_csv;
 use crate::measure::{Agreement, Disagreement, Order};
 use crate::mesh::{Mesh, Topology};
+use crate::names::shown_path;
 use crate::tessellate::{Convention, HullFactors, Partitioning};
 
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -52,14 +53,14 @@ impl GivenOption {
         let Some(path) = &self.given else { return Ok(None) };
         let text = read_text(path)?;
         let factors = from_csv(&text, topology, mesh.triangles.len()).map_err(|error| CliError::Line {
-            path: path.display().to_string(),
+            path: shown_path(path),
             line: error.line,
             reason: error.fault.to_string(),
         })?;
         if partitioning == Partitioning::Subtriangulation {
             let uneven = topology.patches.iter().zip(&factors).find(|(_, factors)| !factors.is_uniform());
             if let Some((patch, _)) = uneven {
-                return Err(CliError::Uneven { path: path.display().to_string(), triangle: patch.triangle });
+                return Err(CliError::Uneven { path: shown_path(path), triangle: patch.triangle });
             }
         }
         let agreement = Agreement::of(topology, &factors, convention);
@@ -207,7 +208,7 @@ impl FactorsFile {
             sides: edge.sides.iter().map(side).collect(),
         };
         Self {
-            path: path.display().to_string(),
+            path: shown_path(path),
             convention: name(convention),
             edges_compared: agreement.edges_compared,
             edges_different: agreement.edges.len() as u64,

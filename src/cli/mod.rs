@@ -3,6 +3,7 @@
 mod adapters;
 mod adjacency;
 mod animation;
+mod apart;
 mod chart;
 mod domain;
 mod factors;
@@ -29,7 +30,9 @@ use thiserror::Error;
 
 pub use adapters::AdapterOption;
 pub use animation::AnimationOption;
+use apart::{file_of, file_of_heights, keep_apart};
 pub use given::GivenOption;
+
 pub use options::{LimitOption, SurfaceOptions, WeldOption};
 pub use split::SplitOption;
 pub use truth::TruthOption;
@@ -38,7 +41,8 @@ use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
 use crate::gpu::GpuError;
 use crate::measure::CompareError;
-use crate::mesh::{LoadError, Progress, Source};
+use crate::mesh::{Limits, LoadError, Progress, Source};
+use crate::names::{on_one_line, shown_path};
 
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
@@ -102,6 +106,8 @@ pub enum CliError {
     Export(#[from] ExportError),
     #[error("{path}: could not be {doing} ({reason})")]
     File { path: String, doing: &'static str, reason: String },
+    #[error("{path} isn't written over: it is {by} by the same command; choose another name")]
+    Taken { path: String, by: &'static str },
     #[error("{reference}: {reason}")]
     Reference { reference: String, reason: CompareError },
     #[error("{picture} differs from {reference} by {difference:.4}, more than {threshold}{see}")]
@@ -178,7 +184,7 @@ pub fn run(command: Command) -> ExitCode {
 /// Says what went wrong on standard error; the exit code of a failure.
 pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
     // Standard error may be closed too; then there is nobody to tell.
-    let _ = writeln!(std::io::stderr(), "pnaen: {error}");
+    let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
     ExitCode::FAILURE
 }
 
@@ -198,16 +204,38 @@ fn read_text(path: &Path) -> Result<String, CliError> {
     String::from_utf8(read_bytes(path)?).map_err(|error| file_error(path, "read", &error))
 }
 
-/// The whole of a file, or of standard input if the path is `-`.
+/// The whole of a file, or of standard input if the path is `-`. A pipe is read to its end; a device isn't, which may have none,
+/// nor is more than of a mesh's file.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
+    let most = Limits::default().file;
     let mut bytes = Vec::new();
-    let read = if path.as_os_str() == "-" {
-        std::io::stdin().read_to_end(&mut bytes)
-    } else {
-        std::fs::File::open(path).and_then(|mut file| file.read_to_end(&mut bytes))
+    let read = match path.as_os_str() == "-" {
+        true => std::io::stdin().take(most + 1).read_to_end(&mut bytes),
+        false => open_input(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)),
     };
     read.map_err(|error| file_error(path, "read", &error))?;
+    if bytes.len() as u64 > most {
+        return Err(file_error(path, "read", &format!("it has more than the {most} bytes that are read at most")));
+    }
     Ok(bytes)
+}
+
+fn open_input(path: &Path) -> std::io::Result<std::fs::File> {
+    if is_device(&std::fs::metadata(path)?) {
+        return Err(std::io::Error::other("it is a device; name a file, a pipe, or - for standard input"));
+    }
+    std::fs::File::open(path)
+}
+
+#[cfg(unix)]
+fn is_device(about: &std::fs::Metadata) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    about.file_type().is_char_device() || about.file_type().is_block_device()
+}
+
+#[cfg(not(unix))]
+fn is_device(_: &std::fs::Metadata) -> bool {
+    false
 }
 
 /// Writes a whole text, to standard output if the path is `-`.
@@ -239,13 +267,20 @@ fn to_json(value: &impl serde::Serialize) -> Result<String, CliError> {
 }
 
 fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) -> CliError {
-    CliError::File { path: path.display().to_string(), doing, reason: reason.to_string() }
+    CliError::File { path: shown_path(path), doing, reason: reason.to_string() }
 }
 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = crate::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.mesh.warnings);
+    Ok(loaded)
+}
+
+/// The same, where what is to be written is none of the files that the mesh's own names.
+fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Path>]) -> Result<Loaded, CliError> {
+    let loaded = load(source, preparation)?;
+    keep_apart(loaded.read.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;
     Ok(loaded)
 }
 
@@ -269,6 +304,6 @@ impl Telling {
 
 fn warn(warnings: &[String]) {
     for warning in warnings {
-        let _ = writeln!(std::io::stderr(), "pnaen: warning: {warning}");
+        let _ = writeln!(std::io::stderr(), "pnaen: warning: {}", on_one_line(warning));
     }
 }

@@ -1,21 +1,29 @@
 //! A picture held against one that was right.
 
+use std::io::BufReader;
 use std::path::Path;
+
+use image::{ImageError, ImageReader};
 
 use super::{CliError, file_error, write_picture};
 use crate::measure::compare;
+use crate::mesh::open_file;
+use crate::names::shown_path;
 
 /// Reads the reference before anything is drawn or written.
 ///
 /// # Errors
-/// It can't be read, or the picture at `output` would replace it.
-pub fn read(path: &Path, output: &Path) -> Result<image::RgbaImage, CliError> {
-    let reference = image::open(path).map_err(|error| file_error(path, "read", &error))?.to_rgba8();
-    // Neither path resolves if there is no such file yet.
-    if std::fs::canonicalize(path).ok() == std::fs::canonicalize(output).ok() {
-        return Err(file_error(path, "kept", &"the picture would replace it: write the picture elsewhere"));
-    }
-    Ok(reference)
+/// It can't be read.
+pub fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
+    let fail = |reason: &dyn std::fmt::Display| file_error(path, "read", reason);
+    let file = open_file(path).map_err(|error| fail(&error))?;
+    let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG or JPEG image"))?.0;
+    let reader = ImageReader::new(BufReader::new(file)).with_guessed_format().map_err(|error| fail(&error))?;
+    let reference = reader.decode().map_err(|error| match error {
+        ImageError::Unsupported(_) => fail(&"it is no image; name a PNG or JPEG one"),
+        error => fail(&error),
+    })?;
+    Ok(reference.to_rgba8())
 }
 
 /// Fails if the picture at `output` differs from the reference by more than `threshold`, and writes the difference beside it.
@@ -29,8 +37,8 @@ pub fn hold_against(
     reference: &image::RgbaImage,
     threshold: f64,
 ) -> Result<(), CliError> {
-    let comparison = compare(picture, reference)
-        .map_err(|reason| CliError::Reference { reference: path.display().to_string(), reason })?;
+    let comparison =
+        compare(picture, reference).map_err(|reason| CliError::Reference { reference: shown_path(path), reason })?;
     if comparison.difference <= threshold {
         return Ok(());
     }
@@ -40,13 +48,13 @@ pub fn hold_against(
     // Beside a device or a pipe is no place for a picture.
     let see = if output.is_file() {
         write_picture(&diff, &comparison.map.into())?;
-        format!(": see {}, where the differences are bright", diff.display())
+        format!(": see {}, where the differences are bright", shown_path(&diff))
     } else {
         String::new()
     };
     Err(CliError::Different {
-        picture: output.display().to_string(),
-        reference: path.display().to_string(),
+        picture: shown_path(output),
+        reference: shown_path(path),
         difference: comparison.difference,
         threshold,
         see,

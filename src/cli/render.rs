@@ -6,8 +6,8 @@ use super::split::LeftStats;
 use super::stats::{AnimationStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, Held};
 use super::{
-    AdapterOption, CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, load,
-    options, reference, to_json, write_picture, write_text,
+    AdapterOption, CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, file_of,
+    file_of_heights, keep_apart, load_apart, options, reference, to_json, write_picture, write_text,
 };
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
@@ -93,11 +93,23 @@ impl Args {
     }
 }
 
+impl Args {
+    /// What is written replaces nothing that is read.
+    fn keep_apart(&self) -> Result<(), CliError> {
+        let truth = self.truth.truth.as_ref().and_then(file_of);
+        let heights = file_of_heights(self.surface.height.as_ref());
+        let read = [file_of(&self.file), truth, heights, self.given.given.as_deref(), self.reference.as_deref()];
+        keep_apart(read, [Some(&*self.output), self.stats.as_deref()])
+    }
+}
+
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check_with(args.split.split_surface)?;
     let overlays = args.overlays()?;
-    let reference = args.reference.as_deref().map(|path| reference::read(path, &args.output)).transpose()?;
-    let loaded = load(&args.file, &args.surface.preparation())?;
+    args.keep_apart()?;
+    let reference = args.reference.as_deref().map(reference::read).transpose()?;
+    let written = [Some(&*args.output), args.stats.as_deref()];
+    let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
     let held = args.truth.held(&loaded, &args.surface, overlays.colors == Colors::Deviation)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;

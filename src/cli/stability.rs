@@ -62,6 +62,7 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    args.adapter.check(args.device == Some(Device::Cpu))?;
     let subjects = args.subjects()?;
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };
     let effort = Effort { cameras: args.cameras, cpu: args.device != Some(Device::Gpu), ..Effort::default() };

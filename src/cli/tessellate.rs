@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::{AdapterOption, CliError, GivenOption, SurfaceOptions, load};
+use super::{AdapterOption, CliError, GivenOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart};
 use crate::engine::Engine;
 use crate::export::Exported;
 use crate::gpu::Timing;
@@ -40,8 +40,11 @@ pub enum Device {
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
+    args.adapter.check(args.device == Device::Cpu)?;
     Exported::check(&args.output, 0, 0)?;
-    let loaded = load(&args.file, &args.surface.preparation())?;
+    let heights = file_of_heights(args.surface.height.as_ref());
+    keep_apart([file_of(&args.file), heights, args.given.given.as_deref()], [Some(&*args.output)])?;
+    let loaded = load_apart(&args.file, &args.surface.preparation(), &[Some(&args.output)])?;
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
     let (mesh, topology) = (&posed.mesh, &posed.topology);

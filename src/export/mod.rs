@@ -10,6 +10,7 @@ use glam::{Vec2, Vec3};
 use thiserror::Error;
 
 use crate::mesh::{Mesh, Topology};
+use crate::names::shown_path;
 use crate::tessellate::{Tessellated, linear_normal, linear_uv};
 
 /// A mesh with attributes, one run of triangles a material.
@@ -62,7 +63,7 @@ impl<'a> Exported<'a> {
     /// # Errors
     /// Another ending than .glb or .obj, or more than the format holds.
     pub fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
-        let shown = path.display().to_string();
+        let shown = shown_path(path);
         match ending(path).as_str() {
             // Indices of either are 32 bits here.
             "obj" if vertices <= u64::from(u32::MAX) => Ok(()),
@@ -78,7 +79,7 @@ impl<'a> Exported<'a> {
     /// # Errors
     /// Another ending, a file that can't be written, or more than the format holds.
     pub fn write(&self, path: &Path) -> Result<(), ExportError> {
-        let shown = path.display().to_string();
+        let shown = shown_path(path);
         let bytes = match ending(path).as_str() {
             "glb" => glb::encode(self, &shown)?,
             "obj" => obj::encode(self),

@@ -2,7 +2,10 @@
 
 use std::str::FromStr;
 
+use thiserror::Error;
+
 use super::GpuError;
+use crate::names::shown;
 
 /// What is asked for.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -12,18 +15,24 @@ pub enum AdapterChoice {
     Best,
     /// One that runs on the CPU.
     Software,
-    /// The first with this in its name, in capitals or not.
+    /// The first with this in its name, in capitals or not; as it was typed.
     Named(String),
 }
 
+/// Nothing was asked for.
+#[derive(Debug, PartialEq, Eq, Error)]
+#[error("it has no name: give part of one that `pnaen adapters` lists, or software")]
+pub struct NoName;
+
 impl FromStr for AdapterChoice {
-    type Err = std::convert::Infallible;
+    type Err = NoName;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(match text {
-            "software" => Self::Software,
-            name => Self::Named(name.to_lowercase()),
-        })
+        match text.trim() {
+            "" => Err(NoName),
+            name if name.eq_ignore_ascii_case("software") => Ok(Self::Software),
+            name => Ok(Self::Named(name.to_owned())),
+        }
     }
 }
 
@@ -32,7 +41,7 @@ impl AdapterChoice {
         match self {
             Self::Best => true,
             Self::Software => info.device_type == wgpu::DeviceType::Cpu,
-            Self::Named(name) => info.name.to_lowercase().contains(name),
+            Self::Named(name) => info.name.to_lowercase().contains(&name.to_lowercase()),
         }
     }
 
@@ -45,6 +54,27 @@ impl AdapterChoice {
         self.place(&infos).map(|place| &adapters[place])
     }
 
+    /// The first of these that was asked for and is able to do something: to show a window, say.
+    ///
+    /// # Errors
+    /// There is none such, none that is able, or none at all.
+    pub fn among_able<'a>(
+        &self,
+        adapters: &'a [wgpu::Adapter],
+        is_able: impl Fn(&wgpu::Adapter) -> bool,
+    ) -> Result<&'a wgpu::Adapter, GpuError> {
+        let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
+        let able: Vec<_> = adapters.iter().map(is_able).collect();
+        self.place_able(&infos, &able).map(|place| &adapters[place])
+    }
+
+    fn place_able(&self, infos: &[wgpu::AdapterInfo], able: &[bool]) -> Result<usize, GpuError> {
+        let first = self.place(infos)?;
+        let mut all = infos.iter().zip(able);
+        let place = all.position(|(info, &is_able)| is_able && self.takes(info));
+        place.ok_or_else(|| GpuError::NoWindow { name: infos[first].name.clone() })
+    }
+
     fn place(&self, infos: &[wgpu::AdapterInfo]) -> Result<usize, GpuError> {
         if let Some(place) = infos.iter().position(|info| self.takes(info)) {
             return Ok(place);
@@ -54,7 +84,7 @@ impl AdapterChoice {
             _ if infos.is_empty() => GpuError::NoAdapter,
             Self::Software => GpuError::NoSoftwareAdapter { has },
             Self::Best => GpuError::NoAdapter,
-            Self::Named(name) => GpuError::NoSuchAdapter { name: name.clone(), has },
+            Self::Named(name) => GpuError::NoSuchAdapter { name: shown(name), has },
         })
     }
 }
@@ -112,7 +142,7 @@ mod tests {
     }
 
     fn place(choice: &str, infos: &[wgpu::AdapterInfo]) -> Result<usize, String> {
-        let Ok(choice) = choice.parse::<AdapterChoice>();
+        let choice: AdapterChoice = choice.parse().map_err(|error: NoName| error.to_string())?;
         choice.place(infos).map_err(|error| error.to_string())
     }
 
@@ -123,12 +153,29 @@ mod tests {
         assert_eq!(place("rtx", &infos), Ok(0));
         assert_eq!(place("LLVMpipe", &infos), Ok(1));
         assert_eq!(place("software", &infos), Ok(1));
+        assert_eq!(place("SOFTware", &infos), Ok(1));
+        assert!(place(" ", &infos).is_err_and(|error| error.starts_with("it has no name")));
+    }
+
+    #[test]
+    fn what_shows_no_window_is_told_from_what_is_not_there() {
+        let two = ["GeForce RTX 4090", "GeForce GT 710"].map(|name| info(name, wgpu::DeviceType::DiscreteGpu));
+        let place = |choice: &str, able: [bool; 2]| {
+            let choice: AdapterChoice = choice.parse().map_err(|error: NoName| error.to_string())?;
+            choice.place_able(&two, &able).map_err(|error| error.to_string())
+        };
+        assert_eq!(place("geforce", [true, true]), Ok(0));
+        assert_eq!(place("geforce", [false, true]), Ok(1), "the first that is able");
+        let expected = "the adapter GeForce RTX 4090 can't show a window on this display: choose another (pnaen adapters), or \
+                        use the commands (pnaen --help)";
+        assert_eq!(place("rtx", [false, true]), Err(expected.to_owned()));
+        assert!(place("radeon", [true, true]).is_err_and(|error| error.contains("has \"radeon\" in its name")));
     }
 
     #[test]
     fn what_is_not_there_is_refused_with_what_is() {
         let infos = [info("GeForce RTX 4090", wgpu::DeviceType::DiscreteGpu)];
-        let expected = "no graphics adapter has \"radeon\" in its name: there are GeForce RTX 4090 (pnaen adapters)";
+        let expected = "no graphics adapter has \"Radeon\" in its name: there are GeForce RTX 4090 (pnaen adapters)";
         assert_eq!(place("Radeon", &infos), Err(expected.to_owned()));
         assert!(place("software", &infos).is_err_and(|error| error.contains("mesa-vulkan-drivers")));
         assert!(place("software", &[]).is_err_and(|error| error.contains("no graphics adapter was found")));

@@ -1,6 +1,7 @@
 //! An adapter and its device, with or without a window.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::GpuError;
 use super::adapters::{AdapterChoice, adapters, best_adapter};
@@ -12,7 +13,7 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name, driver and kind of the adapter.
     pub info: wgpu::AdapterInfo,
-    problem: Problem,
+    reported: Reported,
     /// Samples a px that the viewport is drawn with: 4 where the adapter has it, else 1.
     pub samples: u32,
     /// The rasteriser rounds corners to a grid of one px by 2 to the power of this.
@@ -72,33 +73,36 @@ fn vulkan_subpixel_bits(_: &wgpu::Adapter) -> Option<u32> {
     None
 }
 
-/// The first problem that nobody has asked for yet.
-type Problem = Arc<Mutex<Option<GpuError>>>;
+/// What a device has reported.
+#[derive(Clone, Debug, Default)]
+struct Reported {
+    /// The first problem that nobody has asked for yet.
+    problem: Arc<Mutex<Option<GpuError>>>,
+    /// Why it was lost, for good.
+    lost: Arc<OnceLock<String>>,
+}
 
 /// Keeps what the device reports, in place of wgpu's own panic.
-fn watch(device: &wgpu::Device) -> Problem {
-    let problem = Problem::default();
-    let keeper = || {
-        let problem = problem.clone();
-        move |found| {
-            problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(found);
-        }
-    };
-    let keep = keeper();
+fn watch(device: &wgpu::Device) -> Reported {
+    let reported = Reported::default();
+    let problem = reported.problem.clone();
     device.on_uncaptured_error(Arc::new(move |error| {
-        keep(match error {
-            wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory,
-            error => GpuError::Refused(error.to_string().replace('\n', " ")),
-        });
+        problem.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(in_words(error));
     }));
-    let keep = keeper();
+    let lost = reported.lost.clone();
     device.set_device_lost_callback(move |reason, message| {
-        // Destroyed is what a program does to its own device.
-        if reason != wgpu::DeviceLostReason::Destroyed {
-            keep(GpuError::Lost(message));
-        }
+        let destroyed = reason == wgpu::DeviceLostReason::Destroyed;
+        // Nobody hears of one that the program has let go of; wgpu has no words for one that it destroys.
+        let _ = lost.set(if destroyed { "it was destroyed".into() } else { message.replace('\n', " ") });
     });
-    problem
+    reported
+}
+
+fn in_words(error: wgpu::Error) -> GpuError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory,
+        error => GpuError::Refused(error.to_string().replace('\n', " ")),
+    }
 }
 
 impl Gpu {
@@ -136,20 +140,55 @@ impl Gpu {
         let flags = |format: wgpu::TextureFormat| adapter.get_texture_format_features(format).flags;
         let four = wgpu::TextureFormatFeatureFlags::MULTISAMPLE_X4;
         let multisampled = flags(COLOR_FORMAT).contains(four) && flags(DEPTH_FORMAT).contains(four);
-        let problem = watch(&device);
+        let reported = watch(&device);
         let samples = if multisampled { 4 } else { 1 };
-        Self { device, queue, info: adapter.get_info(), problem, samples, subpixel_bits: subpixel_bits(adapter) }
+        Self { device, queue, info: adapter.get_info(), reported, samples, subpixel_bits: subpixel_bits(adapter) }
     }
 
-    /// What the device has reported since the last call, if anything: commands don't fail where they are given.
+    /// What the device has reported since the last call, if anything: commands don't fail where they are given. A lost device
+    /// is so for good.
     ///
     /// # Errors
     /// Out of memory, a refused command, or a lost device.
     pub fn check(&self) -> Result<(), GpuError> {
+        if let Some(why) = self.lost() {
+            return Err(GpuError::Lost(why.to_owned()));
+        }
         // A thread that panicked while it held the lock leaves text that is still whole.
-        match self.problem.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        match self.reported.problem.lock().unwrap_or_else(PoisonError::into_inner).take() {
             Some(problem) => Err(problem),
             None => Ok(()),
+        }
+    }
+
+    /// Lets what the device has finished be known. wgpu panics where a driver says that the device is lost right then; that
+    /// is known from [`Self::lost`] by that time.
+    pub fn poll(&self, how: wgpu::PollType) {
+        let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
+    }
+
+    /// Why the device was lost, if it was.
+    pub fn lost(&self) -> Option<&str> {
+        self.reported.lost.get().map(String::as_str)
+    }
+
+    /// What `make` makes on this thread; what the device refuses of it is its own error, and reported nowhere else.
+    ///
+    /// # Errors
+    /// Out of memory, a refused command, or a lost device.
+    pub fn attempt<T>(&self, make: impl FnOnce() -> T) -> Result<T, GpuError> {
+        let filters = [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::Validation, wgpu::ErrorFilter::OutOfMemory];
+        let scopes = filters.map(|filter| self.device.push_error_scope(filter));
+        let made = make();
+        let mut refused = None;
+        // The last one pushed goes first.
+        for scope in scopes.into_iter().rev() {
+            refused = refused.or(pollster::block_on(scope.pop()));
+        }
+        match (self.lost(), refused) {
+            (Some(why), _) => Err(GpuError::Lost(why.to_owned())),
+            (None, Some(error)) => Err(in_words(error)),
+            (None, None) => Ok(made),
         }
     }
 

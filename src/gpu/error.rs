@@ -14,6 +14,10 @@ pub enum GpuError {
         "no graphics adapter runs in software: there are {has}; install a driver that does (Debian's mesa-vulkan-drivers)"
     )]
     NoSoftwareAdapter { has: String },
+    #[error(
+        "the adapter {name} can't show a window on this display: choose another (pnaen adapters), or use the commands (pnaen --help)"
+    )]
+    NoWindow { name: String },
     #[error("the adapter {adapter} gave no device ({reason}): update its driver, or choose another adapter")]
     NoDevice { adapter: String, reason: String },
     #[error(

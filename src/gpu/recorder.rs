@@ -180,7 +180,7 @@ fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
 
 /// Waits until the device has done all that was submitted. A lost device is found out by whoever reads next.
 pub fn wait(gpu: &Gpu) {
-    let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+    gpu.poll(wgpu::PollType::wait_indefinitely());
 }
 
 /// Reads `bytes` bytes of `buffer` from `offset` on, waiting for them. Sizes and offsets are multiples of 4.

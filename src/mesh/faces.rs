@@ -2,22 +2,27 @@
 
 use glam::{Vec2, Vec3};
 
+use super::budget::Budget;
 use super::fault::{Fault, Place};
 use super::gltf::extent::MAX_TRIANGLES;
 use super::merge::{LooseCorner, MeshBuilder};
-use super::polygon::{Budget, Cut, triangulate};
+use super::polygon::{self, Cut, triangulate};
 use super::rig::LARGEST_COORDINATE;
 use super::{Material, Mesh, Progress};
 
 /// A file of more materials than this is refused: each takes memory, and a draw.
 const MAX_MATERIALS: usize = 1 << 16;
 
+/// A face of more corners than this is refused.
+pub const MAX_CORNERS: usize = 1 << 19;
+
 /// What a mesh is made of meanwhile.
-pub struct Faces {
+pub struct Faces<'a> {
+    memory: &'a Budget,
     builder: MeshBuilder,
     materials: usize,
     triangles: usize,
-    budget: Budget,
+    work: polygon::Budget,
     /// Faces of fewer than 3 corners, corners on the place of the one before, faces cut somehow.
     too_small: usize,
     repeated: usize,
@@ -26,14 +31,15 @@ pub struct Faces {
     cut: Vec<[usize; 3]>,
 }
 
-impl Faces {
+impl<'a> Faces<'a> {
     /// For a file of so many bytes.
-    pub fn new(bytes: usize) -> Self {
+    pub fn new(bytes: usize, memory: &'a Budget) -> Self {
         Self {
+            memory,
             builder: MeshBuilder::new(),
             materials: 0,
             triangles: 0,
-            budget: Budget::new(bytes),
+            work: polygon::Budget::new(bytes),
             too_small: 0,
             repeated: 0,
             somehow: 0,
@@ -52,6 +58,11 @@ impl Faces {
             return Err(Fault::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
         Ok(self.builder.material(material))
+    }
+
+    /// There will be about so many triangles more, and distinct corners.
+    pub fn expect(&mut self, triangles: usize, corners: usize) {
+        self.builder.expect(triangles.saturating_mul(3), corners);
     }
 
     /// Adds a face of any number of corners; what can be mended is, in `corners` too. `place` is where the file has it.
@@ -82,6 +93,10 @@ impl Faces {
         if self.triangles as u64 > MAX_TRIANGLES {
             return Err(Fault::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
         }
+        let memory = self.memory;
+        let room = self.builder.make_room_for_triangles(material, corners.len() - 2, memory);
+        room.and_then(|()| self.builder.make_room(corners.len(), memory))
+            .map_err(|reason| Fault::TooLarge { reason })?;
         self.cut(material, corners);
         Ok(())
     }
@@ -93,7 +108,7 @@ impl Faces {
         }
         let outline: Vec<Vec3> = corners.iter().map(|corner| corner.position).collect();
         self.cut.clear();
-        let cut = triangulate(&outline, &mut self.budget, &mut self.cut);
+        let cut = triangulate(&outline, &mut self.work, &mut self.cut);
         self.somehow += usize::from(cut == Cut::Somehow);
         for triangle in &self.cut {
             self.builder.triangle(material, triangle.map(|i| corners[i]));
@@ -127,7 +142,7 @@ impl Faces {
                 "polygons without area, or whose sides cross, or too large, cut into triangles that may overlap",
             ),
         ]));
-        let mut mesh = self.builder.finish(name.to_owned(), progress)?;
+        let (mut mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         mesh.warnings.splice(0..0, warnings);
         Ok(mesh)
     }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::merge::Unfinished;
 use super::progress::Cancelled;
 
 /// Why such a file became no mesh. The file's own path is not part of the message.
@@ -13,8 +14,19 @@ pub enum Fault {
     Broken { place: Place, reason: String },
     #[error("it has more than {limit} {what}; split it into several files")]
     TooMany { limit: u64, what: &'static str },
+    #[error("its mesh {reason}; split it into several files")]
+    TooLarge { reason: String },
     #[error("no triangles: {holds}")]
     Empty { holds: String },
+}
+
+impl From<Unfinished> for Fault {
+    fn from(error: Unfinished) -> Self {
+        match error {
+            Unfinished::Cancelled(cancelled) => cancelled.into(),
+            Unfinished::TooLarge(reason) => Self::TooLarge { reason },
+        }
+    }
 }
 
 /// Where in a file.

@@ -8,10 +8,10 @@
 mod accessor;
 mod animations;
 mod binder;
-pub(super) mod budget;
 mod buffers;
 mod check;
 mod document;
+mod draco;
 mod extensions;
 pub(super) mod extent;
 mod glb;
@@ -19,6 +19,7 @@ mod hanging;
 mod json;
 pub(super) mod materials;
 mod meshopt;
+mod moving;
 mod nodes;
 mod primitive;
 mod problem;
@@ -35,6 +36,7 @@ use ::gltf::{Document, Node};
 use glam::DMat4;
 
 use super::Mesh;
+use super::budget;
 use super::load::Limits;
 use super::merge::MeshBuilder;
 use super::progress::Progress;
@@ -58,17 +60,19 @@ const MAX_WARNINGS: usize = 100;
 /// [`Problem`].
 pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Problem> {
     let budget = Budget::new(bytes.len());
-    let document::Parsed { document, blob, extensions, animations, mut warnings } = document::parse(bytes, &budget)?;
+    let document::Parsed { document, blob, extensions, animations, mut warnings } =
+        document::parse(bytes, &budget, progress)?;
     progress.check()?;
-    let files = Files::new(folder, limits, &budget);
+    let files = Files::new(folder, limits, &budget, progress);
     let buffers = buffers::load(&document, &files, &extensions.fallback, blob, progress)?;
     progress.set(0.3);
     let placed = nodes::place(&document)?;
-    let accessors = Accessors::new(&document, &extensions, &buffers, &budget)?;
+    let mut accessors = Accessors::new(&document, &extensions, &buffers, &budget)?;
+    accessors.unpacked = draco::unpack(&accessors, &document, &placed, &extensions.packed, progress)?;
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
     progress.check()?;
     let binder = Binder::new(clips, &document, &placed, &mut warnings);
-    let corners = extent::check(&document, &placed, &accessors, &budget, binder.is_some())?;
+    let [vertices, corners] = extent::check(&document, &placed, &accessors, &budget, binder.is_some())?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
@@ -78,7 +82,7 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
         primitives: Primitives::default(),
         binder,
     };
-    scene.builder.reserve(corners);
+    scene.builder.expect(vertices, corners);
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
@@ -89,10 +93,12 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
     }
     warnings.extend(materials.warnings);
     warnings.extend(primitives.warnings());
+    budget.release(accessors.buffer_bytes());
+    budget.pass(0);
     drop(accessors);
     drop(buffers);
     progress.set(0.8);
-    let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), progress)?;
+    let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
     match binder.map(|binder| binder.finish(&mesh, &bindings)) {
         Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
         Some(Err(warning)) => warnings.push(warning),
@@ -107,6 +113,7 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
     }
     warnings.extend(mesh.repairs.warnings());
     mesh.warnings = warnings;
+    mesh.files = files.named();
     Ok(mesh)
 }
 
@@ -139,12 +146,9 @@ impl<'a> Scene<'a> {
             }
             let material = self.materials.resolve(&primitive.material(), &mut self.builder);
             let pose = primitive::Pose { global, joints: &joints, weights: weights(&node) };
-            let accessors = self.accessors;
-            let triangles = self.primitives.read(&mesh, &primitive, &pose, material.uvs, accessors, binder.as_mut())?;
-            self.builder.reserve_triangles(material.index, triangles.iter().size_hint().0);
-            for (corners, bindings) in triangles.iter() {
-                self.builder.bound_triangle(material.index, corners, bindings);
-            }
+            let (accessors, builder) = (self.accessors, &mut self.builder);
+            let job = primitive::Job { mesh: &mesh, primitive: &primitive, pose: &pose, material, accessors, builder };
+            self.primitives.read(job, binder.as_mut())?;
         }
         Ok(())
     }
@@ -156,4 +160,4 @@ fn weights<'a>(node: &Node<'a>) -> &'a [f32] {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -11,6 +11,7 @@ use image::ColorType;
 
 use super::progress::{Cancelled, Progress};
 use super::{Mesh, Texture};
+use crate::names::shown_path;
 
 /// The largest width and height of an image that is read, in px.
 const MAX_SIZE: u32 = 16384;
@@ -29,17 +30,17 @@ pub const MAX_MAPS: usize = 256;
 pub enum HeightError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{} can't be read as a height image: {reason}", path.display())]
+    #[error("{} can't be read as a height image: {reason}", shown_path(path))]
     Image { path: PathBuf, reason: String },
     #[error(
         "{} is {} x {} px large, and at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
-        path.display(), size[0], size[1]
+        shown_path(path), size[0], size[1]
     )]
     TooLarge { path: PathBuf, size: [u32; 2] },
     #[error(
         "{} is {} x {} px large, and reading it takes {mebibytes} MiB of memory, more than there is; scale it to {MAX_KEPT} px \
          a side or less",
-        path.display(), size[0], size[1]
+        shown_path(path), size[0], size[1]
     )]
     NoMemory { path: PathBuf, size: [u32; 2], mebibytes: u64 },
     #[error(

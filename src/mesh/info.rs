@@ -10,6 +10,7 @@ use super::rig::{Clip, Moved, Rig};
 use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
 use super::{Mesh, NormalFaults, Repairs, Rim};
+use crate::names::{on_one_line, shown};
 
 /// T-junctions that are printed for people.
 const SHOWN: usize = 10;
@@ -130,14 +131,15 @@ impl fmt::Display for Info {
         writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", self.bounds.diagonal)?;
         for material in &self.materials {
             let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
-            writeln!(f, "material      {}: {} triangles{texture}", material.name, material.triangles)?;
+            writeln!(f, "material      {}: {} triangles{texture}", shown(&material.name), material.triangles)?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // As the file has it: in f32.
+            let name = shown(name);
             writeln!(f, "animation     {name}: {} s, moves {moved}", *duration as f32)?;
         }
         for warning in &self.warnings {
-            writeln!(f, "warning       {warning}")?;
+            writeln!(f, "warning       {}", on_one_line(warning))?;
         }
         Ok(())
     }
@@ -151,7 +153,7 @@ impl Info {
             weld if weld > 0.0 => format!("within {weld} of the bounding diagonal"),
             _ => "where exactly equal".to_owned(),
         };
-        writeln!(f, "{}", self.name)?;
+        writeln!(f, "{}", shown(&self.name))?;
         writeln!(f, "triangles     {} ({} degenerate, left out)", self.triangles, self.degenerate)?;
         writeln!(f, "points        {} (welded {welded})", self.points)?;
         writeln!(f, "corners       {}", self.corners)?;

@@ -1,17 +1,20 @@
 //! From loose triangles to a [`Mesh`]: grouped by material, every distinct corner once.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-use std::fmt;
-use std::hash::BuildHasher;
+mod distinct;
 
-use foldhash::fast::RandomState;
+use std::ops::Range;
 
-use super::normals::{self, Given};
+use super::budget::Budget;
+use super::missing::{self, Loose};
+use super::normals::Given;
 use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, Progress, Repairs};
 use crate::mesh::progress::Cancelled;
+use distinct::Distinct;
 use glam::{Vec2, Vec3};
+
+/// The most triangles that lie in one piece while they are gathered: what has been gathered isn't copied for more.
+const RUN: usize = 1 << 16;
 
 /// A corner as a file or a shape gives it: the normal may be missing, or not fit for use.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,14 +32,46 @@ impl From<Corner> for LooseCorner {
     }
 }
 
+/// Why triangles became no mesh.
+#[derive(Debug, thiserror::Error)]
+pub enum Unfinished {
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A clause: the budget hasn't enough.
+    #[error("{0}")]
+    TooLarge(String),
+}
+
 /// Collects triangles, material by material, and makes a mesh of them. Each distinct corner is kept once: what it holds
-/// grows with them, and with 12 bytes a triangle.
-#[derive(Debug, Default)]
+/// grows with them, and with 12 bytes a triangle (`budget` has the formula).
+#[derive(Default)]
 pub struct MeshBuilder {
-    groups: Vec<(Material, Vec<[u32; 3]>)>,
+    groups: Vec<Group>,
     distinct: Distinct,
+    triangles: usize,
+    /// How many corners have been offered; how many will be, and how many of them distinct, if that is known.
+    offered: usize,
+    expected: [usize; 2],
     /// What has been mended.
     repairs: Repairs,
+}
+
+/// The triangles of one material.
+struct Group {
+    material: Material,
+    runs: Vec<Vec<[u32; 3]>>,
+}
+
+impl Group {
+    /// How many triangles there is room for without another run.
+    fn room(&self) -> usize {
+        self.runs.last().map_or(0, |run| run.capacity() - run.len())
+    }
+
+    /// How long the next run is to be: as long as all others, but not too long.
+    fn next_run(&self) -> usize {
+        (4 << self.runs.len().min(20)).min(RUN)
+    }
 }
 
 impl MeshBuilder {
@@ -44,25 +79,60 @@ impl MeshBuilder {
         Self::default()
     }
 
-    /// Makes room for so many distinct corners at once: growing bit by bit would take half as much again.
-    pub fn reserve(&mut self, corners: usize) {
-        self.distinct.corners.reserve_exact(corners);
-        self.distinct.bindings.reserve_exact(corners);
-        self.distinct.ids.reserve(corners);
+    /// About so many corners more will be offered, and so many of them will be distinct.
+    pub fn expect(&mut self, offered: usize, distinct: usize) {
+        self.expected = [self.offered + offered, self.distinct.corners.len() + distinct];
     }
 
-    /// The same for so many triangles of one material.
+    /// Makes room for so many more distinct corners, within the budget: if there are too few, for as many as there will be by
+    /// those that there are, or half as many again where nobody knows.
+    ///
+    /// # Errors
+    /// A clause: the budget hasn't enough.
+    pub fn make_room(&mut self, corners: usize, budget: &Budget) -> Result<(), String> {
+        if self.distinct.room() >= corners {
+            return Ok(());
+        }
+        let count = self.distinct.corners.len();
+        let [offered, distinct] = self.expected;
+        let likely = match self.offered {
+            // And a few, since corners that turn out to be there already need room too.
+            _ if count < distinct => distinct + 64,
+            so_far if so_far < offered => {
+                let all = (count as u128 * offered as u128 / so_far.max(1) as u128) as usize;
+                (all + all / 16).min(offered)
+            }
+            _ => (count + count / 2).max(64),
+        };
+        self.distinct.make_room(corners.max(likely.saturating_sub(count)), budget)
+    }
+
+    /// The same for so many more triangles of one material.
+    ///
+    /// # Errors
+    /// As [`make_room`](Self::make_room).
     ///
     /// # Panics
     /// As [`triangle`](Self::triangle).
-    pub fn reserve_triangles(&mut self, material: usize, triangles: usize) {
-        self.groups[material].1.reserve(triangles);
+    pub fn make_room_for_triangles(
+        &mut self,
+        material: usize,
+        triangles: usize,
+        budget: &Budget,
+    ) -> Result<(), String> {
+        let group = &mut self.groups[material];
+        if group.room() < triangles {
+            let count = triangles.max(group.next_run());
+            budget.hold(count as u64 * 12)?;
+            group.runs.push(Vec::with_capacity(count));
+        }
+        Ok(())
     }
 
     /// Adds a material (its `triangles` are set at the end) and returns its index for [`triangle`](Self::triangle).
     /// The mesh has its materials in the order of these calls.
     pub fn material(&mut self, material: Material) -> usize {
-        self.groups.push((material, Vec::new()));
+        self.groups.push(Group { material, runs: Vec::new() });
         self.groups.len() - 1
     }
 
@@ -71,25 +141,38 @@ impl MeshBuilder {
     /// # Panics
     /// When `material` isn't an index that [`material`](Self::material) gave.
     pub fn triangle(&mut self, material: usize, corners: [LooseCorner; 3]) {
-        self.bound_triangle(material, corners, [0; 3]);
+        let kept = corners.map(|corner| self.corner(corner, 0));
+        self.kept_triangle(material, kept);
     }
 
-    /// Adds a triangle whose corners are told apart by what they are bound to as well: those with different numbers aren't
-    /// merged.
+    /// Keeps a corner for [`kept_triangle`](Self::kept_triangle). Corners are told apart by what they are bound to as well: those
+    /// with different numbers aren't merged.
+    pub fn corner(&mut self, corner: LooseCorner, binding: u32) -> Kept {
+        let (corner, mended) = repaired(corner);
+        self.offered += 1;
+        Kept { id: self.distinct.id(corner, binding), mended }
+    }
+
+    /// Adds a triangle of corners that are kept.
     ///
     /// # Panics
     /// As [`triangle`](Self::triangle).
-    pub fn bound_triangle(&mut self, material: usize, corners: [LooseCorner; 3], bindings: [u32; 3]) {
-        let ids = [0, 1, 2].map(|k| {
-            let corner = repaired(corners[k], &mut self.repairs);
-            self.distinct.id(corner, bindings[k])
-        });
-        self.groups[material].1.push(ids);
+    pub fn kept_triangle(&mut self, material: usize, corners: [Kept; 3]) {
+        let group = &mut self.groups[material];
+        if group.room() == 0 {
+            let count = group.next_run();
+            group.runs.push(Vec::with_capacity(count));
+        }
+        corners.iter().for_each(|corner| corner.mended.count(&mut self.repairs));
+        if let Some(run) = group.runs.last_mut() {
+            run.push(corners.map(|corner| corner.id));
+        }
+        self.triangles += 1;
     }
 
     /// How many triangles there are so far.
     pub fn len(&self) -> usize {
-        self.groups.iter().map(|(_, triangles)| triangles.len()).sum()
+        self.triangles
     }
 
     pub fn is_empty(&self) -> bool {
@@ -98,137 +181,155 @@ impl MeshBuilder {
 
     /// The mesh: triangles grouped by material, in the order they came; corners with the same bits (-0 counts as 0)
     /// merged, in the order of first use; materials without triangles left out. Normals that are missing or have no
-    /// direction are made (see [`normals::smooth`]), others brought to unit length (see [`Given`]); coordinates of
+    /// direction are made (see [`super::normals::fan_normals`]), others brought to unit length (see [`Given`]); coordinates of
     /// positions nearer to 0 than f32's least normal number become 0, since devices may take them for it. All that is
     /// counted in the mesh's `repairs`, and said in its `warnings`. Linear in triangles.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn finish(self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
-        Ok(self.finish_bound(name, progress)?.0)
+        match self.finish_bound(name, &Budget::endless(), progress) {
+            Ok((mesh, _)) => Ok(mesh),
+            // Of which an endless budget knows no other kind.
+            Err(Unfinished::Cancelled(_) | Unfinished::TooLarge(_)) => Err(Cancelled),
+        }
     }
 
-    /// The same, and the number of each corner's binding (see [`bound_triangle`](Self::bound_triangle)).
+    /// The same within a budget, and the number of each corner's binding (see [`corner`](Self::corner)).
     ///
     /// # Errors
-    /// [`Cancelled`] when `progress` says so.
-    pub fn finish_bound(mut self, name: String, progress: &Progress) -> Result<(Mesh, Vec<u32>), Cancelled> {
-        if self.distinct.corners.iter().any(|corner| corner.normal.is_none()) {
-            self.make_missing_normals(progress)?;
+    /// [`Unfinished`].
+    pub fn finish_bound(
+        mut self,
+        name: String,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<(Mesh, Vec<u32>), Unfinished> {
+        self.distinct.close(budget);
+        let (triangles, materials) = self.gathered(budget)?;
+        progress.check()?;
+        let Distinct { corners, bindings, .. } = self.distinct;
+        let mut loose = Loose { corners, bindings, triangles };
+        if loose.corners.iter().any(|corner| corner.normal.x.is_nan()) {
+            missing::make(&mut loose, budget, progress)?;
+        }
+        budget.borrow(loose.corners.len() as u64 * 4).map_err(Unfinished::TooLarge)?;
+        renumber(&mut loose);
+        progress.check()?;
+        let Loose { mut corners, mut bindings, triangles } = loose;
+        bindings.resize(corners.len(), 0);
+        if corners.capacity() > corners.len() + corners.len() / 8 {
+            budget.borrow(corners.len() as u64 * 32).map_err(Unfinished::TooLarge)?;
+            corners.shrink_to_fit();
         }
         let repairs = self.repairs;
-        let mut mesh = Mesh { name, repairs, warnings: repairs.warnings(), ..Mesh::default() };
-        let Distinct { corners, bindings, ids } = self.distinct;
-        drop(ids);
-        let mut numbers = vec![u32::MAX; corners.len()];
-        let mut corner_bindings = Vec::with_capacity(corners.len());
-        mesh.corners.reserve_exact(corners.len());
-        mesh.triangles.reserve_exact(self.groups.iter().map(|(_, triangles)| triangles.len()).sum());
-        for (mut material, triangles) in self.groups {
-            progress.check()?;
-            if triangles.is_empty() {
-                continue;
-            }
-            let first = mesh.triangles.len() as u32;
-            for triangle in triangles {
-                mesh.triangles.push(triangle.map(|id| {
-                    let number = &mut numbers[id as usize];
-                    if *number == u32::MAX {
-                        *number = mesh.corners.len() as u32;
-                        let LooseCorner { position, normal, uv } = corners[id as usize];
-                        mesh.corners.push(Corner { position, normal: normal.unwrap_or(Vec3::Z), uv });
-                        corner_bindings.push(bindings[id as usize]);
-                    }
-                    *number
-                }));
-            }
-            material.triangles = first..mesh.triangles.len() as u32;
-            mesh.materials.push(material);
-        }
-        Ok((mesh, corner_bindings))
+        let warnings = repairs.warnings();
+        Ok((Mesh { name, corners, triangles, materials, repairs, warnings, ..Mesh::default() }, bindings))
     }
 
-    /// Gives normals to corners without: each triangle its own, so that a corner may become several.
-    fn make_missing_normals(&mut self, progress: &Progress) -> Result<(), Cancelled> {
-        let Distinct { corners, bindings, .. } = std::mem::take(&mut self.distinct);
-        let triangles = || self.groups.iter().flat_map(|(_, triangles)| triangles);
-        let positions: Vec<_> = triangles().map(|t| t.map(|id| corners[id as usize].position)).collect();
-        let made = normals::smooth(&positions, progress)?;
-        drop(positions);
-        let triangles = self.groups.iter_mut().flat_map(|(_, triangles)| triangles);
-        for (triangle, made) in triangles.zip(made) {
-            for (id, made) in triangle.iter_mut().zip(made) {
-                let corner = corners[*id as usize];
-                let normal = corner.normal.unwrap_or(plus_zero3(made));
-                *id = self.distinct.id(LooseCorner { normal: Some(normal), ..corner }, bindings[*id as usize]);
-            }
+    /// All triangles in one list, and the materials that own some.
+    fn gathered(&mut self, budget: &Budget) -> Result<(Vec<[u32; 3]>, Vec<Material>), Unfinished> {
+        let used = |group: &Group| group.runs.iter().any(|run| !run.is_empty());
+        let mut groups: Vec<Group> = std::mem::take(&mut self.groups).into_iter().filter(used).collect();
+        let is_full = |run: &Vec<[u32; 3]>| run.len() == run.capacity();
+        let whole = match groups.as_mut_slice() {
+            [Group { runs, .. }] if runs.len() == 1 => runs.pop_if(|run| is_full(run)),
+            _ => None,
+        };
+        let is_whole = whole.is_some();
+        let mut triangles = whole.unwrap_or_default();
+        if !is_whole {
+            budget.borrow(self.triangles as u64 * 12).map_err(Unfinished::TooLarge)?;
+            triangles.reserve_exact(self.triangles);
         }
-        Ok(())
+        let mut materials = Vec::with_capacity(groups.len());
+        for Group { mut material, runs } in groups {
+            let first = if is_whole { 0 } else { triangles.len() as u32 };
+            runs.into_iter().for_each(|run| triangles.extend(run));
+            material.triangles = Range { start: first, end: triangles.len() as u32 };
+            materials.push(material);
+        }
+        budget.pass(0);
+        Ok((triangles, materials))
     }
 }
 
-/// A corner with a position and a normal that are fit for use: a normal without a direction is none afterwards.
-fn repaired(corner: LooseCorner, repairs: &mut Repairs) -> LooseCorner {
+/// Puts corners in the order of first use, in place; what nothing uses goes.
+fn renumber(loose: &mut Loose) {
+    let Loose { corners, bindings, triangles } = loose;
+    let mut numbers = vec![u32::MAX; corners.len()];
+    let mut next = 0;
+    for corner in triangles.as_flattened_mut() {
+        let number = &mut numbers[*corner as usize];
+        if *number == u32::MAX {
+            *number = next;
+            next += 1;
+        }
+        *corner = *number;
+    }
+    let used = next as usize;
+    for number in numbers.iter_mut().filter(|number| **number == u32::MAX) {
+        *number = next;
+        next += 1;
+    }
+    for i in 0..corners.len() {
+        while numbers[i] as usize != i {
+            let to = numbers[i] as usize;
+            corners.swap(i, to);
+            if !bindings.is_empty() {
+                bindings.swap(i, to);
+            }
+            numbers.swap(i, to);
+        }
+    }
+    corners.truncate(used);
+    bindings.truncate(used);
+}
+
+/// A corner that a builder has: its number, and what had to be mended, which counts for every triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Kept {
+    pub id: u32,
+    pub mended: Mended,
+}
+
+/// What had to be mended of a corner, one bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Mended(pub u8);
+
+impl Mended {
+    const DENORMAL: u8 = 1;
+    const MADE: u8 = 2;
+    const REPLACED: u8 = 4;
+    const RESCALED: u8 = 8;
+    /// How many bits it has: others may be used for something else.
+    pub const BITS: u32 = 4;
+
+    fn count(self, repairs: &mut Repairs) {
+        if self.0 == 0 {
+            return;
+        }
+        let has = |bit: u8| u32::from(self.0 & bit != 0);
+        repairs.denormals += has(Self::DENORMAL);
+        repairs.normals_made += has(Self::MADE);
+        repairs.normals_replaced += has(Self::REPLACED);
+        repairs.normals_rescaled += has(Self::RESCALED);
+    }
+}
+
+/// A corner with a position and a normal that are fit for use: NaN in place of a normal that is missing or without a direction.
+fn repaired(corner: LooseCorner) -> (Corner, Mended) {
     let position = Vec3::from(corner.position.to_array().map(|x| if x.is_subnormal() { 0.0 } else { x }));
-    repairs.denormals += u32::from(position != corner.position);
+    let mut mended = if position == corner.position { 0 } else { Mended::DENORMAL };
     let given = corner.normal.map(Given::new);
-    match given {
-        None => repairs.normals_made += 1,
-        Some(Given::None) => repairs.normals_replaced += 1,
-        Some(Given::Rescaled(_)) => repairs.normals_rescaled += 1,
-        Some(Given::Unit(_)) => {}
-    }
-    let normal = given.and_then(Given::unit).map(plus_zero3);
-    LooseCorner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }
-}
-
-/// Corners that differ in some bit, or in what they are bound to, in the order of their first appearance.
-#[derive(Default)]
-struct Distinct {
-    corners: Vec<LooseCorner>,
-    bindings: Vec<u32>,
-    /// By a hash of all of it, or the next free number after that: a third of the memory that keys of their own would take.
-    ids: HashMap<u64, u32, RandomState>,
-}
-
-impl Distinct {
-    fn id(&mut self, corner: LooseCorner, binding: u32) -> u32 {
-        let bits = bits(&corner);
-        let [a, b, c, d] = bits;
-        let mut hash = self.ids.hasher().hash_one((a, b, c, d, binding));
-        loop {
-            match self.ids.entry(hash) {
-                Entry::Vacant(vacant) => {
-                    let id = self.corners.len() as u32;
-                    vacant.insert(id);
-                    self.corners.push(corner);
-                    self.bindings.push(binding);
-                    return id;
-                }
-                Entry::Occupied(occupied) => {
-                    let id = *occupied.get() as usize;
-                    if self.bindings[id] == binding && self::bits(&self.corners[id]) == bits {
-                        return id as u32;
-                    }
-                    hash = hash.wrapping_add(1);
-                }
-            }
-        }
-    }
-}
-
-impl fmt::Debug for Distinct {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{} corners", self.corners.len())
-    }
-}
-
-/// All of a corner; no normal is what no number is.
-fn bits(corner: &LooseCorner) -> [u64; 4] {
-    let pair = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
-    let LooseCorner { position: p, normal, uv } = corner;
-    let n = normal.unwrap_or(Vec3::NAN);
-    [pair(p.x, p.y), pair(p.z, n.x), pair(n.y, n.z), pair(uv.x, uv.y)]
+    mended |= match given {
+        None => Mended::MADE,
+        Some(Given::None) => Mended::REPLACED,
+        Some(Given::Rescaled(_)) => Mended::RESCALED,
+        Some(Given::Unit(_)) => 0,
+    };
+    let normal = given.and_then(Given::unit).map_or(Vec3::NAN, plus_zero3);
+    (Corner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }, Mended(mended))
 }
 
 impl Material {
@@ -239,72 +340,4 @@ impl Material {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn corner(x: f32, y: f32) -> LooseCorner {
-        LooseCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
-    }
-
-    #[test]
-    fn triangles_are_grouped_and_corners_shared() {
-        let mut builder = MeshBuilder::new();
-        let red = builder.material(Material::plain("red", [1.0, 0.0, 0.0, 1.0]));
-        let unused = builder.material(Material::plain("unused", [1.0; 4]));
-        let blue = builder.material(Material::plain("blue", [0.0, 0.0, 1.0, 1.0]));
-        assert_eq!([red, unused, blue], [0, 1, 2]);
-        builder.triangle(blue, [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)]);
-        builder.triangle(red, [corner(-0.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
-        builder.triangle(blue, [corner(1.0, 0.0), corner(2.0, 0.0), corner(1.0, 1.0)]);
-        let mesh = builder.finish("two".to_owned(), &Progress::new()).unwrap();
-        assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 1], [3, 4, 1]]);
-        assert_eq!(mesh.corners.len(), 5);
-        let ranges: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.triangles.clone())).collect();
-        assert_eq!(ranges, [("red", 0..1), ("blue", 1..3)]);
-    }
-
-    #[test]
-    fn only_missing_normals_are_made() {
-        let mut builder = MeshBuilder::new();
-        let material = builder.material(Material::plain("plain", [1.0; 4]));
-        let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
-        corners[0].normal = Some(Vec3::X);
-        corners[1].normal = None;
-        builder.triangle(material, corners);
-        let mesh = builder.finish(String::new(), &Progress::new()).unwrap();
-        let normals: Vec<_> = mesh.corners.iter().map(|c| c.normal).collect();
-        assert_eq!(normals, [Vec3::X, Vec3::Z, Vec3::Z]);
-        assert_eq!(mesh.repairs, Repairs { normals_made: 1, ..Repairs::default() });
-        assert!(mesh.warnings.is_empty());
-    }
-
-    fn one(corners: [LooseCorner; 3]) -> Mesh {
-        let mut builder = MeshBuilder::new();
-        let material = builder.material(Material::plain("plain", [1.0; 4]));
-        builder.triangle(material, corners);
-        builder.finish(String::new(), &Progress::new()).unwrap()
-    }
-
-    #[test]
-    fn bad_normals_are_mended_and_counted() {
-        let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
-        let bad = [[0.0, -1e-30, 0.0], [f32::NAN, 0.0, 0.0], [0.0, 0.0, 0.0]];
-        for (corner, normal) in corners.iter_mut().zip(bad) {
-            corner.normal = Some(normal.into());
-        }
-        let mesh = one(corners);
-        assert_eq!(mesh.corners.iter().map(|c| c.normal).collect::<Vec<_>>(), [Vec3::NEG_Y, Vec3::Z, Vec3::Z]);
-        assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
-        assert_eq!(mesh.warnings, mesh.repairs.warnings());
-    }
-
-    #[test]
-    fn coordinates_that_devices_drop_are_dropped_here_too() {
-        let least = f32::MIN_POSITIVE;
-        let mesh = one([corner(least.next_down(), -1e-45), corner(least, 1.0), corner(-least, 0.0)]);
-        let positions: Vec<_> = mesh.corners.iter().map(|c| [c.position.x, c.position.y].map(f32::to_bits)).collect();
-        assert_eq!(positions, [[0.0, 0.0], [least, 1.0], [-least, 0.0]].map(|xy| xy.map(f32::to_bits)));
-        assert_eq!(mesh.repairs, Repairs { denormals: 1, ..Repairs::default() });
-        assert_eq!(mesh.warnings.len(), 1);
-    }
-}
+mod tests;

@@ -4,6 +4,7 @@ pub mod adjacency;
 pub mod bounds;
 #[cfg(test)]
 mod broken;
+mod budget;
 pub mod curves;
 mod dominance;
 mod faces;
@@ -11,11 +12,13 @@ mod fault;
 mod gltf;
 mod grid;
 mod heights;
+mod ids;
 pub mod info;
 pub mod joins;
 mod lines;
 pub mod load;
 pub mod merge;
+mod missing;
 pub mod normal_faults;
 pub mod normals;
 mod obj;
@@ -26,6 +29,7 @@ pub mod progress;
 pub mod repairs;
 pub mod rig;
 pub mod rim;
+mod runs;
 pub mod shapes;
 pub mod source;
 mod stl;
@@ -35,6 +39,7 @@ mod tree;
 pub mod weld;
 
 use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
@@ -47,7 +52,7 @@ pub use gltf::Problem as GltfProblem;
 pub use heights::{HeightError, HeightMap, HeightSource, Heights, MAX_LEVELS, MAX_MAPS};
 pub use info::Info;
 pub use joins::{Joins, joins};
-pub use load::{Limits, LoadError, load, read_file};
+pub use load::{Format, Limits, LoadError, load, open_file, read, read_file};
 pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress, Stage};
 pub use repairs::Repairs;
@@ -86,6 +91,8 @@ pub struct Mesh {
     pub warnings: Vec<String>,
     /// How it moves, if it does.
     pub rig: Option<std::sync::Arc<rig::Rig>>,
+    /// Files that its own names and that were read, wherever links led.
+    pub files: Vec<PathBuf>,
 }
 
 /// What a patch looks like.

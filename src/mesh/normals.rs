@@ -5,18 +5,17 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::Progress;
-use super::progress::Cancelled;
-use super::weld::weld;
-
 /// cos 60 degrees, with a little room: faces at exactly 60 degrees count as smooth whatever the rounding.
 const COS_LIMIT: f64 = 0.5 - 1e-5;
 
 /// Points with more faces than this have them gathered by direction first, which keeps the work linear.
 const FAN_LIMIT: usize = 256;
 
-/// Cells along each axis of the direction grid for such points: about 1.3 degrees each.
-const CELLS: f64 = 45.0;
+/// Cells along each axis of the direction grid for such points: about 1.3 degrees each, or more where faces look every way.
+const CELLS: [f64; 4] = [45.0, 23.0, 12.0, 6.0];
+
+/// More cells than this are too many, if there are larger ones.
+const MAX_CELLS: usize = 1024;
 
 /// How far a normal's length may be from 1 without a word: as far as 8-bit numbers leave it.
 const LENGTH_TOLERANCE: f64 = 1e-2;
@@ -62,115 +61,72 @@ impl Given {
 
 /// A triangle as one of a point's faces.
 #[derive(Clone, Copy, Debug, Default)]
-struct Face {
+pub struct Face {
     /// Unit length; zero for a triangle without area.
     normal: DVec3,
     /// The triangle's angle at the point, in radians.
     angle: f64,
 }
 
-/// A unit normal for every corner of every triangle (`triangles[t][k]` is the position of its corner k).
-///
-/// The corner of face f at point p averages the normals of all faces g around p (f among them) whose normal lies
-/// within 60 degrees of f's, each weighted by g's angle at p. Points are welded by exact position. Faces without area
-/// weigh nothing; their own corners average every face around the point, or get +Z where there is none.
-/// Around a point of more than 256 faces, faces are first gathered in cells of direction of about 1.3 degrees, and a cell's
-/// mean normal stands for its faces on both sides of that comparison.
-///
-/// Linear in triangles, apart from the fans of up to 256 faces around a point. Source of the weights: Thürmer and
-/// Wüthrich 1998, "Computing vertex normals from polygonal facets".
-///
-/// # Errors
-/// [`Cancelled`] when `progress` says so.
-pub fn smooth(triangles: &[[Vec3; 3]], progress: &Progress) -> Result<Vec<[Vec3; 3]>, Cancelled> {
-    let (points, point_of) = weld(triangles.iter().flatten().copied());
-    let starts = starts(&point_of, points.len());
-    let corners = corners_by_point(&point_of, &starts);
-    let faces: Vec<[Face; 3]> = triangles.iter().map(faces_of).collect();
-    let mut made = vec![[Vec3::Z; 3]; triangles.len()];
-    let mut fan = Vec::new();
-    for (point, range) in starts.windows(2).enumerate() {
-        if point % 4096 == 0 {
-            progress.check()?;
-        }
-        let around = &corners[range[0] as usize..range[1] as usize];
-        fan.clear();
-        fan.extend(around.iter().map(|&c| faces[c as usize / 3][c as usize % 3]));
-        for (&c, normal) in around.iter().zip(fan_normals(&fan)) {
-            made[c as usize / 3][c as usize % 3] = normal;
-        }
-    }
-    Ok(made)
-}
-
-/// Where each point's corners begin in a list ordered by point; one more entry than points.
-fn starts(point_of: &[u32], points: usize) -> Vec<u32> {
-    let mut starts = vec![0; points + 1];
-    for &point in point_of {
-        starts[point as usize + 1] += 1;
-    }
-    for point in 0..points {
-        starts[point + 1] += starts[point];
-    }
-    starts
-}
-
-/// All corners (3 * triangle + k), ordered by point, then by corner.
-fn corners_by_point(point_of: &[u32], starts: &[u32]) -> Vec<u32> {
-    let mut next = starts.to_vec();
-    let mut corners = vec![0; point_of.len()];
-    for (corner, &point) in point_of.iter().enumerate() {
-        corners[next[point as usize] as usize] = corner as u32;
-        next[point as usize] += 1;
-    }
-    corners
-}
-
-/// A triangle as the face of its three points. In f64, where the products of f32 differences neither overflow nor vanish.
-fn faces_of(triangle: &[Vec3; 3]) -> [Face; 3] {
-    let p = triangle.map(Vec3::as_dvec3);
-    let cross = (p[1] - p[0]).cross(p[2] - p[0]);
-    let normal = cross.try_normalize().unwrap_or(DVec3::ZERO);
-    [0, 1, 2].map(|k| {
+impl Face {
+    /// A triangle as the face of its corner k. In f64, where the products of f32 differences neither overflow nor vanish.
+    pub fn new(triangle: [Vec3; 3], k: usize) -> Self {
+        let p = triangle.map(Vec3::as_dvec3);
+        let cross = (p[1] - p[0]).cross(p[2] - p[0]);
         let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-        Face { normal, angle: cross.length().atan2(a.dot(b)) }
+        let normal = cross.try_normalize().unwrap_or(DVec3::ZERO);
+        Self { normal, angle: cross.length().atan2(a.dot(b)) }
+    }
+}
+
+/// A unit normal for each face around a point.
+///
+/// That of face f averages the normals of all faces g around the point (f among them) whose normal lies within 60 degrees of
+/// f's, each weighted by g's angle there. Faces without area weigh nothing; their own normals average every face, or are +Z
+/// where there is none. Of more than 256 faces, those are first gathered in cells of direction of about 1.3 degrees (up to 10
+/// where they look every way), and a cell's mean normal stands for its faces on both sides of that comparison.
+///
+/// Linear in faces, apart from fans of up to 256. Source of the weights: Thürmer and Wüthrich 1998, "Computing vertex normals
+/// from polygonal facets".
+pub fn fan_normals(fan: &[Face], normals: &mut Vec<Vec3>) {
+    normals.clear();
+    if fan.len() <= FAN_LIMIT {
+        normals.extend(averages(fan));
+        return;
+    }
+    let (mut cells, mut cell_of) = gather(fan, CELLS[0]);
+    for &along in &CELLS[1..] {
+        if cells.len() > MAX_CELLS {
+            (cells, cell_of) = gather(fan, along);
+        }
+    }
+    let of_cells: Vec<Vec3> = averages(&cells).collect();
+    normals.extend(cell_of.iter().map(|&cell| of_cells[cell as usize]));
+}
+
+fn averages(fan: &[Face]) -> impl Iterator<Item = Vec3> {
+    fan.iter().map(|own| {
+        let lone = own.normal == DVec3::ZERO;
+        let near = |g: &&Face| lone || own.normal.dot(g.normal) >= COS_LIMIT;
+        let sum: DVec3 = fan.iter().filter(near).map(|g| g.angle * g.normal).sum();
+        sum.try_normalize().unwrap_or(own.normal).try_normalize().unwrap_or(DVec3::Z).as_vec3()
     })
 }
 
-/// One normal for each face around a point.
-fn fan_normals(fan: &[Face]) -> Vec<Vec3> {
-    if fan.len() <= FAN_LIMIT {
-        return averages(fan);
-    }
-    let (cells, cell_of) = gather(fan);
-    let normals = averages(&cells);
-    cell_of.iter().map(|&cell| normals[cell]).collect()
-}
-
-fn averages(fan: &[Face]) -> Vec<Vec3> {
-    fan.iter()
-        .map(|own| {
-            let lone = own.normal == DVec3::ZERO;
-            let near = |g: &&Face| lone || own.normal.dot(g.normal) >= COS_LIMIT;
-            let sum: DVec3 = fan.iter().filter(near).map(|g| g.angle * g.normal).sum();
-            sum.try_normalize().unwrap_or(own.normal).try_normalize().unwrap_or(DVec3::Z).as_vec3()
-        })
-        .collect()
-}
-
-/// Faces gathered by direction: each cell as one face (mean normal, total angle), and the cell of each face.
-fn gather(fan: &[Face]) -> (Vec<Face>, Vec<usize>) {
-    let mut ids: HashMap<[i64; 3], usize> = HashMap::new();
+/// Faces gathered by direction, with so many cells along an axis: each cell as one face (mean normal, total angle), and the
+/// cell of each face.
+fn gather(fan: &[Face], along: f64) -> (Vec<Face>, Vec<u32>) {
+    let mut ids: HashMap<[i64; 3], u32> = HashMap::new();
     let mut sums: Vec<(DVec3, f64)> = Vec::new();
     let mut cell_of = Vec::with_capacity(fan.len());
     for face in fan {
-        let key = (face.normal * CELLS).round().to_array().map(|x| x as i64);
-        let cell = *ids.entry(key).or_insert(sums.len());
-        if cell == sums.len() {
+        let key = (face.normal * along).round().to_array().map(|x| x as i64);
+        let cell = *ids.entry(key).or_insert(sums.len() as u32);
+        if cell as usize == sums.len() {
             sums.push((DVec3::ZERO, 0.0));
         }
-        sums[cell].0 += face.angle * face.normal;
-        sums[cell].1 += face.angle;
+        sums[cell as usize].0 += face.angle * face.normal;
+        sums[cell as usize].1 += face.angle;
         cell_of.push(cell);
     }
     let as_face = |&(sum, angle): &(DVec3, f64)| Face { normal: sum.try_normalize().unwrap_or(DVec3::ZERO), angle };
@@ -180,7 +136,23 @@ fn gather(fan: &[Face]) -> (Vec<Face>, Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Material;
+    use crate::mesh::merge::{LooseCorner, MeshBuilder};
+    use crate::mesh::progress::{Cancelled, Progress};
     use crate::mesh::shapes::Shape;
+    use glam::Vec2;
+
+    /// The normals that triangles get, corner by corner.
+    fn smooth(triangles: &[[Vec3; 3]], progress: &Progress) -> Result<Vec<[Vec3; 3]>, Cancelled> {
+        let mut builder = MeshBuilder::new();
+        let material = builder.material(Material::plain("plain", [1.0; 4]));
+        for triangle in triangles {
+            let corner = |position| LooseCorner { position, normal: None, uv: Vec2::ZERO };
+            builder.triangle(material, triangle.map(corner));
+        }
+        let mesh = builder.finish(String::new(), progress)?;
+        Ok(mesh.triangles.iter().map(|corners| corners.map(|c| mesh.corners[c as usize].normal)).collect())
+    }
 
     fn made(shape: Shape) -> (Vec<[Vec3; 3]>, Vec<[Vec3; 3]>) {
         let mesh = shape.build();

@@ -16,13 +16,14 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3};
 
-use super::faces::{Faces, counted};
+use super::budget::Budget;
+use super::faces::{Faces, MAX_CORNERS, counted};
 use super::fault::Fault;
-use super::gltf::budget::Budget;
 use super::gltf::uri::Files;
 use super::lines::{Line, Lines, first_word, numbers, shown, words};
 use super::load::Limits;
 use super::merge::LooseCorner;
+use super::runs::Runs;
 use super::{Mesh, Progress};
 use materials::Materials;
 
@@ -60,24 +61,28 @@ const SILENT: [&[u8]; 24] = [
 ///
 /// # Errors
 /// [`Fault`]. A missing material or texture is none: it becomes a warning.
-pub fn read(bytes: &[u8], folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Fault> {
+pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Fault> {
     let budget = Budget::new(bytes.len());
-    let files = Files::new(folder, limits, &budget);
+    let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
-    each(bytes, &progress.part(0.0, 0.2), |line| vertices.take(line).map_err(|reason| line.place().fault(reason)))?;
+    each(&bytes, &progress.part(0.0, 0.2), |line| vertices.take(line, &budget))?;
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
-        faces: Faces::new(bytes.len()),
+        faces: Faces::new(bytes.len(), &budget),
         materials: Materials::new(&files, &budget),
         corners: Vec::new(),
         found: Found::default(),
     };
-    each(bytes, &progress.part(0.2, 0.5), |line| reader.take(line))?;
+    each(&bytes, &progress.part(0.2, 0.5), |line| reader.take(line))?;
     let mut warnings = reader.materials.warnings();
     warnings.extend(reader.found.warnings());
     let holds = reader.found.holds(&vertices);
-    reader.faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+    let (length, faces) = (bytes.len() as u64, reader.faces);
+    budget.release(length + vertices.bytes());
+    drop((bytes, vertices));
+    let mesh = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
+    Ok(Mesh { files: files.named(), ..mesh })
 }
 
 /// Goes through all statements: lines without comments, those joined that continue.
@@ -126,27 +131,42 @@ fn without_comment(text: &[u8]) -> &[u8] {
 /// What corners refer to.
 #[derive(Default)]
 struct Vertices {
-    positions: Vec<Vec3>,
-    uvs: Vec<Vec2>,
-    normals: Vec<Vec3>,
+    positions: Runs<Vec3>,
+    uvs: Runs<Vec2>,
+    normals: Runs<Vec3>,
 }
 
 impl Vertices {
     /// Keeps what a statement says of vertices.
-    fn take(&mut self, line: &Line) -> Result<(), String> {
+    fn take(&mut self, line: &Line, budget: &Budget) -> Result<(), Fault> {
         let (word, rest) = first_word(line.text);
+        let wrong = |reason| line.place().fault(reason);
+        let hold = |bytes| budget.hold(bytes).map_err(|reason| Fault::TooLarge { reason });
         match word {
-            b"v" => self.positions.push(numbers::<3>("v", rest)?.into()),
-            b"vn" => self.normals.push(numbers::<3>("vn", rest)?.into()),
+            b"v" => {
+                hold(self.positions.next_bytes())?;
+                self.positions.push(numbers::<3>("v", rest).map_err(wrong)?.into());
+            }
+            b"vn" => {
+                hold(self.normals.next_bytes())?;
+                self.normals.push(numbers::<3>("vn", rest).map_err(wrong)?.into());
+            }
             b"vt" => {
-                let [u] = numbers("vt", rest)?;
-                let v = if words(rest).nth(1).is_some() { numbers::<2>("vt", rest)?[1] } else { 0.0 };
+                hold(self.uvs.next_bytes())?;
+                let [u] = numbers("vt", rest).map_err(wrong)?;
+                let has_v = words(rest).nth(1).is_some();
+                let v = if has_v { numbers::<2>("vt", rest).map_err(wrong)?[1] } else { 0.0 };
                 // Upwards in the file, downwards here.
                 self.uvs.push(Vec2::new(u, 1.0 - v));
             }
             _ => {}
         }
         Ok(())
+    }
+
+    /// What it takes.
+    fn bytes(&self) -> u64 {
+        self.positions.bytes() + self.uvs.bytes() + self.normals.bytes()
     }
 }
 
@@ -191,18 +211,18 @@ impl Found {
 }
 
 /// Reads faces.
-struct Reader<'a> {
-    vertices: &'a Vertices,
+struct Reader<'v, 'a> {
+    vertices: &'v Vertices,
     /// Positions, uvs and normals above the statement.
     above: [usize; 3],
-    faces: Faces,
+    faces: Faces<'a>,
     materials: Materials<'a>,
     /// The face's that is being read.
     corners: Vec<LooseCorner>,
     found: Found,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn take(&mut self, line: &Line) -> Result<(), Fault> {
         let (word, rest) = first_word(line.text);
         match word {
@@ -226,6 +246,9 @@ impl Reader<'_> {
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         for word in words(rest) {
+            if corners.len() == MAX_CORNERS {
+                return Err(line.place().fault(format!("the face has more than {MAX_CORNERS} corners")));
+            }
             corners.push(self.corner(word).map_err(|reason| line.place().fault(reason))?);
         }
         self.found.without_normals += usize::from(corners.iter().any(|corner| corner.normal.is_none()));
@@ -243,11 +266,12 @@ impl Reader<'_> {
             return Err(format!("{} is no corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
         };
         let Vertices { positions, uvs, normals } = self.vertices;
-        let position = positions[index(position, "position", self.above[0], positions.len())?];
+        let position = index(position, "position", self.above[0], positions.len())?;
         let uv = uv.map(|uv| index(uv, "texture coordinate", self.above[1], uvs.len())).transpose()?;
         let normal = normal.map(|normal| index(normal, "normal", self.above[2], normals.len())).transpose()?;
-        let uv = uv.map_or(Vec2::ZERO, |uv| uvs[uv]);
-        Ok(LooseCorner { position, normal: normal.map(|normal| normals[normal]), uv })
+        let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
+        let position = positions.get(position).copied().unwrap_or_default();
+        Ok(LooseCorner { position, normal: normal.and_then(|normal| normals.get(normal)).copied(), uv })
     }
 }
 

@@ -10,7 +10,8 @@ mod values;
 
 use glam::{Vec2, Vec3};
 
-use super::faces::{Faces, counted};
+use super::budget::Budget;
+use super::faces::{Faces, MAX_CORNERS, counted};
 use super::fault::{Fault, Place};
 use super::lines::shown;
 use super::merge::LooseCorner;
@@ -34,18 +35,28 @@ const ATTRIBUTES: [(&[u8], usize); 12] = [
     (b"texture_v", 7),
 ];
 
-/// A face of more corners than this is refused.
-const MAX_CORNERS: usize = 1 << 20;
-
 /// Makes a mesh of a file's bytes; `name` becomes the mesh's.
 ///
 /// # Errors
 /// [`Fault`].
-pub fn read(bytes: &[u8], name: &str, progress: &Progress) -> Result<Mesh, Fault> {
+pub fn read(bytes: Vec<u8>, name: &str, progress: &Progress) -> Result<Mesh, Fault> {
+    let budget = Budget::new(bytes.len());
+    let (faces, holds, warnings) = gather(&bytes, &budget, progress)?;
+    budget.release(bytes.len() as u64);
+    drop(bytes);
+    faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
+}
+
+/// All faces; what there is in place of them, and warnings.
+fn gather<'a>(
+    bytes: &[u8],
+    budget: &'a Budget,
+    progress: &'a Progress,
+) -> Result<(Faces<'a>, String, Vec<String>), Fault> {
     let header = header::read(bytes)?;
-    let mut faces = Faces::new(bytes.len());
+    let mut faces = Faces::new(bytes.len(), budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
-    let mut reader = Reader { faces, material, vertices: None, corners: Vec::new(), progress };
+    let mut reader = Reader { faces, material, vertices: None, corners: Vec::new(), budget, progress };
     let mut values = Values::new(&header, bytes.len());
     let mut before_vertices = Vec::new();
     for element in &header.elements {
@@ -65,7 +76,7 @@ pub fn read(bytes: &[u8], name: &str, progress: &Progress) -> Result<Mesh, Fault
     for (element, mut values) in before_vertices {
         reader.read_lists(element, &mut values)?;
     }
-    reader.finish(&header.elements, values.left_over(), name)
+    Ok(reader.finish(&header.elements, values.left_over()))
 }
 
 /// The vertices' attributes; no normals or uvs at all if they have none.
@@ -90,15 +101,16 @@ impl Vertices {
 }
 
 struct Reader<'a> {
-    faces: Faces,
+    faces: Faces<'a>,
     material: usize,
     vertices: Option<Vertices>,
     /// The face's that is being read.
     corners: Vec<LooseCorner>,
+    budget: &'a Budget,
     progress: &'a Progress,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
     fn read_vertices(&self, element: &Element, values: &mut Values) -> Result<Vertices, Fault> {
         let slots: Vec<Option<usize>> = element.properties.iter().map(slot).collect();
         let has = |slot: usize| slots.contains(&Some(slot));
@@ -108,7 +120,14 @@ impl Reader<'_> {
         let (has_normals, has_uvs) = ((3..6).all(has), (6..8).all(has));
         // The count was held against the bytes that are left.
         let count = usize::try_from(element.count).unwrap_or_default();
-        let mut vertices = Vertices { positions: Vec::with_capacity(count), ..Vertices::default() };
+        let bytes = count as u64 * (12 + 12 * u64::from(has_normals) + 8 * u64::from(has_uvs));
+        self.budget.hold(bytes).map_err(|reason| Fault::TooLarge { reason })?;
+        let room = |has: bool| if has { count } else { 0 };
+        let mut vertices = Vertices {
+            positions: Vec::with_capacity(count),
+            normals: Vec::with_capacity(room(has_normals)),
+            uvs: Vec::with_capacity(room(has_uvs)),
+        };
         for i in 0..element.count {
             self.at(values, i)?;
             values.begin(element, i)?;
@@ -143,6 +162,9 @@ impl Reader<'_> {
             let reason = format!("the element {} has no list of name \"vertex_indices\"", shown(element.name));
             return Err(values.place().fault(reason));
         };
+        // Both counts were held against the bytes that there are.
+        let faces = usize::try_from(element.count).unwrap_or_default();
+        self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
         for i in 0..element.count {
             self.at(values, i)?;
             values.begin(element, i)?;
@@ -225,7 +247,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn finish(self, elements: &[Element], left_over: usize, name: &str) -> Result<Mesh, Fault> {
+    fn finish(self, elements: &[Element], left_over: usize) -> (Faces<'a>, String, Vec<String>) {
         let count =
             |name: &[u8]| elements.iter().filter(|element| element.name == name).map(|element| element.count).sum();
         let [vertices, faces, strips]: [u64; 3] = [b"vertex" as &[u8], b"face", b"tristrips"].map(count);
@@ -236,8 +258,9 @@ impl Reader<'_> {
             (without_normals, "vertices without normals, which got ones that are smooth within 60 degrees"),
             (left_over, "bytes after the last element, left out"),
         ]);
-        drop((read.positions, read.normals, read.uvs));
-        self.faces.finish(name, holds, warnings.collect(), &self.progress.part(0.5, 1.0))
+        self.budget
+            .release((12 * read.positions.capacity() + 12 * read.normals.capacity() + 8 * read.uvs.capacity()) as u64);
+        (self.faces, holds, warnings.collect())
     }
 }
 

@@ -10,6 +10,7 @@
 
 use glam::{Vec2, Vec3};
 
+use super::budget::Budget;
 use super::faces::{Faces, counted};
 use super::fault::{Fault, Place};
 use super::lines::{Line, Lines, first_word, number, shown, words};
@@ -26,11 +27,14 @@ const TRIANGLE: usize = 50;
 ///
 /// # Errors
 /// [`Fault`].
-pub fn read(bytes: &[u8], name: &str, progress: &Progress) -> Result<Mesh, Fault> {
-    let mut faces = Faces::new(bytes.len());
+pub fn read(bytes: Vec<u8>, name: &str, progress: &Progress) -> Result<Mesh, Fault> {
+    let budget = Budget::new(bytes.len());
+    let mut faces = Faces::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len() };
-    let (holds, warnings) = if is_text(bytes) { reader.text(bytes)? } else { reader.binary(bytes)? };
+    let (holds, warnings) = if is_text(&bytes) { reader.text(&bytes)? } else { reader.binary(&bytes)? };
+    budget.release(bytes.len() as u64);
+    drop(bytes);
     reader.faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
 }
 
@@ -54,7 +58,7 @@ fn size(triangles: u32) -> u64 {
 }
 
 struct Reader<'a> {
-    faces: Faces,
+    faces: Faces<'a>,
     material: usize,
     /// The triangle's that is being added.
     corners: Vec<LooseCorner>,
@@ -80,13 +84,15 @@ impl Reader<'_> {
             return Err(Place::Byte(HEADER - 4).fault(reason));
         };
         let triangles = bytes[HEADER..].as_chunks::<TRIANGLE>().0;
+        // A closed surface has half as many points as triangles.
+        self.faces.expect(count as usize, count as usize / 2);
         for (i, triangle) in triangles.iter().take(count as usize).enumerate() {
             if i % 4096 == 0 {
                 self.at(HEADER + i * TRIANGLE)?;
             }
-            let float = |at: usize| f32::from_le_bytes([0, 1, 2, 3].map(|k| triangle[at + k]));
-            let position = |at| Vec3::new(float(at), float(at + 4), float(at + 8));
-            self.add([12, 24, 36].map(position), Place::Byte(HEADER + i * TRIANGLE))?;
+            // The first is the normal.
+            let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
+            self.add([a, b, c].map(position_of), Place::Byte(HEADER + i * TRIANGLE))?;
         }
         let warnings = counted([(surplus as usize, "bytes after the last triangle, left out")]);
         Ok(("its header counts 0 triangles".to_owned(), warnings.collect()))
@@ -148,6 +154,10 @@ impl Reader<'_> {
         self.progress.set(0.5 * byte as f32 / self.bytes as f32);
         Ok(self.progress.check()?)
     }
+}
+
+fn position_of(&[a, b, c, d, e, f, g, h, i, j, k, l]: &[u8; 12]) -> Vec3 {
+    Vec3::new(f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h]), f32::from_le_bytes([i, j, k, l]))
 }
 
 fn position(text: &[u8]) -> Result<Vec3, String> {

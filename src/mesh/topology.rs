@@ -227,21 +227,19 @@ impl Topology {
 
     /// Makes edges, and tells patches and sides of each other.
     fn connect(&mut self, halves: &Halves, corners: &[Corner]) {
-        self.sides.reserve(halves.sorted.len());
-        self.edges.reserve(halves.sorted.len() / 2);
-        for (low, ends) in (0..).zip(halves.starts.windows(2)) {
-            let around = &halves.sorted[ends[0] as usize..ends[1] as usize];
-            for run in around.chunk_by(|a, b| a.high == b.high) {
-                let start = self.sides.len() as u32;
-                for half in run {
-                    let side = self.side(half.number, low);
-                    self.patches[side.patch as usize].sides[side.index as usize] = self.sides.len() as u32;
-                    self.sides.push(side);
-                }
-                let sides = start..self.sides.len() as u32;
-                let kind = kind(&self.sides[start as usize..], corners);
-                self.edges.push(Edge { points: [low, run[0].high], sides, kind });
+        // Exactly: one more than there is room for would double what edges take.
+        self.sides.reserve_exact(halves.sorted.len());
+        self.edges.reserve_exact(halves.edges().count());
+        for (low, run) in halves.edges() {
+            let start = self.sides.len() as u32;
+            for half in run {
+                let side = self.side(half.number, low);
+                self.patches[side.patch as usize].sides[side.index as usize] = self.sides.len() as u32;
+                self.sides.push(side);
             }
+            let sides = start..self.sides.len() as u32;
+            let kind = kind(&self.sides[start as usize..], corners);
+            self.edges.push(Edge { points: [low, run[0].high], sides, kind });
         }
     }
 
@@ -263,7 +261,9 @@ fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
         a != b && b != c && c != a
     };
     let triangles = mesh.triangles.iter().enumerate().filter(|(_, corners)| whole(corners));
-    triangles.map(|(i, &corners)| Patch { corners, sides: [0; 3], triangle: i as u32 }).collect()
+    let mut patches = Vec::with_capacity(mesh.triangles.len());
+    patches.extend(triangles.map(|(i, &corners)| Patch { corners, sides: [0; 3], triangle: i as u32 }));
+    patches
 }
 
 /// The sides of all patches by their lower points, and those of each by their higher points and numbers.
@@ -271,6 +271,15 @@ struct Halves {
     /// Those of point p: `starts[p]..starts[p + 1]`.
     starts: Vec<u32>,
     sorted: Vec<Half>,
+}
+
+impl Halves {
+    /// Those of each edge, with its lower point.
+    fn edges(&self) -> impl Iterator<Item = (u32, &[Half])> {
+        let around = |ends: &[u32]| &self.sorted[ends[0] as usize..ends[1] as usize];
+        let by_point = (0..).zip(self.starts.windows(2).map(around));
+        by_point.flat_map(|(low, around)| around.chunk_by(|a, b| a.high == b.high).map(move |run| (low, run)))
+    }
 }
 
 fn halves(patches: &[Patch], corner_points: &[u32], points: usize) -> Halves {

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use foldhash::fast::RandomState;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::grid::Grid;
+use super::ids::Ids;
 
 /// Points by exact position: two positions are one point when all three coordinates have the same value (-0 equals 0;
 /// no tolerance). Points come in the order of their first appearance, with +0 for every zero.
@@ -18,18 +18,21 @@ pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) 
 
 /// As [`weld`], of positions with a number each, which must be equal too.
 fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
+    let count = positions.size_hint().0;
+    let (mut ids, mut points) = (Ids::with_capacity(count), Vec::with_capacity(count));
     // Two words a key: foldhash takes them several times faster than an array.
-    let mut ids: HashMap<(u64, u64), u32, RandomState> =
-        HashMap::with_capacity_and_hasher(positions.size_hint().0, RandomState::default());
-    let mut points = Vec::new();
+    let key = |(point, number): (Vec3, u32)| {
+        let [x, y, z] = point.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
+        (x << 32 | y, z << 32 | u64::from(number))
+    };
     let point_of = positions
         .map(|(position, number)| {
-            let point = plus_zero3(position);
-            let [x, y, z] = point.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
-            *ids.entry((x << 32 | y, z << 32 | u64::from(number))).or_insert_with(|| {
-                points.push((point, number));
-                points.len() as u32 - 1
-            })
+            let point = (plus_zero3(position), number);
+            let (id, is_new) = ids.number(key(point), |id| key(points[id as usize]));
+            if is_new {
+                points.push(point);
+            }
+            id
         })
         .collect();
     (points, point_of)

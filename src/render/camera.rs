@@ -2,25 +2,17 @@
 //! front, as glTF has it). Clip space is WebGPU's, with depth reversed: 1 at the near plane, 0 at infinity.
 
 use glam::camera::rh::proj::directx as proj;
-use glam::{DVec2, DVec3, Mat4, Vec2, Vec3, dvec3, vec2, vec3};
+use glam::{Mat4, Vec2, Vec3, vec2, vec3};
 
 use crate::mesh::Bounds;
 use crate::tessellate::LodView;
 
 /// Vertical field of view, in degrees.
-const FIELD_OF_VIEW: f32 = 40.0;
-/// How far off a framed edge is looked at, in its lengths: it is two thirds of the view's height long then.
-const FRAMED_EDGE: f32 = 2.06;
-/// How much of a viewport is filled by what is fitted into it; the rest is margin.
-const FITTED: f64 = 0.93;
-/// How near the eye may come to what is fitted, in its largest extent: a line that is seen end on would reach it.
-const LEAST_CLEARANCE: f64 = 0.1;
-/// Steps towards slopes that touch what is fitted.
-const FIT_STEPS: usize = 16;
+pub const FIELD_OF_VIEW: f32 = 40.0;
 /// Between the target and the eye, in object units.
 const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 /// Steeper than this, "up" would turn over.
-const MAX_ELEVATION: f32 = 89.9;
+pub const MAX_ELEVATION: f32 = 89.9;
 
 /// A camera that looks at `target` from `distance` away.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,90 +42,6 @@ impl Camera {
             Self { target: Vec3::ZERO, azimuth: 30.0, elevation: 20.0, distance: 1.0, orthographic: false };
         camera.frame(bounds, viewport);
         camera
-    }
-
-    /// Moves the target and the distance so that the bounding sphere just fills the viewport's shorter side; the angles
-    /// stay.
-    pub fn frame(&mut self, bounds: &Bounds, viewport: Vec2) {
-        let radius = bounds.radius();
-        let radius = if radius > 0.0 && radius.is_finite() { radius } else { 1.0 };
-        let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
-        let half_angle = ((0.5 * FIELD_OF_VIEW).to_radians().tan() * aspect.min(1.0)).atan();
-        self.target = bounds.center();
-        self.distance = radius / half_angle.sin();
-    }
-
-    /// Moves the target and the distance so that these positions, and whatever is within `reach` (object units) of one, fill
-    /// the viewport but for a small margin; the angles stay. Positions that are no finite numbers count for nothing; where
-    /// nothing has a size, as [`Self::frame`] does.
-    pub fn fit(&mut self, positions: impl Iterator<Item = Vec3>, reach: f32, viewport: Vec2) {
-        let [right, up, back] = self.axes().map(Vec3::as_dvec3);
-        let finite = positions.filter(|p| p.is_finite()).map(Vec3::as_dvec3);
-        let mut places: Vec<DVec3> = finite.map(|p| dvec3(right.dot(p), up.dot(p), back.dot(p))).collect();
-        let least = places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let most = places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let reach = f64::from(reach).max(0.0);
-        let extent = (most - least).max_element() + 2.0 * reach;
-        if !(extent > 0.0 && extent.is_finite()) {
-            let bounds = if extent == 0.0 { Bounds::of(std::iter::once(self.at(least))) } else { Bounds::default() };
-            return self.frame(&bounds, viewport);
-        }
-        let middle = 0.5 * (least.z + most.z);
-        places.iter_mut().for_each(|place| place.z -= middle);
-        let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
-        let slopes = ((0.5 * FIELD_OF_VIEW).to_radians().tan() * vec2(aspect, 1.0)).as_dvec2() * FITTED;
-        let (_, half) = self.between(&places, reach, slopes);
-        let clearance = 0.5 * (most.z - least.z) + reach + LEAST_CLEARANCE * extent;
-        let distance = (half / slopes).max_element().max(clearance);
-        // The axis that isn't filled has planes less steep, which touch on both sides as well. No place is farther from the
-        // middle than the eye, so this converges.
-        let touching = (0..FIT_STEPS).fold(slopes, |slopes, _| self.between(&places, reach, slopes).1 / distance);
-        let (center, _) = self.between(&places, reach, touching);
-        self.target = self.at(center.extend(middle));
-        self.distance = distance.clamp(1e-30, 1e30) as f32;
-    }
-
-    /// Planes with these slopes around spheres of radius `reach` at `places` (to the right, up and back), on either side and
-    /// above and below: their middles at depth 0, and half of how far apart they are there. They meet in the eye that just
-    /// sees all; in an orthographic view they are upright.
-    fn between(&self, places: &[DVec3], reach: f64, slopes: DVec2) -> (DVec2, DVec2) {
-        let slopes = if self.orthographic { DVec2::ZERO } else { slopes };
-        let farthest = |sign: f64| {
-            let beside = places.iter().map(|place| place.truncate() * sign + slopes * place.z);
-            beside.fold(DVec2::NEG_INFINITY, DVec2::max)
-        };
-        let [above, below] = [1.0, -1.0].map(farthest);
-        // A sphere's outline lies farther out than its middle's depth says.
-        let beside = (DVec2::ONE + slopes * slopes).map(f64::sqrt) * reach;
-        ((above - below) * 0.5, (above + below) * 0.5 + beside)
-    }
-
-    /// Where something lies that is so far to the right, up and back.
-    fn at(&self, place: DVec3) -> Vec3 {
-        let [right, up, back] = self.axes().map(Vec3::as_dvec3);
-        (right * place.x + up * place.y + back * place.z).as_vec3()
-    }
-
-    /// Puts an edge in the middle, two thirds of the view's height long, seen from where it faces (or from where one is, if it
-    /// faces nowhere). `bounds` are the mesh's.
-    pub fn frame_edge(&mut self, [a, b]: [Vec3; 2], facing: Vec3, bounds: &Bounds) {
-        self.frame_at(a * 0.5 + b * 0.5, a.distance(b), facing, bounds);
-    }
-
-    /// The same for a triangle, whose longest edge then is that long.
-    pub fn frame_triangle(&mut self, [a, b, c]: [Vec3; 3], bounds: &Bounds) {
-        let facing = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        self.frame_at(a / 3.0 + b / 3.0 + c / 3.0, longest, facing, bounds);
-    }
-
-    fn frame_at(&mut self, target: Vec3, length: f32, facing: Vec3, bounds: &Bounds) {
-        self.target = target;
-        self.distance = (FRAMED_EDGE * length).max(1e-4 * bounds.radius());
-        if facing != Vec3::ZERO {
-            self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
-            self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
-        }
     }
 
     /// Whether it looks from somewhere to somewhere, as every camera does that was moved here.
@@ -242,133 +150,6 @@ mod tests {
             assert!(at(Vec3::ZERO).distance(vec2(400.0, 300.0)) < 1e-2);
             assert!(at(Vec3::Y * 0.5).y < 290.0);
         }
-    }
-
-    #[test]
-    fn a_framed_sphere_touches_the_shorter_side() {
-        for viewport in [vec2(800.0, 600.0), vec2(200.0, 700.0)] {
-            let bounds = unit_bounds();
-            let camera = Camera { azimuth: 0.0, elevation: 0.0, ..Camera::framing(&bounds, viewport) };
-            let half_angle = (bounds.radius() / camera.distance).asin();
-            let reach = half_angle.tan() * camera.distance / camera.units_per_pixel(viewport.y);
-            assert!((reach - 0.5 * viewport.min_element()).abs() < 0.5, "{reach} px of {viewport}");
-        }
-    }
-
-    /// Where what is fitted touches the viewport, as parts of its half: the least and greatest x and y.
-    fn filled(camera: &Camera, positions: &[Vec3], reach: f32, viewport: Vec2) -> [Vec2; 2] {
-        let bounds = Bounds::of(positions.iter().copied());
-        let clip = camera.clip_from_object(viewport, &bounds);
-        let axes = camera.axes();
-        let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
-        for &position in positions {
-            for turn in 0..if reach > 0.0 { 400 } else { 1 } {
-                let (around, up) = ((turn % 20) as f32 * 0.314_159, (turn / 20) as f32 * 0.165 - 1.57);
-                let sphere = axes[0] * around.cos() * up.cos() + axes[1] * around.sin() * up.cos() + axes[2] * up.sin();
-                let place = project(clip, viewport, position + sphere * reach).expect("in front of the eye");
-                let place = place / viewport * 2.0 - 1.0;
-                (least, most) = (least.min(place), most.max(place));
-            }
-        }
-        [least, most]
-    }
-
-    #[test]
-    fn what_is_fitted_fills_one_side_and_is_in_the_middle() {
-        let cloud: Vec<Vec3> = (0..40)
-            .map(|i| vec3((i as f32 * 1.7).sin(), (i as f32 * 2.3).cos() * 0.4, (i as f32 * 0.9).sin() * 1.6))
-            .collect();
-        let flat: Vec<Vec3> = cloud.iter().map(|p| vec3(p.x, 0.0, p.z)).collect();
-        for (size, at) in [(1.0, Vec3::ZERO), (1e-20, Vec3::ZERO), (1e18, Vec3::ZERO), (1.0, vec3(800.0, -3.0, 50.0))] {
-            for (positions, viewport) in
-                [(&cloud, vec2(300.0, 240.0)), (&flat, vec2(200.0, 700.0)), (&flat, vec2(400.0, 150.0))]
-            {
-                let placed: Vec<Vec3> = positions.iter().map(|p| (*p + at) * size).collect();
-                for (azimuth, elevation, orthographic, reach) in [
-                    (30.0, 20.0, false, 0.0),
-                    (250.0, 0.0, true, 0.0),
-                    (0.0, -89.9, false, 0.3),
-                    (123.0, 45.0, true, 0.2),
-                ] {
-                    let bounds = Bounds::of(placed.iter().copied());
-                    let mut camera = Camera { azimuth, elevation, orthographic, ..Camera::framing(&bounds, viewport) };
-                    camera.fit(placed.iter().copied(), reach * size, viewport);
-                    let [least, most] = filled(&camera, &placed, reach * size, viewport);
-                    let widest = most.max(-least).max_element();
-                    let known = format!("{size:e} {at} {viewport} {azimuth} {orthographic}: {least} {most}");
-                    assert!((0.91..0.94).contains(&widest), "{known}");
-                    assert!((least + most).abs().max_element() < 0.03, "{known}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn fitting_is_nearer_than_framing() {
-        let viewport = vec2(300.0, 240.0);
-        let tall = [vec3(0.0, -1.0, 0.0), vec3(0.1, 1.0, 0.0), vec3(0.0, 0.0, 0.1)];
-        let framed = Camera::framing(&Bounds::of(tall.into_iter()), viewport);
-        let mut fitted = framed;
-        fitted.fit(tall.into_iter(), 0.0, viewport);
-        assert!(fitted.distance < 0.99 * framed.distance, "{fitted:?}");
-        assert_eq!((fitted.azimuth, fitted.elevation), (framed.azimuth, framed.elevation));
-    }
-
-    #[test]
-    fn what_has_no_size_can_be_looked_at() {
-        let viewport = vec2(300.0, 240.0);
-        let end_on = [Vec3::Z, Vec3::NEG_Z, Vec3::ZERO];
-        let bad = [Vec3::NAN, Vec3::INFINITY];
-        let one = [vec3(3.0, 4.0, 5.0); 2];
-        let far = [Vec3::MAX, Vec3::MIN];
-        for (positions, seen) in [(&end_on[..], true), (&bad, false), (&one, true), (&[], false), (&far, false)] {
-            for orthographic in [false, true] {
-                let mut camera =
-                    Camera { azimuth: 0.0, elevation: 0.0, orthographic, ..Camera::framing(&unit_bounds(), viewport) };
-                camera.fit(positions.iter().copied(), 0.0, viewport);
-                assert!(
-                    camera.target.is_finite() && camera.distance.is_finite() && camera.distance > 0.0,
-                    "{camera:?}"
-                );
-                let bounds = Bounds::of(positions.iter().copied());
-                let clip = camera.clip_from_object(viewport, &bounds);
-                let within = |p: Vec3| project(clip, viewport, p).is_some_and(|at| at.distance(viewport * 0.5) < 1.0);
-                assert!(!seen || positions.iter().all(|&p| within(p)), "{camera:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_framed_edge_is_in_the_middle_and_faces_the_eye() {
-        let viewport = vec2(800.0, 600.0);
-        let mut camera = Camera::framing(&unit_bounds(), viewport);
-        let (ends, facing) = ([vec3(0.5, 1.0, 0.0), vec3(0.7, 1.0, 0.1)], vec3(0.3, 0.8, -0.6).normalize());
-        camera.frame_edge(ends, facing, &unit_bounds());
-        assert!(camera.axes()[2].distance(facing) < 1e-5);
-        let clip = camera.clip_from_object(viewport, &unit_bounds());
-        let [a, b] = ends.map(|p| project(clip, viewport, p).expect("in front of the eye"));
-        assert!((a + b).distance(viewport) < 2.0);
-        let length = a.distance(b);
-        assert!((350.0..450.0).contains(&length), "{length} px");
-    }
-
-    #[test]
-    fn a_framed_triangle_is_in_the_middle_and_faces_the_eye() {
-        let viewport = vec2(800.0, 600.0);
-        let mut camera = Camera::framing(&unit_bounds(), viewport);
-        let corners = [vec3(0.5, 0.1, 0.2), vec3(0.9, 0.1, 0.3), vec3(0.6, 0.4, 0.5)];
-        camera.frame_triangle(corners, &unit_bounds());
-        let [a, b, c] = corners;
-        assert!(camera.axes()[2].distance((b - a).cross(c - a).normalize()) < 1e-5);
-        let clip = camera.clip_from_object(viewport, &unit_bounds());
-        let [a, b, c] = corners.map(|p| project(clip, viewport, p).expect("in front of the eye"));
-        assert!((a + b + c).distance(viewport * 1.5) < 3.0);
-        let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        assert!((350.0..450.0).contains(&longest), "{longest} px");
-        let before = camera;
-        camera.frame_triangle([Vec3::ONE; 3], &unit_bounds());
-        assert_eq!((camera.azimuth, camera.elevation), (before.azimuth, before.elevation), "a point faces nowhere");
-        assert!(camera.distance > 0.0);
     }
 
     #[test]

@@ -3,6 +3,8 @@
 mod camera;
 mod coverage;
 mod deviation;
+mod frame;
+mod framing;
 pub mod layout;
 mod leaks;
 mod marks;
@@ -11,6 +13,7 @@ mod pipelines;
 mod renderer;
 mod scale;
 mod scene;
+mod steps;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};

@@ -7,7 +7,7 @@ use wgpu::util::DeviceExt;
 
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
-use super::renderer::halves;
+use super::steps::halves;
 use crate::gpu::layout::Vertex;
 use crate::gpu::{
     DEPTH_FORMAT, Gpu, GpuError, Recorder, Timing, compute_pipeline, mapped_bytes, shader_module, staging_buffer, wait,

@@ -2,17 +2,17 @@
 
 use std::ops::Range;
 
-use wgpu::util::DeviceExt;
-
 use super::coverage::{Coverage, CoveragePipelines};
-use super::deviation::{Deviations, scale_of};
-use super::layout::{Frame, linear, overlay_bits};
+use super::deviation::Deviations;
+use super::frame::frame;
+use super::layout::{linear, overlay_bits};
 use super::pipelines::{Layer, chunk_layout, deviation_layout, material_layout, pipeline, scene_layout};
 use super::scene::{LineSegment, upload};
+use super::steps::{Step, halves, steps};
 use super::{Camera, Scene, Target};
 use crate::gpu::{ChunkBuffers, Gpu, Recorder, VERTEX_HALF};
 use crate::mesh::Texture;
-use crate::settings::{Colors, DeviationUnit, Half, Overlays, Settings};
+use crate::settings::{Colors, Half, Overlays, Settings};
 use crate::tessellate::CoverageView;
 
 /// Long-lived: one for a device, whatever is loaded.
@@ -149,7 +149,8 @@ impl Renderer {
         range: Range<usize>,
     ) {
         let rects = halves(target.size, settings.split);
-        let frames = Half::BOTH.map(|half| scene.half(half).map(|half| self.frame(half, target, camera, settings)));
+        let frames =
+            Half::BOTH.map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings)));
         let steps = steps(scene, settings);
         let has_left = settings.half(Half::Left).and(scene.half(Half::Left)).is_some();
         for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
@@ -229,37 +230,6 @@ impl Renderer {
             CoverageView::new(clip_from_object, target.viewport(), gpu.samples, surfaces.fronts, gpu.subpixel_bits);
         coverage.keep(recorder, &self.coverage, gpu, &chunk, view);
         true
-    }
-
-    /// How the picture sees a scene, on the device.
-    fn frame(&self, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
-        let viewport = target.viewport();
-        let [right, up, back] = camera.axes();
-        let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
-        let scale = scale_of(settings, scene.known_deviation());
-        // W is 1 all over an orthographic view, and the distance from the eye in another.
-        let px_where_w_is_1 =
-            (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
-        let in_px = settings.deviation_in == DeviationUnit::Px;
-        let frame = Frame {
-            clip_from_object: camera.clip_from_object(viewport, &scene.bounds).to_cols_array_2d(),
-            key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
-            fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
-            eye: eye.to_array(),
-            viewport: viewport.to_array(),
-            overlays: overlay_bits(&settings.overlays),
-            ulp: scene.ulp,
-            convention: settings.convention as u32,
-            scale_least: scale.least,
-            scale_most: scale.most,
-            px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
-            scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
-        };
-        self.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("frame"),
-            contents: bytemuck::bytes_of(&frame),
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM,
-        })
     }
 
     fn draw_source(&self, pass: &mut wgpu::RenderPass, scene: &Scene, [x, y, width, height]: [u32; 4]) {
@@ -371,52 +341,6 @@ struct Surfaces<'a> {
     fronts: bool,
     /// Whether what covers no sample is.
     sifted: bool,
-}
-
-/// What one render pass of a picture adds.
-enum Step {
-    /// The background alone: nothing is emitted.
-    Nothing,
-    /// The triangles of a half's chunk.
-    Surface(Half, usize),
-    /// The normals of a half's chunk.
-    Normals(Half, usize),
-}
-
-impl Step {
-    fn half(&self) -> Half {
-        match self {
-            Self::Nothing => Half::Right,
-            Self::Surface(half, _) | Self::Normals(half, _) => *half,
-        }
-    }
-
-    fn chunk(&self) -> Option<usize> {
-        match self {
-            Self::Nothing => None,
-            Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
-        }
-    }
-}
-
-fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
-    let chunks = |half| {
-        let drawn = settings.half(half).and(scene.half(half));
-        (0..drawn.map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
-    };
-    let all: Vec<_> = Half::BOTH.into_iter().flat_map(chunks).collect();
-    if all.is_empty() {
-        return vec![Step::Nothing];
-    }
-    let with_normals = if settings.overlays.normals { all.len() } else { 0 };
-    let surfaces = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk));
-    surfaces.chain(all[..with_normals].iter().map(|&(half, chunk)| Step::Normals(half, chunk))).collect()
-}
-
-/// The picture left and right of the split: x, y, width, height in px.
-pub(super) fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
-    let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
-    [[0, 0, at, height], [at, 0, width - at, height]]
 }
 
 /// sRGB bytes as the linear colour that a clear takes.

@@ -11,10 +11,15 @@ fn adapters_are_listed_and_one_of_them_is_taken() {
     let points = output(&["domain", "--partitioning", "integer", "--factors", "2,2,2,2"]);
     let chosen = output(&["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", &name]);
     assert_eq!(chosen, points, "by its name in capitals");
+    let domain = |adapter| ["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", adapter];
     sentence(
-        &["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", "no such thing"],
-        &["no graphics adapter has \"no such thing\" in its name", "pnaen adapters"],
+        &domain("No \x1b[2Jsuch\nthing"),
+        &["has \"No \u{fffd}[2Jsuch\u{fffd}thing\" in its name", "pnaen adapters"],
     );
+    let software = |word| command(&domain(word)).output().expect("the program starts");
+    let (small, large) = (software("software"), software("SOFTWARE"));
+    assert_eq!((small.status, small.stdout, small.stderr), (large.status, large.stdout, large.stderr));
+    assert!(failure(&domain(""), 2).contains("it has no name"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, output, stats, write_seam, write_triangles};
+use crate::{Folder, failure, output, stats, write_seam, write_triangles};
 
 #[test]
 fn info_is_for_people_and_for_programs() {
@@ -94,4 +94,26 @@ fn a_seam_that_almost_meets_is_closed_within_a_tolerance() {
         assert_eq!(json(&["info", &out, "--json"])["closed"], !open, "{options:?}");
     }
     assert_eq!(info(&["--weld", "1e-5"])["edges"]["boundary"], 6, "less than the gap");
+}
+
+#[test]
+fn names_that_a_terminal_would_obey_are_shown_as_text() {
+    let folder = Folder::new("names");
+    let path = folder.path("odd\n\x1b[2J.obj");
+    let name = format!("\x1b[2Jred{}", "x".repeat(1000));
+    let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl {name}\nf 1 2 3\n");
+    std::fs::write(&path, mesh).expect("a writable temporary folder");
+    let text = output(&["info", &path]);
+    let has_odd = |text: &str| text.contains(|letter: char| letter.is_control() && letter != '\n');
+    assert!(!has_odd(&text), "{text:?}");
+    assert!(text.starts_with("odd\u{fffd}\u{fffd}[2J"), "{text:?}");
+    let material = text.lines().find(|line| line.starts_with("material")).expect("one");
+    assert!(material.contains("\u{fffd}[2Jredxxx") && material.contains("x…: 1 triangles"), "{material}");
+    assert!(material.chars().count() < 250, "{material}");
+    let json: Value = serde_json::from_str(&output(&["info", &path, "--json"])).expect("JSON");
+    assert_eq!(json["materials"][0]["name"].as_str(), Some(name.as_str()), "programs have it whole");
+    std::fs::write(&path, "f 1 2 3\n").expect("a writable temporary folder");
+    for said in [failure(&["info", &path], 1), failure(&["info", "no\x1b[2J\nsuch.glb"], 1)] {
+        assert!(!has_odd(&said) && said.lines().count() == 1, "{said:?}");
+    }
 }

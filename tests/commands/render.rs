@@ -136,7 +136,10 @@ fn a_picture_is_held_against_its_reference() {
         &["reference.png", "80 x 60", "160 x 120", "--size 160x120"],
     );
     let before = std::fs::read(&reference).expect("a file");
-    sentence(&["render", "shape:cone", "-o", &reference, "--reference", &reference], &["would replace it"]);
+    sentence(
+        &["render", "shape:cone", "-o", &reference, "--reference", &reference],
+        &["isn't written over: it is read"],
+    );
     assert_eq!(std::fs::read(&reference).expect("a file"), before);
 }
 

@@ -76,6 +76,21 @@ fn wrong_usage_exits_with_2() {
 }
 
 #[test]
+fn an_adapter_and_no_adapter_exclude_each_other() {
+    for arguments in [
+        &["domain", "--partitioning", "integer", "--factors", "2,2,2,2"][..],
+        &["tessellate", "shape:torus", "-o", "never.obj"],
+        &["factors", "shape:torus", "-o", "never.csv"],
+        &["stability", "shape:torus"],
+    ] {
+        let arguments: Vec<_> = arguments.iter().copied().chain(["--adapter", "software", "--device", "cpu"]).collect();
+        let said = failure(&arguments, 2);
+        assert!(said.contains("--adapter") && said.contains("--device cpu") && said.contains("leave one of them out"));
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+#[test]
 fn without_a_display_the_window_becomes_a_picture() {
     let folder = Folder::new("preview");
     let output = command(&[]).current_dir(&folder.0).output().expect("the program starts");
@@ -169,8 +184,28 @@ fn hostile_files_are_one_sentence_and_exit_code_1() {
     sentence(&["render", &deep, "-o", &folder.path("none.png")], &["nested 100000 deep, and 100 are read"]);
     let elsewhere = document("").replace("data:;base64,", "../%2e%2e/");
     sentence(&["info", &write("elsewhere.gltf", elsewhere.as_bytes())], &["/buffers/0", "leads out of a folder"]);
-    let draco = document("").replace(r#""nodes""#, r#""extensionsRequired":["KHR_draco_mesh_compression"],"nodes""#);
-    sentence(&["info", &write("draco.gltf", draco.as_bytes())], &["KHR_draco_mesh_compression", "decompress it first"]);
+    let unknown = document("").replace(r#""nodes""#, r#""extensionsRequired":["EXT_unknown"],"nodes""#);
+    sentence(&["info", &write("unknown.gltf", unknown.as_bytes())], &["is EXT_unknown", "export the model without it"]);
     let chunk = [&b"glTF"[..], &[2, 0, 0, 0], &[24, 0, 0, 0], &[255; 4], b"JSON", b"{}  "].concat();
     sentence(&["info", &write("chunk.glb", &chunk)], &["chunk 0 says 4294967295 bytes, and 4 are left"]);
+}
+
+#[test]
+fn what_has_no_end_is_not_read_to_its_end() {
+    let folder = Folder::new("endless");
+    let picture = folder.path("none.png");
+    let device = "it is a device; name a file, a pipe, or - for standard input";
+    sentence(&["render", "shape:torus", "-o", &picture, "--factors", "/dev/zero"], &["/dev/zero", device]);
+    sentence(&["adjacency", "shape:torus", "--against", "/dev/zero"], &["/dev/zero", device]);
+    sentence(
+        &["render", "shape:torus", "-o", &picture, "--reference", "/dev/zero"],
+        &["/dev/zero", "it is not a file"],
+    );
+    sentence(&["info", "/dev/zero"], &["/dev/zero is not a file"]);
+    let text = folder.path("text.png");
+    std::fs::write(&text, "no image").expect("a writable folder");
+    sentence(
+        &["render", "shape:torus", "-o", &picture, "--reference", &text],
+        &["it is no image; name a PNG or JPEG one"],
+    );
 }

@@ -4,7 +4,7 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{Folder, output, run, sentence};
+use crate::{Folder, failure, output, run, sentence};
 
 const OLD: &str = "what was there";
 
@@ -113,4 +113,54 @@ fn a_kill_in_the_middle_of_writing_leaves_the_old_file_whole() {
     assert!(is_old(&path));
     output(&writes(&path));
     assert!(!is_old(&path));
+}
+
+#[test]
+fn what_a_command_reads_it_does_not_write_over() {
+    let folder = Folder::new("apart");
+    let path = |name: &str| folder.path(name);
+    let (mesh, picture, factors) = (path("in.glb"), path("in.png"), path("in.csv"));
+    std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"), &mesh).expect("a writable folder");
+    image::RgbImage::new(2, 2).save(&picture).expect("a writable folder");
+    run(&["factors", &mesh, "-o", &factors, "--device", "cpu"]);
+    symlink(&mesh, path("link.glb")).expect("a writable folder");
+    let link = path("link.glb");
+    let before = [&mesh, &picture, &factors].map(|path| std::fs::read(path).expect("a file"));
+    let out = path("out.png");
+    let read: [&[&str]; 8] = [
+        &["tessellate", &mesh, "-o", &mesh],
+        &["tessellate", &mesh, "-o", &link],
+        &["render", &mesh, "-o", &out, "--stats", &mesh],
+        &["render", &mesh, "-o", &picture, "--height", &picture],
+        &["render", &mesh, "-o", &out, "--factors", &factors, "--stats", &factors],
+        &["render", "shape:torus", "-o", &out, "--truth", &mesh, "--stats", &mesh],
+        &["factors", &mesh, "-o", &mesh],
+        &["chart", &mesh, "-o", &out, "--csv", &mesh],
+    ];
+    for arguments in read {
+        sentence(arguments, &["isn't written over: it is read by the same command; choose another name"]);
+    }
+    sentence(&["render", "shape:torus", "-o", &out, "--stats", &out], &["it is written by the same command"]);
+    sentence(&["chart", "shape:torus", "-o", &out, "--csv", &out], &["it is written by the same command"]);
+    assert_eq!([&mesh, &picture, &factors].map(|path| std::fs::read(path).expect("a file")), before);
+    assert!(!Path::new(&out).exists(), "nothing was written");
+    // Nor what the mesh's own file names.
+    let (parts, buffer) = (path("parts.gltf"), path("parts.bin"));
+    std::fs::write(
+        &buffer,
+        [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+            .as_flattened()
+            .iter()
+            .flat_map(|x| x.to_le_bytes())
+            .collect::<Vec<_>>(),
+    )
+    .expect("a writable folder");
+    let document = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":3}],"bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"parts.bin"}]}"#;
+    std::fs::write(&parts, document).expect("a writable folder");
+    let before = std::fs::read(&buffer).expect("a file");
+    for arguments in [&["factors", &parts, "-o", &buffer][..], &["render", &parts, "-o", &out, "--stats", &buffer]] {
+        let said = failure(arguments, 1);
+        assert!(said.contains("parts.bin isn't written over: it is read by the same command"), "{said}");
+    }
+    assert_eq!(std::fs::read(&buffer).expect("a file"), before);
 }

@@ -93,6 +93,25 @@ fn one_sample_a_px_draws_too() {
 }
 
 #[test]
+fn what_is_refused_of_an_attempt_is_its_own_error() {
+    let gpu = small(None).gpu;
+    let other = gpu.clone();
+    // Nothing can be mapped to be read and to be written.
+    let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
+    let descriptor = wgpu::BufferDescriptor { label: None, size: 4, usage, mapped_at_creation: false };
+    let refused = gpu.attempt(|| {
+        let beside = std::thread::spawn(move || other.attempt(|| 7).ok());
+        assert_eq!(beside.join().ok().flatten(), Some(7), "another thread's is another's");
+        gpu.device.create_buffer(&descriptor)
+    });
+    assert!(matches!(refused, Err(GpuError::Refused(_))));
+    assert!(gpu.check().is_ok(), "it is reported nowhere else");
+    let _ = gpu.device.create_buffer(&descriptor);
+    assert!(matches!(gpu.check(), Err(GpuError::Refused(_))));
+    assert!(gpu.check().is_ok(), "said once");
+}
+
+#[test]
 fn a_lost_device_is_an_error_and_another_goes_on() {
     let lost = small(None);
     let mesh = loaded(Shape::Torus);
@@ -100,7 +119,9 @@ fn a_lost_device_is_an_error_and_another_goes_on() {
     let expected = seen(&lost, &mut scene, &Settings::default()).expect("a picture");
     lost.gpu.device.destroy();
     let error = seen(&lost, &mut scene, &Settings { factor: 7.0, ..Settings::default() }).expect_err("it is lost");
-    println!("{error}");
+    assert!(matches!(error, GpuError::Lost(_)) && lost.gpu.lost().is_some(), "{error}");
+    assert!(matches!(lost.gpu.check(), Err(GpuError::Lost(_))), "for good");
+    assert!(matches!(lost.gpu.attempt(|| ()), Err(GpuError::Lost(_))));
     drop(scene);
     let again = small(None);
     let mut scene = again.scene(&mesh, ARENA_BYTES).expect("shapes are small");

@@ -9,10 +9,11 @@ use pnaen::mesh::{Corner, Material, Mesh, Progress, Rim, Shape, Source, Topology
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
-    Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, tessellate,
-    totals, unpack_normal,
+    Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, point_count,
+    process, tessellate, totals, triangle_count, unpack_normal,
 };
 
+use crate::coverage::sifting;
 use crate::{engine, loaded, picture, scene};
 
 /// Width and height in px.
@@ -311,6 +312,24 @@ fn more_patches_than_one_scan_covers_are_one_mesh() {
 }
 
 #[test]
+fn many_triangles_are_emitted_as_few_are() {
+    // From 7,340,032 on, a workgroup makes more of them.
+    let loaded = sheet(25, 24);
+    let mut scene = engine().scene(&loaded, 1 << 28).expect("it fits");
+    let settings = Settings { factor: 64.0, partitioning: Partitioning::Integer, ..Settings::default() };
+    let gpu = on_gpu(&mut scene, &inputs(&loaded, &settings));
+    let factors = process(settings.partitioning, [64.0; 3], 64.0);
+    let (points, triangles) = (point_count(factors), triangle_count(factors) as usize);
+    assert_eq!((scene.tessellator.chunk_count(), gpu.triangles.len()), (1, 1200 * triangles));
+    assert!(gpu.triangles.len() >= 7_340_032);
+    let (first, others) = gpu.triangles.split_at(triangles);
+    for (patch, own) in (1..).zip(others.chunks(triangles)) {
+        let is_same = |(a, b): (&[u32; 3], &[u32; 3])| a.map(|corner| corner + patch * points) == *b;
+        assert!(first.iter().zip(own).all(is_same), "patch {patch}");
+    }
+}
+
+#[test]
 fn an_eye_inside_the_mesh_gives_factors_and_no_cracks() {
     let (loaded, mut scene) = scene(Shape::Torus);
     let bounds = loaded.mesh.bounds();
@@ -341,10 +360,10 @@ fn output_is_the_same_on_every_run() {
 
 #[test]
 fn only_what_changed_is_recomputed() {
-    let engine = engine();
+    // All triangles are drawn, however small.
+    let engine = sifting(f32::INFINITY);
     let (_, mut scene) = scene(Shape::Torus);
     let target = Target::new(&engine.gpu, [512, 512]).expect("a small picture");
-    // So few triangles a px that none is left out before it is drawn.
     let mut camera = Camera::framing(&scene.bounds, target.viewport());
     let mut settings = Settings::default();
     let passes = |scene: &mut Scene, camera: &Camera, settings: &Settings| {

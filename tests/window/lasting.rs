@@ -13,13 +13,17 @@ use pnaen::tessellate::{Displacement, Surface};
 use crate::{choose, click, press, settle, vase};
 
 /// A folder of this test's own, gone when the test is.
-struct Folder(PathBuf);
+pub struct Folder(PathBuf);
 
 impl Folder {
-    fn new(name: &str) -> Self {
+    pub fn new(name: &str) -> Self {
         let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&path).expect("a writable temporary folder");
         Self(path)
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
     }
 
     /// What settings are kept in.
@@ -146,6 +150,52 @@ fn a_recent_file_that_is_gone_says_so_and_leaves_the_list() {
     assert_eq!(harness.get_all_by_label_contains("second.glb").count(), 2, "the title, and the list's entry");
 }
 
+/// What is kept in a folder of files' paths and cameras.
+fn kept_files(folder: &Folder) -> serde_json::Value {
+    let text = std::fs::read(folder.file()).expect("what is kept");
+    serde_json::from_slice::<serde_json::Value>(&text).expect("JSON")["files"].take()
+}
+
+#[test]
+fn a_file_that_was_gone_for_a_while_is_listed_again_with_its_camera() {
+    let folder = Folder::new("back");
+    let (first, away) = (folder.mesh("first.glb"), folder.path("away.glb"));
+    let mut harness = window(&folder, Some(first.clone()));
+    std::fs::rename(folder.path("first.glb"), &away).expect("it is there");
+    press(&mut harness, egui::Key::R);
+    harness.get_by_label_contains("it isn't listed as recent any more");
+    std::fs::rename(&away, folder.path("first.glb")).expect("it is there");
+    press(&mut harness, egui::Key::R);
+    press(&mut harness, egui::Key::Num3);
+    let looked = *harness.state().camera();
+    recent_menu(&mut harness);
+    assert_eq!(harness.get_all_by_label_contains("first.glb").count(), 2, "the title, and the list's entry");
+    close(harness);
+    assert_eq!(kept_files(&folder).as_array().map(Vec::len), Some(1));
+    assert_eq!(*window(&folder, Some(first)).state().camera(), looked);
+}
+
+#[test]
+fn a_file_that_is_back_in_the_next_window_has_its_camera() {
+    let folder = Folder::new("later");
+    let (first, away) = (folder.mesh("first.glb"), folder.path("away.glb"));
+    let mut harness = window(&folder, Some(first.clone()));
+    press(&mut harness, egui::Key::Num3);
+    let looked = *harness.state().camera();
+    std::fs::rename(folder.path("first.glb"), &away).expect("it is there");
+    press(&mut harness, egui::Key::R);
+    close(harness);
+    let mut harness = window(&folder, None);
+    click(&mut harness, "File");
+    assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled(), "it isn't listed");
+    close(harness);
+    std::fs::rename(&away, folder.path("first.glb")).expect("it is there");
+    let mut harness = window(&folder, Some(first));
+    assert_eq!(*harness.state().camera(), looked);
+    recent_menu(&mut harness);
+    assert_eq!(harness.get_all_by_label_contains("first.glb").count(), 2, "and is");
+}
+
 #[test]
 fn recent_files_are_reached_by_keys() {
     let folder = Folder::new("keys");
@@ -176,8 +226,12 @@ fn forgetting_goes_back_to_how_it_first_opened() {
     press(&mut harness, egui::Key::S);
     harness.ctx.set_theme(egui::Theme::Light);
     settle(&mut harness);
+    let before = *harness.state().settings();
     click(&mut harness, "File");
-    click(&mut harness, "Forget all settings");
+    harness.get_by_label_contains("Forget all settings").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().settings(), &before, "it asks first");
+    click(&mut harness, "Forget them");
     assert_eq!((harness.state().settings(), harness.state().source()), (&Settings::opening(), Some(&mesh)));
     assert_eq!(*harness.state().camera(), framed);
     assert_eq!(harness.ctx.options(|options| options.theme_preference), egui::ThemePreference::System);
@@ -188,6 +242,23 @@ fn forgetting_goes_back_to_how_it_first_opened() {
     assert_eq!(harness.state().settings(), &Settings::opening());
     click(&mut harness, "File");
     assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled());
+}
+
+#[test]
+fn forgetting_is_reached_by_keys_and_let_be() {
+    let folder = Folder::new("forget-keys");
+    let mut harness = window(&folder, None);
+    choose(&mut harness, "Surface", "PN");
+    for forgets in [false, true] {
+        harness.get_by_role_and_label(Role::Button, "File").focus();
+        press(&mut harness, egui::Key::Enter);
+        harness.get_by_label_contains("Forget all settings").focus();
+        press(&mut harness, egui::Key::Enter);
+        assert_eq!(harness.state().settings().surface, Surface::Pn, "it asks first");
+        harness.get_by_label("Forget them").focus();
+        press(&mut harness, if forgets { egui::Key::Enter } else { egui::Key::Escape });
+        assert_eq!(harness.state().settings().surface == Surface::Pn, !forgets);
+    }
 }
 
 #[test]

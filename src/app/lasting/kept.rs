@@ -52,6 +52,8 @@ pub struct KeptFile {
     /// Absolute.
     pub path: String,
     pub seen: Option<Seen>,
+    /// It wasn't there when it was last asked for: it isn't listed until it is back.
+    pub is_gone: bool,
 }
 
 /// Where a mesh was last looked at from.
@@ -133,20 +135,26 @@ impl Frame {
 impl KeptFile {
     fn read(value: &Value) -> Option<Self> {
         let path = value["path"].as_str().filter(|path| Path::new(path).is_absolute())?;
-        Some(Self { path: path.to_owned(), seen: Seen::read(value) })
+        let is_gone = Fields(value).switch("gone", false);
+        Some(Self { path: path.to_owned(), seen: Seen::read(value), is_gone })
     }
 
     fn written(&self) -> Value {
-        let Some(Seen { camera, diagonal }) = &self.seen else { return json!({ "path": self.path }) };
+        let mut written = json!({ "path": self.path });
+        if self.is_gone {
+            written["gone"] = true.into();
+        }
+        let Some(Seen { camera, diagonal }) = &self.seen else { return written };
         let Camera { target, azimuth, elevation, distance, orthographic } = camera;
-        let camera = json!({
+        written["camera"] = json!({
             "target": target.to_array(),
             "azimuth": azimuth,
             "elevation": elevation,
             "distance": distance,
             "orthographic": orthographic,
         });
-        json!({ "path": self.path, "camera": camera, "diagonal": diagonal })
+        written["diagonal"] = json!(diagonal);
+        written
     }
 }
 

@@ -61,7 +61,7 @@ impl Lasting {
 
     /// Paths of files that were opened last, the last one first.
     pub fn recent(&self) -> impl Iterator<Item = &str> {
-        self.kept.files.iter().take(RECENT).map(|file| file.path.as_str())
+        self.kept.files.iter().filter(|file| !file.is_gone).take(RECENT).map(|file| file.path.as_str())
     }
 
     /// Another mesh is open: where it was last looked at from, if that is known and of use.
@@ -70,20 +70,29 @@ impl Lasting {
         let path = self.open.clone()?;
         let files = &mut self.kept.files;
         let known = files.iter().position(|file| file.path == path);
-        let file = known.map_or(KeptFile { path, seen: None }, |index| files.remove(index));
+        let mut file = known.map_or(KeptFile { path, seen: None, is_gone: false }, |index| files.remove(index));
+        file.is_gone = false;
         let camera = file.seen.and_then(|seen| seen.camera_for(diagonal));
         files.insert(0, file);
         files.truncate(MAX_FILES);
         camera
     }
 
-    /// A file is there no more: whether it leaves the list by that.
+    /// A file is there no more: whether it leaves the list by that. Its camera is kept, should it come back.
     pub(super) fn gone(&mut self, source: &Source) -> bool {
-        let count = self.kept.files.len();
-        if let Some(path) = path_of(source) {
-            self.kept.files.retain(|file| file.path != path);
+        self.known(source).is_some_and(|file| !std::mem::replace(&mut file.is_gone, true))
+    }
+
+    /// A file was loaded again, which may have been gone meanwhile.
+    pub(super) fn is_back(&mut self, source: &Source) {
+        if let Some(file) = self.known(source) {
+            file.is_gone = false;
         }
-        self.kept.files.len() < count
+    }
+
+    fn known(&mut self, source: &Source) -> Option<&mut KeptFile> {
+        let path = path_of(source)?;
+        self.kept.files.iter_mut().find(|file| file.path == path)
     }
 
     /// Takes what the window has by now.
@@ -123,6 +132,12 @@ impl Lasting {
         None
     }
 
+    /// Goes on in another window, by its clock.
+    pub(super) fn go_on_in(&mut self, context: &egui::Context) {
+        self.changed = None;
+        self.writing = self.writing.take().map(|writing| writing.waking(context));
+    }
+
     /// Writes what is left to be written.
     ///
     /// # Errors
@@ -132,7 +147,11 @@ impl Lasting {
         if let Some(writing) = self.writing.take() {
             writing.wait();
         }
-        if self.kept == self.written { Ok(()) } else { place::write(place, &self.kept) }
+        if self.kept == self.written {
+            return Ok(());
+        }
+        self.written = self.kept.clone();
+        place::write(place, &self.kept)
     }
 }
 
@@ -169,9 +188,12 @@ impl App {
         self.lasting = lasting;
     }
 
-    /// Takes the camera that the mesh was last looked at with, where that is known.
-    pub(super) fn look_as_before(&mut self) {
+    /// Takes the camera that the mesh was last looked at with, where that is known; one that was loaded again keeps the view.
+    pub(super) fn look_as_before(&mut self, keep_view: bool) {
         let Some(document) = &self.document else { return };
+        if keep_view {
+            return self.lasting.is_back(&document.loaded.source);
+        }
         let camera = self.lasting.opened(&document.loaded.source, document.diagonal);
         self.camera = camera.unwrap_or(self.camera);
     }
@@ -205,8 +227,24 @@ impl App {
         });
     }
 
+    /// Asks once.
+    pub(super) fn forget_menu(&mut self, ui: &mut egui::Ui) {
+        let hover = "Goes back to how the window first opened: settings, theme, size, recent files and their cameras. The \
+                     mesh stays.";
+        let asks = |ui: &mut egui::Ui| {
+            ui.set_max_width(230.0);
+            ui.label("Settings, theme, size, recent files and their cameras: there is no way back.");
+            ui.button("Forget them").on_hover_text(hover).clicked()
+        };
+        let menu = ui.menu_button("Forget all settings", asks);
+        menu.response.on_hover_text(hover);
+        if menu.inner == Some(true) {
+            self.forget_all(ui.ctx());
+        }
+    }
+
     /// Goes back to how the window first opened; the mesh stays, and is framed.
-    pub(super) fn forget_all(&mut self, context: &egui::Context) {
+    fn forget_all(&mut self, context: &egui::Context) {
         let frame = Frame::default();
         self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
         self.last_split = 0.5;

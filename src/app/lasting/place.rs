@@ -7,7 +7,7 @@ use etcetera::BaseStrategy;
 
 use super::kept::Kept;
 use crate::export::write_whole;
-use crate::mesh::{Limits, LoadError, read_file};
+use crate::mesh::{Limits, LoadError, Progress, read_file};
 
 /// Names another folder; empty, nothing is kept.
 const FOLDER: &str = "PNAEN_CONFIG";
@@ -49,7 +49,7 @@ pub fn read(folder: &Path) -> Found {
         Ok(file) if !file.is_file() => return unread("it is no file".into()),
         Ok(_) => {}
     }
-    let kept = match read_file(&place, &Limits { file: MAX_BYTES }) {
+    let kept = match read_file(&place, &Limits { file: MAX_BYTES }, |_| Ok(()), &Progress::new()) {
         Ok(bytes) => Kept::read(&bytes),
         Err(LoadError::Io { source, .. }) => return unread(source.to_string()),
         Err(_) => None,

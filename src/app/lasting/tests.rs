@@ -110,10 +110,13 @@ prop_compose! {
             egui::ThemePreference::System, egui::ThemePreference::Light, egui::ThemePreference::Dark,
         ]),
         zoom in 0.2f32..=5.0,
-        files in proptest::collection::btree_map("[ -~äßłβ]{1,20}", proptest::option::of(seen()), 0..MAX_FILES),
+        files in proptest::collection::btree_map(
+            "[ -~äßłβ]{1,20}", (proptest::option::of(seen()), proptest::bool::ANY), 0..MAX_FILES,
+        ),
     ) -> Kept {
         let absolute = |name: String| std::env::temp_dir().join(name).to_str().unwrap().to_owned();
-        let files = files.into_iter().map(|(name, seen)| KeptFile { path: absolute(name), seen }).collect();
+        let file = |(name, (seen, is_gone))| KeptFile { path: absolute(name), seen, is_gone };
+        let files = files.into_iter().map(file).collect();
         Kept { settings, frame: Frame { size: [width, height], is_maximized, theme, zoom }, files }
     }
 }

@@ -6,7 +6,7 @@ mod stl;
 
 use std::borrow::Cow;
 
-use super::{Format, read};
+use super::{Format, page, read};
 
 enum Gets {
     /// The problem's message.
@@ -30,8 +30,19 @@ fn case(format: Format, text: impl Into<Cow<'static, str>>, gets: Gets) -> Case 
 fn every_hostile_file_gets_its_sentence() {
     let cases: Vec<Case> = obj::cases().into_iter().chain(stl::cases()).chain(ply::cases()).collect();
     assert!(cases.len() >= 90, "{}", cases.len());
+    let rows: Vec<_> = cases.iter().map(row).collect();
     let wrong: Vec<String> = cases.into_iter().filter_map(wrong).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    page::hold("others.md", "Hostile OBJ, STL and PLY files", &rows);
+}
+
+/// What it is, and what it gets, on a page.
+fn row((format, bytes, gets): &Case) -> (String, String) {
+    let gets = match gets {
+        Refused(sentence) => (*sentence).to_owned(),
+        Mended(_, warning) => format!("is read, with a warning: {warning}"),
+    };
+    (format!("{} {}", format!("{format:?}").to_uppercase(), page::shown(bytes)), gets)
 }
 
 /// What a file got in place of what it was to get.

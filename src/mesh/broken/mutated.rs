@@ -1,13 +1,16 @@
 //! Copies of good files with bits, ends and numbers changed: a mesh or a sentence, never a panic, never long.
+//!
+//! `PNAEN_MUTATIONS` and `PNAEN_MUTATE` as for documents: see `mesh/gltf/tests/mutations.rs`.
 
 use super::Format::{Obj, Ply, Stl};
-use super::{Format, Random, read};
-use crate::mesh::{obj, ply, stl};
+use super::{Format, Random, read, time};
+use crate::mesh::{load, obj, ply, stl};
+use std::time::Duration;
 
 /// What takes the place of a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
 
-fn originals() -> Vec<(Format, Vec<u8>)> {
+pub fn originals() -> Vec<(Format, Vec<u8>)> {
     let mut originals = vec![
         (Obj, obj::tests::cube().into_bytes()),
         (Obj, obj::tests::everything().into_bytes()),
@@ -17,6 +20,19 @@ fn originals() -> Vec<(Format, Vec<u8>)> {
     ];
     originals.extend((0..3).map(|encoding| (Ply, ply::tests::cube(encoding, 6, 4))));
     originals
+}
+
+/// The files that `PNAEN_MUTATE` names, of these formats.
+fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
+    crate::mesh::broken::named_files().into_iter().filter_map(|path| {
+        let format = match load::Format::of(&path).ok()? {
+            load::Format::Obj => Obj,
+            load::Format::Stl => Stl,
+            load::Format::Ply => Ply,
+            load::Format::Gltf => return None,
+        };
+        Some((format, std::fs::read(path).expect("a file that can be read")))
+    })
 }
 
 fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
@@ -44,19 +60,23 @@ fn replace_number(bytes: &mut Vec<u8>, from: usize, by: &str) {
 #[test]
 fn mutated_copies_are_read_or_refused() {
     let copies = std::env::var("PNAEN_MUTATIONS").ok().and_then(|copies| copies.parse().ok()).unwrap_or(300);
-    let originals = originals();
+    let originals: Vec<_> = originals().into_iter().chain(files()).collect();
     for (format, bytes) in &originals {
         assert!(read(*format, bytes).is_ok(), "{format:?}");
     }
-    let (mut random, mut refused) = (Random(0x9e37_79b9_7f4a_7c15), 0);
+    let (mut random, mut refused, mut slowest) = (Random(0x9e37_79b9_7f4a_7c15), 0, Duration::ZERO);
     for i in 0..copies {
         let (format, mut bytes) = originals[i % originals.len()].clone();
         mutate(&mut bytes, &mut random);
-        if let Err(fault) = read(format, &bytes) {
+        let start = time();
+        let result = read(format, &bytes);
+        slowest = slowest.max(time() - start);
+        if let Err(fault) = result {
             let message = fault.to_string();
             assert!(message.len() < 300 && !message.contains(char::is_control), "{message}");
             refused += 1;
         }
     }
+    println!("{copies} copies of {} files: {refused} refused, the slowest {slowest:?}", originals.len());
     assert!(refused > copies / 10 && refused < copies, "{refused} of {copies} were refused");
 }

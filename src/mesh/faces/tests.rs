@@ -37,7 +37,8 @@ fn corners(places: &[[f32; 2]]) -> Vec<LooseCorner> {
 }
 
 fn added(places: &[&[[f32; 2]]]) -> Result<Mesh, Fault> {
-    let mut faces = Faces::new(0);
+    let budget = Budget::endless();
+    let mut faces = Faces::new(0, &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     for places in places {
         faces.add(material, &mut corners(places), Place::Line(7))?;

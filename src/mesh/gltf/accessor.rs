@@ -1,11 +1,15 @@
 //! Accessors: typed lists in buffers, sparse or not, normalised or not, with every range checked first.
 
+use std::borrow::Cow;
+use std::collections::HashMap;
+
 use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
 use ::gltf::{Document, buffer};
 
 use super::Problem;
 use super::budget::Budget;
+use super::draco::Unpacked;
 use super::extensions::{Compressed, Extensions, Mode};
 use super::meshopt::{Decompressed, decompress};
 
@@ -18,10 +22,45 @@ pub struct Accessors<'a> {
     buffers: &'a [Vec<u8>],
     /// By buffer view: those that are compressed, and from one element to the next.
     decompressed: Vec<Option<(Decompressed, usize)>>,
+    /// By mesh and primitive: what Draco compressed.
+    pub unpacked: HashMap<[usize; 2], Unpacked>,
     pub budget: &'a Budget,
 }
 
+/// What an element's bytes stand for.
+type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + 'a>;
+
+/// The values of an accessor. What lies in a buffer as it is stays there, and is decoded when it is asked for.
+pub struct List<'a, T: Clone> {
+    elements: Elements<'a>,
+    decode: Decode<'a, T>,
+    /// In place of all that: what is sparse, or nowhere, or was decoded before.
+    decoded: Option<Cow<'a, [T]>>,
+    zero: T,
+}
+
+impl<'a, T: Copy + 'a> List<'a, T> {
+    /// Of what was decoded before.
+    pub fn of(values: &'a [T], zero: T) -> Self {
+        let decode: Decode<T> = Box::new(move |_| zero);
+        Self { elements: Elements::default(), decode, decoded: Some(Cow::Borrowed(values)), zero }
+    }
+
+    /// Zero beyond its end.
+    pub fn get(&self, i: usize) -> T {
+        match &self.decoded {
+            Some(values) => values.get(i).copied().unwrap_or(self.zero),
+            None => self.elements.get(i).map_or(self.zero, &self.decode),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.decoded.as_ref().map_or(self.elements.count, |values| values.len())
+    }
+}
+
 /// Elements in a buffer view: `stride` bytes from one to the next, and all there.
+#[derive(Clone, Copy, Default)]
 struct Elements<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -30,9 +69,12 @@ struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    fn iter(&self) -> impl Iterator<Item = &'a [u8]> {
-        let (bytes, stride, size) = (self.bytes, self.stride, self.size);
-        (0..self.count).filter_map(move |i| bytes.get(i * stride..)?.get(..size))
+    fn get(&self, i: usize) -> Option<&'a [u8]> {
+        self.bytes.get(i * self.stride..)?.get(..self.size)
+    }
+
+    fn iter(self) -> impl Iterator<Item = &'a [u8]> {
+        (0..self.count).filter_map(move |i| self.get(i))
     }
 }
 
@@ -47,7 +89,7 @@ impl<'a> Accessors<'a> {
         buffers: &'a [Vec<u8>],
         budget: &'a Budget,
     ) -> Result<Self, Problem> {
-        let mut accessors = Self { document, buffers, decompressed: Vec::new(), budget };
+        let mut accessors = Self { document, buffers, decompressed: Vec::new(), unpacked: HashMap::new(), budget };
         for (view, compressed) in document.views().zip(&extensions.compressed) {
             let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
             accessors.decompressed.push(made.map_err(|reason| {
@@ -75,38 +117,57 @@ impl<'a> Accessors<'a> {
     /// # Errors
     /// [`Problem::Accessor`] when there aren't N numbers an element, or the data isn't where it should be.
     pub fn numbers<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<Vec<[f32; N]>, Problem> {
+        let list = self.list::<N>(accessor, role)?;
+        if let Some(values) = list.decoded {
+            return Ok(values.into_owned());
+        }
+        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        self.budget.borrow((list.elements.count * size_of::<[f32; N]>()) as u64).map_err(fail)?;
+        let mut values = Vec::with_capacity(list.elements.count);
+        values.extend(list.elements.iter().map(&list.decode));
+        Ok(values)
+    }
+
+    /// The same, decoded as they are asked for.
+    ///
+    /// # Errors
+    /// As [`Self::numbers`].
+    pub fn list<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<List<'_, [f32; N]>, Problem> {
         let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         if accessor.dimensions().multiplicity() != N {
             return Err(fail(format!("has {:?} elements where {N} numbers are needed", accessor.dimensions())));
         }
         let (kind, normalized) = (accessor.data_type(), accessor.normalized());
-        let decode = |bytes: &[u8]| {
+        let decode = move |bytes: &[u8]| {
             let mut numbers = [0.0; N];
             for (number, bytes) in numbers.iter_mut().zip(bytes.chunks_exact(kind.size())) {
                 *number = component(bytes, kind, normalized);
             }
             numbers
         };
-        self.read(accessor, [0.0; N], decode).map_err(fail)
+        self.read(accessor, [0.0; N], Box::new(decode)).map_err(fail)
     }
 
     /// Single unsigned integers, exactly.
     ///
     /// # Errors
     /// [`Problem::Accessor`] when it holds anything else, or the data isn't where it should be.
-    pub fn indices(&self, accessor: &Accessor, role: &str) -> Result<Vec<u32>, Problem> {
+    pub fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, Problem> {
         let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         let unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
         if accessor.dimensions() != Dimensions::Scalar || !unsigned {
             let kind = (accessor.dimensions(), accessor.data_type());
             return Err(fail(format!("holds {kind:?} where unsigned integers are needed")));
         }
-        self.read(accessor, 0, unsigned_integer).map_err(fail)
+        self.read(accessor, 0, Box::new(unsigned_integer)).map_err(fail)
     }
 
-    /// Of all buffers.
+    /// Of all buffers, and of what was decompressed.
     pub fn buffer_bytes(&self) -> u64 {
-        self.buffers.iter().map(|buffer| buffer.len() as u64).sum()
+        let decompressed =
+            self.decompressed.iter().flatten().map(|(decompressed, _)| decompressed.bytes().len() as u64);
+        let unpacked = self.unpacked.values().map(Unpacked::bytes);
+        self.buffers.iter().map(|buffer| buffer.len() as u64).chain(decompressed).chain(unpacked).sum()
     }
 
     /// The bytes of a buffer view.
@@ -152,27 +213,26 @@ impl<'a> Accessors<'a> {
         self.document.views().nth(index)
     }
 
-    fn read<T: Clone>(&self, accessor: &Accessor, zero: T, decode: impl Fn(&[u8]) -> T) -> Result<Vec<T>, String> {
+    fn read<'b, T: Copy>(&'b self, accessor: &Accessor, zero: T, decode: Decode<'b, T>) -> Result<List<'b, T>, String> {
         let (size, count) = (accessor.size(), accessor.count());
-        let take = || self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64));
-        let mut values = match accessor.view() {
-            Some(view) => {
-                let elements = self.elements(&view, accessor.offset(), size, count)?;
-                take()?;
-                let mut values = Vec::with_capacity(count);
-                values.extend(elements.iter().map(&decode));
-                values
-            }
+        let elements = match accessor.view() {
+            Some(view) => Some(self.elements(&view, accessor.offset(), size, count)?),
             None => {
                 zeros(count)?;
-                take()?;
-                vec![zero; count]
+                None
             }
         };
-        if let Some(sparse) = accessor.sparse() {
-            self.replace(&mut values, &sparse, size, decode)?;
+        if let (Some(elements), None) = (elements, accessor.sparse()) {
+            return Ok(List { elements, decode, decoded: None, zero });
         }
-        Ok(values)
+        self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64))?;
+        let mut values = Vec::with_capacity(count);
+        values.extend(elements.into_iter().flat_map(Elements::iter).map(&decode));
+        values.resize(count, zero);
+        if let Some(sparse) = accessor.sparse() {
+            self.replace(&mut values, &sparse, size, &decode)?;
+        }
+        Ok(List { elements: Elements::default(), decode, decoded: Some(Cow::Owned(values)), zero })
     }
 
     /// Puts an accessor's sparse values in their places.
@@ -234,11 +294,14 @@ fn zeros(count: usize) -> Result<(), String> {
 }
 
 fn unsigned_integer(bytes: &[u8]) -> u32 {
+    if let Ok(word) = bytes.try_into() {
+        return u32::from_le_bytes(word);
+    }
     bytes.iter().rev().fold(0, |value, &byte| (value << 8) | u32::from(byte))
 }
 
 /// One number, as the specification's section 3.6.2.2 (data types) and 3.11 (normalised integers) say.
-fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
+pub fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
     let bits = unsigned_integer(bytes);
     let (value, one) = match kind {
         DataType::F32 => return f32::from_bits(bits),

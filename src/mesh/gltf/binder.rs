@@ -9,7 +9,6 @@ use super::hanging::{Hang, carries_shown, hang};
 use super::nodes::{self, Placed};
 use super::skin;
 use super::space::{Space, untwisted};
-use super::vertices::Influences;
 use crate::mesh::Mesh;
 use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
@@ -213,14 +212,20 @@ pub struct NodeBinder<'a> {
     binder: &'a mut Binder,
 }
 
-/// A primitive's vertices, not deformed.
+/// A vertex, not deformed.
 pub struct Undeformed<'a> {
-    pub positions: &'a [Vec3],
-    pub normals: Option<&'a [Vec3]>,
-    /// Those of a skin's joints; none if the primitive moves with its node.
-    pub influences: Option<&'a Influences>,
-    /// One list a vertex, or none at all.
-    pub deltas: Vec<Vec<Delta>>,
+    pub position: Vec3,
+    pub normal: Vec3,
+    /// The joints of its skin that move it; none if they are unusable.
+    pub influences: Option<&'a [(usize, f64)]>,
+    /// What morph targets add to it.
+    pub deltas: &'a mut [Delta],
+}
+
+/// What a primitive's vertices are bound to, if they have no joints of a skin, and from where.
+pub struct Frame {
+    rigid: Option<u32>,
+    space: Space,
 }
 
 impl NodeBinder<'_> {
@@ -247,42 +252,39 @@ impl NodeBinder<'_> {
         self.binder.give_up(reason);
     }
 
-    /// The bindings' numbers, one a vertex. `corners` are the vertices at rest.
-    pub fn bind(&mut self, mut vertices: Undeformed, corners: &[LooseCorner]) -> Vec<u32> {
+    /// For a primitive's vertices.
+    pub fn frame(&mut self, is_skinned: bool) -> Frame {
         let hang = self.binder.hangs[self.node];
-        let rigid = vertices
-            .influences
-            .is_none()
-            .then(|| self.binder.joint(Joint { mover: hang.mover, offset: DMat4::IDENTITY }));
-        let space = Space::new(if rigid.is_some() { hang.below } else { DMat4::IDENTITY });
-        let mut ids = Vec::with_capacity(corners.len());
-        for (i, corner) in corners.iter().enumerate() {
-            if self.binder.problem.is_some() {
-                return vec![0; corners.len()];
-            }
-            let (joints, weights) = match (rigid, vertices.influences) {
-                (Some(joint), _) => ([joint, 0, 0, 0], [1.0, 0.0, 0.0, 0.0]),
-                (None, influences) => self.influences(influences, i),
-            };
-            let without_normal = corner.normal.is_none_or(|normal| Given::new(normal).unit().is_none());
-            let normal = vertices.normals.map_or(Vec3::ZERO, |normals| normals[i]);
-            let normal = if without_normal { Vec3::ZERO } else { normal };
-            let mut deltas = vertices.deltas.get_mut(i).map(std::mem::take).unwrap_or_default();
-            if without_normal {
-                deltas.iter_mut().for_each(|delta| delta.normal = [0.0; 3]);
-            }
-            let (position, normal) = space.take(vertices.positions[i], normal, &mut deltas);
-            let binding = Binding { position, normal, joints, weights, ..Binding::default() };
-            ids.push(self.binder.bind(Bound { binding, alike: 0, without_normal }, &deltas));
+        if is_skinned {
+            return Frame { rigid: None, space: Space::new(DMat4::IDENTITY) };
         }
-        ids
+        let rigid = self.binder.joint(Joint { mover: hang.mover, offset: DMat4::IDENTITY });
+        Frame { rigid: Some(rigid), space: Space::new(hang.below) }
+    }
+
+    /// The number of a vertex's binding. `corner` is the vertex at rest.
+    pub fn bind(&mut self, frame: &Frame, vertex: Undeformed, corner: &LooseCorner) -> u32 {
+        if self.binder.problem.is_some() {
+            return 0;
+        }
+        let (joints, weights) = match frame.rigid {
+            Some(joint) => ([joint, 0, 0, 0], [1.0, 0.0, 0.0, 0.0]),
+            None => self.influences(vertex.influences.unwrap_or_default()),
+        };
+        let without_normal = corner.normal.is_none_or(|normal| Given::new(normal).unit().is_none());
+        let normal = if without_normal { Vec3::ZERO } else { vertex.normal };
+        if without_normal {
+            vertex.deltas.iter_mut().for_each(|delta| delta.normal = [0.0; 3]);
+        }
+        let (position, normal) = frame.space.take(vertex.position, normal, vertex.deltas);
+        let binding = Binding { position, normal, joints, weights, ..Binding::default() };
+        self.binder.bind(Bound { binding, alike: 0, without_normal }, vertex.deltas)
     }
 
     /// A skinned vertex's joints in the palette's order, each once, with weights that sum to 1.
-    fn influences(&mut self, influences: Option<&Influences>, vertex: usize) -> ([u32; 4], [f32; 4]) {
-        let found = influences.and_then(|influences| influences.of(vertex, self.skin_joints.len()));
+    fn influences(&mut self, found: &[(usize, f64)]) -> ([u32; 4], [f32; 4]) {
         let mut slots: Vec<(u32, f64)> = Vec::with_capacity(4);
-        for (joint, weight) in found.into_iter().flatten() {
+        for &(joint, weight) in found {
             let id = self.skin_joint(joint);
             match slots.iter_mut().find(|(known, _)| *known == id) {
                 Some((_, sum)) => *sum += weight,

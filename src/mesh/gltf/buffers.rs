@@ -33,6 +33,8 @@ pub fn load(
                 blob.take().ok_or_else(|| "the document has no binary chunk for it; export the model again".to_owned())
             }
         };
+        // It wasn't read to its end because nobody waits for it any more.
+        progress.check()?;
         buffers.push(bytes.and_then(|bytes| cut(bytes, length)).map_err(|reason| {
             let uri = buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
             Problem::Buffer { buffer: i, uri, reason }

@@ -112,6 +112,7 @@ impl Checker {
             Kind::Objects(fields) => each(value, path, |value, path| self.value(value, &Kind::Object(fields), path)),
             Kind::Attributes(is_read) => self.attributes(value, *is_read, path),
             Kind::Targets(is_read) => each(value, path, |value, path| self.attributes(value, *is_read, path)),
+            Kind::Ids => ids(value, path),
         }
     }
 
@@ -133,6 +134,11 @@ impl Checker {
         }
         Ok(())
     }
+}
+
+fn ids(value: &Value, path: &Path) -> Result<(), Problem> {
+    let Value::Object(ids) = value else { return path.should_be("an object", value) };
+    ids.iter().try_for_each(|(name, id)| whole(id, 0, u64::from(u32::MAX), &Path(Some(path), Part::Name(name))))
 }
 
 fn each(

@@ -1,5 +1,7 @@
 //! From bytes to a document that the `gltf` crate can't stumble over.
 
+use std::collections::HashSet;
+
 use ::gltf::Document;
 use ::gltf::json::Root;
 use ::gltf::json::validation::Error as Fault;
@@ -8,6 +10,7 @@ use serde_json::{Map, Value, json};
 use super::budget::Budget;
 use super::extensions::{self, Extensions};
 use super::{Problem, check, glb, json, schema};
+use crate::mesh::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
 pub struct Parsed {
@@ -22,12 +25,12 @@ pub struct Parsed {
 /// Parses and validates a `.gltf` or `.glb`; which one, its first bytes tell.
 ///
 /// # Errors
-/// [`Problem::NotGltf`], [`Problem::Extension`], and [`Problem::Document`].
-pub fn parse(mut bytes: Vec<u8>, budget: &Budget) -> Result<Parsed, Problem> {
+/// [`Problem::NotGltf`], [`Problem::Extension`], [`Problem::Document`], and [`Problem::Cancelled`].
+pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, Problem> {
     let mut blob = None;
     let mut value = if glb::is_glb(&bytes) {
         let parts = glb::parts(&bytes)?;
-        let value = json::parse(&bytes[parts.json], budget)?;
+        let value = json::parse(&bytes[parts.json], budget, progress)?;
         if let Some(bin) = parts.bin {
             // In place: a copy would take the file's size once more.
             bytes.truncate(bin.end);
@@ -36,21 +39,23 @@ pub fn parse(mut bytes: Vec<u8>, budget: &Budget) -> Result<Parsed, Problem> {
         }
         value
     } else {
-        let value = json::parse(&bytes, budget)?;
+        let value = json::parse(&bytes, budget, progress)?;
         drop(bytes);
         value
     };
     let Value::Object(root) = &mut value else { return Err(not_gltf("it is no JSON object")) };
     check_version(root)?;
     extensions::check_required(root)?;
+    let requires_draco = extensions::requires(root, schema::DRACO);
     // Set aside: nothing in them can be the reason why a model doesn't load.
     let animations = match root.remove("animations") {
         Some(Value::Array(animations)) => animations,
         _ => Vec::new(),
     };
     check::check(root, schema::DOCUMENT)?;
-    let extensions = Extensions::of(root);
+    let extensions = Extensions::of(root, requires_draco);
     complete(root);
+    complete_packed(root, &extensions, budget)?;
     let warnings = complete_textures(root);
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(first_fault)?;
@@ -113,6 +118,29 @@ fn complete(root: &mut Map<String, Value>) {
             accessor.insert("max".to_owned(), json!([0.0, 0.0, 0.0]));
         }
     }
+}
+
+/// Accessors of what Draco compressed need no buffer view, but the crate wants one, or sparse values: they get none of those.
+fn complete_packed(root: &mut Map<String, Value>, extensions: &Extensions, budget: &Budget) -> Result<(), Problem> {
+    let mut packed = HashSet::new();
+    for (mesh, is_packed) in objects(root, "meshes").zip(&extensions.packed) {
+        let primitives = mesh.get("primitives").and_then(Value::as_array).into_iter().flatten();
+        for (primitive, _) in primitives.zip(is_packed).filter(|(_, is_packed)| is_packed.is_some()) {
+            let attributes = primitive.get("attributes").and_then(Value::as_object).into_iter().flat_map(Map::values);
+            packed.extend(attributes.chain(primitive.get("indices")).filter_map(Value::as_u64));
+        }
+    }
+    let too_large = |reason| Problem::Document { pointer: "its JSON".to_owned(), reason };
+    budget.borrow(packed.len() as u64 * 3 * json::PER_OBJECT).map_err(too_large)?;
+    let is_bare =
+        |accessor: &Map<String, Value>| ["bufferView", "sparse"].iter().all(|name| !accessor.contains_key(*name));
+    for (_, accessor) in objects(root, "accessors").enumerate().filter(|(i, _)| packed.contains(&(*i as u64))) {
+        if is_bare(accessor) {
+            let (indices, values) = (json!({ "bufferView": 0, "componentType": 5121 }), json!({ "bufferView": 0 }));
+            accessor.insert("sparse".to_owned(), json!({ "count": 0, "indices": indices, "values": values }));
+        }
+    }
+    Ok(())
 }
 
 /// A texture without a source (its image is in a format that an extension adds) stops the crate. Materials do without

@@ -1,15 +1,18 @@
 //! Extensions: which may be required, and what a document says in those that are read.
 
+use std::collections::BTreeMap;
+
 use glam::Vec2;
 use serde_json::{Map, Value};
 
 use super::Problem;
-use super::schema::{MESHOPT, TRANSFORM};
+use super::schema::{DRACO, MESHOPT, TRANSFORM, is_attribute};
 
 /// Extensions that a document may require: those that are read, and others that change neither shape nor colour map so
 /// that ignoring them still shows the right surface.
-const KNOWN: [&str; 16] = [
+const KNOWN: [&str; 17] = [
     "KHR_mesh_quantization",
+    DRACO,
     MESHOPT,
     TRANSFORM,
     "KHR_lights_punctual",
@@ -27,9 +30,6 @@ const KNOWN: [&str; 16] = [
     "KHR_materials_volume",
 ];
 
-/// The extension that no reader is kept for.
-const DRACO: &str = "KHR_draco_mesh_compression";
-
 /// What a document says in extensions.
 #[derive(Debug, Default)]
 pub struct Extensions {
@@ -39,6 +39,8 @@ pub struct Extensions {
     pub compressed: Vec<Option<Compressed>>,
     /// One for each buffer: whether it is only for those who can't decompress, and may have no data.
     pub fallback: Vec<bool>,
+    /// One for each primitive of each mesh.
+    pub packed: Vec<Vec<Option<Packed>>>,
 }
 
 /// `KHR_texture_transform`, of a material's base colour texture.
@@ -65,6 +67,16 @@ pub struct Compressed {
     pub filter: Filter,
 }
 
+/// `KHR_draco_mesh_compression`, of a primitive that is to be read from there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Packed {
+    pub view: usize,
+    /// By attributes' names: of those that are read.
+    pub ids: BTreeMap<String, u32>,
+    /// How many others there are.
+    pub others: usize,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     Attributes,
@@ -86,25 +98,40 @@ pub fn check_required(root: &Map<String, Value>) -> Result<(), Problem> {
     let required = root.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
     let names = required.enumerate().filter_map(|(i, name)| Some((i, name.as_str()?)));
     let Some((place, name)) = names.into_iter().find(|(_, name)| !KNOWN.contains(name)) else { return Ok(()) };
-    let advice = match name {
-        DRACO => "export the model without Draco compression, or decompress it first (gltf-transform, for one, can)",
-        _ => "export the model without it",
-    };
-    Err(Problem::Extension { place, name: super::uri::shown(name), advice })
+    Err(Problem::Extension { place, name: super::uri::shown(name) })
+}
+
+/// Whether a document can't do without this extension.
+pub fn requires(root: &Map<String, Value>, extension: &str) -> bool {
+    let required = root.get("extensionsRequired").and_then(Value::as_array);
+    required.is_some_and(|names| names.iter().any(|name| name == extension))
 }
 
 impl Extensions {
-    /// From a document that has been [checked](super::check).
-    pub fn of(root: &Map<String, Value>) -> Self {
+    /// From a document that has been [checked](super::check). Where it doesn't require Draco, primitives that have their
+    /// data beside are read from there.
+    pub fn of(root: &Map<String, Value>, requires_draco: bool) -> Self {
         let list = |name: &str| root.get(name).and_then(Value::as_array).into_iter().flatten();
         let extension = |value: &'_ Value, name: &str| value.get("extensions")?.get(name).cloned();
         let info = |material: &Value| material.pointer("/pbrMetallicRoughness/baseColorTexture").cloned();
         let transform = |material| UvTransform::of(&extension(&info(material)?, TRANSFORM)?);
         let fallback = |buffer| extension(buffer, MESHOPT)?.get("fallback")?.as_bool();
+        let is_beside = |primitive: &Value| {
+            let position = primitive.pointer("/attributes/POSITION")?.as_u64()?;
+            root.get("accessors")?.get(usize::try_from(position).ok()?)?.get("bufferView")
+        };
+        let packed = |primitive: &Value| {
+            let extension = extension(primitive, DRACO).filter(|_| requires_draco || is_beside(primitive).is_none())?;
+            Packed::of(&extension)
+        };
+        let primitives = |mesh: &Value| -> Vec<_> {
+            mesh.get("primitives").and_then(Value::as_array).into_iter().flatten().map(packed).collect()
+        };
         Self {
             transforms: list("materials").map(transform).collect(),
             compressed: list("bufferViews").map(|view| Compressed::of(&extension(view, MESHOPT)?)).collect(),
             fallback: list("buffers").map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
+            packed: list("meshes").map(primitives).collect(),
         }
     }
 }
@@ -129,6 +156,17 @@ impl UvTransform {
         let (sin, cos) = self.rotation.sin_cos();
         let Vec2 { x, y } = uv * self.scale;
         Vec2::new(x * cos + y * sin, y * cos - x * sin) + self.offset
+    }
+}
+
+impl Packed {
+    fn of(value: &Value) -> Option<Self> {
+        let attributes = value.get("attributes")?.as_object()?;
+        let id = |(name, id): (&String, &Value)| Some((name.clone(), u32::try_from(id.as_u64()?).ok()?));
+        let read = attributes.iter().filter(|(name, _)| is_attribute(name));
+        let ids: BTreeMap<_, _> = read.filter_map(id).collect();
+        let others = attributes.len() - ids.len();
+        Some(Self { view: value.get("bufferView")?.as_u64()? as usize, ids, others })
     }
 }
 

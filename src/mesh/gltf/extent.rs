@@ -2,22 +2,26 @@
 
 use std::collections::HashMap;
 
+use ::gltf::accessor::Accessor;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Semantic};
 
 use super::budget::Budget;
 use super::nodes::Placed;
 use super::{Accessors, Problem, primitive};
+use crate::mesh::ids::Ids;
 
 /// A scene of more triangles than this is refused: its indices would no longer fit 32 bits, nor its data most memories.
 pub const MAX_TRIANGLES: u64 = 1 << 27;
 /// Vertices, displacements of them and indices that are read at most, each as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
 
-/// Memory for a corner and for a triangle while they are gathered, in bytes; as much again for each triangle at the end, when
-/// the buffers are no longer held; and for what moves a corner.
-const PER_CORNER: u64 = 85;
+/// Memory for a corner and for a triangle while they are gathered, in bytes (see [`crate::mesh::budget`]), and for what moves a
+/// corner.
+const PER_CORNER: u64 = 32;
 const PER_TRIANGLE: u64 = 12;
+/// What a vertex counts that is nowhere: it takes time, and no file brings it.
+const PER_ZERO: u64 = 100;
 const PER_BOUND: u64 = 240;
 /// As much as reading a primitive takes beside its elements, and a node.
 const PER_PRIMITIVE: u64 = 200;
@@ -26,13 +30,18 @@ const PER_PRIMITIVE: u64 = 200;
 #[derive(Clone, Copy, Debug, Default)]
 struct Extent {
     triangles: u64,
+    /// Distinct ones: at most, or where nothing is said of it as many as a closed surface has.
     corners: u64,
+    /// Vertices of triangles, at most.
+    vertices: u64,
+    /// Those of which the file holds nothing.
+    zeros: u64,
     elements: u64,
     primitives: u64,
 }
 
-/// Makes sure that all that is shown is there, and that there is room for it, which is held. How many corners there are at
-/// most.
+/// Makes sure that all that is shown is there, and that there is room for it, which is held. How many vertices of
+/// triangles there are at most, and how many distinct corners there may be.
 ///
 /// # Errors
 /// [`Problem::Accessor`], and [`Problem::TooLarge`].
@@ -42,7 +51,7 @@ pub fn check(
     accessors: &Accessors,
     budget: &Budget,
     moves: bool,
-) -> Result<usize, Problem> {
+) -> Result<[usize; 2], Problem> {
     let mut known: HashMap<usize, Extent> = HashMap::new();
     let mut all = Extent::default();
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
@@ -69,13 +78,19 @@ pub fn check(
     if all.elements > MAX_ELEMENTS {
         return refuse(all.elements, "vertices, displacements of them and indices", MAX_ELEMENTS);
     }
-    let per_corner = PER_CORNER + if moves { PER_BOUND } else { 0 };
-    let triangles = all.triangles * PER_TRIANGLE;
-    let bytes = all.corners * per_corner + triangles + triangles.saturating_sub(accessors.buffer_bytes());
-    let bytes = bytes.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
+    let moving = if moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
+    let read = Ids::bytes_for(all.corners as usize) + all.triangles * PER_TRIANGLE;
+    // All triangles in one list, when the buffers are no longer held.
+    let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
+    let finished = if all.primitives > 1 { finished } else { 0 };
     let too_large = |reason| Problem::TooLarge { what: format!("the scene of {} triangles", all.triangles), reason };
-    budget.hold(bytes).map_err(too_large)?;
-    Ok(all.corners as usize)
+    let beside = moving.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
+    let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + read.max(finished);
+    let borrowed = budget.borrowed();
+    budget.hold(beside).and_then(|()| budget.borrow(ahead)).map_err(too_large)?;
+    // That was a look ahead: the builder takes it as it goes.
+    budget.pass(borrowed);
+    Ok([all.vertices as usize, all.corners as usize])
 }
 
 impl Extent {
@@ -87,18 +102,27 @@ impl Extent {
                 continue;
             };
             let name = primitive::name(mesh, &primitive);
-            accessors.check(&positions, &format!("POSITION of {name}"))?;
+            // What was decompressed is there, and as much as the accessors say.
+            let is_unpacked = accessors.unpacked.contains_key(&[mesh.index(), primitive.index()]);
+            let check = |accessor: &Accessor, role: &str| match is_unpacked {
+                true => Ok(()),
+                false => accessors.check(accessor, &format!("{role} of {name}")),
+            };
+            check(&positions, "POSITION")?;
             let vertices = positions.count() as u64;
             let mut indices = vertices;
             if let Some(accessor) = primitive.indices() {
-                accessors.check(&accessor, &format!("indices of {name}"))?;
+                check(&accessor, "indices")?;
                 indices = accessor.count() as u64;
             }
-            let triangles = if primitive.mode() == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) };
+            let triangles = primitive::most_triangles(primitive.mode(), indices as usize) as u64;
+            let used = vertices.min(triangles.saturating_mul(3));
             let targets = primitive.morph_targets().len() as u64;
             extent.add(Self {
                 triangles,
-                corners: vertices.min(triangles.saturating_mul(3)),
+                corners: if primitive.indices().is_some() { used } else { used.min(triangles / 2 + 2) },
+                vertices: used,
+                zeros: if positions.view().is_none() && !is_unpacked { vertices } else { 0 },
                 elements: vertices.saturating_mul(1 + targets).saturating_add(indices),
                 primitives: 0,
             });
@@ -109,6 +133,8 @@ impl Extent {
     fn add(&mut self, other: Self) {
         self.triangles = self.triangles.saturating_add(other.triangles);
         self.corners = self.corners.saturating_add(other.corners);
+        self.vertices = self.vertices.saturating_add(other.vertices);
+        self.zeros = self.zeros.saturating_add(other.zeros);
         self.elements = self.elements.saturating_add(other.elements);
         self.primitives = self.primitives.saturating_add(other.primitives);
     }

@@ -4,24 +4,29 @@ use serde_json::Value;
 
 use super::Problem;
 use super::budget::Budget;
+use crate::mesh::progress::{Cancelled, Progress};
 
 /// How deep lists and objects may lie in one another. The specification's own need 8; `extras` may have more.
 const MAX_DEPTH: usize = 100;
 
+/// Bytes that are looked at without asking whether anybody still waits.
+const PIECE: usize = 1 << 24;
+
 /// What a text becomes, at most, in bytes of memory: a member or an element, an object's first node of members, and that
 /// object once more as what is read of it.
 const PER_VALUE: u64 = 72;
-const PER_OBJECT: u64 = 640;
+pub const PER_OBJECT: u64 = 640;
 const PER_READ: u64 = 400;
 
 /// Parses a text.
 ///
 /// # Errors
-/// [`Problem::NotGltf`] for what is no JSON or nested too deep, [`Problem::Document`] for what is too large.
-pub fn parse(text: &[u8], budget: &Budget) -> Result<Value, Problem> {
+/// [`Problem::NotGltf`] for what is no JSON or nested too deep, [`Problem::Document`] for what is too large, and
+/// [`Problem::Cancelled`].
+pub fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, Problem> {
     // A byte order mark is not JSON, but some editors write it.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let shape = Shape::of(text);
+    let shape = Shape::of(text, progress)?;
     if shape.depth > MAX_DEPTH {
         let reason = format!("its JSON is nested {} deep, and {MAX_DEPTH} are read", shape.depth);
         return Err(Problem::NotGltf { reason });
@@ -42,29 +47,44 @@ struct Shape {
 }
 
 impl Shape {
-    fn of(text: &[u8]) -> Self {
-        let mut shape = Self::default();
-        let (mut depth, mut in_string, mut escaped) = (0_usize, false, false);
-        for &byte in text {
-            if in_string {
-                in_string = escaped || byte != b'"';
-                escaped = !escaped && byte == b'\\';
-                continue;
-            }
-            match byte {
-                b'"' => in_string = true,
-                b'{' | b'[' => {
-                    depth += 1;
-                    shape.depth = shape.depth.max(depth);
-                    shape.values += 1;
-                    shape.objects += u64::from(byte == b'{');
-                }
-                b'}' | b']' => depth = depth.saturating_sub(1),
-                b',' => shape.values += 1,
-                _ => {}
-            }
+    fn of(text: &[u8], progress: &Progress) -> Result<Self, Cancelled> {
+        let mut scan = Scan::default();
+        for piece in text.chunks(PIECE) {
+            progress.check()?;
+            piece.iter().for_each(|&byte| scan.take(byte));
         }
-        shape
+        Ok(scan.shape)
+    }
+}
+
+/// A text as far as it was looked at.
+#[derive(Default)]
+struct Scan {
+    shape: Shape,
+    depth: usize,
+    in_string: bool,
+    escaped: bool,
+}
+
+impl Scan {
+    fn take(&mut self, byte: u8) {
+        if self.in_string {
+            self.in_string = self.escaped || byte != b'"';
+            self.escaped = !self.escaped && byte == b'\\';
+            return;
+        }
+        match byte {
+            b'"' => self.in_string = true,
+            b'{' | b'[' => {
+                self.depth += 1;
+                self.shape.depth = self.shape.depth.max(self.depth);
+                self.shape.values += 1;
+                self.shape.objects += u64::from(byte == b'{');
+            }
+            b'}' | b']' => self.depth = self.depth.saturating_sub(1),
+            b',' => self.shape.values += 1,
+            _ => {}
+        }
     }
 }
 
@@ -74,17 +94,18 @@ mod tests {
 
     #[test]
     fn brackets_in_strings_are_none() {
-        let shape = Shape::of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#);
+        let of = |text: &[u8]| Shape::of(text, &Progress::new()).expect("nobody cancels");
+        let shape = of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#);
         assert_eq!(shape, Shape { depth: 3, values: 7, objects: 2 });
-        assert_eq!(Shape::of(b"]]]["), Shape { depth: 1, values: 1, objects: 0 });
+        assert_eq!(of(b"]]]["), Shape { depth: 1, values: 1, objects: 0 });
     }
 
     #[test]
     fn depth_is_refused_with_both_numbers() {
         let deep = "[".repeat(MAX_DEPTH + 1);
-        let said = parse(deep.as_bytes(), &Budget::new(0)).unwrap_err().to_string();
+        let said = parse(deep.as_bytes(), &Budget::new(0), &Progress::new()).unwrap_err().to_string();
         assert!(said.contains("nested 101 deep, and 100 are read"), "{said}");
         let allowed = format!("{}{}", "[".repeat(MAX_DEPTH), "]".repeat(MAX_DEPTH));
-        assert!(parse(allowed.as_bytes(), &Budget::new(0)).is_ok());
+        assert!(parse(allowed.as_bytes(), &Budget::new(0), &Progress::new()).is_ok());
     }
 }

@@ -3,12 +3,14 @@
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive};
 
+use super::accessor::List;
 use super::binder::NodeBinder;
-use super::materials::Uvs;
+use super::materials::Resolved;
+use super::moving::Moving;
 pub use super::vertices::Pose;
-use super::vertices::Vertices;
+use super::vertices::{Source, Vertex, Vertices};
 use super::{Accessors, Problem, vertices};
-use crate::mesh::merge::LooseCorner;
+use crate::mesh::merge::{Kept, Mended, MeshBuilder};
 
 /// Reads primitives and remembers what was odd about them.
 #[derive(Debug, Default)]
@@ -26,25 +28,25 @@ pub struct Primitives {
     pub rescaled: u32,
 }
 
-/// A primitive's triangles, by its vertices.
-pub struct Triangles {
-    vertices: Vertices,
-    mode: Mode,
-    indices: Vec<u32>,
+/// What is read, and where it goes.
+pub struct Job<'a, 'b> {
+    pub mesh: &'a Mesh<'a>,
+    pub primitive: &'a Primitive<'a>,
+    pub pose: &'a Pose<'a>,
+    pub material: Resolved,
+    pub accessors: &'a Accessors<'a>,
+    pub builder: &'b mut MeshBuilder,
 }
 
-impl Triangles {
-    /// Corners, and the numbers of their bindings: 0 for all if nothing moves.
-    pub fn iter(&self) -> impl Iterator<Item = ([LooseCorner; 3], [u32; 3])> {
-        let Vertices { corners, bindings, .. } = &self.vertices;
-        let binding = |vertex: u32| bindings.get(vertex as usize).copied().unwrap_or_default();
-        self.outward().map(move |t| (t.map(|vertex| corners[vertex as usize]), t.map(binding)))
-    }
+/// The vertices of a primitive's triangles: as they follow each other without indices.
+struct Indices<'a> {
+    list: Option<List<'a, u32>>,
+    count: usize,
+}
 
-    /// Vertices of triangles, counter-clockwise seen from outside.
-    fn outward(&self) -> impl Iterator<Item = [u32; 3]> {
-        let outward = |[a, b, c]: [u32; 3]| if self.vertices.mirrored[a as usize] { [a, c, b] } else { [a, b, c] };
-        triangles(self.mode, &self.indices).map(outward)
+impl Indices<'_> {
+    fn get(&self, i: usize) -> u32 {
+        self.list.as_ref().map_or(i as u32, |list| list.get(i))
     }
 }
 
@@ -60,35 +62,48 @@ impl Primitives {
         true
     }
 
-    /// The triangles of a primitive in the scene's space, counter-clockwise seen from outside.
+    /// Adds the triangles of a primitive to the builder, in the scene's space, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// [`Problem::Accessor`] and [`Problem::Primitive`].
-    pub fn read(
-        &mut self,
-        mesh: &Mesh,
-        primitive: &Primitive,
-        pose: &Pose,
-        uvs: Uvs,
-        accessors: &Accessors,
-        binder: Option<&mut NodeBinder>,
-    ) -> Result<Triangles, Problem> {
+    /// [`Problem::Accessor`], [`Problem::Primitive`] and [`Problem::TooLarge`].
+    pub fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), Problem> {
+        let Job { mesh, primitive, pose, material, accessors, builder } = job;
         let name = name(mesh, primitive);
-        let vertices = vertices::read(primitive, &name, pose, uvs, accessors, binder)?;
-        let indices = match primitive.indices() {
-            Some(accessor) => accessors.indices(&accessor, &format!("indices of {name}"))?,
-            None => (0..vertices.corners.len() as u32).collect(),
-        };
-        self.count(&vertices.repairs, primitive.mode(), indices.len());
-        let count = vertices.corners.len();
-        if let Some((i, index)) = indices.iter().enumerate().find(|(_, index)| **index as usize >= count) {
-            let reason = format!("uses vertex {index} of {count}, at index {i}");
-            return Err(Problem::Primitive { primitive: name, reason });
+        let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
+        let source = Source { primitive, name: &name, accessors, unpacked };
+        let mut vertices = Vertices::new(source, pose, material.uvs)?;
+        let mut moving = binder.map(|binder| Moving::new(source, &vertices, binder));
+        let list = primitive.indices().map(|accessor| match unpacked {
+            Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
+            None => accessors.indices(&accessor, &format!("indices of {name}")),
+        });
+        let list = list.transpose()?;
+        let count = list.as_ref().map_or(vertices.count, List::len);
+        let (indices, mode) = (Indices { list, count }, primitive.mode());
+        let (budget, too_large) =
+            (accessors.budget, |reason| Problem::TooLarge { what: "the scene".to_owned(), reason });
+        // Each vertex's corner with what is to be known of it, and a bit whether it is used.
+        budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
+        let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
+        let mut kept = KeptVertices::new(vertices.count);
+        for i in 0..vertices.count {
+            let vertex = vertices.read(i)?;
+            let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, &vertices, &vertex.corner));
+            if used[i / 64] & 1 << (i % 64) == 0 {
+                kept.push(Kept::default(), &vertex);
+                continue;
+            }
+            builder.make_room(1, budget).map_err(too_large)?;
+            kept.push(builder.corner(vertex.corner, binding), &vertex);
         }
-        let triangles = Triangles { vertices, mode: primitive.mode(), indices };
-        let vertex_rescaled = |vertex: &u32| triangles.vertices.rescaled[*vertex as usize];
-        self.rescaled += triangles.outward().flatten().filter(vertex_rescaled).count() as u32;
-        Ok(triangles)
+        self.count(&vertices.repairs, mode, count);
+        builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
+        for [a, b, c] in triangles(mode, count, |i| indices.get(i)) {
+            let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
+            self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
+            builder.kept_triangle(material.index, outward.map(|i| kept.get(i)));
+        }
+        Ok(())
     }
 
     fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
@@ -126,27 +141,81 @@ impl Primitives {
     }
 }
 
+/// What has become of a primitive's vertices.
+struct KeptVertices {
+    ids: Vec<u32>,
+    /// What was mended, and two bits more.
+    marks: Vec<u8>,
+}
+
+impl KeptVertices {
+    const MIRRORED: u8 = 1 << Mended::BITS;
+    const RESCALED: u8 = 2 << Mended::BITS;
+
+    fn new(count: usize) -> Self {
+        Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
+    }
+
+    fn push(&mut self, kept: Kept, vertex: &Vertex) {
+        let mark = |is: bool, bit: u8| if is { bit } else { 0 };
+        self.ids.push(kept.id);
+        self.marks.push(kept.mended.0 | mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
+    }
+
+    fn has(&self, i: u32, mark: u8) -> bool {
+        self.marks[i as usize] & mark != 0
+    }
+
+    fn get(&self, i: u32) -> Kept {
+        let mended = Mended(self.marks[i as usize] & (Self::MIRRORED - 1));
+        Kept { id: self.ids[i as usize], mended }
+    }
+}
+
+/// A bit for each vertex that an index names.
+///
+/// # Errors
+/// A clause: an index names none.
+fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
+    if indices.list.is_none() {
+        return Ok(vec![u64::MAX; count.div_ceil(64)]);
+    }
+    let mut used = vec![0; count.div_ceil(64)];
+    for i in 0..indices.count {
+        let index = indices.get(i) as usize;
+        if index >= count {
+            return Err(format!("uses vertex {index} of {count}, at index {i}"));
+        }
+        used[index / 64] |= 1 << (index % 64);
+    }
+    Ok(used)
+}
+
 /// A primitive's place in the document, for messages.
 pub fn name(mesh: &Mesh, primitive: &Primitive) -> String {
     let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", super::uri::shown(name)));
     format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
 }
 
+/// How many triangles there are of so many indices, at most.
+pub fn most_triangles(mode: Mode, indices: usize) -> usize {
+    if mode == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) }
+}
+
 /// Indices as triangles (specification, section 3.7.2.1). Triangles of a strip or fan that use a vertex twice only
 /// carry it to its next part and are dropped; those of a list are kept.
-fn triangles(mode: Mode, indices: &[u32]) -> Box<dyn Iterator<Item = [u32; 3]> + '_> {
-    let whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-    match mode {
-        Mode::TriangleStrip => {
-            let windows = indices.array_windows().enumerate();
-            Box::new(windows.map(|(i, &[a, b, c])| if i % 2 == 0 { [a, b, c] } else { [a, c, b] }).filter(whole))
-        }
-        Mode::TriangleFan => {
-            let Some((&hub, rim)) = indices.split_first() else { return Box::new(std::iter::empty()) };
-            Box::new(rim.array_windows().map(move |&[a, b]| [a, b, hub]).filter(whole))
-        }
-        _ => Box::new(indices.as_chunks().0.iter().copied()),
-    }
+fn triangles(mode: Mode, count: usize, at: impl Fn(usize) -> u32) -> impl Iterator<Item = [u32; 3]> {
+    (0..most_triangles(mode, count)).filter_map(move |i| {
+        let triangle = match mode {
+            Mode::TriangleStrip if i % 2 == 0 => [i, i + 1, i + 2],
+            Mode::TriangleStrip => [i, i + 2, i + 1],
+            Mode::TriangleFan => [i + 1, i + 2, 0],
+            _ => [3 * i, 3 * i + 1, 3 * i + 2],
+        };
+        let [a, b, c] = triangle.map(&at);
+        let is_whole = a != b && b != c && c != a;
+        (is_whole || mode == Mode::Triangles).then_some([a, b, c])
+    })
 }
 
 #[cfg(test)]
@@ -154,7 +223,7 @@ mod tests {
     use super::*;
 
     fn all(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
-        triangles(mode, indices).collect()
+        triangles(mode, indices.len(), |i| indices[i]).collect()
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What can be wrong with a glTF document.
 
+use crate::mesh::merge::Unfinished;
 use crate::mesh::progress::Cancelled;
 
 /// Why a glTF document became no mesh. The file's own path is not part of the message. Places in the document are JSON
@@ -10,8 +11,8 @@ pub enum Problem {
     Cancelled(#[from] Cancelled),
     #[error("not a glTF 2.0 document: {reason}; export the model again as glTF 2.0")]
     NotGltf { reason: String },
-    #[error("/extensionsRequired/{place} is {name}, which isn't supported; {advice}")]
-    Extension { place: usize, name: String, advice: &'static str },
+    #[error("/extensionsRequired/{place} is {name}, which isn't supported; export the model without it")]
+    Extension { place: usize, name: String },
     #[error("{pointer} {reason}; export the model again")]
     Document { pointer: String, reason: String },
     #[error("/buffers/{buffer} ({uri}) can't be read: {reason}")]
@@ -20,8 +21,19 @@ pub enum Problem {
     Accessor { accessor: usize, role: String, reason: String },
     #[error("{primitive} {reason}; export the model again")]
     Primitive { primitive: String, reason: String },
+    #[error("{pointer} {reason}; decompress the model first (gltf-transform, for one, can)")]
+    Packed { pointer: String, reason: String },
     #[error("{what} {reason}; split the model into several files")]
     TooLarge { what: String, reason: String },
     #[error("no triangles: {holds}")]
     Empty { holds: String },
+}
+
+impl From<Unfinished> for Problem {
+    fn from(error: Unfinished) -> Self {
+        match error {
+            Unfinished::Cancelled(cancelled) => cancelled.into(),
+            Unfinished::TooLarge(reason) => Self::TooLarge { what: "the scene".to_owned(), reason },
+        }
+    }
 }

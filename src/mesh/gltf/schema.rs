@@ -38,10 +38,13 @@ pub enum Kind {
     /// Accessors by name, of those names that are read.
     Attributes(fn(&str) -> bool),
     Targets(fn(&str) -> bool),
+    /// Numbers of whatever the names stand for.
+    Ids,
 }
 
 use Kind::{
-    Attributes, Code, Flag, Index, Indices, Name, Number, Numbers, Object, Objects, Targets, Text, Whole, Within, Word,
+    Attributes, Code, Flag, Ids, Index, Indices, Name, Number, Numbers, Object, Objects, Targets, Text, Whole, Within,
+    Word,
 };
 
 const fn needed(name: &'static str, kind: Kind) -> Field {
@@ -57,6 +60,8 @@ const COUNT: Kind = Whole { least: 0, most: u64::MAX };
 
 /// The extension that compresses buffer views, which marks buffers too.
 pub const MESHOPT: &str = "EXT_meshopt_compression";
+/// The extension that compresses primitives.
+pub const DRACO: &str = "KHR_draco_mesh_compression";
 /// The extension that moves texture coordinates.
 pub const TRANSFORM: &str = "KHR_texture_transform";
 
@@ -94,7 +99,10 @@ static PRIMITIVE: &[Field] = &[
     may("material", Index("materials")),
     may("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
     may("targets", Targets(is_displacement)),
+    may("extensions", Object(&[may(DRACO, Object(PACKED))])),
 ];
+
+static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Ids)];
 
 static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
 
@@ -172,7 +180,7 @@ static BUFFER: &[Field] = &[
     may("extensions", Object(&[may(MESHOPT, Object(&[may("fallback", Flag)]))])),
 ];
 
-fn is_attribute(name: &str) -> bool {
+pub fn is_attribute(name: &str) -> bool {
     let known = ["POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0"].contains(&name);
     known || name.strip_prefix("TEXCOORD_").is_some_and(|set| set.parse::<u32>().is_ok())
 }

@@ -3,6 +3,8 @@ mod files;
 mod hostile;
 mod moving;
 mod mutations;
+mod packed;
+pub use mutations::seeds;
 
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};

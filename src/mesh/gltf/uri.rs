@@ -6,6 +6,8 @@ use std::path::{Component, Path, PathBuf};
 
 use super::budget::Budget;
 use crate::mesh::load::{Limits, read_file};
+use crate::mesh::progress::Progress;
+use crate::names::{on_one_line, shown_path};
 
 /// The largest data URI, in bytes that it stands for.
 const MAX_DATA: usize = 512 << 20;
@@ -16,13 +18,14 @@ pub struct Files<'a> {
     folder: &'a Path,
     limits: &'a Limits,
     budget: &'a Budget,
+    progress: &'a Progress,
     /// Those that have brought their allowance.
     counted: RefCell<HashSet<PathBuf>>,
 }
 
 impl<'a> Files<'a> {
-    pub fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget) -> Self {
-        Self { folder, limits, budget, counted: RefCell::default() }
+    pub fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget, progress: &'a Progress) -> Self {
+        Self { folder, limits, budget, progress, counted: RefCell::default() }
     }
 
     /// The bytes that a URI stands for, kept until the end or not.
@@ -46,13 +49,20 @@ impl<'a> Files<'a> {
             self.budget.allow(bytes);
         }
         take(bytes)?;
-        read_file(&path, self.limits).map_err(|error| error.to_string())
+        read_file(&path, self.limits, |_| Ok(()), self.progress).map_err(|error| error.to_string())
+    }
+
+    /// Those that were read, in order of their names.
+    pub fn named(&self) -> Vec<PathBuf> {
+        let mut named: Vec<_> = self.counted.borrow().iter().cloned().collect();
+        named.sort();
+        named
     }
 
     /// The file itself, wherever links lead.
     fn found(&self, relative: &Path) -> Result<PathBuf, String> {
         let missing = |path: &Path, error: std::io::Error| {
-            format!("{}: {error}; put the file where the document says, or export as .glb", path.display())
+            format!("{}: {error}; put the file where the document says, or export as .glb", shown_path(path))
         };
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
         let path = folder.join(relative);
@@ -61,12 +71,12 @@ impl<'a> Files<'a> {
         if !real.starts_with(&root) {
             return Err(format!(
                 "{} is a link out of the document's folder, and only files below that are read; put the file itself there",
-                path.display()
+                shown_path(&path)
             ));
         }
         // A pipe or a device could block for ever.
         if !real.metadata().map_err(|error| missing(&path, error))?.is_file() {
-            return Err(format!("{} is not a file; name one, or export as .glb", path.display()));
+            return Err(format!("{} is not a file; name one, or export as .glb", shown_path(&path)));
         }
         Ok(real)
     }
@@ -76,7 +86,7 @@ impl<'a> Files<'a> {
 pub fn shown(uri: &str) -> String {
     let (start, rest) = uri.split_at(uri.char_indices().nth(60).map_or(uri.len(), |(i, _)| i));
     // On one line, whatever it is.
-    let start = start.replace(char::is_control, "\u{fffd}");
+    let start = on_one_line(start);
     if rest.is_empty() { start } else { format!("{start}...") }
 }
 

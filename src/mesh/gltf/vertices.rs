@@ -1,19 +1,17 @@
-//! A primitive's vertices in their rest pose: attributes read, morphed, then skinned or placed.
+//! A primitive's vertices in their rest pose, one after another: attributes read, morphed, then skinned or placed.
 
 use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
-use super::binder::{MAX_BOUND, NodeBinder, Undeformed};
+use super::accessor::List;
+use super::draco::Unpacked;
 use super::extensions::UvTransform;
 use super::materials::Uvs;
 use super::{Accessors, Problem};
 use crate::mesh::merge::LooseCorner;
 use crate::mesh::normals::Given;
-use crate::mesh::rig::{Delta, LARGEST_COORDINATE};
-
-/// Memory for a displacement of a vertex that is bound, and for telling it from others, in bytes.
-const PER_DELTA: u64 = 250;
+use crate::mesh::rig::LARGEST_COORDINATE;
 
 /// How the primitive's node stands.
 pub struct Pose<'a> {
@@ -25,16 +23,13 @@ pub struct Pose<'a> {
     pub weights: &'a [f32],
 }
 
-/// Vertices in the scene's space.
-pub struct Vertices {
-    pub corners: Vec<LooseCorner>,
-    /// The vertex went through a mirroring transform, so its triangles must be wound the other way.
-    pub mirrored: Vec<bool>,
-    /// The vertex's normal has a direction, but wasn't of unit length in the file.
-    pub rescaled: Vec<bool>,
-    /// Numbers of the vertices' bindings; none at all if nothing moves.
-    pub bindings: Vec<u32>,
-    pub repairs: Repairs,
+/// A vertex in the scene's space.
+pub struct Vertex {
+    pub corner: LooseCorner,
+    /// It went through a mirroring transform, so its triangles must be wound the other way.
+    pub mirrored: bool,
+    /// Its normal has a direction, but wasn't of unit length in the file.
+    pub rescaled: bool,
 }
 
 /// What had to be mended, in vertices.
@@ -48,124 +43,147 @@ pub struct Repairs {
     pub bad_weights: usize,
 }
 
-/// The attributes as the file has them.
-#[derive(Clone)]
-struct Attributes {
-    positions: Vec<Vec3>,
-    normals: Option<Vec<Vec3>>,
-    uvs: Option<Vec<[f32; 2]>>,
+/// What a morph target adds at weight 1.
+pub struct Target<'a> {
+    pub positions: Option<List<'a, [f32; 3]>>,
+    pub normals: Option<List<'a, [f32; 3]>>,
 }
 
 /// The joints of a skin that move each vertex, and by how much.
-pub struct Influences {
-    joints: Vec<[f32; 4]>,
-    weights: Vec<[f32; 4]>,
+struct Influences<'a> {
+    joints: List<'a, [f32; 4]>,
+    weights: List<'a, [f32; 4]>,
 }
 
-impl Influences {
-    /// A vertex's joints with weights that sum to 1, which quantised ones miss; none if they are unusable, of a skin with so
-    /// many joints.
-    pub fn of(&self, vertex: usize, joint_count: usize) -> Option<impl Iterator<Item = (usize, f64)>> {
-        let slots = || self.joints[vertex].into_iter().zip(self.weights[vertex]).filter(|(_, weight)| *weight != 0.0);
-        let total: f64 = slots().map(|(_, weight)| f64::from(weight)).sum();
-        let is_usable = total.is_finite() && total > 0.0 && slots().all(|(joint, _)| (joint as usize) < joint_count);
-        is_usable.then(|| slots().map(move |(joint, weight)| (joint as usize, f64::from(weight) / total)))
+impl Influences<'_> {
+    /// Puts a vertex's joints with weights that sum to 1, which quantised ones miss, into a list; or says that they are
+    /// unusable, of a skin with so many joints.
+    fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> bool {
+        let slots = self.joints.get(vertex).into_iter().zip(self.weights.get(vertex));
+        let slots = slots.filter(|(_, weight)| *weight != 0.0);
+        let total: f64 = slots.clone().map(|(_, weight)| f64::from(weight)).sum();
+        found.clear();
+        found.extend(slots.map(|(joint, weight)| (joint as usize, f64::from(weight) / total)));
+        total.is_finite() && total > 0.0 && found.iter().all(|(joint, _)| *joint < joint_count)
     }
 }
 
-/// Reads and poses a primitive's vertices. `name` is the primitive's, for messages; `uvs` says which texture coordinates. They are
-/// bound to what moves them where there is a `binder`.
-///
-/// # Errors
-/// [`Problem::Accessor`] and [`Problem::Primitive`].
-pub fn read(
-    primitive: &Primitive,
-    name: &str,
-    pose: &Pose,
-    uvs: Uvs,
-    accessors: &Accessors,
-    binder: Option<&mut NodeBinder>,
-) -> Result<Vertices, Problem> {
-    let attributes = Source { primitive, name, accessors };
-    let borrowed = accessors.budget.borrowed();
-    let mut values = attributes.read(uvs.set)?;
-    // Before morphing, which leaves no normal at unit length and is no fault.
-    let rescaled = rescaled(values.normals.as_deref(), values.positions.len());
-    let first_weight = binder.as_ref().and_then(|binder| binder.first_weight());
-    let unmorphed = first_weight.map(|_| values.clone());
-    attributes.morph(&mut values, pose.weights)?;
-    let count = values.positions.len();
-    let influences = attributes.influences(pose, count)?;
-    let too_large = |reason| Problem::Primitive { primitive: name.to_owned(), reason };
-    let bytes = count as u64 * (size_of::<LooseCorner>() + 2) as u64;
-    accessors.budget.borrow(bytes).map_err(too_large)?;
-    let (corners, mirrored) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    let mut vertices = Vertices { corners, mirrored, rescaled, bindings: Vec::new(), repairs: Repairs::default() };
-    for i in 0..count {
-        let matrix = match &influences {
-            Some(influences) => skinned(pose, influences, i, &mut vertices.repairs),
-            None => pose.global,
-        };
-        vertices.push(&values, i, &matrix, uvs.transform, name)?;
-    }
-    if let Some(binder) = binder {
-        let Attributes { positions, normals, .. } = unmorphed.as_ref().unwrap_or(&values);
-        let (normals, influences) = (normals.as_deref(), influences.as_ref());
-        let deltas = first_weight.map_or(Ok(Vec::new()), |first| attributes.deltas(first, positions.len(), binder));
-        let deltas = deltas.unwrap_or_else(|problem| {
-            binder.give_up(problem);
-            Vec::new()
-        });
-        vertices.bindings = binder.bind(Undeformed { positions, normals, influences, deltas }, &vertices.corners);
-    }
-    // The attributes as the file has them are free again.
-    accessors.budget.pass(borrowed);
-    accessors.budget.borrow(bytes).map_err(too_large)?;
-    Ok(vertices)
+/// Reads and poses a primitive's vertices, where they lie.
+pub struct Vertices<'a> {
+    source: Source<'a>,
+    pose: &'a Pose<'a>,
+    transform: Option<UvTransform>,
+    pub count: usize,
+    positions: List<'a, [f32; 3]>,
+    normals: Option<List<'a, [f32; 3]>>,
+    uvs: Option<List<'a, [f32; 2]>>,
+    /// Of those that weigh something at rest.
+    targets: Vec<(f32, Target<'a>)>,
+    influences: Option<Influences<'a>>,
+    /// Joints of the vertex that was read last; none if they are unusable.
+    joints: Option<Vec<(usize, f64)>>,
+    pub repairs: Repairs,
 }
 
-impl Vertices {
-    fn push(
-        &mut self,
-        values: &Attributes,
-        i: usize,
-        matrix: &DMat4,
-        transform: Option<UvTransform>,
-        name: &str,
-    ) -> Result<(), Problem> {
-        let position = matrix.transform_point3(values.positions[i].as_dvec3()).as_vec3();
+impl<'a> Vertices<'a> {
+    /// `uvs` says which texture coordinates.
+    ///
+    /// # Errors
+    /// [`Problem::Accessor`] and [`Problem::Primitive`].
+    pub fn new(source: Source<'a>, pose: &'a Pose<'a>, uvs: Uvs) -> Result<Self, Problem> {
+        let positions = source.primitive.get(&Semantic::Positions).ok_or_else(|| source.problem("has no positions"))?;
+        let count = positions.count();
+        let weights = pose.weights.iter().copied();
+        let weighed = source.primitive.morph_targets().zip(weights).filter(|(_, weight)| *weight != 0.0);
+        Ok(Self {
+            pose,
+            transform: uvs.transform,
+            count,
+            positions: source.list(&positions, "POSITION", count)?,
+            normals: source.attribute(Semantic::Normals, count)?,
+            uvs: source.attribute(Semantic::TexCoords(uvs.set), count)?,
+            targets: weighed
+                .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
+                .collect::<Result<_, Problem>>()?,
+            influences: source.influences(pose, count)?,
+            joints: None,
+            repairs: Repairs::default(),
+            source,
+        })
+    }
+
+    pub fn is_skinned(&self) -> bool {
+        self.influences.is_some()
+    }
+
+    /// The joints that move the vertex that was read last.
+    pub fn joints(&self) -> Option<&[(usize, f64)]> {
+        self.joints.as_deref()
+    }
+
+    /// A vertex's position and normal in the file, morphed as it is at rest or not at all.
+    pub fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
+        let mut position = Vec3::from(self.positions.get(i));
+        let mut normal = self.normals.as_ref().map(|normals| Vec3::from(normals.get(i)));
+        let targets = if is_morphed { self.targets.as_slice() } else { &[] };
+        // Each times its weight (specification, section 3.7.2.2).
+        for (weight, target) in targets {
+            if let Some(positions) = &target.positions {
+                position += Vec3::from(positions.get(i)) * *weight;
+            }
+            if let (Some(normals), Some(normal)) = (&target.normals, &mut normal) {
+                *normal += Vec3::from(normals.get(i)) * *weight;
+            }
+        }
+        (position, normal)
+    }
+
+    /// A vertex; each is to be read once, as what is mended is counted.
+    ///
+    /// # Errors
+    /// [`Problem::Primitive`]: it isn't anywhere.
+    pub fn read(&mut self, i: usize) -> Result<Vertex, Problem> {
+        let matrix = self.matrix(i);
+        let (position, normal) = self.undeformed(i, true);
+        // Before morphing, which leaves no normal at unit length and is no fault.
+        let own = self.normals.as_ref().map(|normals| Given::new(normals.get(i).into()));
+        let position = matrix.transform_point3(position.as_dvec3()).as_vec3();
         if !position.is_finite() {
-            let reason = format!("has a position that isn't finite, at vertex {i}");
-            return Err(Problem::Primitive { primitive: name.to_owned(), reason });
+            return Err(self.source.problem(format!("has a position that isn't finite, at vertex {i}")));
         }
         if position.abs().max_element() > LARGEST_COORDINATE {
-            let reason = format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {i}");
-            return Err(Problem::Primitive { primitive: name.to_owned(), reason });
+            return Err(self.source.problem(format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {i}")));
         }
-        let linear = DMat3::from_mat4(*matrix);
+        let linear = DMat3::from_mat4(matrix);
         // One without a direction goes on as zero: the builder makes another and counts it.
-        let turned = |normal| turned(normal, &linear).unwrap_or(Vec3::ZERO);
-        let normal = values.normals.as_ref().map(|normals| turned(normals[i]));
+        let normal = normal.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
         self.repairs.no_normals += usize::from(normal.is_none());
-        self.rescaled[i] &= normal != Some(Vec3::ZERO);
-        let mut uv = values.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs[i].into());
-        if let Some(transform) = transform {
+        let mut uv = self.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs.get(i).into());
+        if let Some(transform) = self.transform {
             uv = transform.apply(uv);
         }
         if !uv.is_finite() {
             uv = Vec2::ZERO;
             self.repairs.bad_uvs += 1;
         }
-        self.corners.push(LooseCorner { position, normal, uv });
-        self.mirrored.push(linear.determinant() < 0.0);
-        Ok(())
+        let rescaled = matches!(own, Some(Given::Rescaled(_))) && normal != Some(Vec3::ZERO);
+        let mirrored = linear.determinant() < 0.0;
+        Ok(Vertex { corner: LooseCorner { position, normal, uv }, mirrored, rescaled })
     }
-}
 
-/// Which normals aren't of unit length (see [`Given`]).
-fn rescaled(normals: Option<&[Vec3]>, count: usize) -> Vec<bool> {
-    let rescaled = |normal: &Vec3| matches!(Given::new(*normal), Given::Rescaled(_));
-    normals.map_or_else(|| vec![false; count], |normals| normals.iter().map(rescaled).collect())
+    /// A skinned vertex's own: the mean of its joints' by weight. Any other's is its node's.
+    fn matrix(&mut self, i: usize) -> DMat4 {
+        let Some(influences) = &self.influences else { return self.pose.global };
+        let mut joints = self.joints.take().unwrap_or_default();
+        if !influences.of(i, self.pose.joints.len(), &mut joints) {
+            self.repairs.bad_weights += 1;
+            return DMat4::IDENTITY;
+        }
+        let weighed = |sum, &(joint, weight): &(usize, f64)| sum + self.pose.joints[joint] * weight;
+        let matrix = joints.iter().fold(DMat4::ZERO, weighed);
+        self.joints = Some(joints);
+        matrix
+    }
 }
 
 /// A normal through the inverse transpose of a linear map, of unit length; none if that has no direction.
@@ -182,89 +200,35 @@ fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
 }
 
 /// Where a primitive's attributes come from.
-struct Source<'a> {
-    primitive: &'a Primitive<'a>,
-    name: &'a str,
-    accessors: &'a Accessors<'a>,
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    pub primitive: &'a Primitive<'a>,
+    /// For messages.
+    pub name: &'a str,
+    pub accessors: &'a Accessors<'a>,
+    /// If Draco compressed the primitive.
+    pub unpacked: Option<&'a Unpacked>,
 }
 
-impl Source<'_> {
-    fn read(&self, uv_set: u32) -> Result<Attributes, Problem> {
-        let positions = self.primitive.get(&Semantic::Positions).ok_or_else(|| Problem::Primitive {
-            primitive: self.name.to_owned(),
-            reason: "has no positions".to_owned(),
-        })?;
-        let count = positions.count();
-        Ok(Attributes {
-            positions: self.vectors(&positions, "POSITION", count)?,
-            normals: match self.primitive.get(&Semantic::Normals) {
-                Some(accessor) => Some(self.vectors(&accessor, "NORMAL", count)?),
-                None => None,
-            },
-            uvs: self.attribute(Semantic::TexCoords(uv_set), count)?,
+impl<'a> Source<'a> {
+    pub fn problem(&self, reason: impl Into<String>) -> Problem {
+        Problem::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
+    }
+
+    /// # Errors
+    /// [`Problem::Accessor`].
+    pub fn target(&self, target: &::gltf::mesh::MorphTarget, count: usize) -> Result<Target<'a>, Problem> {
+        let list = |accessor: Option<Accessor>, attribute| {
+            accessor.map(|accessor| self.list(&accessor, attribute, count)).transpose()
+        };
+        Ok(Target {
+            positions: list(target.positions(), "POSITION of a morph target")?,
+            normals: list(target.normals(), "NORMAL of a morph target")?,
         })
     }
 
-    /// Adds the morph targets, each times its weight (specification, section 3.7.2.2).
-    fn morph(&self, values: &mut Attributes, weights: &[f32]) -> Result<(), Problem> {
-        let count = values.positions.len();
-        for (target, &weight) in self.primitive.morph_targets().zip(weights).filter(|(_, weight)| **weight != 0.0) {
-            if let Some(accessor) = target.positions() {
-                add(&mut values.positions, &self.vectors(&accessor, "POSITION of a morph target", count)?, weight);
-            }
-            if let (Some(accessor), Some(normals)) = (target.normals(), &mut values.normals) {
-                add(normals, &self.vectors(&accessor, "NORMAL of a morph target", count)?, weight);
-            }
-        }
-        Ok(())
-    }
-
-    /// What each target of weight 1 adds to each vertex, of those that it moves or turns; target 0 has weight
-    /// `first_weight`.
-    ///
-    /// # Errors
-    /// In words: it can't be read, or is too much.
-    fn deltas(&self, first_weight: u32, count: usize, binder: &mut NodeBinder) -> Result<Vec<Vec<Delta>>, String> {
-        let targets = self.primitive.morph_targets();
-        binder.look_at(targets.clone().count().saturating_mul(count))?;
-        let mut deltas = vec![Vec::new(); count];
-        let (mut found, mut held) = (0, 0);
-        for (target, weight) in targets.zip(first_weight..) {
-            let positions = self.displacements(target.positions(), "POSITION of a morph target", count)?;
-            let normals = self.displacements(target.normals(), "NORMAL of a morph target", count)?;
-            let at = |vectors: &[[f32; 3]], i: usize| vectors.get(i).copied().unwrap_or_default();
-            for (i, deltas) in deltas.iter_mut().enumerate() {
-                let delta = Delta { position: at(&positions, i), weight, normal: at(&normals, i), _pad: 0.0 };
-                if delta.position != [0.0; 3] || delta.normal != [0.0; 3] {
-                    deltas.push(delta);
-                    found += 1;
-                }
-            }
-            if found > MAX_BOUND {
-                return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
-            }
-            let kept = self.accessors.budget.hold((found - held) as u64 * PER_DELTA);
-            kept.map_err(|reason| format!("{found} displacements of vertices {reason}"))?;
-            held = found;
-        }
-        Ok(deltas)
-    }
-
-    /// A morph target's attribute, with 0 for what isn't finite; empty without one.
-    fn displacements(
-        &self,
-        accessor: Option<Accessor>,
-        attribute: &str,
-        count: usize,
-    ) -> Result<Vec<[f32; 3]>, String> {
-        let Some(accessor) = accessor else { return Ok(Vec::new()) };
-        let mut vectors = self.numbers::<3>(&accessor, attribute, count).map_err(|problem| problem.to_string())?;
-        vectors.as_flattened_mut().iter_mut().filter(|x| !x.is_finite()).for_each(|x| *x = 0.0);
-        Ok(vectors)
-    }
-
     /// None without a skin.
-    fn influences(&self, pose: &Pose, count: usize) -> Result<Option<Influences>, Problem> {
+    fn influences(&self, pose: &Pose, count: usize) -> Result<Option<Influences<'a>>, Problem> {
         if pose.joints.is_empty() {
             return Ok(None);
         }
@@ -273,44 +237,30 @@ impl Source<'_> {
         Ok(joints.zip(weights).map(|(joints, weights)| Influences { joints, weights }))
     }
 
-    fn attribute<const N: usize>(&self, semantic: Semantic, count: usize) -> Result<Option<Vec<[f32; N]>>, Problem> {
-        match self.primitive.get(&semantic) {
-            Some(accessor) => self.numbers(&accessor, &semantic.to_string(), count).map(Some),
-            None => Ok(None),
-        }
-    }
-
-    fn vectors(&self, accessor: &Accessor, attribute: &str, count: usize) -> Result<Vec<Vec3>, Problem> {
-        Ok(self.numbers::<3>(accessor, attribute, count)?.into_iter().map(Vec3::from).collect())
+    fn attribute<const N: usize>(
+        &self,
+        semantic: Semantic,
+        count: usize,
+    ) -> Result<Option<List<'a, [f32; N]>>, Problem> {
+        let accessor = self.primitive.get(&semantic);
+        accessor.map(|accessor| self.list(&accessor, &semantic.to_string(), count)).transpose()
     }
 
     /// An attribute's values, as many as there are vertices.
-    fn numbers<const N: usize>(
+    fn list<const N: usize>(
         &self,
         accessor: &Accessor,
         attribute: &str,
         count: usize,
-    ) -> Result<Vec<[f32; N]>, Problem> {
+    ) -> Result<List<'a, [f32; N]>, Problem> {
         let role = format!("{attribute} of {}", self.name);
         if accessor.count() != count {
             let reason = format!("has {} elements for {count} vertices", accessor.count());
             return Err(Problem::Accessor { accessor: accessor.index(), role, reason });
         }
-        self.accessors.numbers(accessor, &role)
+        match self.unpacked.and_then(|unpacked| unpacked.list(attribute)) {
+            Some(list) => Ok(list),
+            None => self.accessors.list(accessor, &role),
+        }
     }
-}
-
-fn add(values: &mut [Vec3], changes: &[Vec3], weight: f32) {
-    for (value, change) in values.iter_mut().zip(changes) {
-        *value += *change * weight;
-    }
-}
-
-/// A skinned vertex's own matrix: the mean of its joints' by weight.
-fn skinned(pose: &Pose, influences: &Influences, vertex: usize, repairs: &mut Repairs) -> DMat4 {
-    let Some(joints) = influences.of(vertex, pose.joints.len()) else {
-        repairs.bad_weights += 1;
-        return DMat4::IDENTITY;
-    };
-    joints.fold(DMat4::ZERO, |sum, (joint, weight)| sum + pose.joints[joint] * weight)
 }

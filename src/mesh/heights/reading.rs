@@ -7,6 +7,7 @@ use std::path::Path;
 use image::{ColorType, ImageDecoder, ImageError, ImageReader};
 
 use super::{HeightError, HeightMap, MAX_SIZE};
+use crate::mesh::load::open_file;
 use crate::mesh::progress::{Cancelled, Progress};
 
 /// What comes before a PNG image's width and height, of 4 bytes each.
@@ -69,12 +70,8 @@ fn decode(path: &Path, progress: &Progress) -> Result<([u32; 2], ColorType, Vec<
         false => Ok(size),
     };
     progress.check()?;
-    let mut file = File::open(path).map_err(unread)?;
-    let about = file.metadata().map_err(unread)?;
-    // A folder, a device or a pipe would fail later, or never end.
-    if !about.is_file() {
-        return Err(fail("it is not a file; choose a PNG or JPEG image".to_owned()));
-    }
+    let no_file = || fail("it is not a file; choose a PNG or JPEG image".to_owned());
+    let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
     // A PNG decoder reads and keeps all that stands before the px; what is too large is refused before.
     check(png_size(&mut file).map_err(unread)?.unwrap_or_default())?;
     let watched = Watched { file, length: about.len(), read: 0, progress };

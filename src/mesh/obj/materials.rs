@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::mtl::{self, Described};
+use crate::mesh::budget::Budget;
 use crate::mesh::faces::{Faces, counted};
 use crate::mesh::fault::Fault;
-use crate::mesh::gltf::budget::Budget;
 use crate::mesh::gltf::materials;
 use crate::mesh::gltf::uri::Files;
 use crate::mesh::lines::{shown, words};

@@ -4,7 +4,7 @@ use super::*;
 use crate::mesh::faces::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> Mesh {
-    super::read(text.as_bytes(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
+    super::read(text.as_bytes().to_vec(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// A cube of quadrilaterals without normals.
@@ -110,7 +110,7 @@ fn a_cancel_is_heard() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(
-        super::read(b"v 0 0 0\n", Path::new(""), "", &Limits::default(), &progress),
+        super::read(b"v 0 0 0\n".to_vec(), Path::new(""), "", &Limits::default(), &progress),
         Err(Fault::Cancelled(_))
     ));
 }

@@ -5,7 +5,7 @@ use crate::mesh::faces::tests::{POINTS, SIDES, assert_cube};
 use header::{Encoding, Scalar};
 
 fn read(bytes: &[u8]) -> Mesh {
-    super::read(bytes, "cube", &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", &Progress::new()).unwrap()
 }
 
 /// Numbers in one of the encodings.
@@ -166,5 +166,5 @@ fn strips_alternate_begin_anew_and_are_stitched() {
 fn a_cancel_is_heard() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(&cube(1, 6, 4), "", &progress), Err(Fault::Cancelled(_))));
+    assert!(matches!(super::read(cube(1, 6, 4), "", &progress), Err(Fault::Cancelled(_))));
 }

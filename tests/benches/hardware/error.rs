@@ -12,8 +12,9 @@ use super::peer::Peer;
 use super::subjects::{subject, tori};
 use super::versus::{BenchError, PeerTimes, Versus};
 
-/// Px a segment that the white paper's LOD is asked for: coarse, and as fine as pictures without visible edges need.
-pub const PAPER_PIXELS: [f32; 2] = [8.0, 2.0];
+/// Px a segment that the white paper's LOD is asked for: coarse, as fine as pictures without visible edges need, and
+/// micropolygons.
+pub const PAPER_PIXELS: [f32; 3] = [8.0, 2.0, 1.0];
 /// Halvings of the range of tolerances, in ratios.
 const TRIES: u32 = 12;
 

@@ -6,14 +6,17 @@ mod data;
 mod graphs;
 mod members;
 mod much;
+mod packed;
 mod resources;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
-use std::sync::LazyLock;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use super::packed as draco;
 use super::*;
+use crate::markdown::plain;
+use crate::mesh::broken::{page, time};
 
 /// What a document gets.
 enum Gets {
@@ -54,6 +57,16 @@ impl Case {
         Self::new(name, draft.document().to_string(), gets)
     }
 
+    /// Its name, and what it gets, on a page.
+    fn row(&self) -> (String, String) {
+        let gets = match &self.gets {
+            Gets::Refused(sentence) => sentence.replace(&self.folder.display().to_string(), "its folder"),
+            Gets::Repaired(sentence) => format!("is read, with a warning: {sentence}"),
+            Gets::Read => "is read".to_owned(),
+        };
+        (plain(self.name), gets)
+    }
+
     /// What is wrong with what it gets. A machine may be busy once; nothing takes too long three times by chance.
     fn fault(&self) -> Option<String> {
         let fault = self.attempt()?;
@@ -79,15 +92,6 @@ impl Case {
     }
 }
 
-/// This thread's own time: tests beside this one, on a busy machine, take nothing of it. Where there is no such clock, time as
-/// it passes.
-pub fn time() -> Duration {
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = said.and_then(|said| said.split(' ').next()?.parse().ok());
-    nanoseconds.map_or_else(|| START.elapsed(), Duration::from_nanos)
-}
-
 const SLOW: &str = "takes";
 
 fn too_long(took: Duration) -> Option<String> {
@@ -111,9 +115,13 @@ fn hostile_documents_get_what_the_table_says() {
     cases.extend(data::cases());
     cases.extend(graphs::cases());
     cases.extend(much::cases());
+    cases.extend(packed::cases());
     cases.extend(resources::cases(&folder));
     let names: std::collections::HashSet<_> = cases.iter().map(|case| case.name).collect();
     assert!(cases.len() >= 130 && names.len() == cases.len(), "{} of {}", names.len(), cases.len());
     let faults: Vec<_> = cases.iter().filter_map(|case| Some(format!("{}: {}", case.name, case.fault()?))).collect();
     assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), cases.len(), faults.join("\n"));
+    // The system's words are in it.
+    #[cfg(target_os = "linux")]
+    page::hold("gltf.md", "Hostile glTF files", &cases.iter().map(Case::row).collect::<Vec<_>>());
 }

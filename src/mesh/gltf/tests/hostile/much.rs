@@ -53,7 +53,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "as many zeros as are read",
             &zeros(1 << 24),
-            "the scene of 5592405 triangles would take 1489 MiB of memory, and files of this size may take 256 MiB; split the model into several files",
+            "the scene of 5592405 triangles would take 1770 MiB of memory, and files of this size may take 256 MiB; split the model into several files",
         ),
         refused(
             "6000 triangles on 3000 nodes",
@@ -68,7 +68,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "2000 primitives on 2000 nodes",
             &twins,
-            "the scene of 4000000 triangles would take 1830 MiB of memory, and files of this size may take 256 MiB; split the model into several files",
+            "the scene of 4000000 triangles would take 766 MiB of memory, and files of this size may take 256 MiB; split the model into several files",
         ),
         refused(
             "1000 morph targets of zeros",

@@ -1,0 +1,55 @@
+//! What a command writes is apart from what it reads: no file that it was given is replaced, and none is written twice.
+
+use std::path::{Path, PathBuf};
+
+use super::CliError;
+use crate::mesh::{HeightSource, Source};
+use crate::names::shown_path;
+
+/// # Errors
+/// A file to be written is read as well, or written already.
+pub fn keep_apart<'a>(
+    read: impl IntoIterator<Item = Option<&'a Path>>,
+    written: impl IntoIterator<Item = Option<&'a Path>>,
+) -> Result<(), CliError> {
+    let mut taken: Vec<(PathBuf, &'static str)> =
+        read.into_iter().flatten().filter_map(|path| Some((place(path)?, "read"))).collect();
+    for path in written.into_iter().flatten() {
+        let Some(place) = place(path) else { continue };
+        if let Some((_, by)) = taken.iter().find(|(other, _)| *other == place) {
+            return Err(CliError::Taken { path: shown_path(path), by });
+        }
+        taken.push((place, "written"));
+    }
+    Ok(())
+}
+
+/// The file of a mesh that has one.
+pub fn file_of(source: &Source) -> Option<&Path> {
+    match source {
+        Source::File(path) => Some(path),
+        Source::Shape(..) | Source::FineShape(..) => None,
+    }
+}
+
+/// The same of heights.
+pub fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
+    match heights? {
+        HeightSource::File(path) => Some(path),
+        HeightSource::Materials => None,
+    }
+}
+
+/// Where a path leads, also if nothing is there yet; none for what isn't a file, as `-` and devices aren't.
+fn place(path: &Path) -> Option<PathBuf> {
+    if path.as_os_str() == "-" {
+        return None;
+    }
+    match path.canonicalize() {
+        Ok(real) => real.is_file().then_some(real),
+        Err(_) => {
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            Some(folder.canonicalize().ok()?.join(path.file_name()?))
+        }
+    }
+}

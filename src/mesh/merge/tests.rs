@@ -1,0 +1,69 @@
+//! Corners shared, mended and put in order.
+
+use super::*;
+
+fn corner(x: f32, y: f32) -> LooseCorner {
+    LooseCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
+}
+
+#[test]
+fn triangles_are_grouped_and_corners_shared() {
+    let mut builder = MeshBuilder::new();
+    let red = builder.material(Material::plain("red", [1.0, 0.0, 0.0, 1.0]));
+    let unused = builder.material(Material::plain("unused", [1.0; 4]));
+    let blue = builder.material(Material::plain("blue", [0.0, 0.0, 1.0, 1.0]));
+    assert_eq!([red, unused, blue], [0, 1, 2]);
+    builder.triangle(blue, [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)]);
+    builder.triangle(red, [corner(-0.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+    builder.triangle(blue, [corner(1.0, 0.0), corner(2.0, 0.0), corner(1.0, 1.0)]);
+    let mesh = builder.finish("two".to_owned(), &Progress::new()).unwrap();
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 1], [3, 4, 1]]);
+    assert_eq!(mesh.corners.len(), 5);
+    let ranges: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.triangles.clone())).collect();
+    assert_eq!(ranges, [("red", 0..1), ("blue", 1..3)]);
+}
+
+#[test]
+fn only_missing_normals_are_made() {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("plain", [1.0; 4]));
+    let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+    corners[0].normal = Some(Vec3::X);
+    corners[1].normal = None;
+    builder.triangle(material, corners);
+    let mesh = builder.finish(String::new(), &Progress::new()).unwrap();
+    let normals: Vec<_> = mesh.corners.iter().map(|c| c.normal).collect();
+    assert_eq!(normals, [Vec3::X, Vec3::Z, Vec3::Z]);
+    assert_eq!(mesh.repairs, Repairs { normals_made: 1, ..Repairs::default() });
+    assert!(mesh.warnings.is_empty());
+}
+
+fn one(corners: [LooseCorner; 3]) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("plain", [1.0; 4]));
+    builder.triangle(material, corners);
+    builder.finish(String::new(), &Progress::new()).unwrap()
+}
+
+#[test]
+fn bad_normals_are_mended_and_counted() {
+    let mut corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0)];
+    let bad = [[0.0, -1e-30, 0.0], [f32::NAN, 0.0, 0.0], [0.0, 0.0, 0.0]];
+    for (corner, normal) in corners.iter_mut().zip(bad) {
+        corner.normal = Some(normal.into());
+    }
+    let mesh = one(corners);
+    assert_eq!(mesh.corners.iter().map(|c| c.normal).collect::<Vec<_>>(), [Vec3::NEG_Y, Vec3::Z, Vec3::Z]);
+    assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
+    assert_eq!(mesh.warnings, mesh.repairs.warnings());
+}
+
+#[test]
+fn coordinates_that_devices_drop_are_dropped_here_too() {
+    let least = f32::MIN_POSITIVE;
+    let mesh = one([corner(least.next_down(), -1e-45), corner(least, 1.0), corner(-least, 0.0)]);
+    let positions: Vec<_> = mesh.corners.iter().map(|c| [c.position.x, c.position.y].map(f32::to_bits)).collect();
+    assert_eq!(positions, [[0.0, 0.0], [least, 1.0], [-least, 0.0]].map(|xy| xy.map(f32::to_bits)));
+    assert_eq!(mesh.repairs, Repairs { denormals: 1, ..Repairs::default() });
+    assert_eq!(mesh.warnings.len(), 1);
+}

@@ -1,0 +1,51 @@
+//! A picture in steps: what each render pass adds, and to which half.
+
+use super::Scene;
+use crate::settings::{Half, Settings};
+
+/// What one render pass of a picture adds.
+pub enum Step {
+    /// The background alone: nothing is emitted.
+    Nothing,
+    /// The triangles of a half's chunk.
+    Surface(Half, usize),
+    /// The normals of a half's chunk.
+    Normals(Half, usize),
+}
+
+impl Step {
+    pub fn half(&self) -> Half {
+        match self {
+            Self::Nothing => Half::Right,
+            Self::Surface(half, _) | Self::Normals(half, _) => *half,
+        }
+    }
+
+    pub fn chunk(&self) -> Option<usize> {
+        match self {
+            Self::Nothing => None,
+            Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
+        }
+    }
+}
+
+/// All steps of a picture, in order.
+pub fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
+    let chunks = |half| {
+        let drawn = settings.half(half).and(scene.half(half));
+        (0..drawn.map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
+    };
+    let all: Vec<_> = Half::BOTH.into_iter().flat_map(chunks).collect();
+    if all.is_empty() {
+        return vec![Step::Nothing];
+    }
+    let with_normals = if settings.overlays.normals { all.len() } else { 0 };
+    let surfaces = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk));
+    surfaces.chain(all[..with_normals].iter().map(|&(half, chunk)| Step::Normals(half, chunk))).collect()
+}
+
+/// The picture left and right of the split: x, y, width, height in px.
+pub fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
+    let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
+    [[0, 0, at, height], [at, 0, width - at, height]]
+}

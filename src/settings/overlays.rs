@@ -1,0 +1,147 @@
+//! What is drawn over the shaded surface, or in place of its colours.
+
+/// What the surface's colours mean: one thing at a time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colors {
+    /// The mesh's own.
+    #[default]
+    Material,
+    /// Domain coordinates: u red, v green, w blue.
+    Barycentric,
+    /// Factors as the tessellator uses them: inside each patch, and along each edge.
+    Factors,
+    /// How large each triangle is on screen.
+    TriangleSize,
+    /// Patches whose factors are all below 2.
+    LowFactors,
+    /// How far every place is from what it should have been.
+    Deviation,
+}
+
+/// What is drawn over the shaded surface; any of them together.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Overlays {
+    pub colors: Colors,
+    /// Edges of the tessellated triangles.
+    pub wireframe: bool,
+    /// Borders of the input triangles.
+    pub patches: bool,
+    /// Borders of the input triangles in the colour of their edge's kind.
+    pub adjacency: bool,
+    /// Edges whose sides differ in position.
+    pub cracks: bool,
+    /// Triangles that face away from the side that their patch faces.
+    pub folds: bool,
+    /// Faces seen from behind.
+    pub back_faces: bool,
+    /// Open edges that another triangle's point lies on, and those points.
+    pub t_junctions: bool,
+    /// Normals of emitted vertices.
+    pub normals: bool,
+}
+
+/// One of [`Overlays`], by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Overlay {
+    Wireframe,
+    Patches,
+    Barycentric,
+    Adjacency,
+    Cracks,
+    Folds,
+    TJunctions,
+    BackFaces,
+    Factors,
+    TriangleSize,
+    LowFactors,
+    Normals,
+    Deviation,
+}
+
+impl Overlay {
+    pub const ALL: [Self; 13] = [
+        Self::Wireframe,
+        Self::Patches,
+        Self::Barycentric,
+        Self::Adjacency,
+        Self::Cracks,
+        Self::Folds,
+        Self::TJunctions,
+        Self::BackFaces,
+        Self::Factors,
+        Self::TriangleSize,
+        Self::LowFactors,
+        Self::Normals,
+        Self::Deviation,
+    ];
+}
+
+/// What turns an overlay on: a switch of its own, or the surface's colours, with those that it gives them.
+pub enum Control<'a> {
+    Switch(&'a mut bool),
+    Colors(&'a mut Colors, Colors),
+}
+
+impl Overlays {
+    /// What turns `overlay` on.
+    pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
+        Control::Switch(match overlay {
+            Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),
+            Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
+            Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),
+            Overlay::LowFactors => return Control::Colors(&mut self.colors, Colors::LowFactors),
+            Overlay::Deviation => return Control::Colors(&mut self.colors, Colors::Deviation),
+            Overlay::Wireframe => &mut self.wireframe,
+            Overlay::Patches => &mut self.patches,
+            Overlay::Adjacency => &mut self.adjacency,
+            Overlay::Cracks => &mut self.cracks,
+            Overlay::Folds => &mut self.folds,
+            Overlay::TJunctions => &mut self.t_junctions,
+            Overlay::BackFaces => &mut self.back_faces,
+            Overlay::Normals => &mut self.normals,
+        })
+    }
+
+    /// Turns an overlay on if it is off, and off if it is on. One that colours the surface takes the place of another.
+    pub fn toggle(&mut self, overlay: Overlay) {
+        match self.control(overlay) {
+            Control::Switch(switch) => *switch = !*switch,
+            Control::Colors(colors, own) => *colors = if *colors == own { Colors::Material } else { own },
+        }
+    }
+
+    /// These overlays on, all others off; none if two of them colour the surface.
+    pub fn of(overlays: &[Overlay]) -> Option<Self> {
+        let mut all = Self::default();
+        for &overlay in overlays {
+            match all.control(overlay) {
+                Control::Switch(switch) => *switch = true,
+                Control::Colors(colors, own) if [Colors::Material, own].contains(colors) => *colors = own,
+                Control::Colors(..) => return None,
+            }
+        }
+        Some(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_overlay_at_a_time_colours_the_surface() {
+        let mut overlays = Overlays::default();
+        for overlay in Overlay::ALL {
+            overlays.toggle(overlay);
+            assert_ne!(overlays, Overlays::default(), "{overlay:?}");
+        }
+        assert_eq!(overlays.colors, Colors::Deviation, "the last one");
+        overlays.toggle(Overlay::Factors);
+        assert_eq!(overlays.colors, Colors::Factors);
+        overlays.toggle(Overlay::Factors);
+        assert_eq!(overlays.colors, Colors::Material);
+        let factors = Overlays { colors: Colors::Factors, wireframe: true, ..Overlays::default() };
+        assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Wireframe, Overlay::Factors]), Some(factors));
+        assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Barycentric]), None);
+    }
+}

@@ -1,0 +1,185 @@
+use super::*;
+use crate::tessellate::{domain_plan, domain_point, domain_triangle, process, triangle_count};
+use glam::{Mat4, Vec4, vec3};
+
+const VIEW: LodView = LodView::new(Mat4::IDENTITY, Vec2::splat(100.0));
+
+/// A patch between these corners whose centre is lifted by `z`.
+fn raised(corners: [Vec3; 3], z: f32) -> ControlNet {
+    let third = |a: Vec3, b: Vec3| a.lerp(b, 1.0 / 3.0);
+    let [a, b, c] = corners;
+    let edges = [third(a, b), third(b, a), third(b, c), third(c, b), third(c, a), third(a, c)];
+    ControlNet { corners, edges, center: (a + b + c) / 3.0 + Vec3::Z * z }
+}
+
+const CORNERS: [Vec3; 3] = [vec3(0.0, 0.0, 0.5), vec3(0.6, 0.0, 0.5), vec3(0.0, 0.6, 0.5)];
+
+#[test]
+fn control_points_are_found_by_their_indices() {
+    let at = |x: f32| Vec3::splat(x);
+    let corners = [at(300.0), at(30.0), at(3.0)];
+    let edges = [at(210.0), at(120.0), at(21.0), at(12.0), at(102.0), at(201.0)];
+    let net = ControlNet { corners, edges, center: at(111.0) };
+    for [i, j, l] in (0..27).map(|n| [n / 9, n / 3 % 3, n % 3]) {
+        let name = [i, j, l].map(|index: usize| [100.0, 10.0, 1.0][index]).iter().sum();
+        assert_eq!(control_point(&net, i, j, l), at(name), "{i} {j} {l}");
+    }
+}
+
+#[test]
+fn a_parabola_takes_the_segments_of_the_closed_form() {
+    // Both second differences are d: n segments are off by 3/4 d / n^2 in the middle of each.
+    let d = 0.2;
+    let net = [vec3(-0.9, 0.0, 0.5), vec3(-0.3, d, 0.5), vec3(0.3, d, 0.5), vec3(0.9, 0.0, 0.5)];
+    let height = 0.75 * d * 100.0;
+    for n in 1..20u8 {
+        let factor = edge_error_factor(&VIEW, height / f32::from(n).powi(2), net);
+        assert!((factor - f32::from(n)).abs() < 1e-3, "{n}: {factor}");
+    }
+}
+
+#[test]
+fn a_triangles_error_is_the_largest_sum_over_its_weights() {
+    for [a, b, c] in [
+        [1.0, 1.0, 1.0],
+        [1.0, 1.0, 2.0],
+        [1.0, 2.0, 2.5],
+        [0.0, 1.0, 1.0],
+        [0.3, 0.0, 0.0],
+        [1.0, 0.9, 0.1],
+        [1e-6, 1.0, 1.0],
+    ] {
+        let sum = |u: f32, v: f32, w: f32| 3.0 * (u * v * a + v * w * b + w * u * c);
+        let steps = (0..=300).flat_map(|i| (0..=300 - i).map(move |j| [i as f32 / 300.0, j as f32 / 300.0]));
+        let most = steps.map(|[u, v]| sum(u, v, 1.0 - u - v)).fold(0.0, f32::max);
+        let bound = triangle_error(a, b, c);
+        assert!(bound >= most - 1e-6 && bound < most + 1e-4, "{a} {b} {c}: {bound}, {most}");
+    }
+}
+
+#[test]
+fn what_is_flat_stays_whole() {
+    let net = raised(CORNERS, 0.0);
+    for partitioning in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
+        assert_eq!(inside_error_factor(&VIEW, 0.25, partitioning, &net, [1.0; 3]), 1.0);
+    }
+    assert_eq!(edge_error_factor(&VIEW, 0.25, [Vec3::X, Vec3::X * 2.0, Vec3::X * 3.0, Vec3::X * 4.0]), 1.0);
+}
+
+#[test]
+fn what_no_number_of_segments_suffices_for_can_be_told() {
+    let net = raised(CORNERS, 0.0);
+    let twisted = ControlNet { center: net.center + Vec3::X * 0.2, ..net };
+    for partitioning in Partitioning::DIRECT3D {
+        let inside = |tolerance| inside_error_factor(&VIEW, tolerance, partitioning, &twisted, [1.0; 3]);
+        assert!(inside(1e-4) > 64.0 && inside(1e-9) > 64.0, "{partitioning}");
+        let enough = inside(5.0);
+        assert!(enough > 1.0 && enough <= 64.0, "{partitioning}: {enough}");
+    }
+}
+
+#[test]
+fn depth_alone_is_not_seen_without_perspective_and_is_with() {
+    let net = raised(CORNERS, 0.3);
+    assert_eq!(inside_error_factor(&VIEW, 0.25, Partitioning::Integer, &net, [1.0; 3]), 1.0);
+    let mut clip_from_object = Mat4::IDENTITY;
+    clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
+    clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
+    let perspective = LodView { clip_from_object, ..VIEW };
+    assert!(inside_error_factor(&perspective, 0.25, Partitioning::Integer, &net, [1.0; 3]) > 4.0);
+}
+
+#[test]
+fn what_lies_between_an_edge_and_a_point_behind_the_eye_is_as_near_as_that() {
+    let mut clip_from_object = Mat4::IDENTITY;
+    clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
+    clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
+    let view = LodView { clip_from_object, ..VIEW };
+    let (beside, behind) = (vec3(0.5, 0.0, 10.0), vec3(0.5, 0.0, -50.0));
+    let own = edge_sight(&view, [beside; 4]);
+    let other = widen(&view, own, behind);
+    let between = beside.lerp(behind, 0.1);
+    assert!(mixed_sight(own, other, 0.1).nearest <= between.z, "{between}");
+}
+
+#[test]
+fn levels_are_the_least_that_nest() {
+    let of = |partitioning, least: &[f32]| least.iter().map(|&x| level(partitioning, x)).collect::<Vec<_>>();
+    let asked = [1.0, 1.1, 2.5, 3.0, 3.1, 4.5, 8.0, 9.5, 33.0];
+    assert_eq!(of(Partitioning::Integer, &asked), [1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 8.0, 16.0, 64.0]);
+    assert_eq!(of(Partitioning::Pow2, &asked), [1.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+    assert_eq!(of(Partitioning::FractionalEven, &asked), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+    assert_eq!(of(Partitioning::FractionalOdd, &asked), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
+    for partitioning in Partitioning::DIRECT3D {
+        assert!(level(partitioning, 64.1) > 64.0 && level(partitioning, 1e9) > 64.0, "{partitioning}: one can tell");
+    }
+}
+
+/// How far the triangles of the row along U == 0 reach along it, in the longer of both rows' segments.
+fn reach(partitioning: Partitioning, factor: f32, inside: f32) -> f64 {
+    let factors = process(partitioning, [factor, inside, inside], inside);
+    let plan = domain_plan(factors);
+    let mut longest = 0.0f64;
+    for triangle in 0..triangle_count(factors) {
+        let corners = domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
+        let beside = |[u, v]: [f64; 2]| u <= v + 1e-4 && u <= 1.0 - u - v + 1e-4;
+        if corners.into_iter().all(beside) && corners.iter().any(|[u, _]| *u == 0.0) {
+            let along = corners.map(|[u, v]| v + u / 2.0);
+            let ends = along.into_iter().fold((1.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+            longest = longest.max(ends.1 - ends.0);
+        }
+    }
+    longest * f64::from(factor.min(inside))
+}
+
+/// How far the sides across the row along U == 0 lean along it, as a part of the edge.
+fn slant(factor: f32, inside: f32) -> f64 {
+    let factors = process(Partitioning::Integer, [factor, inside, inside], inside);
+    let plan = domain_plan(factors);
+    let mut longest = 0.0f64;
+    for triangle in 0..triangle_count(factors) {
+        let corners = domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            let ([a, v], [b, w]) = (corners[a], corners[b]);
+            // Other edges' rows start at this one's ends.
+            let beside = v.min(1.0 - a - v) >= a - 1e-4 && w.min(1.0 - b - w) >= b - 1e-4;
+            if beside && (a == 0.0) != (b == 0.0) {
+                longest = longest.max((v + a / 2.0 - w - b / 2.0).abs());
+            }
+        }
+    }
+    longest
+}
+
+#[test]
+fn an_edge_of_one_segment_gives_each_end_half_of_its_row() {
+    for inside in 2..=64u8 {
+        let (slant, most) = (slant(1.0, inside.into()), 0.5 + 0.5 / f64::from(inside));
+        assert!(slant <= most * 1.0005 && slant >= 0.4995, "{inside}: {slant}");
+    }
+    assert!(slant(2.0, 64.0) > 0.48, "of longer rows one end may get all");
+}
+
+#[test]
+fn rows_of_levels_nest_and_others_reach_far() {
+    // Whatever the levels of its edges, a patch finds numbers that nest with all of them.
+    for partitioning in Partitioning::DIRECT3D {
+        let mut levels: Vec<f32> = (1..=33).map(|least| level(partitioning, least as f32)).collect();
+        levels.dedup();
+        for (&factor, &inside) in levels.iter().flat_map(|a| levels.iter().map(move |b| (a, b))) {
+            let reach = reach(partitioning, factor, inside);
+            assert!(reach < 1.0011 || inside < 5.0, "{partitioning}: {factor} beside {inside} reaches {reach}");
+        }
+    }
+    let masks = [5, 8, 9, 16, 17, 32, 33, 64].map(|factor| {
+        let bit = |n: u32| u64::from(reach(Partitioning::Integer, factor as f32, n as f32) < 1.0011) << (n - 1);
+        (1..=64).map(bit).sum::<u64>()
+    });
+    assert_eq!(NESTING.map(|[low, high]| u64::from(low) | u64::from(high) << 32), masks, "{masks:#x?}");
+    for (k, factor) in [5.0, 8.0, 9.0, 16.0, 17.0, 32.0, 33.0, 64.0].into_iter().enumerate() {
+        for n in 1..=64 {
+            assert_eq!(nests(factor, n), masks[k] >> (n - 1) & 1 == 1, "{factor} beside {n}");
+        }
+    }
+    assert!(reach(Partitioning::Integer, 64.0, 48.0) > 4.9, "the pattern is as it was when levels were made");
+}

@@ -1,0 +1,109 @@
+//! What every target does with its bytes, whoever makes them up: a fuzzer, or a run of the tests.
+#![allow(dead_code, reason = "each target runs one of them")]
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use pnaen::mesh::{Format, Limits, Mesh, Progress, Topology, read};
+use pnaen::tessellate::factors::{outer_count, point_count, triangle_count};
+use pnaen::tessellate::{HullFactors, Partitioning, PatchFactors, domain_plan, domain_point, domain_triangle};
+
+/// Larger meshes are left without a topology: it takes longer than a fuzzer should wait.
+const MOST_TRIANGLES: usize = 1 << 14;
+
+/// 1 in the coordinates of the tessellator.
+const ONE: i64 = 1 << 16;
+
+pub fn gltf(data: &[u8]) {
+    mesh(Format::Gltf, data);
+}
+
+/// A `.glb` whatever its first bytes are.
+pub fn glb(data: &[u8]) {
+    let mut data = data.to_vec();
+    data.iter_mut().zip(b"glTF").for_each(|(byte, own)| *byte = *own);
+    mesh(Format::Gltf, &data);
+}
+
+pub fn obj(data: &[u8]) {
+    mesh(Format::Obj, data);
+}
+
+pub fn stl(data: &[u8]) {
+    mesh(Format::Stl, data);
+}
+
+pub fn ply(data: &[u8]) {
+    mesh(Format::Ply, data);
+}
+
+/// A file becomes a sound mesh, or a sentence.
+fn mesh(format: Format, data: &[u8]) {
+    let progress = Progress::new();
+    match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), &Limits::default(), &progress) {
+        Ok(mesh) => assert_sound(&mesh, &progress),
+        Err(error) => {
+            let said = error.to_string();
+            assert!(said.len() < 1000 && !said.contains(char::is_control), "{said:?}");
+        }
+    }
+}
+
+fn assert_sound(mesh: &Mesh, progress: &Progress) {
+    let corners = mesh.corners.len() as u32;
+    assert!(!mesh.triangles.is_empty() && mesh.triangles.as_flattened().iter().all(|&corner| corner < corners));
+    let fit = |normal: glam::Vec3| (normal.as_dvec3().length() - 1.0).abs() < 1e-3;
+    assert!(mesh.corners.iter().all(|corner| corner.position.is_finite() && corner.uv.is_finite()));
+    assert!(mesh.corners.iter().all(|corner| fit(corner.normal)));
+    let end = mesh.materials.iter().fold(0, |end, material| {
+        assert_eq!(material.triangles.start, end);
+        material.triangles.end
+    });
+    assert_eq!(end as usize, mesh.triangles.len());
+    if mesh.triangles.len() <= MOST_TRIANGLES {
+        let topology = Topology::build(mesh, progress).expect("nobody cancels");
+        assert_eq!(topology.patches.len() + topology.degenerate as usize, mesh.triangles.len());
+    }
+}
+
+/// Four factors of any bits, under every partitioning, before and after a shader compiler rounds them.
+pub fn factors(data: &[u8]) {
+    let Some((bits, _)) = data.split_first_chunk::<16>() else { return };
+    let [a, b, c, inside] = [0, 4, 8, 12].map(|i| f32::from_le_bytes([bits[i], bits[i + 1], bits[i + 2], bits[i + 3]]));
+    for partitioning in Partitioning::ALL {
+        let hull = HullFactors { edges: [a, b, c], inside };
+        pattern(hull.process(partitioning));
+        pattern(hull.rounded(partitioning).process(partitioning));
+    }
+}
+
+/// As many points and triangles as the closed forms say, which make one disc that fills the patch.
+fn pattern(factors: PatchFactors) {
+    let (points, triangles) = (point_count(factors), triangle_count(factors));
+    if points == 0 {
+        assert_eq!(triangles, 0);
+        return;
+    }
+    let plan = domain_plan(factors);
+    let at: Vec<[i64; 2]> = (0..points).map(|i| domain_point(&plan, i).map(i64::from)).collect();
+    assert!(at.iter().all(|&[u, v]| u <= ONE && v <= ONE && u + v <= ONE), "{factors:?}");
+    let mut sides: HashMap<[u32; 2], u32> = HashMap::new();
+    let (mut area, mut used) = (0, vec![false; points as usize]);
+    for t in 0..triangles {
+        let triangle = domain_triangle(&plan, t);
+        assert!(triangle.iter().all(|&point| point < points), "{factors:?}: {triangle:?} of {points}");
+        triangle.iter().for_each(|&point| used[point as usize] = true);
+        let [a, b, c] = triangle.map(|point| at[point as usize]);
+        area += (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        for k in 0..3 {
+            *sides.entry([triangle[k], triangle[(k + 1) % 3]]).or_default() += 1;
+        }
+    }
+    assert!(used.iter().all(|used| *used), "{factors:?}: a point without a triangle");
+    assert_eq!(area.abs(), ONE * ONE, "{factors:?}: twice the area of all triangles");
+    let open = sides.keys().filter(|[a, b]| !sides.contains_key(&[*b, *a])).count() as u32;
+    assert!(sides.values().all(|uses| *uses == 1), "{factors:?}: a side that two triangles run in one direction");
+    assert_eq!(open, outer_count(factors), "{factors:?}: sides on the outline");
+    // Euler: a disc's faces are two for each point, less what its outline lacks.
+    assert_eq!(triangles + 2 + open, 2 * points, "{factors:?}");
+}

@@ -1,0 +1,217 @@
+//! One window for long: meshes, settings and sizes, one after the other. What it takes levels off; nothing goes wrong; and it
+//! shows what a window shows that was opened just now. Alone in this binary, so that nothing else is counted.
+//!
+//! With `PNAEN_LONG_USE=FOLDER` that is 500 meshes, 2,000 settings and 100 sizes, and what was taken is written there, as a
+//! table and as a picture.
+
+#[path = "../counting/mod.rs"]
+mod counting;
+#[path = "../window/driver.rs"]
+mod driver;
+mod figures;
+
+use std::path::{Path, PathBuf};
+
+use driver::settle;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
+use figures::Part;
+use image::RgbaImage;
+use pnaen::app::{App, Lasting};
+use pnaen::mesh::{Limits, Shape, Source};
+
+/// Width and height of the window, in points.
+const SIZE: [f32; 2] = [1000.0, 700.0];
+/// Switches and lists that are bound to the mesh or the moment: a window that opens has them as they came.
+const NOT_KEPT: [&str; 3] = ["Freeze LOD camera", "Weld", "Heights"];
+
+/// How often each is done, and how often a window is opened beside it to compare.
+struct Effort {
+    loads: usize,
+    settings: usize,
+    sizes: usize,
+    compared: usize,
+}
+
+/// A folder of this test's own, gone when the test is.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-long-use-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a writable temporary folder");
+        Self(path)
+    }
+
+    fn file(&self, name: &str, bytes: &[u8]) -> Source {
+        let path = self.0.join(name);
+        std::fs::write(&path, bytes).expect("a writable temporary folder");
+        Source::File(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Numbers without an order that one sees (Steele, Lea and Flood 2014), the same on every run.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((mixed ^ (mixed >> 31)) % most as u64) as usize
+    }
+}
+
+fn window(kept: &Path, source: Option<Source>, [width, height]: [f32; 2]) -> Harness<'static, App> {
+    let kept = kept.to_owned();
+    let mut harness = Harness::builder().with_size([width, height]).wgpu().build_eframe(move |context| {
+        let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
+        app.resume(&context.egui_ctx, Lasting::read(Some(&kept)));
+        app
+    });
+    settle(&mut harness);
+    harness
+}
+
+fn picture(harness: &Harness<App>) -> RgbaImage {
+    harness.state().read_picture().expect("a readback").expect("a picture")
+}
+
+/// Whether the window shows what one does that is opened just now with the same settings, on the same mesh, as large; both
+/// with the whole mesh in view.
+fn shows_what_a_new_window_does(harness: &mut Harness<App>, kept: &Path, size: [f32; 2]) {
+    eframe::App::on_exit(harness.state_mut());
+    let source = harness.state().source().cloned();
+    let mut fresh = window(kept, source.clone(), size);
+    for window in [&mut *harness, &mut fresh] {
+        window.key_press(egui::Key::F);
+        settle(window);
+    }
+    assert_eq!(fresh.state().settings(), harness.state().settings());
+    let is_same = picture(&fresh) == picture(harness);
+    assert!(is_same, "{source:?} with {:?}", harness.state().settings());
+}
+
+fn loads(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
+    let vase = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")).expect("it is there");
+    let sources = [
+        folder.file("vase.glb", &vase),
+        Source::Shape(Shape::Torus),
+        folder.file("cut.glb", &vase[..vase.len() / 2]),
+        folder.file("square.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"),
+        Source::Shape(Shape::Icosphere),
+        Source::File(folder.0.join("nowhere.ply")),
+        Source::Shape(Shape::Bicubic),
+    ];
+    let mut part = Part { what: "loads", taken: Vec::new() };
+    let context = harness.ctx.clone();
+    for step in 0..effort.loads {
+        let source = &sources[step % sources.len()];
+        harness.state_mut().open(&context, source.clone());
+        settle(harness);
+        let refused =
+            harness.query_by_label_contains(&source.title()).is_some_and(|_| harness.state().source() != Some(source));
+        assert!(harness.state().source() == Some(source) || refused, "{source:?}");
+        if step % effort.compared == effort.compared - 1 {
+            shows_what_a_new_window_does(harness, &folder.0, SIZE);
+        }
+        part.taken.push(figures::now(harness.state()));
+    }
+    part
+}
+
+/// What can be switched, chosen or slid now.
+fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
+    let kinds = [Role::CheckBox, Role::ComboBox, Role::Slider];
+    let usable = By::new().predicate(|node| kinds.contains(&node.role()) && !node.is_disabled());
+    let named = harness.query_all(usable).filter_map(|node| {
+        let node = node.accesskit_node();
+        Some((node.role(), node.label()?))
+    });
+    named.filter(|(_, name)| !NOT_KEPT.contains(&name.as_str())).collect()
+}
+
+/// Changes one setting that is there, to anything that it can be.
+fn change(harness: &mut Harness<App>, random: &mut Random) {
+    let all = controls(harness);
+    let (role, name) = &all[random.below(all.len())];
+    let control = harness.get_by_role_and_label(*role, name);
+    match role {
+        Role::Slider => {
+            let node = control.accesskit_node();
+            let range = node.min_numeric_value().zip(node.max_numeric_value());
+            let (least, most) = range.expect("a slider has ends");
+            control.set_value_accesskit(least + (most - least) * (random.below(1001) as f64 / 1000.0));
+        }
+        Role::ComboBox => {
+            control.click();
+            settle(harness);
+            let in_list = |node: &AccessKitNode| {
+                let mut above = std::iter::successors(node.parent(), AccessKitNode::parent);
+                node.role() == Role::Button && above.any(|node| node.role() == Role::ListBox)
+            };
+            let entries: Vec<_> = harness.query_all(By::new().predicate(in_list)).collect();
+            entries[random.below(entries.len())].click();
+        }
+        _ => control.click(),
+    }
+    settle(harness);
+}
+
+fn settings(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::CubeSplit));
+    settle(harness);
+    let (mut part, mut random) = (Part { what: "settings", taken: Vec::new() }, Random(5));
+    for step in 0..effort.settings {
+        change(harness, &mut random);
+        if step % effort.compared == effort.compared - 1 {
+            shows_what_a_new_window_does(harness, &folder.0, SIZE);
+        }
+        part.taken.push(figures::now(harness.state()));
+    }
+    part
+}
+
+fn sizes(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
+    let mut part = Part { what: "sizes", taken: Vec::new() };
+    for step in 0..effort.sizes {
+        // The same ones over and over, in no order.
+        let size = [760 + 97 * (step % 10), 480 + 61 * (3 * step % 10)].map(|side| side as f32);
+        harness.set_size(size.into());
+        settle(harness);
+        if step % effort.compared == effort.compared - 1 {
+            shows_what_a_new_window_does(harness, &folder.0, size);
+        }
+        part.taken.push(figures::now(harness.state()));
+    }
+    part
+}
+
+#[test]
+fn a_window_used_for_long_levels_off_and_shows_no_stale_frame() {
+    let written = std::env::var_os("PNAEN_LONG_USE").map(PathBuf::from);
+    let effort = match written {
+        Some(_) => Effort { loads: 500, settings: 2000, sizes: 100, compared: 50 },
+        None => Effort { loads: 50, settings: 60, sizes: 20, compared: 20 },
+    };
+    let folder = Folder::new();
+    let mut harness = window(&folder.0, None, SIZE);
+    let parts = [
+        loads(&mut harness, &folder, &effort),
+        settings(&mut harness, &folder, &effort),
+        sizes(&mut harness, &folder, &effort),
+    ];
+    if let Some(written) = &written {
+        figures::write(written, &parts);
+    }
+    parts.iter().for_each(Part::levels_off);
+}

@@ -1,0 +1,69 @@
+//! Files as programs write them: whatever their size, four times that is enough, without the 256 MiB.
+
+use std::sync::PoisonError;
+
+use pnaen::mesh::{Progress, Topology};
+
+use super::counting::peak_of;
+use super::glb::{blocks, indexed, loose};
+use super::grid::Grid;
+use super::{ALONE, taken};
+
+/// For what doesn't grow with the file, in bytes.
+const FIXED: usize = 1 << 20;
+
+/// Numbers of triangles: one after another, so that tables that double are met when they are nearly empty, and nearly full.
+fn sizes() -> Vec<usize> {
+    match std::env::var("PNAEN_TRIANGLES").ok().and_then(|count| count.parse().ok()) {
+        Some(count) => vec![count],
+        None => vec![57_000, 120_000],
+    }
+}
+
+/// Loads a file that is made for each of the sizes; `times` is how much of the file's size that may take.
+fn assert_within(name: &str, times: usize, make: impl Fn(usize) -> Vec<u8>) {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    for triangles in sizes() {
+        let bytes = make(triangles);
+        let size = bytes.len();
+        let (mesh, took) = taken(name, bytes);
+        let mesh = mesh.expect("a file without a fault");
+        let count = mesh.triangles.len();
+        let (topology, more) = peak_of(|| Topology::build(&mesh, &Progress::new()));
+        let [file, load, topology_too] = [size, took, more].map(|bytes| bytes / count);
+        println!("    {count} triangles of {file} bytes: {load} bytes each, and {topology_too} for the topology");
+        assert!(topology.is_ok() && took <= times * size + FIXED, "{name}: {took} bytes for {size}");
+    }
+}
+
+#[test]
+fn binary_stl() {
+    assert_within("smooth.stl", 4, |count| Grid::of(count, 0.0).stl(0.0));
+    assert_within("creased.stl", 4, |count| Grid::of(count, 40.0).stl(0.0));
+    assert_within("apart.stl", 4, |count| Grid::of(count, 0.0).stl(0.1));
+}
+
+#[test]
+fn ply() {
+    assert_within("triangles.ply", 4, |count| Grid::of(count, 0.0).ply(false));
+    assert_within("squares.ply", 4, |count| Grid::of(count, 0.0).ply(true));
+    // A corner a face: the mesh itself is larger than that.
+    assert_within("creased.ply", 9, |count| Grid::of(count, 40.0).ply(false));
+}
+
+#[test]
+fn obj() {
+    assert_within("plain.obj", 4, |count| Grid::of(count, 0.0).obj(false));
+    assert_within("attributes.obj", 4, |count| Grid::of(count, 0.0).obj(true));
+    // The same.
+    assert_within("creased.obj", 5, |count| Grid::of(count, 40.0).obj(false));
+}
+
+#[test]
+fn gltf() {
+    assert_within("floats.glb", 4, |count| indexed(Grid::of(count, 0.0), false));
+    assert_within("quantised.glb", 4, |count| indexed(Grid::of(count, 0.0), true));
+    assert_within("blocks.glb", 4, |count| blocks(Grid::of(count, 0.0)));
+    assert_within("loose.glb", 4, |count| loose(Grid::of(count, 0.0), false));
+    assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
+}

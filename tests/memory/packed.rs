@@ -1,0 +1,129 @@
+//! Primitives that Draco compressed: what its decoder takes, which it can't be told.
+
+use std::sync::PoisonError;
+
+use draco_core::{
+    DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh, MeshEncoder, PointAttribute,
+};
+use serde_json::json;
+
+use super::grid::Grid;
+use super::{ALONE, glb, measured, taken};
+
+/// A primitive of positions, and of other attributes by their names, kinds and widths; `from` is the buffer.
+fn document(vertices: usize, triangles: usize, others: &[(String, u8)], from: &[u8]) -> Vec<u8> {
+    let accessor = |width: u8| {
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][usize::from(width) - 1];
+        json!({ "componentType": 5126, "type": kind, "count": vertices })
+    };
+    let named = [("POSITION".to_owned(), 3)].into_iter().chain(others.iter().cloned());
+    let indices = json!({ "componentType": 5125, "type": "SCALAR", "count": 3 * triangles });
+    let places: serde_json::Map<_, _> = named.clone().enumerate().map(|(i, (name, _))| (name, json!(i))).collect();
+    let accessors: Vec<_> = named.map(|(_, width)| accessor(width)).chain([indices]).collect();
+    let extension = json!({ "bufferView": 0, "attributes": places });
+    let root = json!({
+        "asset": { "version": "2.0" },
+        "extensionsRequired": ["KHR_draco_mesh_compression"],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{
+            "attributes": places, "indices": accessors.len() - 1,
+            "extensions": { "KHR_draco_mesh_compression": extension },
+        }] }],
+        "accessors": accessors,
+        "bufferViews": [{ "buffer": 0, "byteLength": from.len() }],
+        "buffers": [{ "byteLength": from.len() }],
+    });
+    glb(&root, from)
+}
+
+/// A sheet whose corners are all apart, or not; the more attributes, the more of its edges' neighbours are kept at once.
+fn sheet(grid: Grid, others: &[(String, u8)], apart: bool, speed: i32) -> Vec<u8> {
+    let order: Vec<usize> =
+        if apart { grid.triangles().flatten().collect() } else { (0..grid.side * grid.rows).collect() };
+    let (mut mesh, mut options) = (Mesh::new(), EncoderOptions::new());
+    mesh.set_num_points(order.len());
+    let mut add = |kind: Kind, width: u8, value: &dyn Fn(usize, usize) -> f32| {
+        let mut attribute = PointAttribute::new();
+        attribute.init(kind, width, DataType::Float32, false, order.len());
+        let numbers = order.iter().enumerate().flat_map(|(i, _)| (0..usize::from(width)).map(move |k| (i, k)));
+        let bytes: Vec<u8> = numbers.flat_map(|(i, k)| value(i, k).to_le_bytes()).collect();
+        attribute.buffer_mut().write(0, &bytes);
+        let id = mesh.add_attribute(attribute);
+        options.set_attribute_quantization(id, 11);
+    };
+    add(Kind::Position, 3, &|i, k| grid.position(order[i])[k]);
+    for (_, width) in others {
+        add(Kind::Generic, *width, &|i, k| if apart { (i % 2000) as f32 } else { k as f32 });
+    }
+    let triangles: Vec<[u32; 3]> = match apart {
+        true => (0..grid.triangle_count() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
+        false => grid.triangles().map(|triangle| triangle.map(|i| i as u32)).collect(),
+    };
+    mesh.try_set_num_faces(triangles.len()).expect("memory for triangles");
+    triangles.iter().enumerate().for_each(|(i, triangle)| mesh.set_face_from_indices(i, *triangle));
+    if apart {
+        mesh.deduplicate_attribute_values().expect("attributes that can be compared");
+        mesh.deduplicate_point_ids();
+    }
+    options.set_global_int("encoding_speed", speed);
+    options.set_global_int("decoding_speed", speed);
+    let (vertices, count) = (mesh.num_points(), mesh.num_faces());
+    let (mut encoder, mut bytes) = (MeshEncoder::new(), EncoderBuffer::new());
+    encoder.set_mesh(mesh);
+    encoder.encode(&options, &mut bytes).expect("a mesh that can be compressed");
+    document(vertices, count, others, bytes.data())
+}
+
+#[test]
+fn what_programs_pack_fits() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let others = |count: usize, width: u8| (0..count).map(|i| (format!("TEXCOORD_{i}"), width)).collect::<Vec<_>>();
+    for speed in [0, 5, 10] {
+        for (count, width, apart) in [(0, 2, false), (1, 2, false), (2, 2, true), (12, 2, true), (20, 2, false)] {
+            let grid = Grid::of(if count > 10 { 6_000 } else { 20_000 }, 0.0);
+            let bytes = sheet(grid, &others(count, width), apart, speed);
+            let size = bytes.len();
+            let (mesh, took) = taken(&format!("packed-{count}-{speed}.glb"), bytes);
+            println!(
+                "    {} bytes of file, {} taken a triangle",
+                size / grid.triangle_count(),
+                took / grid.triangle_count()
+            );
+            assert_eq!(mesh.expect("a file without a fault").triangles.len(), grid.triangle_count());
+        }
+    }
+}
+
+/// Indices of one triangle, as symbols of a table: that says it has as many as its bytes could name, and has `rest` for bytes.
+fn table(length: usize, symbols: usize, rest: &[u8]) -> Vec<u8> {
+    let mut bytes = b"DRACO\x02\x02\x01\0\0\0\x01\x03\0\x01\x01".to_vec();
+    let mut left = symbols;
+    while left > 127 {
+        bytes.push(left as u8 | 128);
+        left >>= 7;
+    }
+    bytes.push(left as u8);
+    bytes.extend(rest);
+    bytes.resize(length, 0xff);
+    document(3, 1, &[], &bytes)
+}
+
+#[test]
+fn tables_that_take_most_are_counted() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    // One that ends too early.
+    let length = 400 << 10;
+    let (mesh, took) = measured("packed-table", table(length, (length - 64) * 64, &vec![0; length - 32]));
+    assert!(mesh.is_err() && (190..256).contains(&took), "{took} MiB");
+    // A whole one: the first symbol has all of the 2^12, and all others come to nothing.
+    let whole = |length: usize| table(length, (length - 64) * 64 + 1, &[2, 64, 0]);
+    let (mesh, took) = measured("packed-whole-table", whole(160 << 10));
+    assert!(mesh.is_err() && (200..256).contains(&took), "{took} MiB");
+    for (name, bytes) in
+        [("packed-larger", table(1 << 20, 1 << 25, &vec![0; 1 << 20 >> 1])), ("packed-whole", whole(256 << 10))]
+    {
+        let (mesh, took) = measured(name, bytes);
+        let said = mesh.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(took < 8 && said.contains("MiB of memory, and files of this size may take"), "{took} MiB: {said}");
+    }
+}

@@ -1,0 +1,219 @@
+//! Loading in every order of events: the latest wins, what is open stays until the new mesh is there, and nothing hangs.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::mesh::{Limits, Shape, Source};
+
+use crate::lasting::Folder;
+use crate::{click, press, settle, uniform, vase};
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Drops files on the window, all at once.
+pub fn drop_files(harness: &mut Harness<App>, paths: &[PathBuf]) {
+    for path in paths {
+        harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
+    }
+    harness.run_steps(2);
+}
+
+fn vase_at(folder: &Folder, name: &str) -> PathBuf {
+    let (Source::File(vase), path) = (vase(), folder.path(name)) else { unreachable!("it is a file") };
+    std::fs::copy(vase, &path).expect("a writable folder");
+    path
+}
+
+/// Takes a second or more to load, without any file.
+fn slow() -> Source {
+    "shape:icosphere@6".parse().expect("a shape")
+}
+
+fn open(harness: &mut Harness<App>, source: Source) {
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, source);
+    harness.run_steps(2);
+}
+
+fn says_nothing(harness: &Harness<App>) {
+    assert!(harness.query_by_label("Problem").is_none() && harness.query_by_label("Close").is_none());
+}
+
+#[test]
+fn another_that_is_opened_while_one_loads_wins() {
+    let mut harness = uniform(Some(vase()));
+    open(&mut harness, slow());
+    harness.get_by_label("Cancel");
+    open(&mut harness, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
+    // The first one would have ended by now, and is heard of no more.
+    std::thread::sleep(Duration::from_millis(500));
+    harness.run_steps(5);
+    assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
+    says_nothing(&harness);
+}
+
+#[test]
+fn reloading_while_another_loads_goes_back_to_what_is_open() {
+    let mut harness = uniform(Some(vase()));
+    let loaded = harness.state().loaded().cloned().expect("the vase");
+    open(&mut harness, slow());
+    press(&mut harness, egui::Key::R);
+    let app = harness.state();
+    assert_eq!(app.source(), Some(&vase()), "the latest wins");
+    assert!(!Arc::ptr_eq(&app.loaded().expect("the vase").mesh, &loaded.mesh), "it is read again");
+    says_nothing(&harness);
+}
+
+#[test]
+fn reloading_again_and_again_ends_with_the_file_as_it_is_by_then() {
+    let folder = Folder::new("reload");
+    let path = vase_at(&folder, "mesh.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a writable folder");
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let camera = *harness.state().camera();
+    for k in 1..8 {
+        harness.key_press(egui::Key::R);
+        harness.run_steps(1);
+        let text = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n{}", "f 1 2 3\n".repeat(k));
+        std::fs::write(&path, text).expect("a writable folder");
+    }
+    press(&mut harness, egui::Key::R);
+    assert_eq!(harness.state().loaded().map(|loaded| loaded.read.triangles.len()), Some(7));
+    assert_eq!(*harness.state().camera(), camera);
+}
+
+#[test]
+fn closing_the_window_while_a_mesh_loads_ends_at_once() {
+    let mut harness = uniform(None);
+    open(&mut harness, slow());
+    harness.get_by_label("Cancel");
+    let start = Instant::now();
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+    assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
+}
+
+#[test]
+fn of_files_dropped_together_one_is_opened_and_it_is_said_which() {
+    let folder = Folder::new("dropped");
+    let [image, first, second] = [
+        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png")),
+        vase_at(&folder, "a.glb"),
+        vase_at(&folder, "b.glb"),
+    ];
+    let mut harness = uniform(None);
+    drop_files(&mut harness, &[image, first.clone(), second]);
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&Source::File(first)), "the first mesh, not the image before it");
+    harness.get_by_label_contains("Of 3 files that were dropped only a.glb is open");
+    click(&mut harness, "Close");
+    says_nothing(&harness);
+}
+
+#[test]
+fn a_file_dropped_while_another_loads_wins() {
+    let folder = Folder::new("dropped-while");
+    let path = vase_at(&folder, "a.glb");
+    let mut harness = uniform(None);
+    open(&mut harness, slow());
+    drop_files(&mut harness, std::slice::from_ref(&path));
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&Source::File(path)));
+    says_nothing(&harness);
+}
+
+#[test]
+fn what_is_no_file_is_refused_by_its_name_and_nothing_hangs() {
+    let folder = Folder::new("no-files");
+    let mut harness = uniform(Some(vase()));
+    let mut refuses = |path: PathBuf, expected: &str| {
+        drop_files(&mut harness, std::slice::from_ref(&path));
+        settle(&mut harness);
+        harness.get_by_label_contains(expected);
+        assert_eq!(harness.state().source(), Some(&vase()), "the old mesh stays");
+        click(&mut harness, "Close");
+    };
+    let inside = folder.path("models.glb");
+    std::fs::create_dir(&inside).expect("a writable folder");
+    refuses(inside, "models.glb is not a file");
+    if cfg!(unix) {
+        for name in ["pipe.glb", "pipe.png"] {
+            let pipe = folder.path(name);
+            let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+            assert!(made.is_ok_and(|made| made.success()));
+            let is_mesh = name.ends_with("glb");
+            refuses(pipe, if is_mesh { "pipe.glb is not a file" } else { "pipe.png" });
+        }
+        let device = folder.path("zero.stl");
+        std::os::unix::fs::symlink("/dev/zero", &device).expect("a writable folder");
+        refuses(device, "zero.stl is not a file");
+    }
+}
+
+#[test]
+fn a_file_that_is_gone_when_it_is_reloaded_leaves_the_old_mesh() {
+    let folder = Folder::new("gone-on-reload");
+    let path = vase_at(&folder, "a.glb");
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let (camera, totals) = (*harness.state().camera(), harness.state().totals());
+    std::fs::remove_file(&path).expect("it is there");
+    press(&mut harness, egui::Key::R);
+    harness.get_by_label_contains("a.glb can't be read");
+    assert_eq!((*harness.state().camera(), harness.state().totals()), (camera, totals));
+    assert_eq!(harness.state().source(), Some(&Source::File(path.clone())));
+    vase_at(&folder, "a.glb");
+    click(&mut harness, "Close");
+    press(&mut harness, egui::Key::R);
+    says_nothing(&harness);
+}
+
+#[test]
+fn a_file_that_is_cut_short_or_replaced_while_it_is_loaded_is_a_sentence_or_the_new_one() {
+    let folder = Folder::new("changes");
+    let path = folder.path("a.glb");
+    let Source::File(vase) = vase() else { unreachable!("it is a file") };
+    let whole = std::fs::read(vase).expect("the vase");
+    std::fs::write(&path, &whole).expect("a writable folder");
+    let mut harness = uniform(Some(Source::File(path.clone())));
+    let patches = harness.state().loaded().map(|loaded| loaded.topology.patches.len());
+    for k in 0..40 {
+        harness.key_press(egui::Key::R);
+        harness.run_steps(1);
+        let part = if k % 2 == 0 { &whole[..whole.len() * k / 40] } else { &whole[..] };
+        std::fs::write(&path, part).expect("a writable folder");
+        settle(&mut harness);
+        assert_eq!(harness.state().loaded().map(|loaded| loaded.topology.patches.len()), patches, "never a mix");
+        assert!(harness.query_by_label_contains("stopped unexpectedly").is_none());
+    }
+    press(&mut harness, egui::Key::R);
+    says_nothing(&harness);
+}
+
+#[test]
+fn a_window_whose_first_file_is_cancelled_stays_open_and_takes_another() {
+    let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(|context| {
+        App::new(context, Some(slow()), Limits::default()).expect("these tests need a graphics adapter")
+    });
+    harness.run_steps(2);
+    click(&mut harness, "Cancel");
+    assert_eq!(harness.state().source(), None);
+    open(&mut harness, vase());
+    settle(&mut harness);
+    assert_eq!(harness.state().source(), Some(&vase()));
+}

@@ -1,0 +1,77 @@
+//! Typing: every letter arrives in the field that it is for, and nothing else acts on it.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use pnaen::app::App;
+
+use crate::{click, settle, window};
+
+fn key(key: Key, modifiers: Modifiers) -> Event {
+    Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
+}
+
+/// Letters as a keyboard gives them: a key, and its text.
+fn typed(word: &str) -> Vec<Event> {
+    let letter = |letter: char| {
+        let text = letter.to_string();
+        [key(Key::from_name(&text.to_uppercase()).expect("a letter"), Modifiers::NONE), Event::Text(text)]
+    };
+    word.chars().flat_map(letter).collect()
+}
+
+fn field(harness: &Harness<App>) -> Option<String> {
+    harness.get_by_role(Role::TextInput).accesskit_node().value()
+}
+
+#[test]
+fn letters_typed_right_after_the_key_are_the_paths() {
+    let open_path = key(Key::L, Modifiers::COMMAND);
+    // All in one frame, as they come when a frame takes long, and one a frame.
+    for at_once in [true, false] {
+        let mut harness = window(None);
+        let settings = *harness.state().settings();
+        let events = [vec![open_path.clone()], typed("elephant")].concat();
+        if at_once {
+            harness.input_mut().events.extend(events);
+        } else {
+            events.into_iter().for_each(|event| harness.event(event));
+        }
+        settle(&mut harness);
+        assert_eq!(harness.state().settings(), &settings, "no letter is a shortcut");
+        assert_eq!(field(&harness).as_deref(), Some("elephant"));
+    }
+}
+
+#[test]
+fn a_path_can_be_typed_and_entered_before_the_window_is_there() {
+    let mut harness = window(None);
+    let text = Event::Text("shape:torus".into());
+    harness.input_mut().events.extend([key(Key::L, Modifiers::COMMAND), text, key(Key::Enter, Modifiers::NONE)]);
+    settle(&mut harness);
+    assert_eq!(harness.state().source().map(ToString::to_string).as_deref(), Some("shape:torus"));
+    assert!(harness.query_by_role(Role::TextInput).is_none());
+}
+
+#[test]
+fn letters_are_the_truths_path_too_and_buttons_are_reached_by_tab() {
+    let mut harness = window(None);
+    let settings = *harness.state().settings();
+    click(&mut harness, "File");
+    harness.get_by_label("Truth path…").click();
+    typed("elephant").into_iter().for_each(|event| harness.event(event));
+    settle(&mut harness);
+    assert_eq!((field(&harness).as_deref(), harness.state().settings()), (Some("elephant"), &settings));
+    for _ in 0..2 {
+        harness.key_press(Key::Tab);
+        settle(&mut harness);
+    }
+    assert!(harness.get_by_role_and_label(Role::Button, "Cancel").accesskit_node().is_focused());
+    harness.key_press(Key::W);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings(), &settings, "the window over everything has the keys");
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert!(harness.query_by_role(Role::TextInput).is_none());
+}
