@@ -19,7 +19,7 @@ fn phong_control_point(alpha: f32, a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, 
     return (a + b - back * alpha) * 0.5;
 }
 
-// Nagata 2005.
+// Nagata 2005, by lengths: their squares are too small to divide what is vast by.
 fn nagata_control_point(a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, at_b: vec3<f32>) -> vec3<f32> {
     let line = cross(at_a, at_b);
     if dot(line, line) <= PARALLEL {
@@ -28,8 +28,9 @@ fn nagata_control_point(a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, at_b: vec3<
     let along = b - a;
     let sum = (at_a + at_b) * 0.5;
     let difference = (at_a - at_b) * 0.5;
-    let curvature = sum * (dot(along, difference) / dot(sum, sum))
-        + difference * (dot(along, sum) / dot(difference, difference));
+    let long = length(sum);
+    let short = length(difference);
+    let curvature = sum / long * (dot(along, difference) / long) + difference / short * (dot(along, sum) / short);
     return (a + b - curvature) * 0.5;
 }
 
@@ -86,7 +87,9 @@ fn crease_control_point(a: vec3<f32>, b: vec3<f32>, meeting: Meeting, mean: vec3
     if meeting.count != 2u || length_squared <= PARALLEL {
         return mean;
     }
-    return a + line * (dot(b - a, line) / (3.0 * length_squared));
+    // By the line's own length: its square is too small to divide what is vast by.
+    let direction = line / sqrt(length_squared);
+    return a + direction * (dot(b - a, direction) * (1.0 / 3.0));
 }
 
 // b111 = E + (E - V) / 2 (Vlachos et al. 2001, section 3.1).

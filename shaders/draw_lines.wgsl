@@ -90,16 +90,23 @@ fn area_per_vertex(patch_index: u32) -> f32 {
     return doubled / (n * n);
 }
 
-// A number from 0 to 1 that is the same for every vertex at a position (a permuted congruential generator, O'Neill 2014).
-fn chance(position: vec3<f32>) -> f32 {
-    let bits = bitcast<vec3<u32>>(position);
-    var hash = 0u;
+// A permuted congruential generator (O'Neill 2014).
+fn permuted(x: u32) -> u32 {
+    let state = x * 747796405u + 2891336453u;
+    let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+// A number from 0 to 1 that is the same for a vertex whichever patch emits it, wherever it moves to: it goes by the mesh's
+// points and how near to each the vertex is. Who adds them up in another order gets the same.
+fn chance(patch_index: u32, domain: vec2<u32>) -> f32 {
+    let at = patches[patch_index].points;
+    let near = array<u32, 3>(domain.x, domain.y, FIXED_ONE - domain.x - domain.y);
+    var sum = 0u;
     for (var k = 0u; k < 3u; k++) {
-        let state = (hash ^ bits[k]) * 747796405u + 2891336453u;
-        let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-        hash = (word >> 22u) ^ word;
+        sum += select(0u, permuted(permuted(at[k]) ^ near[k]), near[k] > 0u);
     }
-    return f32(hash >> 8u) / 16777216.0;
+    return f32(permuted(sum) >> 8u) / 16777216.0;
 }
 
 // How many patches emit a vertex: as many as are usual around a corner, on an edge, inside.
@@ -127,7 +134,7 @@ fn normal_vertex(
     let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
     // Where vertices are closer than normals may be, some have none; at the outline, where all stand out, at least some do.
     let area = area_per_vertex(key_patch(key)) * px * px * max(abs(dot(direction, to_eye)), 0.2);
-    if w <= 0.0 || chance(position) * NORMAL_SPACING * NORMAL_SPACING >= area {
+    if w <= 0.0 || chance(key_patch(key), key_uv(key)) * NORMAL_SPACING * NORMAL_SPACING >= area {
         return LineVaryings();
     }
     let end = position + direction * (NORMAL_LENGTH / px);

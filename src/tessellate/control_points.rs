@@ -33,7 +33,8 @@ pub fn phong_control_point(alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3)
 
 /// The middle control point of Nagata's edge (2005): the curve a + (d - c) t + c t t, d = b - a, with the shortest c that
 /// makes it normal to both ends' normals. As the normals' half sum s and half difference h are perpendicular,
-/// c = (d.h / s.s) s + (d.s / h.h) h. Between parallel or opposite normals the edge is straight. Where normals are nearly
+/// c = (d.h / s.s) s + (d.s / h.h) h, here with both by their lengths, whose squares are too small to divide what is vast
+/// by. Between parallel or opposite normals the edge is straight. Where normals are nearly
 /// parallel and both lean along the edge, c is many times as long as the edge: that is Nagata's.
 pub fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let line = at_a.cross(at_b);
@@ -43,8 +44,8 @@ pub fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let along = b - a;
     let sum = (at_a + at_b) * 0.5;
     let difference = (at_a - at_b) * 0.5;
-    let curvature =
-        sum * (along.dot(difference) / sum.dot(sum)) + difference * (along.dot(sum) / difference.dot(difference));
+    let (long, short) = (sum.length(), difference.length());
+    let curvature = sum / long * (along.dot(difference) / long) + difference / short * (along.dot(sum) / short);
     (a + b - curvature) * 0.5
 }
 
@@ -101,7 +102,9 @@ pub fn crease_control_point(a: Vec3, b: Vec3, meeting: Meeting, mean: Vec3) -> V
     if meeting.count != 2 || length_squared <= PARALLEL {
         return mean;
     }
-    a + line * ((b - a).dot(line) / (3.0 * length_squared))
+    // By the line's own length: its square is too small to divide what is vast by.
+    let direction = line / length_squared.sqrt();
+    a + direction * ((b - a).dot(direction) * (1.0 / 3.0))
 }
 
 /// b111 of the net with these corners and six edge control points: E + (E - V) / 2 (Vlachos et al. 2001, section 3.1).
@@ -258,6 +261,34 @@ mod tests {
         {
             let meeting = normals.iter().fold(none, |meeting, &normal| meet(meeting, normal));
             assert_eq!(crease_control_point(a, b, meeting, mean), mean, "{normals:?}");
+        }
+    }
+
+    #[test]
+    fn a_faint_crease_is_found_on_the_largest_and_smallest_edges() {
+        // Just beyond parallel: the normals' cross product is short, and what divides by its square is vast.
+        let (at_a, at_b) = (Vec3::Y, vec3(0.0, 0.003f32.cos(), 0.003f32.sin()));
+        let meeting = meet(meet(Meeting::default(), at_a), at_b);
+        for size in [1e-36f32, 1.0, 1e37] {
+            let own = crease_control_point(Vec3::ZERO, vec3(size, 0.2 * size, 0.0), meeting, Vec3::NAN);
+            assert!((own / size).distance(Vec3::X / 3.0) < 1e-6, "{own} of {size}");
+        }
+    }
+
+    #[test]
+    fn nagatas_faintest_curve_is_found_on_the_largest_and_smallest_edges() {
+        // Both normals lean along the edge, and differ by little: the curve is hundreds of times as long, and no more.
+        let leaning = |angle: f32| vec3(angle.sin(), 0.0, angle.cos());
+        let (at_a, at_b) = (leaning(0.8), leaning(0.803));
+        for size in [1e-33f32, 1.0, 1e34] {
+            let own = nagata_control_point(Vec3::ZERO, vec3(0.0, 0.0, size), at_a, at_b) / size;
+            // By hand in f64, of unit size.
+            let (p, q) = (at_a.as_dvec3(), at_b.as_dvec3());
+            let (sum, difference) = ((p + q) * 0.5, (p - q) * 0.5);
+            let curvature =
+                sum * (difference.z / sum.length_squared()) + difference * (sum.z / difference.length_squared());
+            let expected = (DVec3::Z - curvature) * 0.5;
+            assert!(own.as_dvec3().distance(expected) < 1e-5 * expected.length(), "{own} of {size}, not {expected}");
         }
     }
 

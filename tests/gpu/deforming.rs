@@ -146,7 +146,8 @@ fn the_pass_is_timed_where_something_is_deformed() {
     let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let times = engine().time(&mut scene, &target, &camera, &Settings::default(), Runs::default()).expect("a draw");
-    let passes: Vec<_> = times.iter().map(|time| time.pass).collect();
+    // Triangles that cover nothing are left out where the device is faster for it.
+    let passes: Vec<_> = times.iter().map(|time| time.pass).filter(|&pass| pass != "coverage").collect();
     assert_eq!((passes[0], &passes[1..]), ("deform", &crate::passes::RIGID_PASSES[..]));
 }
 

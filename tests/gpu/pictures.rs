@@ -21,9 +21,9 @@ use crate::stability::{case, seen};
 use crate::{engine, picture, scene};
 
 pub const SIZE: [u32; 2] = [200, 160];
-/// The software driver rasterises a little differently on other processors: a few px along edges. A wrong surface, a
-/// missing patch or overlay is a hundred times more (see the test below).
-const TOLERANCE: f64 = 0.004;
+/// Drivers rasterise a little differently: a few px along edges and lines, 0.0002 at most between the software driver and
+/// an NVIDIA H100. A wrong surface, a missing patch or overlay is a hundred times more (see the test below).
+const TOLERANCE: f64 = 0.001;
 
 fn reference(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/images").join(format!("{name}.png"))
@@ -166,7 +166,7 @@ fn the_tolerance_is_far_below_a_change_that_matters() {
         Settings { split: Some(0.4), ..base },
     ] {
         let difference = compare(&picture(&mut scene, &changed, SIZE), &expected).expect("one size").difference;
-        assert!(difference > 5.0 * TOLERANCE, "{difference}: {changed:?}");
+        assert!(difference > 20.0 * TOLERANCE, "{difference}: {changed:?}");
     }
 }
 
@@ -348,6 +348,20 @@ fn normals_are_drawn_chunk_by_chunk_and_not_hidden_by_later_chunks() {
     assert!(pixels_of(&whole.1, NORMAL_COLOR) > 100);
     let difference = compare(&whole.1, &pieces.1).expect("one size").difference;
     assert!(difference < 1e-4, "{difference}");
+}
+
+#[test]
+fn the_same_vertices_show_their_normals_when_they_move_a_little() {
+    let (_, mut scene) = scene(Shape::CubeSplit);
+    let overlays = Overlays { normals: true, ..Overlays::default() };
+    let [shown, moved, coarser] = [(0.75, 16.0), (0.7501, 16.0), (0.75, 15.0)].map(|(alpha, factor)| {
+        let settings = Settings { surface: Surface::Phong, alpha, factor, overlays, ..Settings::default() };
+        picture(&mut scene, &settings, SIZE)
+    });
+    let difference = compare(&shown, &moved).expect("one size").difference;
+    assert!(difference < TOLERANCE, "{difference}");
+    let other = compare(&shown, &coarser).expect("one size").difference;
+    assert!(other > 20.0 * TOLERANCE, "other vertices are other ones: {other}");
 }
 
 #[test]
