@@ -51,7 +51,8 @@ mod tests {
 
     #[test]
     fn one_level_is_rounding_and_two_are_not() {
-        let shades = |up: u8| RgbaImage::from_fn(64, 48, |x, y| image::Rgba([x as u8 + up * (y as u8 & 1), 80, 90, 255]));
+        let shades =
+            |up: u8| RgbaImage::from_fn(64, 48, |x, y| image::Rgba([x as u8 + up * (y as u8 & 1), 80, 90, 255]));
         let difference = |up| compare(&shades(up), &shades(0)).expect("one size").difference;
         assert!(difference(1) < 1e-9 && difference(2) > 0.01, "{} {}", difference(1), difference(2));
     }

@@ -38,11 +38,11 @@ pub enum HeightError {
     )]
     TooLarge { path: PathBuf, size: [u32; 2] },
     #[error(
-        "{} is {} x {} px large, and reading it takes {mebibytes} MiB of memory, more than there is; scale it to {MAX_KEPT} px \
-         a side or less",
+        "{} is {} x {} px large and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
+         interlaced",
         shown_path(path), size[0], size[1]
     )]
-    NoMemory { path: PathBuf, size: [u32; 2], mebibytes: u64 },
+    TooMuch { path: PathBuf, size: [u32; 2], reason: String },
     #[error(
         "{name} has no image to displace by: no material has a base colour image that can be read; name a height image"
     )]

@@ -15,6 +15,7 @@ mod heights;
 mod ids;
 pub mod info;
 pub mod joins;
+mod jpeg;
 mod lines;
 pub mod load;
 pub mod merge;

@@ -7,6 +7,7 @@
 mod counting;
 mod glb;
 mod grid;
+mod heights;
 mod honest;
 mod packed;
 
@@ -90,9 +91,14 @@ fn glb(root: &Value, bin: &[u8]) -> Vec<u8> {
 fn textured(side: u32) -> Vec<u8> {
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbImage::new(side, side).write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+    with_image(&png.into_inner())
+}
+
+/// A triangle with this image as its texture.
+fn with_image(image: &[u8]) -> Vec<u8> {
     let at: Vec<u8> =
         [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32].into_iter().flat_map(f32::to_le_bytes).collect();
-    let bin = [at, png.into_inner()].concat();
+    let bin = [&at, image].concat();
     let root = json!({
         "asset": { "version": "2.0" },
         "nodes": [{ "mesh": 0 }],
@@ -136,6 +142,9 @@ fn loads_take_no_more_than_their_size_allows() {
     let (result, took) = measured("image", textured(5000));
     assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_some()) && took > 150);
     let (result, took) = measured("larger-image", textured(8000));
+    assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_none()) && took < 20);
+    // A progressive one keeps twice as much of every px until its last scan, whatever its size as a file.
+    let (result, took) = measured("progressive-image", with_image(&heights::jpeg(6000, 0xc2)));
     assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_none()) && took < 20);
     assert!(measured("nodes", chain(200_000)).0.is_err_and(|error| error.to_string().contains("no meshes")));
     let many = format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}0]}}"#, "0,".repeat(4_000_000));

@@ -6,12 +6,13 @@ use std::io::Cursor;
 use std::sync::Arc;
 
 use ::gltf::Document;
-use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
 use super::Accessors;
 use super::budget::Budget;
 use super::extensions::UvTransform;
 use super::uri::{self, Files};
+use crate::mesh::jpeg::{coefficient_bytes, most_coefficient_bytes};
 use crate::mesh::merge::MeshBuilder;
 use crate::mesh::{Material, Texture};
 
@@ -122,7 +123,9 @@ impl<'a> Materials<'a> {
 /// A clause that says what is wrong.
 pub fn decode(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
+    let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
     let (width, height) = decoder.dimensions();
     if width.max(height) > MAX_SIZE {
@@ -132,6 +135,12 @@ pub fn decode(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
     let px = u64::from(width) * u64::from(height);
     let too_large = |reason| format!("its image of {width} x {height} px {reason}; scale it down");
     budget.borrow(decoder.total_bytes()).map_err(too_large)?;
+    if is_jpeg {
+        // Gone before the px are turned into RGBA.
+        let coefficients = known.unwrap_or_else(|| most_coefficient_bytes([width, height]));
+        budget.hold(coefficients).map_err(too_large)?;
+        budget.release(coefficients);
+    }
     budget.hold(px * 4).map_err(too_large)?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(budget.left().max(1 << 20).saturating_add(decoder.total_bytes()));

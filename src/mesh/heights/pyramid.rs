@@ -11,34 +11,43 @@ impl HeightMap {
         let width = size[0] as usize;
         let is_image = width > 0 && heights.len() == width * size[1] as usize && !heights.is_empty();
         let (size, width, heights) = if is_image { (size, width, heights) } else { ([1, 1], 1, vec![0.0]) };
-        let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&heights[y * width..(y + 1) * width]);
         // It fails only when it is cancelled, and this progress is nobody else's.
-        Self::build(size, &Progress::new(), row).expect("nobody cancels")
+        Self::build::<Cancelled>(size, &Progress::new(), rows_of(&heights, width)).expect("nobody cancels")
     }
 
-    /// Of what `row` writes for each row from the top, at least one; rows may be asked for more than once.
+    /// Of what `row` writes for each row, at least one, from the top on. Beside the map it takes a quarter as much again.
     ///
     /// # Errors
-    /// [`Cancelled`] when `progress` says so.
-    pub(super) fn build(
+    /// Those of `row`, and [`Cancelled`] when `progress` says so.
+    pub(super) fn build<E: From<Cancelled>>(
         size: [u32; 2],
         progress: &Progress,
-        row: impl Fn(usize, &mut [f32]) + Sync,
-    ) -> Result<Self, Cancelled> {
+        row: impl FnMut(&mut [f32]) -> Result<(), E>,
+    ) -> Result<Self, E> {
         let fitted = size.map(|side| side.min(MAX_KEPT));
-        let mut done = 0.75;
-        let mut level = shrunk(size, fitted, &progress.part(0.0, done), row)?;
-        let (mut size, mut heights, mut levels) = (fitted, level.clone(), 1);
-        while size != [1, 1] {
-            let (width, half) = (size[0] as usize, size.map(|side| (side / 2).max(1)));
-            let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&level[y * width..(y + 1) * width]);
+        let sizes: Vec<[u32; 2]> = std::iter::successors(Some(fitted), |&size| halved(size)).collect();
+        // Exactly: what grows step by step takes twice as much.
+        let mut heights = Vec::with_capacity(sizes.iter().map(|&size| px_of(size)).sum());
+        let mut done = 0.9;
+        shrink(size, fitted, &progress.part(0.0, done), row, &mut heights)?;
+        let mut start = 0;
+        for pair in sizes.windows(2) {
             // Each has a quarter of the px of the one before.
             let end = done + 0.75 * (1.0 - done);
-            let next = shrunk(size, half, &progress.part(done, end), row)?;
+            let mut next = Vec::with_capacity(px_of(pair[1]));
+            let rows = rows_of(&heights[start..], pair[0][0] as usize);
+            shrink(pair[0], pair[1], &progress.part(done, end), rows, &mut next)?;
+            start = heights.len();
             heights.extend_from_slice(&next);
-            (level, size, levels, done) = (next, half, levels + 1, end);
+            done = end;
         }
-        Ok(Self { size: fitted, levels, repeats: false, heights })
+        Ok(Self { size: fitted, levels: sizes.len() as u32, repeats: false, heights })
+    }
+
+    /// Bytes that building a map of an image of this size takes, the map among them.
+    pub(super) fn bytes_to_build(size: [u32; 2]) -> u64 {
+        // All levels are 4/3 of the first, and the second is made beside them.
+        px_of(size.map(|side| side.min(MAX_KEPT))) as u64 * 4 * 19 / 12 + (64 << 10)
     }
 
     /// How far each level, linearly interpolated, is from level 0 at most; no less for a coarser level.
@@ -82,26 +91,56 @@ fn taps(from: u32, to: u32) -> Vec<Taps> {
     (0..to).map(of).collect()
 }
 
-/// An image made smaller, or as large, from its rows.
-fn shrunk(
+fn px_of([width, height]: [u32; 2]) -> usize {
+    width as usize * height as usize
+}
+
+/// The size of the level below, if there is one.
+fn halved(size: [u32; 2]) -> Option<[u32; 2]> {
+    (size != [1, 1]).then(|| size.map(|side| (side / 2).max(1)))
+}
+
+/// Writes one row after another of what is in memory.
+fn rows_of<E>(px: &[f32], width: usize) -> impl FnMut(&mut [f32]) -> Result<(), E> {
+    let mut rows = px.chunks_exact(width);
+    move |out| {
+        if let Some(row) = rows.next() {
+            out.copy_from_slice(row);
+        }
+        Ok(())
+    }
+}
+
+/// Appends an image made smaller, or as large, to `out`. `row` writes each of its rows, from the top on: no more of them is in
+/// memory than the row at hand, and what is made of it and its neighbours.
+fn shrink<E: From<Cancelled>>(
     from: [u32; 2],
     to: [u32; 2],
     progress: &Progress,
-    row: impl Fn(usize, &mut [f32]) + Sync,
-) -> Result<Vec<f32>, Cancelled> {
+    mut row: impl FnMut(&mut [f32]) -> Result<(), E>,
+    out: &mut Vec<f32>,
+) -> Result<(), E> {
     let (columns, rows) = (taps(from[0], to[0]), taps(from[1], to[1]));
-    let mut out = vec![0.0; to[0] as usize * to[1] as usize];
-    by_rows(&mut out, to[0] as usize, progress, |y, out| {
-        let (mut sum, mut own) = (vec![0.0; from[0] as usize], vec![0.0; from[0] as usize]);
-        for (k, weight) in rows[y].weights.iter().enumerate() {
-            row(rows[y].first + k, &mut own);
-            sum.iter_mut().zip(&own).for_each(|(sum, own)| *sum += weight * own);
+    let (width, start) = (to[0] as usize, out.len());
+    out.resize(start + px_of(to), 0.0);
+    let out = &mut out[start..];
+    let (mut own, mut narrow) = (vec![0.0; from[0] as usize], vec![0.0; width]);
+    let mut first = 0;
+    for y in 0..from[1] as usize {
+        progress.check()?;
+        progress.set(y as f32 / from[1] as f32);
+        row(&mut own)?;
+        for (narrow, taps) in narrow.iter_mut().zip(&columns) {
+            *narrow = taps.weights.iter().zip(&own[taps.first..]).map(|(weight, own)| weight * own).sum();
         }
-        for (out, taps) in out.iter_mut().zip(&columns) {
-            *out = taps.weights.iter().zip(&sum[taps.first..]).map(|(weight, own)| weight * own).sum();
+        // Both ends of what a row is made of only grow.
+        first += rows[first..].iter().take_while(|taps| taps.first + taps.weights.len() <= y).count();
+        for (taps, out) in rows[first..].iter().zip(out[first * width..].chunks_mut(width)) {
+            let Some(weight) = y.checked_sub(taps.first).and_then(|at| taps.weights.get(at)) else { break };
+            out.iter_mut().zip(&narrow).for_each(|(out, narrow)| *out += weight * narrow);
         }
-    })?;
-    Ok(out)
+    }
+    Ok(())
 }
 
 /// Fills rows of this width on all processors.
@@ -196,8 +235,9 @@ mod tests {
         let image: image::ImageBuffer<image::Luma<f32>, _> =
             image::ImageBuffer::from_raw(37, 23, heights.clone()).expect("all px");
         for to in [[37, 23], [18, 11], [37, 1], [5, 23], [1, 1]] {
-            let row = |y: usize, out: &mut [f32]| out.copy_from_slice(&heights[y * 37..(y + 1) * 37]);
-            let own = shrunk(size, to, &Progress::new(), row).expect("nobody cancels");
+            let mut own = Vec::new();
+            let rows = rows_of::<Cancelled>(&heights, 37);
+            shrink(size, to, &Progress::new(), rows, &mut own).expect("nobody cancels");
             let peer = resize(&image, to[0], to[1], FilterType::Triangle).into_raw();
             let farthest = own.iter().zip(&peer).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             assert!(own.len() == peer.len() && farthest < 1e-5, "{to:?}: {farthest}");
@@ -219,6 +259,6 @@ mod tests {
         let map = HeightMap::new([64, 64], vec![0.5; 4096]);
         progress.cancel();
         assert_eq!(map.detail(&progress), Err(Cancelled));
-        assert_eq!(HeightMap::build([64, 64], &progress, |_, _| ()), Err(Cancelled));
+        assert_eq!(HeightMap::build::<Cancelled>([64, 64], &progress, |_| Ok(())), Err(Cancelled));
     }
 }

@@ -4,9 +4,12 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use image::{ColorType, ImageDecoder, ImageError, ImageReader};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use png::{BitDepth, DecodingError};
 
 use super::{HeightError, HeightMap, MAX_SIZE};
+use crate::mesh::budget::Budget;
+use crate::mesh::jpeg::{coefficient_bytes, most_coefficient_bytes};
 use crate::mesh::load::open_file;
 use crate::mesh::progress::{Cancelled, Progress};
 
@@ -14,13 +17,26 @@ use crate::mesh::progress::{Cancelled, Progress};
 const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
 
 impl HeightMap {
-    /// Reads a PNG or JPEG image.
+    /// Reads a PNG or JPEG image: PNG row by row, so that a large one takes no more than what is kept of it; a JPEG, and a PNG
+    /// that is interlaced, whole. Memory is held to a [`Budget`] of the file's size.
     ///
     /// # Errors
     /// It is no such image, or a larger one than is read; or `progress` was cancelled.
     pub(super) fn read(path: &Path, progress: &Progress) -> Result<Self, HeightError> {
-        let (size, color, bytes) = decode(path, &progress.part(0.0, 0.6))?;
-        Ok(Self::of_px(size, color, &bytes, &progress.part(0.6, 1.0))?)
+        progress.check()?;
+        let image = ImageFile { path, progress };
+        let unread = |error: io::Error| image.fail(error.to_string());
+        let no_file = || image.fail("it is not a file; choose a PNG or JPEG image".to_owned());
+        let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
+        let size = png_size(&mut file).map_err(unread)?;
+        image.check(size.unwrap_or_default())?;
+        let length = about.len();
+        let part = progress.part(0.0, if size.is_some() { 1.0 } else { 0.6 });
+        let mut reader = BufReader::new(Watched { file, length, read: 0, progress: &part });
+        if size.is_some() && !is_interlaced(&mut reader).map_err(unread)? {
+            return image.read_rows(reader, length);
+        }
+        image.read_whole(reader, length)
     }
 
     /// The brightness of px as they are stored, 8 or 16 bits a channel: the weights of Rec. 709, and no transfer function,
@@ -34,20 +50,28 @@ impl HeightMap {
         bytes: &[u8],
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let (channels, px) = (usize::from(color.channel_count()), usize::from(color.bytes_per_pixel()));
-        let line = px * size[0] as usize;
+        let line = usize::from(color.bytes_per_pixel()) * size[0] as usize;
         if line == 0 || size[1] == 0 || bytes.len() != line * size[1] as usize {
             return Ok(Self::new([0, 0], Vec::new()));
         }
-        let channel = |px: &[u8], index: usize| match px.len() / channels {
-            2 => f32::from(u16::from_ne_bytes([px[2 * index], px[2 * index + 1]])) / 65535.0,
-            _ => f32::from(px[index]) / 255.0,
-        };
-        Self::build(size, progress, |y, out| {
-            for (height, px) in out.iter_mut().zip(bytes[y * line..(y + 1) * line].chunks_exact(px)) {
-                *height = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
-            }
+        let mut lines = bytes.chunks_exact(line);
+        let [channels, depth] = [color.channel_count(), color.bytes_per_pixel() / color.channel_count()];
+        Self::build(size, progress, |out| {
+            let line = lines.next().unwrap_or_default();
+            brighten(line, channels.into(), depth == 2, u16::from_ne_bytes, out);
+            Ok(())
         })
+    }
+}
+
+/// The brightness of each px of a line, of so many channels of 8 or 16 bits.
+fn brighten(line: &[u8], channels: usize, is_wide: bool, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
+    let channel = |px: &[u8], index: usize| match is_wide {
+        true => f32::from(of_bytes([px[2 * index], px[2 * index + 1]])) / 65535.0,
+        false => f32::from(px[index]) / 255.0,
+    };
+    for (height, px) in out.iter_mut().zip(line.chunks_exact(if is_wide { 2 * channels } else { channels })) {
+        *height = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
     }
 }
 
@@ -55,37 +79,75 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// An image's width and height, and its px as its file has them.
-fn decode(path: &Path, progress: &Progress) -> Result<([u32; 2], ColorType, Vec<u8>), HeightError> {
-    let fail = |reason: String| HeightError::Image { path: path.to_owned(), reason };
-    let unread = |error: io::Error| fail(error.to_string());
-    // Reading stops with an error where the job was told to stop.
-    let undecoded = |error: ImageError| match (progress.check(), error) {
-        (Err(cancelled), _) => cancelled.into(),
-        (_, ImageError::Unsupported(_)) => fail("choose a PNG or JPEG image".to_owned()),
-        (_, error) => fail(error.to_string()),
-    };
-    let check = |size: [u32; 2]| match size.iter().any(|&side| side > MAX_SIZE) {
-        true => Err(HeightError::TooLarge { path: path.to_owned(), size }),
-        false => Ok(size),
-    };
-    progress.check()?;
-    let no_file = || fail("it is not a file; choose a PNG or JPEG image".to_owned());
-    let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
-    // A PNG decoder reads and keeps all that stands before the px; what is too large is refused before.
-    check(png_size(&mut file).map_err(unread)?.unwrap_or_default())?;
-    let watched = Watched { file, length: about.len(), read: 0, progress };
-    let reader = ImageReader::new(BufReader::new(watched)).with_guessed_format().map_err(unread)?;
-    let decoder = reader.into_decoder().map_err(undecoded)?;
-    let size = check(decoder.dimensions().into())?;
-    let (color, count) = (decoder.color_type(), decoder.total_bytes());
-    let no_memory = || HeightError::NoMemory { path: path.to_owned(), size, mebibytes: count.div_ceil(1 << 20) };
-    let mut bytes = Vec::new();
-    let room = usize::try_from(count).map_err(|_| no_memory())?;
-    bytes.try_reserve_exact(room).map_err(|_| no_memory())?;
-    bytes.resize(room, 0);
-    decoder.read_image(&mut bytes).map_err(undecoded)?;
-    Ok((size, color, bytes))
+/// Where an image is read from, and who is told how far that is.
+struct ImageFile<'a> {
+    path: &'a Path,
+    progress: &'a Progress,
+}
+
+impl ImageFile<'_> {
+    fn fail(&self, reason: String) -> HeightError {
+        HeightError::Image { path: self.path.to_owned(), reason }
+    }
+
+    fn check(&self, size: [u32; 2]) -> Result<[u32; 2], HeightError> {
+        match size.iter().any(|&side| side > MAX_SIZE) {
+            true => Err(HeightError::TooLarge { path: self.path.to_owned(), size }),
+            false => Ok(size),
+        }
+    }
+
+    /// Reading stops with an error where the job was told to stop: that is what is said then, else `error` is.
+    fn stopped_or(&self, error: HeightError) -> HeightError {
+        self.progress.check().map_or_else(HeightError::from, |()| error)
+    }
+
+    /// A PNG image that isn't interlaced.
+    fn read_rows(&self, reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
+        let undecoded = |error: DecodingError| self.stopped_or(self.fail(error.to_string()));
+        let mut decoder = png::Decoder::new(reader);
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().map_err(undecoded)?;
+        let size = self.check(reader.info().size().into())?;
+        self.afford(size, length, 0, 0)?;
+        let (color, depth) = reader.output_color_type();
+        let line = reader.output_line_size(size[0]).ok_or_else(|| self.fail("its rows are too long".to_owned()))?;
+        let mut line = vec![0; line];
+        HeightMap::build(size, &self.progress.part(0.0, 1.0), |out| {
+            reader.read_row(&mut line).map_err(undecoded)?;
+            brighten(&line, color.samples(), depth == BitDepth::Sixteen, u16::from_be_bytes, out);
+            Ok(())
+        })
+    }
+
+    /// Any image, all of whose px are in memory at once.
+    fn read_whole(&self, mut reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
+        let undecoded = |error: ImageError| match error {
+            ImageError::Unsupported(_) => self.fail("choose a PNG or JPEG image".to_owned()),
+            error => self.stopped_or(self.fail(error.to_string())),
+        };
+        let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
+        let known = coefficient_bytes(&mut reader).map_err(unread)?;
+        let reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
+        let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
+        let decoder = reader.into_decoder().map_err(undecoded)?;
+        let size = self.check(decoder.dimensions().into())?;
+        let (color, count) = (decoder.color_type(), decoder.total_bytes());
+        let coefficients = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { 0 };
+        // They are gone before a map is made of the px; a JPEG decoder has the file's own bytes, too.
+        self.afford(size, length, count, coefficients)?;
+        let mut bytes = vec![0; count as usize];
+        decoder.read_image(&mut bytes).map_err(undecoded)?;
+        Ok(HeightMap::of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)
+    }
+
+    /// Whether an image of this size takes no more than its file allows: `px` bytes at once, and `decoding` before a map is
+    /// made of them.
+    fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
+        let all = px.saturating_add(HeightMap::bytes_to_build(size).max(decoding));
+        let too_much = |reason| HeightError::TooMuch { path: self.path.to_owned(), size, reason };
+        Budget::new(usize::try_from(length).unwrap_or(usize::MAX)).borrow(all).map_err(too_much)
+    }
 }
 
 /// What a PNG image says of its size first of all; none of another file. The file is at its start again.
@@ -95,6 +157,14 @@ fn png_size(file: &mut File) -> io::Result<Option<[u32; 2]>> {
     file.seek(SeekFrom::Start(0))?;
     let numbers = start.strip_prefix(PNG_START).and_then(|rest| rest.as_chunks::<4>().0.first_chunk::<2>());
     Ok(numbers.map(|numbers| numbers.map(u32::from_be_bytes)))
+}
+
+/// What a PNG image says of the order of its px, behind its size, its depth and its colours. The file is at its start again.
+fn is_interlaced(file: &mut (impl Read + Seek)) -> io::Result<bool> {
+    let mut start = Vec::new();
+    file.by_ref().take(29).read_to_end(&mut start)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(start.get(28).is_some_and(|&order| order != 0))
 }
 
 /// A file that knows how much of it was read, and reads no further once the job was told to stop.

@@ -1,0 +1,87 @@
+//! Height images: what is kept of them, and no more than a row beside it.
+
+use std::io::Cursor;
+use std::sync::PoisonError;
+
+use image::{DynamicImage, ImageFormat, RgbImage};
+use pnaen::mesh::{HeightError, HeightSource, Heights, Progress, Shape};
+
+use super::counting::peak_of;
+use super::{ALONE, Temporary};
+
+/// Reads an image from a file, and holds what that took against what its size allows. What it took, in bytes.
+fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
+    let path = std::env::temp_dir().join(format!("pnaen-heights-{}-{name}", std::process::id()));
+    std::fs::write(&path, bytes).expect("a writable temporary folder");
+    let file = Temporary(path);
+    let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.0.clone()));
+    let (result, took) = peak_of(|| source.load(&mesh, &Progress::new()));
+    let allowed = 4 * bytes.len() + (256 << 20);
+    println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());
+    assert!(took <= allowed, "{name}: {took} of {allowed} bytes");
+    (result, took)
+}
+
+/// A PNG image of 16 bits a channel, all of one colour.
+fn png(size: [u32; 2]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header().expect("in memory");
+    let mut rows = writer.stream_writer().expect("in memory");
+    for _ in 0..size[1] {
+        std::io::Write::write_all(&mut rows, &vec![128; 6 * size[0] as usize]).expect("in memory");
+    }
+    rows.finish().expect("in memory");
+    writer.finish().expect("in memory");
+    bytes
+}
+
+#[test]
+fn a_large_png_takes_what_is_kept_of_it() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let side = if std::env::var_os("PNAEN_TRIANGLES").is_some() { 16384 } else { 1024 };
+    let (result, took) = read("large.png", &png([8192.max(side), side]));
+    let map = &result.expect("an image").maps[0];
+    assert_eq!((map.size, map.levels), ([4096, side.min(4096)], 13));
+    assert!((map.heights[0] - 128.0 * 257.0 / 65535.0).abs() < 1e-4);
+    // Whole, it would be 50 MB.
+    let kept = map.heights.len() * 4;
+    assert!(took < kept + kept / 4 + (1 << 20), "{took} bytes, {kept} of them kept");
+}
+
+/// A JPEG image whose frame header says that it is of so many px a side, and coded as this marker has it.
+pub fn jpeg(side: u16, marker: u8) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let image = DynamicImage::from(RgbImage::from_fn(600, 600, |x, y| image::Rgb([x as u8, y as u8, 90])));
+    image.write_to(&mut bytes, ImageFormat::Jpeg).expect("in memory");
+    let mut bytes = bytes.into_inner();
+    let frame = bytes.windows(2).position(|pair| pair == [0xff, 0xc0]).expect("a frame");
+    let [high, low] = side.to_be_bytes();
+    bytes[frame + 1] = marker;
+    bytes[frame + 5..frame + 9].copy_from_slice(&[high, low, high, low]);
+    bytes
+}
+
+#[test]
+fn a_jpeg_fits_or_is_refused_with_both_numbers() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let refusal = |side: u16, marker: u8| {
+        let (result, took) = read(&format!("{side}-{marker:x}.jpg"), &jpeg(side, marker));
+        assert!(took < 4 << 20, "{took}");
+        result.expect_err("412 MB of px, or as many of coefficients").to_string()
+    };
+    assert!(read("small.jpg", &jpeg(600, 0xc0)).0.is_ok());
+    let error = refusal(12000, 0xc0);
+    assert!(error.contains("is 12000 x 12000 px large and would take 51"), "{error}");
+    assert!(error.contains("MiB of memory, and files of this size may take 25"), "{error}");
+    assert!(
+        error.ends_with("scale it to 4096 px a side or less, or save it as a PNG that isn't interlaced"),
+        "{error}"
+    );
+    // As large as fits, most of it missing; a progressive one's coefficients don't.
+    assert!(read("sequential.jpg", &jpeg(7000, 0xc0)).1 > 140 << 20);
+    let error = refusal(7000, 0xc2);
+    assert!(error.contains("is 7000 x 7000 px large and would take 42"), "{error}");
+}
