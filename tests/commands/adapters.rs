@@ -55,3 +55,30 @@ fn without_an_adapter_what_needs_none_still_works() {
     }
     assert!(failure(&["adapters", "surplus"], 2).contains("surplus"));
 }
+
+/// The driver itself has no memory left, as far as this process may have any: the software one takes its own from it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_driver_that_is_out_of_memory_is_said_in_a_sentence() {
+    let folder = Folder::new("out-of-memory");
+    let picture = folder.path("out.png");
+    // In KiB; the picture takes two and a half GiB, all else less than one.
+    let limited = r#"ulimit -v 2000000; exec "$0" "$@""#;
+    let render = |size: &str| {
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", limited, env!("CARGO_BIN_EXE_pnaen"), "render", "shape:torus", "-o", &picture]);
+        command.args(["--adapter", "software", "--factor", "4", "--size", size]);
+        // Threads take memory, and there are as many as processors.
+        let output = command.env("LP_NUM_THREADS", "1").env("MALLOC_ARENA_MAX", "1").output().expect("a shell");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    assert_eq!(render("800x600").0, Some(0));
+    std::fs::remove_file(&picture).expect("a picture");
+    let (code, said) = render("8000x8000");
+    assert_eq!(code, Some(1), "{said}");
+    assert_eq!(
+        said.trim_end(),
+        "pnaen: the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh"
+    );
+    assert!(!std::path::Path::new(&picture).exists(), "nothing is written");
+}
