@@ -27,6 +27,7 @@ impl Checks {
     pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
         let mut checks = Self::default();
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
+        let weld = loaded.preparation.weld;
         let (found, wanted, repainted) = (checks.found.clone(), checks.wanted.clone(), context.clone());
         checks.job = Some(Beside::start(context, move || {
             let _ = found.normal_faults.set(NormalFaults::of(&mesh, &topology));
@@ -34,7 +35,8 @@ impl Checks {
                 let _ = found.t_junctions.set(all);
             }
             repainted.request_repaint();
-            if let Ok(all) = joins(&read, &wanted) {
+            let exact = (weld == 0.0 && Arc::ptr_eq(&read, &mesh)).then_some(&*topology);
+            if let Ok(all) = joins(&read, exact, &wanted) {
                 let _ = found.joins.set(all);
             }
         }));

@@ -212,7 +212,7 @@ impl Shown<'_> {
                 }
                 let hover = EDGE_KINDS.iter().find(|(kind, ..)| *kind == edge.kind).map_or("", |(.., hover)| hover);
                 ui.label(kind_name(edge.kind)).on_hover_text(hover);
-                let others = self.topology.edge_sides(edge).iter().map(|side| side.patch);
+                let others = self.topology.edge_sides(edge).iter().map(|side| side.patch());
                 let others: Vec<_> = others.filter(|&patch| patch != self.patch).collect();
                 if let Some(triangle) = neighbours(ui, self.topology, &others) {
                     *wish = Some(Wish::Select(Some(triangle)));

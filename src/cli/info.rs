@@ -32,5 +32,5 @@ fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
         return Ok(info);
     }
     // A tolerance would weld what was read, not what the rim made of it.
-    Ok(Info { rim: loaded.rim, joins: joins(&loaded.read, &progress)?, ..info })
+    Ok(Info { rim: loaded.rim, joins: joins(&loaded.read, None, &progress)?, ..info })
 }

@@ -76,7 +76,7 @@ impl Agreement {
         let mut emitted: Vec<&Side> = Vec::new();
         for (index, edge) in (0..).zip(&topology.edges) {
             emitted.clear();
-            emitted.extend(topology.edge_sides(edge).iter().filter(|side| !culled[side.patch as usize]));
+            emitted.extend(topology.edge_sides(edge).iter().filter(|side| !culled[side.patch() as usize]));
             if emitted.len() < 2 {
                 continue;
             }
@@ -85,8 +85,9 @@ impl Agreement {
                 if differ(&emitted, given, order.sides) {
                     order.different += 1;
                     if order.sides == shown {
-                        let side =
-                            |side: &&Side| (topology.patches[side.patch as usize].triangle, factor(given, side, shown));
+                        let side = |side: &&Side| {
+                            (topology.patches[side.patch() as usize].triangle, factor(given, side, shown))
+                        };
                         agreement.edges.push(Disagreement { edge: index, sides: emitted.iter().map(side).collect() });
                     }
                 }
@@ -109,8 +110,8 @@ fn differ(sides: &[&Side], given: &[HullFactors], order: [u32; 3]) -> bool {
 
 /// The factor of a side if factors 0, 1 and 2 are for these sides.
 fn factor(given: &[HullFactors], side: &Side, order: [u32; 3]) -> f32 {
-    let at = order.iter().position(|&k| k == u32::from(side.index)).unwrap_or_default();
-    given[side.patch as usize].edges[at]
+    let at = order.iter().position(|&k| k as usize == side.index()).unwrap_or_default();
+    given[side.patch() as usize].edges[at]
 }
 
 #[cfg(test)]
@@ -173,8 +174,8 @@ mod tests {
         given[7].edges[0] = f32::INFINITY;
         let agreement = Agreement::of(&topology, &given, Convention::D3d11);
         assert_eq!(agreement.edges.iter().map(|found| found.edge).collect::<Vec<_>>(), [edge]);
-        let other = topology.edge_sides(&topology.edges[edge as usize]).iter().find(|side| side.patch != 7);
-        let other = topology.patches[other.expect("closed").patch as usize].triangle;
+        let other = topology.edge_sides(&topology.edges[edge as usize]).iter().find(|side| side.patch() != 7);
+        let other = topology.patches[other.expect("closed").patch() as usize].triangle;
         assert_eq!(agreement.edges[0].extremes(), [(other, kept), (topology.patches[7].triangle, f32::INFINITY)]);
         assert_eq!(consistent(&agreement), []);
         assert_eq!((agreement.orders[0].different, agreement.orders[0].sides), (1, [1, 2, 0]));

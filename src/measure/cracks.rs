@@ -185,8 +185,10 @@ fn different(a: &EdgeSide, b: &EdgeSide, same: fn(&RimPoint, &RimPoint) -> bool)
 fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeSide]) -> u32 {
     let own = topology.edges[edge as usize].sides.clone().map(|side| &topology.sides[side as usize]);
     let source = |patch: u32| {
-        let side = own.clone().find(|side| side.patch == patch);
-        side.map(|side| side.corners.map(|c| mesh.corners[c as usize].normal.to_array().map(f32::to_bits)))
+        let side = own.clone().find(|side| side.patch() == patch);
+        side.map(|side| {
+            topology.side_corners(side).map(|c| mesh.corners[c as usize].normal.to_array().map(f32::to_bits))
+        })
     };
     let sources: Vec<_> = sides.iter().map(|side| source(side.patch)).collect();
     let mut count = 0;

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::mesh::{Side, Topology};
+use crate::mesh::Topology;
 use crate::tessellate::{
     Convention, Edges, HullFactors, Partitioning, PatchFactors, Vertex, domain_side, factor_side, outer_count,
     patch_is_culled, patch_is_low, point_count, segments,
@@ -72,8 +72,8 @@ impl AskedFactors {
     }
 
     /// Which of a patch's factors its side `k` is cut by.
-    fn index(&self, k: u8) -> usize {
-        (0..3).position(|i| domain_side(self.convention, i) == u32::from(k)).unwrap_or_default()
+    fn index(&self, k: usize) -> usize {
+        (0..3).position(|i| domain_side(self.convention, i) == k as u32).unwrap_or_default()
     }
 
     /// What a patch's factor `i` was asked to be.
@@ -188,18 +188,19 @@ impl Rims {
     }
 
     fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
-        let Side { patch, index: k, reversed, .. } = topology.sides[index as usize];
+        let side = topology.sides[index as usize];
+        let patch = side.patch();
         let ring = self.ring(patch);
         if ring.is_empty() {
             return None;
         }
         // The ring has the edges of factors 0, 1 and 2 one after another.
         let words = self.factors[patch as usize].outside;
-        let factor = self.asked.index(k);
+        let factor = self.asked.index(side.index());
         let first: u32 = words[..factor].iter().map(|&word| segments(word)).sum();
         let last = first + segments(words[factor]);
         let mut points: Vec<_> = (first..=last).map(|p| ring[p as usize % ring.len()]).collect();
-        if reversed {
+        if side.reversed() {
             points.reverse();
         }
         let triangle = topology.patches[patch as usize].triangle;

@@ -72,7 +72,7 @@ impl Curves {
 
     /// Whether a side (an index into [`Topology::sides`]) runs against its curve.
     pub fn runs_against(&self, topology: &Topology, side: u32) -> bool {
-        !self.per_patch && topology.sides[side as usize].reversed
+        !self.per_patch && topology.sides[side as usize].reversed()
     }
 
     /// Which factor a side has.
@@ -93,13 +93,13 @@ impl Curves {
         asked: impl Iterator<Item = u32>,
         all: impl Iterator<Item = u32>,
     ) {
-        let curve = self.push(edge.points, asked.map(|side| topology.sides[side as usize].corners));
+        let curve = self.push(edge.points, asked.map(|side| topology.side_corners(&topology.sides[side as usize])));
         all.for_each(|side| self.side_curves[side as usize] = curve);
     }
 
     fn push_by_normals(&mut self, mesh: &Mesh, topology: &Topology, edge: &Edge) {
         let normals = |side: u32| {
-            let [a, b] = topology.sides[side as usize].corners;
+            let [a, b] = topology.side_corners(&topology.sides[side as usize]);
             [a, b].map(|c| mesh.corners[c as usize].normal.to_array().map(|x| (x + 0.0).to_bits()))
         };
         let mut sides: Vec<u32> = edge.sides.clone().collect();
@@ -114,13 +114,13 @@ impl Curves {
     fn push_own(&mut self, topology: &Topology, edge: &Edge, averaged: bool) {
         let sides = edge.sides.clone();
         for side in sides.clone() {
-            let reversed = topology.sides[side as usize].reversed;
+            let reversed = topology.sides[side as usize].reversed();
             let turned = |[a, b]: [u32; 2]| if reversed { [b, a] } else { [a, b] };
             // The only other side, if there is just one; the paper's shader adds it to its own proposal.
             let other = (averaged && sides.len() == 2).then(|| sides.start + sides.start + 1 - side);
             let asked = std::iter::once(side).chain(other);
             self.factor_curves.push(self.curves.len() as u32);
-            let corners = asked.map(|side| turned(topology.sides[side as usize].corners));
+            let corners = asked.map(|side| turned(topology.side_corners(&topology.sides[side as usize])));
             self.side_curves[side as usize] = self.push(turned(edge.points), corners);
         }
     }
@@ -177,8 +177,8 @@ mod tests {
             assert_eq!(curves.curves.len(), 12 * curves_per_split_edge + diagonals, "{sharing:?}");
             for (index, side) in (0..).zip(&topology.sides) {
                 let [a, b] = curves.curves[curves.side_curves[index as usize] as usize].points;
-                assert_eq!(curves.runs_against(&topology, index), side.reversed && !sharing.is_per_patch());
-                assert_eq!(a < b, !(sharing.is_per_patch() && side.reversed));
+                assert_eq!(curves.runs_against(&topology, index), side.reversed() && !sharing.is_per_patch());
+                assert_eq!(a < b, !(sharing.is_per_patch() && side.reversed()));
             }
         }
     }

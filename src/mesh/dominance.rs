@@ -63,7 +63,7 @@ fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
     let mut sides = vec![0; curves.factor_count() as usize];
     for (index, side) in (0..).zip(&topology.sides) {
         let first = &topology.sides[topology.edges[side.edge as usize].sides.start as usize];
-        sides[curves.factor(topology, index) as usize] = first.patch * 4 + u32::from(first.index);
+        sides[curves.factor(topology, index) as usize] = first.patch() * 4 + first.index() as u32;
     }
     sides
 }

@@ -108,7 +108,7 @@ impl Info {
             materials: mesh.materials.iter().map(material).collect(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
-            joins: joins(mesh, progress)?,
+            joins: joins(mesh, (weld == 0.0).then_some(topology), progress)?,
             t_junctions: t_junctions.len() as u32,
             t_junctions_at: t_junctions.iter().map(|junction| t_junction(topology, junction)).collect(),
             repairs: mesh.repairs,

@@ -1,12 +1,14 @@
 //! What a weld tolerance would do, before one chooses it.
 
+use std::collections::HashMap;
 use std::fmt;
 
+use foldhash::fast::RandomState;
 use serde::Serialize;
 
 use super::Mesh;
 use super::progress::{Cancelled, Progress};
-use super::topology::{EdgeKind, Topology};
+use super::topology::{EdgeKind, Topology, is_degenerate, weld_corners};
 
 /// What welding within a tolerance changes, compared with the exact weld.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -35,38 +37,80 @@ impl fmt::Display for Joins {
 /// visibly changes a mesh.
 pub const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// What each of [`TOLERANCES`] would join and collapse, in their order. Builds a topology for each; `progress` goes
-/// from 0 to 1 meanwhile.
+/// What each of [`TOLERANCES`] would join and collapse, in their order. `exact` is the mesh's topology without a tolerance, where
+/// there is one already. Of the welded meshes no edges are made
+/// but those that were open; `progress` goes from 0 to 1 meanwhile.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
-pub fn joins(mesh: &Mesh, progress: &Progress) -> Result<Vec<Joins>, Cancelled> {
+pub fn joins(mesh: &Mesh, exact: Option<&Topology>, progress: &Progress) -> Result<Vec<Joins>, Cancelled> {
     progress.set(0.0);
-    let exact = Topology::build(mesh, progress)?;
+    progress.check()?;
+    let exact = match exact {
+        Some(exact) => Exact::of(exact),
+        // Gone before anything is welded.
+        None => Exact::of(&Topology::build(mesh, progress)?),
+    };
     let mut joins = Vec::with_capacity(TOLERANCES.len());
     for tolerance in TOLERANCES {
         let part = (joins.len() + 1) as f32 / (TOLERANCES.len() + 1) as f32;
         progress.set(part);
-        let welded = Topology::build_within(mesh, tolerance, progress)?;
-        let collapsed = welded.degenerate - exact.degenerate;
-        joins.push(Joins { tolerance, edges: joined(&exact, &welded), collapsed });
+        progress.check()?;
+        let (_, corner_points) = weld_corners(mesh, tolerance);
+        progress.check()?;
+        let [edges, collapsed] = exact.welded(mesh, &corner_points);
+        joins.push(Joins { tolerance, edges, collapsed });
     }
     progress.set(1.0);
     Ok(joins)
 }
 
-/// Boundary edges of `exact` whose side shares its edge in `welded`.
-fn joined(exact: &Topology, welded: &Topology) -> u32 {
-    let open = exact.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
-    let shared = open.filter(|edge| {
-        let side = exact.sides[edge.sides.start as usize];
-        let triangle = exact.patches[side.patch as usize].triangle;
-        // Patches are in the order of their triangles, whichever are left out.
-        let Ok(patch) = welded.patches.binary_search_by_key(&triangle, |patch| patch.triangle) else { return false };
-        let side = welded.sides[welded.patches[patch].sides[side.index as usize] as usize];
-        welded.edges[side.edge as usize].sides.len() > 1
-    });
-    shared.count() as u32
+/// What is asked of the exact topology.
+struct Exact {
+    /// Boundary edges: a triangle, and which of its sides.
+    open: Vec<(u32, u8)>,
+    degenerate: u32,
+}
+
+impl Exact {
+    fn of(topology: &Topology) -> Self {
+        let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
+        let open = open.map(|edge| {
+            let side = topology.sides[edge.sides.start as usize];
+            (topology.patches[side.patch() as usize].triangle, side.index() as u8)
+        });
+        Self { open: open.collect(), degenerate: topology.degenerate }
+    }
+
+    /// How many boundary edges share theirs where corners lie on these points, and how many triangles collapse.
+    fn welded(&self, mesh: &Mesh, corner_points: &[u32]) -> [u32; 2] {
+        let points = |triangle: &[u32; 3]| triangle.map(|corner| corner_points[corner as usize]);
+        // By its points, the lower first: how many sides an edge has that some boundary edge becomes.
+        let key = |points: [u32; 3], side: usize| {
+            let [a, b] = [points[side], points[(side + 1) % 3]];
+            [a.min(b), a.max(b)]
+        };
+        let own = |&(triangle, side): &(u32, u8)| {
+            let points = points(&mesh.triangles[triangle as usize]);
+            (!is_degenerate(points)).then(|| key(points, side.into()))
+        };
+        let mut sides: HashMap<[u32; 2], u32, RandomState> =
+            self.open.iter().filter_map(own).map(|key| (key, 0)).collect();
+        let mut degenerate = 0;
+        for points in mesh.triangles.iter().map(points) {
+            if is_degenerate(points) {
+                degenerate += 1;
+                continue;
+            }
+            for side in 0..3 {
+                if let Some(count) = sides.get_mut(&key(points, side)) {
+                    *count += 1;
+                }
+            }
+        }
+        let shared = self.open.iter().filter_map(own).filter(|key| sides[key] > 1);
+        [shared.count() as u32, degenerate - self.degenerate]
+    }
 }
 
 #[cfg(test)]
@@ -86,8 +130,10 @@ mod tests {
     }
 
     fn counts(mesh: &Mesh) -> Vec<[u32; 2]> {
-        let joins = joins(mesh, &Progress::new()).unwrap();
+        let joins = joins(mesh, None, &Progress::new()).unwrap();
         assert!(joins.iter().map(|join| join.tolerance).eq(TOLERANCES));
+        let exact = Topology::build(mesh, &Progress::new()).unwrap();
+        assert_eq!(joins, super::joins(mesh, Some(&exact), &Progress::new()).unwrap());
         joins.iter().map(|join| [join.edges, join.collapsed]).collect()
     }
 
@@ -138,6 +184,6 @@ mod tests {
     fn a_cancel_is_heard() {
         let progress = Progress::new();
         progress.cancel();
-        assert_eq!(joins(&Shape::Torus.build(), &progress), Err(Cancelled));
+        assert_eq!(joins(&Shape::Torus.build(), None, &progress), Err(Cancelled));
     }
 }

@@ -57,7 +57,7 @@ impl NormalFaults {
 /// Whether two sides of an edge have opposite normals at one of its ends.
 fn opposed(mesh: &Mesh, topology: &Topology, edge: &Edge, end: usize) -> bool {
     let normal = |corner: u32| mesh.corners[corner as usize].normal;
-    let normals = topology.edge_sides(edge).iter().take(TRIES).map(|side| normal(side.corners[end]));
+    let normals = topology.edge_sides(edge).iter().take(TRIES).map(|side| normal(topology.side_corners(side)[end]));
     let mut seen = HashSet::new();
     let distinct: Vec<Vec3> = normals.filter(|normal| seen.insert(normal.to_array().map(f32::to_bits))).collect();
     let opposite = |a: &Vec3, b: &Vec3| a.as_dvec3().dot(b.as_dvec3()) < -PARALLEL;

@@ -56,14 +56,30 @@ pub struct Edge {
 /// One patch's use of an edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Side {
-    pub patch: u32,
-    /// Which of the patch's sides, 0 to 2.
-    pub index: u8,
-    /// The patch runs it against the edge's own direction.
-    pub reversed: bool,
+    /// Six times the patch, plus twice which of its sides, plus 1 if it runs against the edge's own direction: a mesh has more
+    /// sides than anything else.
+    code: u32,
     pub edge: u32,
-    /// The patch's two corners here, in the edge's own direction.
-    pub corners: [u32; 2],
+}
+
+impl Side {
+    fn new(patch: u32, index: u8, reversed: bool, edge: u32) -> Self {
+        Self { code: 6 * patch + 2 * u32::from(index) + u32::from(reversed), edge }
+    }
+
+    pub fn patch(&self) -> u32 {
+        self.code / 6
+    }
+
+    /// Which of the patch's sides, 0 to 2.
+    pub fn index(&self) -> usize {
+        (self.code % 6 / 2) as usize
+    }
+
+    /// Whether the patch runs it against the edge's own direction.
+    pub fn reversed(&self) -> bool {
+        self.code % 2 == 1
+    }
 }
 
 /// What an edge's sides have in common.
@@ -100,15 +116,6 @@ impl EdgeCounts {
     }
 }
 
-/// A patch's side on its way to an edge, among those with the same lower point.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Half {
-    /// The higher point.
-    high: u32,
-    /// Three times the patch, plus which of its sides.
-    number: u32,
-}
-
 impl Topology {
     /// [`build_within`](Self::build_within) without a tolerance: corners at exactly equal positions share a point.
     ///
@@ -126,15 +133,11 @@ impl Topology {
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
-        let distance = mesh.bounds().part(tolerance.into());
-        let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
-        let numbers = alike.iter().copied().chain(std::iter::repeat(0));
-        let positions = mesh.corners.iter().map(|corner| corner.position).zip(numbers);
-        let (points, corner_points) = weld_alike(positions, distance);
+        let (points, corner_points) = weld_corners(mesh, tolerance);
         progress.check()?;
         let patches = patches(mesh, &corner_points);
         progress.check()?;
-        let halves = halves(&patches, &corner_points, points.len());
+        let (sides, starts) = sides(&patches, &corner_points, points.len());
         progress.check()?;
         let mut topology = Self {
             point_corners: first_corners(&corner_points, points.len()),
@@ -143,9 +146,10 @@ impl Topology {
             points,
             corner_points,
             patches,
-            ..Self::default()
+            sides,
+            edges: Vec::new(),
         };
-        topology.connect(&halves, &mesh.corners);
+        topology.connect(&starts, &mesh.corners);
         progress.check()?;
         Ok(topology)
     }
@@ -168,7 +172,7 @@ impl Topology {
     /// Whether every edge has exactly two sides, which run it in opposite directions: what has an inside.
     pub fn is_closed_and_oriented(&self) -> bool {
         let opposed = |edge: &Edge| match self.edge_sides(edge) {
-            [a, b] => a.reversed != b.reversed,
+            [a, b] => a.reversed() != b.reversed(),
             _ => false,
         };
         !self.edges.is_empty() && self.edges.iter().all(opposed)
@@ -180,7 +184,7 @@ impl Topology {
         let mut parts = Parts::new(self.patches.len());
         for edge in &self.edges {
             for pair in self.edge_sides(edge).windows(2) {
-                parts.join(pair[0].patch, pair[1].patch);
+                parts.join(pair[0].patch(), pair[1].patch());
             }
         }
         let mut volumes = vec![None; self.patches.len()];
@@ -218,113 +222,111 @@ impl Topology {
     /// The direction that an edge's patches face together: the sum of their facings, by area; zero where they cancel.
     pub fn edge_facing(&self, edge: &Edge) -> Vec3 {
         let facing = |side: &Side| {
-            let [a, b, c] = self.patch_positions(side.patch).map(Vec3::as_dvec3);
+            let [a, b, c] = self.patch_positions(side.patch()).map(Vec3::as_dvec3);
             (b - a).cross(c - a)
         };
         let sum: glam::DVec3 = self.edge_sides(edge).iter().map(facing).sum();
         sum.normalize_or_zero().as_vec3()
     }
 
-    /// Makes edges, and tells patches and sides of each other.
-    fn connect(&mut self, halves: &Halves, corners: &[Corner]) {
+    /// The corners that a side's patch has there, in the edge's own direction.
+    pub fn side_corners(&self, side: &Side) -> [u32; 2] {
+        let own = self.patches[side.patch() as usize].corners;
+        let [a, b] = [own[side.index()], own[(side.index() + 1) % 3]];
+        if side.reversed() { [b, a] } else { [a, b] }
+    }
+
+    /// Makes edges of sorted sides, which know the edge's higher point in its place, and tells patches and sides of each other.
+    fn connect(&mut self, starts: &[u32], corners: &[Corner]) {
+        let is_last = |i: usize, end: usize| i + 1 == end || self.sides[i].edge != self.sides[i + 1].edge;
+        let ends = starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
+        let count = ends.clone().map(|around| around.clone().filter(|&i| is_last(i, around.end)).count()).sum();
         // Exactly: one more than there is room for would double what edges take.
-        self.sides.reserve_exact(halves.sorted.len());
-        self.edges.reserve_exact(halves.edges().count());
-        for (low, run) in halves.edges() {
-            let start = self.sides.len() as u32;
-            for half in run {
-                let side = self.side(half.number, low);
-                self.patches[side.patch as usize].sides[side.index as usize] = self.sides.len() as u32;
-                self.sides.push(side);
+        self.edges.reserve_exact(count);
+        for (low, around) in (0..).zip(ends) {
+            let mut start = around.start;
+            while start < around.end {
+                let high = self.sides[start].edge;
+                let run = self.sides[start..around.end].iter().take_while(|side| side.edge == high).count();
+                for (index, side) in (start as u32..).zip(&mut self.sides[start..start + run]) {
+                    side.edge = self.edges.len() as u32;
+                    self.patches[side.patch() as usize].sides[side.index()] = index;
+                }
+                let kind = self.kind(&self.sides[start..start + run], corners);
+                self.edges.push(Edge { points: [low, high], sides: start as u32..(start + run) as u32, kind });
+                start += run;
             }
-            let sides = start..self.sides.len() as u32;
-            let kind = kind(&self.sides[start as usize..], corners);
-            self.edges.push(Edge { points: [low, run[0].high], sides, kind });
         }
     }
 
-    /// The side of a half whose lower point is `low`, as one of the next edge's.
-    fn side(&self, number: u32, low: u32) -> Side {
-        let (patch, index) = (number / 3, (number % 3) as u8);
-        let own = self.patches[patch as usize].corners;
-        let [a, b] = [own[usize::from(index)], own[usize::from(index + 1) % 3]];
-        let reversed = self.corner_points[a as usize] != low;
-        let corners = if reversed { [b, a] } else { [a, b] };
-        Side { patch, index, reversed, edge: self.edges.len() as u32, corners }
+    fn kind(&self, sides: &[Side], corners: &[Corner]) -> EdgeKind {
+        let [a, b] = match sides {
+            [_] => return EdgeKind::Boundary,
+            [a, b] => [a, b].map(|side| self.side_corners(side).map(|corner| corners[corner as usize])),
+            _ => return EdgeKind::NonManifold,
+        };
+        if a[0].normal != b[0].normal || a[1].normal != b[1].normal {
+            EdgeKind::Split
+        } else if a[0].uv != b[0].uv || a[1].uv != b[1].uv {
+            EdgeKind::Seam
+        } else {
+            EdgeKind::Smooth
+        }
     }
+}
+
+/// The points of a mesh within a tolerance, as [`Topology::build_within`] has them, and the point of each corner.
+pub(super) fn weld_corners(mesh: &Mesh, tolerance: f32) -> (Vec<Vec3>, Vec<u32>) {
+    let distance = mesh.bounds().part(tolerance.into());
+    let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
+    let numbers = alike.iter().copied().chain(std::iter::repeat(0));
+    weld_alike(mesh.corners.iter().map(|corner| corner.position).zip(numbers), distance)
+}
+
+/// Whether a triangle with corners on these points is none.
+pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
+    a == b || b == c || c == a
 }
 
 /// The triangles with three distinct points; their sides are not known yet.
 fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
-    let whole = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| corner_points[corner as usize]);
-        a != b && b != c && c != a
-    };
+    let whole = |corners: &[u32; 3]| !is_degenerate(corners.map(|corner| corner_points[corner as usize]));
     let triangles = mesh.triangles.iter().enumerate().filter(|(_, corners)| whole(corners));
     let mut patches = Vec::with_capacity(mesh.triangles.len());
     patches.extend(triangles.map(|(i, &corners)| Patch { corners, sides: [0; 3], triangle: i as u32 }));
     patches
 }
 
-/// The sides of all patches by their lower points, and those of each by their higher points and numbers.
-struct Halves {
-    /// Those of point p: `starts[p]..starts[p + 1]`.
-    starts: Vec<u32>,
-    sorted: Vec<Half>,
-}
-
-impl Halves {
-    /// Those of each edge, with its lower point.
-    fn edges(&self) -> impl Iterator<Item = (u32, &[Half])> {
-        let around = |ends: &[u32]| &self.sorted[ends[0] as usize..ends[1] as usize];
-        let by_point = (0..).zip(self.starts.windows(2).map(around));
-        by_point.flat_map(|(low, around)| around.chunk_by(|a, b| a.high == b.high).map(move |run| (low, run)))
-    }
-}
-
-fn halves(patches: &[Patch], corner_points: &[u32], points: usize) -> Halves {
+/// The sides of all patches by their lower points, then by their higher ones, which stand where their edges will, then by patch.
+/// Those of point p are `starts[p]..starts[p + 1]`.
+fn sides(patches: &[Patch], corner_points: &[u32], points: usize) -> (Vec<Side>, Vec<u32>) {
     let ends = |patch: &Patch, k: usize| {
-        let [a, b] = [patch.corners[k], patch.corners[(k + 1) % 3]].map(|corner| corner_points[corner as usize]);
-        (a.min(b), a.max(b))
+        [patch.corners[k], patch.corners[(k + 1) % 3]].map(|corner| corner_points[corner as usize])
     };
     let mut starts = vec![0_u32; points + 1];
     for patch in patches {
         for k in 0..3 {
-            starts[ends(patch, k).0 as usize + 1] += 1;
+            let [a, b] = ends(patch, k);
+            starts[a.min(b) as usize + 1] += 1;
         }
     }
     for point in 0..points {
         starts[point + 1] += starts[point];
     }
     let mut next = starts.clone();
-    let mut sorted = vec![Half::default(); 3 * patches.len()];
-    for (patch, number) in patches.iter().zip((0_u32..).step_by(3)) {
+    let mut sides = vec![Side::default(); 3 * patches.len()];
+    for (index, patch) in (0..).zip(patches) {
         for k in 0..3 {
-            let (low, high) = ends(patch, k);
-            let place = &mut next[low as usize];
-            sorted[*place as usize] = Half { high, number: number + k as u32 };
+            let [a, b] = ends(patch, k);
+            let place = &mut next[a.min(b) as usize];
+            sides[*place as usize] = Side::new(index, k as u8, b < a, a.max(b));
             *place += 1;
         }
     }
     for ends in starts.windows(2) {
-        sorted[ends[0] as usize..ends[1] as usize].sort_unstable();
+        sides[ends[0] as usize..ends[1] as usize].sort_unstable_by_key(|side| (side.edge, side.code));
     }
-    Halves { starts, sorted }
-}
-
-fn kind(sides: &[Side], corners: &[Corner]) -> EdgeKind {
-    let [a, b] = match sides {
-        [_] => return EdgeKind::Boundary,
-        [a, b] => [a, b].map(|side| side.corners.map(|corner| corners[corner as usize])),
-        _ => return EdgeKind::NonManifold,
-    };
-    if a[0].normal != b[0].normal || a[1].normal != b[1].normal {
-        EdgeKind::Split
-    } else if a[0].uv != b[0].uv || a[1].uv != b[1].uv {
-        EdgeKind::Seam
-    } else {
-        EdgeKind::Smooth
-    }
+    (sides, starts)
 }
 
 /// The lowest corner on each point.

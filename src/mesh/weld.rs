@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 use super::grid::Grid;
 use super::ids::Ids;
@@ -56,29 +56,42 @@ pub fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) 
     if tolerance.is_nan() || tolerance <= 0.0 {
         return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
     }
-    let mut grids: HashMap<u32, Grid<(DVec3, u32)>> = HashMap::new();
-    let mut points = Vec::new();
+    let mut grids: HashMap<u32, Grid<Option<u32>>> = HashMap::new();
+    let mut apart = Apart::default();
     let mut merged = Vec::with_capacity(distinct.len());
     for (position, number) in distinct {
         let grid = grids.entry(number).or_insert_with(|| Grid::new(tolerance));
-        let place = position.as_dvec3();
-        let point = nearest(grid, place, tolerance).unwrap_or_else(|| {
-            let point = points.len() as u32;
-            points.push(position);
-            grid.at(place).push((place, point));
-            point
-        });
-        merged.push(point);
+        merged.push(apart.nearest(grid, position, tolerance).unwrap_or_else(|| apart.push(grid, position)));
     }
     point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
-    (points, point_of)
+    (apart.points, point_of)
 }
 
-/// The nearest point within the tolerance, the lowest of those equally near.
-fn nearest(grid: &Grid<(DVec3, u32)>, place: DVec3, tolerance: f64) -> Option<u32> {
-    let distances = grid.near(place).flatten().map(|&(point, i)| (point.distance(place), i));
-    let within = distances.filter(|(distance, _)| *distance <= tolerance);
-    within.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, i)| i)
+/// Points that are more than one tolerance apart. A grid's cell has its latest point, and each point the one before it in its
+/// cell: a list of its own for every cell would take several times as much as the points.
+#[derive(Default)]
+struct Apart {
+    points: Vec<Vec3>,
+    before: Vec<Option<u32>>,
+}
+
+impl Apart {
+    fn push(&mut self, grid: &mut Grid<Option<u32>>, position: Vec3) -> u32 {
+        let point = self.points.len() as u32;
+        self.points.push(position);
+        self.before.push(grid.at(position.as_dvec3()).replace(point));
+        point
+    }
+
+    /// The nearest point within the tolerance, the lowest of those equally near.
+    fn nearest(&self, grid: &Grid<Option<u32>>, position: Vec3, tolerance: f64) -> Option<u32> {
+        let place = position.as_dvec3();
+        let in_cell = |&latest: &Option<u32>| std::iter::successors(latest, |&point| self.before[point as usize]);
+        let near = grid.near(place).flat_map(in_cell);
+        let distances = near.map(|point| (self.points[point as usize].as_dvec3().distance(place), point));
+        let within = distances.filter(|(distance, _)| *distance <= tolerance);
+        within.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, point)| point)
+    }
 }
 
 /// The same value with +0 for -0, so that equal values have equal bits.

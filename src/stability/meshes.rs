@@ -291,7 +291,8 @@ mod tests {
         let edges = topology(&fins).edges;
         assert_eq!(edges.iter().map(|edge| edge.sides.len()).max(), Some(5));
         let reversed = topology(&reversed_neighbours());
-        let alike = |edge: &&crate::mesh::Edge| matches!(reversed.edge_sides(edge), [a, b] if a.reversed == b.reversed);
+        let alike =
+            |edge: &&crate::mesh::Edge| matches!(reversed.edge_sides(edge), [a, b] if a.reversed() == b.reversed());
         assert!(reversed.edges.iter().filter(alike).count() > 20);
         assert!(topology(&duplicates()).degenerate > 10);
         assert!(

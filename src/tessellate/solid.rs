@@ -51,8 +51,9 @@ impl Solid {
 /// its projection on a crease shortens it, and a patch's centre half as far again as those are on average.
 fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f32 {
     let side = |side: &crate::mesh::Side| {
-        let [a, b] = side.corners.map(|c| topology.points[topology.corner_points[c as usize] as usize]);
-        let [at_a, at_b] = side.corners.map(|c| mesh.corners[c as usize].normal);
+        let corners = topology.side_corners(side);
+        let [a, b] = corners.map(|c| topology.points[topology.corner_points[c as usize] as usize]);
+        let [at_a, at_b] = corners.map(|c| mesh.corners[c as usize].normal);
         let [ab, ba] = side_control_points(surface, 1.0, a, b, at_a, at_b);
         let own = ab.distance(straight_control_point(a, b)).max(ba.distance(straight_control_point(b, a)));
         if surface == Surface::PnCrease { own.max(a.distance(b) * (1.0 / 3.0)) } else { own }

@@ -44,7 +44,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
     harness.get_by_label(&format!("Edge {edge}"));
     assert!(harness.get_all_by_label("split normal").next().is_some());
     for side in topology.edge_sides(&topology.edges[edge as usize]) {
-        let triangle = topology.patches[side.patch as usize].triangle;
+        let triangle = topology.patches[side.patch() as usize].triangle;
         harness.get_by_label(&format!("Triangle {triangle}"));
     }
     assert_eq!(harness.get_all_by_label("8.00000").count(), 2, "both sides' factors");

@@ -34,8 +34,8 @@ fn neighbours(app: &App) -> Vec<u32> {
     let patch = topology.patch_of(app.selected_triangle().expect("one is selected")).expect("no shape is degenerate");
     let edges = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize].edge);
     let others = edges.into_iter().flat_map(|edge| topology.edge_sides(&topology.edges[edge as usize]).iter());
-    let others = others.filter(|side| side.patch != patch);
-    others.map(|side| topology.patches[side.patch as usize].triangle).collect()
+    let others = others.filter(|side| side.patch() != patch);
+    others.map(|side| topology.patches[side.patch() as usize].triangle).collect()
 }
 
 #[test]

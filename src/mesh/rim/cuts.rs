@@ -49,7 +49,8 @@ impl Cuts {
     pub fn of(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
         let is_creased = |edge: &Edge| {
             let sides = topology.edge_sides(edge);
-            (0..2).any(|end| sides.iter().any(|side| normal(mesh, side, end) != normal(mesh, &sides[0], end)))
+            let at = |side: &Side, end: usize| normal(mesh, topology, side, end);
+            (0..2).any(|end| sides.iter().any(|side| at(side, end) != at(&sides[0], end)))
         };
         let edges = topology.edges.iter().map(|edge| EdgeCuts { is_creased: is_creased(edge), ..EdgeCuts::default() });
         let mut cuts = Self { edges: edges.collect(), narrowed: 0 };
@@ -63,7 +64,7 @@ impl Cuts {
                 let part = reach[end]?.min(most) / a.distance(b);
                 let (from, to) = if end == 0 { (a, b) } else { (b, a) };
                 let position = from.lerp(to, part).as_vec3();
-                let at = |side: &Side| along(mesh, side, end, part);
+                let at = |side: &Side| along(mesh, topology, side, end, part);
                 // Where f32 has no room for a cut, it is the point itself.
                 let is_apart = position.as_dvec3() != from;
                 let normal = fans.normal_at(&sides[0], end).filter(|_| !is_apart);
@@ -87,7 +88,7 @@ impl Cuts {
             return Some(sides.iter().map(|side| self.slant(topology, side, end)).fold(1.0, f64::max));
         }
         // Where more meets than its own sides the crease is cut too: what the point's normal bends stays near the point.
-        let own = shared(sides.iter().map(|side| normal(mesh, side, end)));
+        let own = shared(sides.iter().map(|side| normal(mesh, topology, side, end)));
         (own != normal_there).then_some(1.0)
     }
 
@@ -95,13 +96,13 @@ impl Cuts {
     /// none.
     fn slant(&self, topology: &Topology, side: &Side, end: usize) -> f64 {
         let k = corner_at(side, end);
-        let other = if k == usize::from(side.index) { (k + 2) % 3 } else { k };
-        let patch = &topology.patches[side.patch as usize];
+        let other = if k == side.index() { (k + 2) % 3 } else { k };
+        let patch = &topology.patches[side.patch() as usize];
         let other = topology.sides[patch.sides[other] as usize].edge;
         if !self.edges[other as usize].is_creased {
             return 1.0;
         }
-        let p = topology.patch_positions(side.patch).map(Vec3::as_dvec3);
+        let p = topology.patch_positions(side.patch()).map(Vec3::as_dvec3);
         1.0 / sine(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]).max(LEAST_SINE)
     }
 }
@@ -112,11 +113,11 @@ fn sine(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// A side's normal at an end of its edge.
-fn normal(mesh: &Mesh, side: &Side, end: usize) -> Vec3 {
-    mesh.corners[side.corners[end] as usize].normal
+fn normal(mesh: &Mesh, topology: &Topology, side: &Side, end: usize) -> Vec3 {
+    mesh.corners[topology.side_corners(side)[end] as usize].normal
 }
 
 /// A side's normal at a part of its edge from an end.
-fn along(mesh: &Mesh, side: &Side, end: usize, part: f64) -> Vec3 {
-    blend([(1.0 - part, normal(mesh, side, end)), (part, normal(mesh, side, 1 - end))])
+fn along(mesh: &Mesh, topology: &Topology, side: &Side, end: usize, part: f64) -> Vec3 {
+    blend([(1.0 - part, normal(mesh, topology, side, end)), (part, normal(mesh, topology, side, 1 - end))])
 }

@@ -24,7 +24,7 @@ impl Fans {
         for edge in &topology.edges {
             for pair in topology.edge_sides(edge).windows(2) {
                 for end in 0..2 {
-                    let [a, b] = [&pair[0], &pair[1]].map(|side| slot(side.patch, corner_at(side, end)));
+                    let [a, b] = [&pair[0], &pair[1]].map(|side| slot(side.patch(), corner_at(side, end)));
                     parts.join(a, b);
                 }
             }
@@ -54,7 +54,7 @@ impl Fans {
 
     /// The same at an end of a side, 0 or 1 in its edge's own direction.
     pub fn normal_at(&self, side: &Side, end: usize) -> Option<Vec3> {
-        self.normal(side.patch, corner_at(side, end))
+        self.normal(side.patch(), corner_at(side, end))
     }
 }
 
@@ -64,8 +64,8 @@ fn slot(patch: u32, k: usize) -> u32 {
 
 /// Which of its patch's corners a side has at an end of its edge, 0 to 2.
 pub fn corner_at(side: &Side, end: usize) -> usize {
-    let k = usize::from(side.index);
-    if (end == 0) != side.reversed { k } else { (k + 1) % 3 }
+    let k = side.index();
+    if (end == 0) != side.reversed() { k } else { (k + 1) % 3 }
 }
 
 /// The mean of distinct normals at unit length: how many corners have each doesn't matter, so neither does how faces are

@@ -94,7 +94,7 @@ impl<'a> Cutter<'a> {
         let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize]);
         let edges: [&EdgeCuts; 3] = sides.map(|side| &cuts.edges[side.edge as usize]);
         let cut = |k: usize, end: usize| {
-            let cut = edges[k].ends[if sides[k].reversed { 1 - end } else { end }]?;
+            let cut = edges[k].ends[if sides[k].reversed() { 1 - end } else { end }]?;
             let (from, to) = (own[(k + end) % 3], own[(k + 1 - end) % 3]);
             Some(Corner { position: cut.position, normal: cut.normal, uv: from.uv.lerp(to.uv, cut.part) })
         };

@@ -18,7 +18,7 @@ fn rimmed_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, Rim) {
     let (made, after, rim) = with_rim(mesh, &before, width, &progress).unwrap();
     assert_eq!(after.edges, topology(&made).edges);
     for edge in &after.edges {
-        let normals = |side: &Side| side.corners.map(|corner| made.corners[corner as usize].normal);
+        let normals = |side: &Side| after.side_corners(side).map(|corner| made.corners[corner as usize].normal);
         let sides = after.edge_sides(edge);
         assert!(sides.iter().all(|side| normals(side) == normals(&sides[0])), "{} {width}: {edge:?}", mesh.name);
     }

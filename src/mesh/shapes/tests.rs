@@ -39,7 +39,7 @@ fn closed_shapes_are_closed_and_face_outwards() {
         assert!(topology.edges.iter().all(|edge| edge.sides.len() == 2), "{name} is open");
         for edge in &topology.edges {
             let [a, b] = topology.edge_sides(edge) else { panic!("{name}") };
-            assert_ne!(a.reversed, b.reversed, "{name}: two patches disagree about outside");
+            assert_ne!(a.reversed(), b.reversed(), "{name}: two patches disagree about outside");
         }
         assert_eq!(euler(&topology), expected, "{name}");
         let at = |corner: u32| mesh.corners[corner as usize].position;
@@ -99,7 +99,7 @@ fn the_moebius_strip_has_one_side_and_one_boundary() {
     let joins = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Split);
     for join in joins {
         let sides = topology.edge_sides(join);
-        assert_eq!(sides[0].reversed, sides[1].reversed, "the join is where outside and inside meet");
+        assert_eq!(sides[0].reversed(), sides[1].reversed(), "the join is where outside and inside meet");
     }
     assert_eq!(boundary_loops(&topology), 1);
 }

@@ -120,7 +120,7 @@ fn links(topology: &Topology, starts: &[u32]) -> Vec<Link> {
     let mut next = starts.to_vec();
     for (_, edge) in open_edges(topology) {
         let [a, b] = edge.points;
-        let patch = topology.sides[edge.sides.start as usize].patch;
+        let patch = topology.sides[edge.sides.start as usize].patch();
         let third = third(topology, edge);
         for (from, to) in [(a, b), (b, a)] {
             links[next[from as usize] as usize] = Link { to, patch, third };
@@ -159,7 +159,7 @@ impl Beside {
         let (line, third) = (Line::of(topology, edge), third(topology, edge));
         let up = line.across(topology.points[third as usize].as_dvec3());
         let (length, height) = (line.length(), up.length());
-        let patch = topology.sides[edge.sides.start as usize].patch;
+        let patch = topology.sides[edge.sides.start as usize].patch();
         let beside = Self { line, length, ends: edge.points, patch, third, side: up / height };
         (height > HEIGHT * length).then_some(beside)
     }

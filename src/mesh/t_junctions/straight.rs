@@ -75,13 +75,13 @@ fn shortest(topology: &Topology) -> Vec<f64> {
 
 /// The ends of all boundary edges, each once, but only so many on one spot.
 fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec<(DVec3, u32)> {
-    let mut spots: Grid<()> = Grid::new(tolerance);
-    let places = topology.points.iter().map(|point| point.as_dvec3()).zip(0..);
+    let mut spots: Grid<usize> = Grid::new(tolerance);
+    let places = topology.points.iter().map(|point| point.as_dvec3()).zip(0_u32..);
     places
         .filter(|&(place, point)| {
             let open = shortest[point as usize].is_finite();
-            let tried = open.then(|| spots.at(place)).filter(|spot| spot.len() < TRIES);
-            tried.map(|spot| spot.push(())).is_some()
+            let tried = open.then(|| spots.at(place)).filter(|spot| **spot < TRIES);
+            tried.map(|spot| *spot += 1).is_some()
         })
         .collect()
 }

@@ -116,7 +116,7 @@ fn a_seam_that_a_weld_tolerance_closes_has_none() {
         let mesh = cut_cylinder(part);
         let topology = Topology::build(&mesh, &Progress::new()).unwrap();
         assert_eq!(found(&topology), [], "moved by {part}");
-        let joins = joins(&mesh, &Progress::new()).unwrap();
+        let joins = joins(&mesh, None, &Progress::new()).unwrap();
         assert!(joins.iter().any(|join| (join.edges, join.collapsed) == (12, 0)), "moved by {part}: {joins:?}");
     }
     let halfway = cut_cylinder(0.0625);

@@ -39,7 +39,7 @@ fn check(mesh: &Mesh, topology: &Topology) {
         next = edge.sides.end;
         for side in topology.edge_sides(edge) {
             assert_eq!(side.edge as usize, i);
-            assert_eq!(side.corners.map(|c| topology.corner_points[c as usize]), edge.points);
+            assert_eq!(topology.side_corners(side).map(|c| topology.corner_points[c as usize]), edge.points);
         }
     }
     assert_eq!(next as usize, topology.sides.len());
@@ -48,12 +48,12 @@ fn check(mesh: &Mesh, topology: &Topology) {
         assert_eq!(patch.corners, mesh.triangles[patch.triangle as usize]);
         for k in 0..3 {
             let side = topology.sides[patch.sides[k] as usize];
-            assert_eq!((side.patch as usize, side.index as usize), (p, k));
+            assert_eq!((side.patch() as usize, side.index()), (p, k));
             let mut own = [patch.corners[k], patch.corners[(k + 1) % 3]];
-            if side.reversed {
+            if side.reversed() {
                 own.reverse();
             }
-            assert_eq!(side.corners, own);
+            assert_eq!(topology.side_corners(&side), own);
         }
     }
 }
@@ -66,7 +66,7 @@ fn two_triangles_share_one_smooth_edge() {
     assert_eq!(topology.edge_counts(), EdgeCounts { smooth: 1, boundary: 4, ..Default::default() });
     let shared = &topology.edges[2];
     assert_eq!((shared.points, shared.kind), ([1, 2], EdgeKind::Smooth));
-    assert_eq!(topology.edge_sides(shared).iter().map(|s| s.reversed).collect::<Vec<_>>(), [false, true]);
+    assert_eq!(topology.edge_sides(shared).iter().map(|s| s.reversed()).collect::<Vec<_>>(), [false, true]);
 }
 
 #[test]
