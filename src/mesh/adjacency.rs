@@ -63,9 +63,10 @@ impl Layout {
         // Edge by edge: sides lie in a row, and only what is exchanged is as far apart as the patches. To ask each patch for
         // its neighbours is several times slower where triangles come in no order.
         let place = |side: &Side| per_patch * side.patch() as usize + pair(side.index()).start - of_twelve.start;
-        for edge in &topology.edges {
+        // Where both have the same corners, each has the other's already.
+        for edge in topology.edges.iter().filter(|edge| !edge.shares_corners) {
             if let [a, b] = topology.edge_sides(edge) {
-                // Each patch has its own corners there till now.
+                // Each has its own there till now.
                 let (first, second) = (place(a), place(b));
                 let opposed = usize::from(a.reversed() != b.reversed());
                 indices.swap(first, second + opposed);

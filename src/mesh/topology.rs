@@ -51,6 +51,8 @@ pub struct Edge {
     /// Indices into [`Topology::sides`].
     pub sides: Range<u32>,
     pub kind: EdgeKind,
+    /// Whether it has two sides, with the same two corners of the mesh.
+    pub shares_corners: bool,
 }
 
 /// One patch's use of an edge.
@@ -84,7 +86,7 @@ impl Side {
 
 /// What an edge's sides have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[repr(u32)]
+#[repr(u8)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeKind {
     /// Two sides with the same normals and uvs.
@@ -252,26 +254,33 @@ impl Topology {
                     side.edge = self.edges.len() as u32;
                     self.patches[side.patch() as usize].sides[side.index()] = index;
                 }
-                let kind = self.kind(&self.sides[start..start + run], corners);
-                self.edges.push(Edge { points: [low, high], sides: start as u32..(start + run) as u32, kind });
+                let (kind, shares_corners) = self.kind(&self.sides[start..start + run], corners);
+                let sides = start as u32..(start + run) as u32;
+                self.edges.push(Edge { points: [low, high], sides, kind, shares_corners });
                 start += run;
             }
         }
     }
 
-    fn kind(&self, sides: &[Side], corners: &[Corner]) -> EdgeKind {
+    /// What an edge with these sides is, and whether two of them have the same corners.
+    fn kind(&self, sides: &[Side], corners: &[Corner]) -> (EdgeKind, bool) {
         let [a, b] = match sides {
-            [_] => return EdgeKind::Boundary,
-            [a, b] => [a, b].map(|side| self.side_corners(side).map(|corner| corners[corner as usize])),
-            _ => return EdgeKind::NonManifold,
+            [_] => return (EdgeKind::Boundary, false),
+            [a, b] => [a, b].map(|side| self.side_corners(side)),
+            _ => return (EdgeKind::NonManifold, false),
         };
-        if a[0].normal != b[0].normal || a[1].normal != b[1].normal {
+        if a == b {
+            return (EdgeKind::Smooth, true);
+        }
+        let [a, b] = [a, b].map(|own| own.map(|corner| corners[corner as usize]));
+        let kind = if a[0].normal != b[0].normal || a[1].normal != b[1].normal {
             EdgeKind::Split
         } else if a[0].uv != b[0].uv || a[1].uv != b[1].uv {
             EdgeKind::Seam
         } else {
             EdgeKind::Smooth
-        }
+        };
+        (kind, false)
     }
 }
 
