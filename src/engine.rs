@@ -80,6 +80,10 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         mesh.warnings.extend(heights.warning(mesh));
         mesh.heights = Some(heights);
     }
+    if topology.patches.is_empty() {
+        let sentence = "there is nothing to show: every triangle has two corners on one point.";
+        Arc::make_mut(&mut mesh).warnings.push(sentence.to_owned());
+    }
     Ok(Loaded {
         source: source.clone(),
         preparation: preparation.clone(),

@@ -28,6 +28,11 @@ pub fn short(number: f64) -> String {
     }
 }
 
+/// All digits of an f32, in scientific notation where zeros would be most of them.
+pub fn exact(number: f32) -> String {
+    if number == 0.0 || (1e-5..1e9).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
+}
+
 /// Two decimals, for a column of px or ms: 0 as 0, and what is less than the decimals show as that.
 pub fn hundredths(number: f64) -> String {
     if number == 0.0 {
@@ -71,6 +76,11 @@ mod tests {
     use std::time::Duration;
 
     use super::*;
+
+    #[test]
+    fn exact_numbers_have_all_digits_and_no_rows_of_zeros() {
+        assert_eq!([0.0, -0.1, 12345.679, 1e36, 1.5e-7].map(exact), ["0", "-0.1", "12345.679", "1e36", "1.5e-7"]);
+    }
 
     #[test]
     fn days_have_their_dates() {

@@ -1,4 +1,5 @@
-//! What a command writes is apart from what it reads: no file that it was given is replaced, and none is written twice.
+//! What a command writes is apart from what it reads: no file that it was given is replaced, and none is written twice. Where
+//! nothing could be written, that is said before there is anything to write.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +8,7 @@ use crate::mesh::{HeightSource, Source};
 use crate::names::shown_path;
 
 /// # Errors
-/// A file to be written is read as well, or written already.
+/// A file to be written is read as well, or written already; or there is no folder for it.
 pub fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
@@ -15,6 +16,9 @@ pub fn keep_apart<'a>(
     let mut taken: Vec<(PathBuf, &'static str)> =
         read.into_iter().flatten().filter_map(|path| Some((place(path)?, "read"))).collect();
     for path in written.into_iter().flatten() {
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+            return Err(CliError::NoFolder { path: shown_path(path), folder: shown_path(folder) });
+        }
         let Some(place) = place(path) else { continue };
         if let Some((_, by)) = taken.iter().find(|(other, _)| *other == place) {
             return Err(CliError::Taken { path: shown_path(path), by });

@@ -20,6 +20,7 @@ use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitm
 use crate::engine::{Engine, Loaded};
 use crate::measure::AccuracyOptions;
 use crate::mesh::{Progress, Source};
+use crate::names::file_reason;
 use crate::render::Target;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Normals, Partitioning, Surface};
@@ -305,7 +306,7 @@ impl Table {
         let out: Box<dyn Write> = if path.as_os_str() == "-" {
             Box::new(std::io::stdout())
         } else {
-            Box::new(File::create(path).map_err(|error| file_error(path, "written", &error))?)
+            Box::new(File::create(path).map_err(|error| file_error(path, "written", &file_reason(&error)))?)
         };
         let mut table = Self { path: path.to_owned(), writer: csv::Writer::from_writer(out) };
         table.add(&COLUMNS)?;

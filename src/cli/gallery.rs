@@ -8,6 +8,7 @@ use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, w
 use crate::engine::{Engine, Preparation};
 use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
 use crate::mesh::{HeightSource, Source};
+use crate::names::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -55,7 +56,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         elevation: args.camera.elevation.clamp(-89.9, 89.9),
     };
     let engine = Engine::chosen(&args.adapter.choice())?;
-    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &error))?;
+    std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
     let mut gallery = Gallery::new(look, &engine);
     warn(&gallery.warnings()?);
     let (mut all, mut telling) = (Vec::new(), Telling::new());

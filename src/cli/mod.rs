@@ -42,7 +42,7 @@ use crate::export::ExportError;
 use crate::gpu::GpuError;
 use crate::measure::CompareError;
 use crate::mesh::{Limits, LoadError, Progress, Source};
-use crate::names::{on_one_line, shown_path};
+use crate::names::{file_reason, on_one_line, shown_path};
 
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
@@ -106,6 +106,8 @@ pub enum CliError {
     Export(#[from] ExportError),
     #[error("{path}: could not be {doing} ({reason})")]
     File { path: String, doing: &'static str, reason: String },
+    #[error("{path}: there is no folder {folder} to write it in; make it first")]
+    NoFolder { path: String, folder: String },
     #[error("{path} isn't written over: it is {by} by the same command; choose another name")]
     Taken { path: String, by: &'static str },
     #[error("{reference}: {reason}")]
@@ -213,7 +215,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
         true => std::io::stdin().take(most + 1).read_to_end(&mut bytes),
         false => open_input(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)),
     };
-    read.map_err(|error| file_error(path, "read", &error))?;
+    read.map_err(|error| file_error(path, "read", &file_reason(&error)))?;
     if bytes.len() as u64 > most {
         return Err(file_error(path, "read", &format!("it has more than the {most} bytes that are read at most")));
     }
@@ -249,7 +251,7 @@ fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         let mut out = std::io::stdout().lock();
         return out.write_all(bytes).and_then(|()| out.flush()).map_err(CliError::Output);
     }
-    crate::export::write_whole(path, bytes).map_err(|error| file_error(path, "written", &error))
+    crate::export::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
 /// Writes a PNG file, whatever its name ends in.
@@ -257,7 +259,7 @@ fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliEr
     let mut bytes = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
     picture.write_with_encoder(encoder).map_err(|error| file_error(path, "encoded", &error))?;
-    crate::export::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &error))
+    crate::export::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
 /// Serialised on several lines, with a line end.

@@ -16,7 +16,7 @@ use crate::settings::{ARENA_BYTES, Settings, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, fit_budget};
 
 pub use values::{
-    CameraOption, Distances, Size, color, factor, fraction, height_scale, partitioning, picture, pixels, source,
+    CameraOption, Distances, Size, color, factor, fraction, height_scale, model, partitioning, picture, pixels, source,
     threshold, tolerance,
 };
 

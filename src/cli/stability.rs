@@ -9,6 +9,7 @@ use super::tessellate::Device;
 use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
 use crate::mesh::Source;
+use crate::names::file_reason;
 use crate::stability::{
     CASES, Case, Effort, LEGEND, PAGE, Row, Section, Subject, Verdict, lines, page, picture, run as run_case, table,
 };
@@ -67,7 +68,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };
     let effort = Effort { cameras: args.cameras, cpu: args.device != Some(Device::Gpu), ..Effort::default() };
     if let Some(folder) = &args.output {
-        std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &error))?;
+        std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     }
     let (mut rows, mut sections) = (Vec::new(), Vec::new());
     for subject in subjects {

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::{AdapterOption, CliError, GivenOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart};
+use super::{
+    AdapterOption, CliError, GivenOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
+};
 use crate::engine::Engine;
 use crate::export::Exported;
 use crate::gpu::Timing;
@@ -18,7 +20,7 @@ pub struct Args {
     #[arg(value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file
-    #[arg(short, long, value_name = "OUT.glb|OUT.obj")]
+    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::model())]
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,

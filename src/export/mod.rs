@@ -10,7 +10,7 @@ use glam::{Vec2, Vec3};
 use thiserror::Error;
 
 use crate::mesh::{Mesh, Topology};
-use crate::names::shown_path;
+use crate::names::{file_reason, shown_path};
 use crate::tessellate::{Tessellated, linear_normal, linear_uv};
 
 /// A mesh with attributes, one run of triangles a material.
@@ -27,7 +27,7 @@ pub struct Exported<'a> {
 pub enum ExportError {
     #[error("{path}: the name must end in .glb or .obj")]
     Extension { path: String },
-    #[error("{path}: could not be written ({reason})")]
+    #[error("{path}: could not be written ({})", file_reason(reason))]
     Io { path: String, reason: std::io::Error },
     #[error(
         "{path}: {triangles} triangles are more than it can hold (4 GiB as .glb, 4 billion vertices as .obj): lower the factor"

@@ -11,6 +11,7 @@ use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
 use super::{Mesh, NormalFaults, Repairs, Rim};
 use crate::names::{on_one_line, shown};
+use crate::numbers::exact;
 
 /// T-junctions that are printed for people.
 const SHOWN: usize = 10;
@@ -125,10 +126,10 @@ impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.write_mesh(f)?;
         self.write_odd(f)?;
-        let [x, y, z] = self.bounds.min;
-        let [to_x, to_y, to_z] = self.bounds.max;
+        let [x, y, z] = self.bounds.min.map(exact);
+        let [to_x, to_y, to_z] = self.bounds.max.map(exact);
         writeln!(f, "from          {x} {y} {z} (object units)")?;
-        writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", self.bounds.diagonal)?;
+        writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", exact(self.bounds.diagonal))?;
         for material in &self.materials {
             let texture = material.texture.map_or_else(String::new, |[w, h]| format!(", texture {w} x {h} px"));
             writeln!(f, "material      {}: {} triangles{texture}", shown(&material.name), material.triangles)?;

@@ -10,7 +10,7 @@ use super::gltf::{self, Problem};
 use super::heights::HeightError;
 use super::progress::{Cancelled, Progress};
 use super::{Mesh, obj, ply, stl};
-use crate::names::shown_path;
+use crate::names::{file_reason, shown_path};
 
 /// Ends of names of files that can be read, for messages.
 const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
@@ -39,7 +39,7 @@ pub enum LoadError {
     NoFile { path: PathBuf },
     #[error("{} changed while it was read; open it again once it is whole", shown_path(path))]
     Changed { path: PathBuf },
-    #[error("{} can't be read: {source}", shown_path(path))]
+    #[error("{} can't be read: {}", shown_path(path), file_reason(source))]
     Io { path: PathBuf, source: io::Error },
     #[error("{} is empty: export the model again", shown_path(path))]
     NoBytes { path: PathBuf },

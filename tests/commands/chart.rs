@@ -86,7 +86,10 @@ fn wrong_usage_of_a_chart_is_said_in_a_sentence() {
     usage(&["--report", "out", "--truth", "shape:torus"], "one mesh");
     usage(&["shape:torus", "--csv", "-", "--factors", "0.5"], "1 to 64");
     usage(&["shape:torus", "--csv", "-", "--samples", "1"], "100 to");
-    sentence(&["chart", "shape:torus", "--csv", "/nowhere/at/all.csv"], &["/nowhere/at/all.csv", "written"]);
+    sentence(
+        &["chart", "shape:torus", "--csv", "/nowhere/at/all.csv"],
+        &["/nowhere/at/all.csv", "there is no folder /nowhere/at to write it in"],
+    );
     sentence(&["chart", "shape:torus", "--truth", "README.md", "--csv", "-"], &["README.md"]);
 }
 

@@ -16,13 +16,26 @@ fn failures_are_one_sentence_and_exit_code_1() {
     sentence(&["info", &broken], &["broken.gltf", "not a glTF 2.0 document"]);
     sentence(
         &["render", "shape:torus", "-o", &folder.path("no/such/folder/out.png")],
-        &["out.png", "could not be written"],
+        &["out.png", "there is no folder", "make it first"],
     );
     sentence(
         &["render", "shape:torus", "-o", &out, "--reference", "nowhere.png"],
         &["nowhere.png", "could not be read"],
     );
-    sentence(&["tessellate", "shape:torus", "-o", &folder.path("out.stl")], &["out.stl", ".glb or .obj"]);
+    let said = failure(&["tessellate", "shape:torus", "-o", &folder.path("out.stl")], 2);
+    assert!(said.contains("meshes are written as .glb or .obj files"), "{said}");
+    // Before anything is drawn, measured or emitted.
+    let nowhere = folder.path("nowhere/out");
+    for [command, option, ending] in
+        [["render", "-o", ".png"], ["tessellate", "-o", ".obj"], ["chart", "-o", ".svg"], ["chart", "--csv", ".csv"]]
+    {
+        let output = format!("{nowhere}{ending}");
+        sentence(
+            &[command, "shape:torus", option, &output],
+            &["there is no folder ", "nowhere to write it in; make it first"],
+        );
+    }
+    sentence(&["info", &folder.path("missing.glb")], &["missing.glb can't be read: there is no such file or folder"]);
     sentence(&["domain", "--partitioning", "integer", "--input", &text], &["notes.txt, line 1", "four numbers"]);
 }
 
@@ -140,6 +153,19 @@ fn a_picture_is_not_named_what_it_is_not() {
     let folder = Folder::new("named");
     let errors = failure(&["render", "shape:cube-split", "-o", &folder.path("out.jpg")], 2);
     assert!(errors.contains("PNG") && errors.contains("name it .png"), "{errors}");
+}
+
+#[test]
+fn a_mesh_of_which_nothing_is_left_says_so() {
+    let folder = Folder::new("nothing-left");
+    let path = folder.path("line.obj");
+    std::fs::write(&path, "v 0 0 0\nv 1 0 0\nf 1 2 2\n").expect("a writable temporary folder");
+    let run = run(&["render", &path, "-o", &folder.path("out.png")]);
+    let said = String::from_utf8_lossy(&run.stderr);
+    assert!(
+        run.status.success() && said.contains("there is nothing to show: every triangle has two corners"),
+        "{said}"
+    );
 }
 
 #[test]

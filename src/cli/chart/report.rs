@@ -9,6 +9,7 @@ use crate::chart::report::{Occasion, PAGE, Part, page};
 use crate::chart::svg;
 use crate::gpu::Gpu;
 use crate::mesh::{Shape, Source};
+use crate::names::file_reason;
 use crate::numbers::utc;
 
 /// Shapes with an exact surface each, round ones first.
@@ -67,7 +68,7 @@ fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
 
 /// Makes the folder, so that a command that takes minutes doesn't fail at its end.
 pub fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
-    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &error))?;
+    std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     Ok(folder.to_owned())
 }
 

@@ -33,6 +33,15 @@ pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
+/// Reads where to write a mesh: a name that says in what format.
+pub fn model() -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(|path| {
+        let path = PathBuf::from(path);
+        let known = matches!(crate::export::ending(&path).as_str(), "glb" | "obj");
+        if known { Ok(path) } else { Err("meshes are written as .glb or .obj files: name it one of these") }
+    })
+}
+
 /// Width and height in px.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub [u32; 2]);

@@ -1,6 +1,7 @@
 //! A document's JSON as a tree, after a look at how deep and how large it would be.
 
 use serde_json::Value;
+use serde_json::error::Category;
 
 use super::Problem;
 use super::budget::Budget;
@@ -34,7 +35,7 @@ pub fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value,
     let too_large = |reason| Problem::Document { pointer: "its JSON".to_owned(), reason };
     budget.borrow(shape.values * PER_VALUE + shape.objects * PER_OBJECT).map_err(too_large)?;
     budget.hold(shape.objects * PER_READ).map_err(too_large)?;
-    serde_json::from_slice(text).map_err(|error| Problem::NotGltf { reason: error.to_string() })
+    serde_json::from_slice(text).map_err(|error| Problem::NotGltf { reason: reason(&error) })
 }
 
 /// What a text's brackets and commas say.
@@ -85,6 +86,14 @@ impl Scan {
             b',' => self.shape.values += 1,
             _ => {}
         }
+    }
+}
+
+/// Why a text is no JSON: a file cut short is the most common, and the least plainly said.
+fn reason(error: &serde_json::Error) -> String {
+    match error.classify() {
+        Category::Eof => format!("its JSON ends too early, at line {}, column {}", error.line(), error.column()),
+        _ => format!("its JSON is broken: {error}"),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::HashSet;
+use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
 use super::budget::Budget;
@@ -62,7 +63,11 @@ impl<'a> Files<'a> {
     /// The file itself, wherever links lead.
     fn found(&self, relative: &Path) -> Result<PathBuf, String> {
         let missing = |path: &Path, error: std::io::Error| {
-            format!("{}: {error}; put the file where the document says, or export as .glb", shown_path(path))
+            let reason = match error.kind() {
+                ErrorKind::NotFound => "it is not there".to_owned(),
+                _ => error.to_string(),
+            };
+            format!("{}: {reason}; put the file where the document says, or export as .glb", shown_path(path))
         };
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
         let path = folder.join(relative);

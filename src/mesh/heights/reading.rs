@@ -12,6 +12,7 @@ use crate::mesh::budget::Budget;
 use crate::mesh::jpeg::{coefficient_bytes, most_coefficient_bytes};
 use crate::mesh::load::open_file;
 use crate::mesh::progress::{Cancelled, Progress};
+use crate::names::file_reason;
 
 /// What comes before a PNG image's width and height, of 4 bytes each.
 const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
@@ -25,7 +26,7 @@ impl HeightMap {
     pub(super) fn read(path: &Path, progress: &Progress) -> Result<Self, HeightError> {
         progress.check()?;
         let image = ImageFile { path, progress };
-        let unread = |error: io::Error| image.fail(error.to_string());
+        let unread = |error: io::Error| image.fail(file_reason(&error));
         let no_file = || image.fail("it is not a file; choose a PNG or JPEG image".to_owned());
         let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
         let size = png_size(&mut file).map_err(unread)?;

@@ -28,7 +28,7 @@ pub fn cases() -> Vec<Case> {
         format!(r#"{{"asset":{{"version":"2.0"}},"extras":{}0{}}}"#, open.repeat(100_000), close.repeat(100_000))
     };
     vec![
-        no_gltf("nothing at all", "", "EOF while parsing a value at line 1 column 0"),
+        no_gltf("nothing at all", "", "its JSON ends too early, at line 1, column 0"),
         no_gltf("four bytes", "glTF", "the file ends within its header, which takes 12 bytes of its 4"),
         no_gltf("the first version's header", changed(4, 1), "its header says version 1, and 2 is read"),
         no_gltf("a length beyond the file", changed(8, u32::MAX), "its header says 4294967295 bytes, the file has 540"),
@@ -41,22 +41,22 @@ pub fn cases() -> Vec<Case> {
             "chunk 1 ends within its header, which takes 8 bytes of 5",
         ),
         no_gltf("an end within the binary chunk", cut(json_end + 20), "chunk 1 says 72 bytes, and 12 are left"),
-        no_gltf("JSON without end", r#"{"asset":{"#, "EOF while parsing an object at line 1 column 10"),
+        no_gltf("JSON without end", r#"{"asset":{"#, "its JSON ends too early, at line 1, column 10"),
         no_gltf("JSON that is a list", "[]", "it is no JSON object"),
         no_gltf(
             "JSON not in UTF-8",
             &b"{\"asset\":{\"version\":\"2.0\"},\"extras\":\"\xff\"}"[..],
-            "invalid unicode code point at line 1 column 38",
+            "its JSON is broken: invalid unicode code point at line 1 column 38",
         ),
         no_gltf(
             "half a surrogate pair",
             r#"{"asset":{"version":"\ud800"}}"#,
-            "unexpected end of hex escape at line 1 column 28",
+            "its JSON is broken: unexpected end of hex escape at line 1 column 28",
         ),
         no_gltf(
             "a number beyond f64",
             r#"{"asset":{"version":"2.0"},"extras":1e999}"#,
-            "number out of range at line 1 column 41",
+            "its JSON is broken: number out of range at line 1 column 41",
         ),
         no_gltf("lists nested 100,000 deep", deep("[", "]"), "its JSON is nested 100001 deep, and 100 are read"),
         no_gltf(
@@ -65,7 +65,7 @@ pub fn cases() -> Vec<Case> {
             "its JSON is nested 100001 deep, and 100 are read",
         ),
         no_gltf("brackets without end", "[".repeat(100_000), "its JSON is nested 100000 deep, and 100 are read"),
-        no_gltf("another format", "solid cube", "expected value at line 1 column 1"),
+        no_gltf("another format", "solid cube", "its JSON is broken: expected value at line 1 column 1"),
         no_gltf("no version", "{}", "it has no /asset/version"),
         no_gltf("a version that is a number", r#"{"asset":{"version":2}}"#, "it has no /asset/version"),
         no_gltf("the first version", r#"{"asset":{"version":"1.0"}}"#, r#"its /asset/version is "1.0""#),

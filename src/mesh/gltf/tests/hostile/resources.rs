@@ -158,7 +158,7 @@ pub fn cases(folder: &Folder) -> Vec<Case> {
         (
             "a buffer that isn't there",
             "missing.bin",
-            "{folder}/missing.bin: {os}; put the file where the document says, or export as .glb",
+            "{folder}/missing.bin: it is not there; put the file where the document says, or export as .glb",
         ),
         (
             "a buffer above",
