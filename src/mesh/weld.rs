@@ -1,8 +1,9 @@
 //! Points: which positions are one and the same place.
 
 use std::collections::HashMap;
+use std::num::NonZero;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::grid::Grid;
 use super::ids::Ids;
@@ -56,7 +57,7 @@ pub fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) 
     if tolerance.is_nan() || tolerance <= 0.0 {
         return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
     }
-    let mut grids: HashMap<u32, Grid<Option<u32>>> = HashMap::new();
+    let mut grids: HashMap<u32, Grid> = HashMap::new();
     let mut apart = Apart::default();
     let mut merged = Vec::with_capacity(distinct.len());
     for (position, number) in distinct {
@@ -67,28 +68,35 @@ pub fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) 
     (apart.points, point_of)
 }
 
-/// Points that are more than one tolerance apart. A grid's cell has its latest point, and each point the one before it in its
-/// cell: a list of its own for every cell would take several times as much as the points.
+/// Points that are more than one tolerance apart, and the one before each in its cell of a grid: a list of its own for every
+/// cell would take several times as much as the points.
 #[derive(Default)]
 struct Apart {
     points: Vec<Vec3>,
-    before: Vec<Option<u32>>,
+    before: Vec<Option<NonZero<u32>>>,
 }
 
 impl Apart {
-    fn push(&mut self, grid: &mut Grid<Option<u32>>, position: Vec3) -> u32 {
+    fn push(&mut self, grid: &mut Grid, position: Vec3) -> u32 {
         let point = self.points.len() as u32;
         self.points.push(position);
-        self.before.push(grid.at(position.as_dvec3()).replace(point));
+        let before = grid.put(point, |point| self.place(point));
+        // One more than its number.
+        self.before.push(before.and_then(|before| NonZero::new(before + 1)));
         point
     }
 
+    fn place(&self, point: u32) -> DVec3 {
+        self.points[point as usize].as_dvec3()
+    }
+
     /// The nearest point within the tolerance, the lowest of those equally near.
-    fn nearest(&self, grid: &Grid<Option<u32>>, position: Vec3, tolerance: f64) -> Option<u32> {
+    fn nearest(&self, grid: &Grid, position: Vec3, tolerance: f64) -> Option<u32> {
         let place = position.as_dvec3();
-        let in_cell = |&latest: &Option<u32>| std::iter::successors(latest, |&point| self.before[point as usize]);
-        let near = grid.near(place).flat_map(in_cell);
-        let distances = near.map(|point| (self.points[point as usize].as_dvec3().distance(place), point));
+        let before = |&point: &u32| self.before[point as usize].map(|next| next.get() - 1);
+        let near = grid.near(place, |point| self.place(point));
+        let near = near.flat_map(|latest| std::iter::successors(Some(latest), before));
+        let distances = near.map(|point| (self.place(point).distance(place), point));
         let within = distances.filter(|(distance, _)| *distance <= tolerance);
         within.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, point)| point)
     }

@@ -2,7 +2,7 @@
 
 use std::sync::PoisonError;
 
-use pnaen::mesh::{Progress, Topology};
+use pnaen::mesh::{Progress, Topology, joins};
 
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};
@@ -66,4 +66,20 @@ fn gltf() {
     assert_within("blocks.glb", 4, |count| blocks(Grid::of(count, 0.0)));
     assert_within("loose.glb", 4, |count| loose(Grid::of(count, 0.0), false));
     assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
+}
+
+/// What comes after a load, so that a mesh can be looked at: as README says, in bytes a triangle.
+#[test]
+fn edges_and_what_welding_would_do() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    for triangles in sizes() {
+        let (mesh, _) = taken("edges.glb", indexed(Grid::of(triangles, 0.0), false));
+        let mesh = mesh.expect("a file without a fault");
+        let count = mesh.triangles.len();
+        let (topology, edges) = peak_of(|| Topology::build(&mesh, &Progress::new()));
+        let topology = topology.expect("nobody cancels");
+        let (joins, welds) = peak_of(|| joins(&mesh, Some(&topology), &Progress::new()));
+        println!("    {count} triangles: {} bytes each for edges, {} for welds", edges / count, welds / count);
+        assert!(joins.is_ok() && edges <= 97 * count + FIXED && welds <= 40 * count + FIXED, "{edges} {welds} {count}");
+    }
 }

@@ -75,13 +75,19 @@ fn shortest(topology: &Topology) -> Vec<f64> {
 
 /// The ends of all boundary edges, each once, but only so many on one spot.
 fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec<(DVec3, u32)> {
-    let mut spots: Grid<usize> = Grid::new(tolerance);
-    let places = topology.points.iter().map(|point| point.as_dvec3()).zip(0_u32..);
-    places
-        .filter(|&(place, point)| {
-            let open = shortest[point as usize].is_finite();
-            let tried = open.then(|| spots.at(place)).filter(|spot| **spot < TRIES);
-            tried.map(|spot| *spot += 1).is_some()
-        })
-        .collect()
+    let mut spots = Grid::new(tolerance);
+    let place_of = |point: u32| topology.points[point as usize].as_dvec3();
+    // How many were tried on a point's spot, that point among them.
+    let mut tried = vec![0_usize; topology.points.len()];
+    let open = (0..topology.points.len() as u32).filter(|&point| shortest[point as usize].is_finite());
+    let few = open.filter(|&point| {
+        let before = spots.at(place_of(point), place_of).map_or(0, |latest| tried[latest as usize]);
+        let is_one = before < TRIES;
+        if is_one {
+            tried[point as usize] = before + 1;
+            spots.put(point, place_of);
+        }
+        is_one
+    });
+    few.map(|point| (place_of(point), point)).collect()
 }
