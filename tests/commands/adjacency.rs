@@ -203,9 +203,10 @@ fn what_is_wrong_with_a_file_is_one_sentence() {
     wrong(&text, document.replacen("[[", "[[9,", 2).as_bytes(), &["this is no JSON as"]);
 
     let compare = |path: &str| ["adjacency", "shape:cube-split", "--against", path].map(str::to_owned);
-    for (path, words) in
-        [("nowhere.bin", ["nowhere.bin", "could not be read"]), (&folder.path(""), ["could not be read", "it is a folder"])]
-    {
+    for (path, words) in [
+        ("nowhere.bin", ["nowhere.bin", "could not be read"]),
+        (&folder.path(""), ["could not be read", "it is a folder"]),
+    ] {
         sentence(&compare(path).each_ref().map(String::as_str), &words);
     }
     sentence(
