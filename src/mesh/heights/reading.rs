@@ -32,8 +32,9 @@ impl HeightMap {
         let size = png_size(&mut file).map_err(unread)?;
         image.check(size.unwrap_or_default())?;
         let length = about.len();
-        let part = progress.part(0.0, if size.is_some() { 1.0 } else { 0.6 });
-        let mut reader = BufReader::new(Watched { file, length, read: 0, progress: &part });
+        // Row by row, rows tell how far it is, and not what was read of the file besides.
+        let told = size.is_none().then(|| progress.part(0.0, 0.6));
+        let mut reader = BufReader::new(Watched { file, length, read: 0, progress, told });
         if size.is_some() && !is_interlaced(&mut reader).map_err(unread)? {
             return image.read_rows(reader, length);
         }
@@ -114,7 +115,7 @@ impl ImageFile<'_> {
         let (color, depth) = reader.output_color_type();
         let line = reader.output_line_size(size[0]).ok_or_else(|| self.fail("its rows are too long".to_owned()))?;
         let mut line = vec![0; line];
-        HeightMap::build(size, &self.progress.part(0.0, 1.0), |out| {
+        HeightMap::build(size, self.progress, |out| {
             reader.read_row(&mut line).map_err(undecoded)?;
             brighten(&line, color.samples(), depth == BitDepth::Sixteen, u16::from_be_bytes, out);
             Ok(())
@@ -168,12 +169,13 @@ fn is_interlaced(file: &mut (impl Read + Seek)) -> io::Result<bool> {
     Ok(start.get(28).is_some_and(|&order| order != 0))
 }
 
-/// A file that knows how much of it was read, and reads no further once the job was told to stop.
+/// A file that knows how much of it was read, which it may tell, and reads no further once the job was told to stop.
 struct Watched<'a> {
     file: File,
     length: u64,
     read: u64,
     progress: &'a Progress,
+    told: Option<Progress>,
 }
 
 impl Read for Watched<'_> {
@@ -181,7 +183,9 @@ impl Read for Watched<'_> {
         self.progress.check().map_err(io::Error::other)?;
         let count = self.file.read(buffer)?;
         self.read += count as u64;
-        self.progress.set(self.read as f32 / self.length.max(1) as f32);
+        if let Some(told) = &self.told {
+            told.set(self.read as f32 / self.length.max(1) as f32);
+        }
         Ok(count)
     }
 }
