@@ -102,7 +102,7 @@ impl Document {
             positions: Some(topology.corner_points.iter().map(position).collect()),
             normals: Some(mesh.corners.iter().map(|corner| corner.normal.to_array()).collect()),
             uvs: Some(mesh.corners.iter().map(|corner| corner.uv.to_array()).collect()),
-            triangles: Some(mesh.triangles.clone()),
+            triangles: Some(mesh.triangles.to_vec()),
             patch_triangles: Some(topology.patches.iter().map(|patch| patch.triangle).collect()),
             patches: indices.chunks(layout.per_patch()).map(<[u32]>::to_vec).collect(),
         }
@@ -197,6 +197,8 @@ fn read_bin(bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> R
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::measure::index_differences;
     use crate::mesh::adjacency::Part;
@@ -213,7 +215,7 @@ mod tests {
         let at =
             |x: f32, y: f32| Corner { position: glam::vec3(x, y, 0.0), normal: glam::Vec3::Z, uv: glam::Vec2::ZERO };
         let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
-        let mesh = Mesh { corners, triangles: vec![[0, 1, 2], [1, 1, 2], [1, 3, 2]], ..Mesh::default() };
+        let mesh = Mesh { corners, triangles: vec![[0, 1, 2], [1, 1, 2], [1, 3, 2]].into(), ..Mesh::default() };
         let topology = Topology::build(&mesh, &Progress::new()).unwrap();
         (mesh, topology)
     }
@@ -286,7 +288,7 @@ mod tests {
     #[test]
     fn corners_lie_on_their_points_under_a_tolerance() {
         let (mut mesh, _) = with_degenerate();
-        mesh.triangles[2] = [4, 3, 2];
+        Arc::make_mut(&mut mesh.triangles)[2] = [4, 3, 2];
         mesh.corners.push(Corner { position: glam::vec3(1.0, 1e-4, 0.0), ..mesh.corners[1] });
         let topology = Topology::build_within(&mesh, 1e-3, &Progress::new()).unwrap();
         let document = Document::new(&mesh, &topology, Layout::Six, &[]);

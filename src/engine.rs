@@ -10,7 +10,9 @@ use crate::gpu::{
     wait,
 };
 use crate::measure::AskedFactors;
-use crate::mesh::{HeightSource, Limits, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, with_rim};
+use crate::mesh::{
+    Budget, HeightSource, Limits, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, Unfinished, with_rim,
+};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Half, Settings};
 use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex};
@@ -60,40 +62,50 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let read = Arc::new(source.load(&preparation.limits, &of_mesh)?);
+    let mut read = source.load(&preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
-    let mut topology = Topology::build_within(&read, preparation.weld, progress)?;
-    let (mut mesh, mut made) = (read.clone(), Rim::default());
+    let budget = Budget::of_mesh(&read, &preparation.limits);
+    let too_large = |what| move |error| unfinished(source, what, error);
+    let mut topology =
+        Topology::build_afforded(&read, preparation.weld, &budget, progress).map_err(too_large("its edges"))?;
+    let (mut cut, mut rim) = (None, Rim::default());
     if preparation.rim > 0.0 {
-        let with_rim = with_rim(&read, &topology, preparation.rim, progress)?;
-        mesh = Arc::new(with_rim.0);
+        let made = with_rim(&read, &topology, preparation.rim, &budget, progress).map_err(too_large("its rim"))?;
+        let mesh = cut.insert(made.0);
+        (topology, rim) = (made.1, made.2);
         if read.rig.is_some() {
-            let sentence = "its animations are left out, as a rim hangs on nothing that they move.";
-            Arc::make_mut(&mut mesh).warnings.push(sentence.to_owned());
+            mesh.warnings.push("its animations are left out, as a rim hangs on nothing that they move.".to_owned());
         }
-        (topology, made) = (with_rim.1, with_rim.2);
     }
+    let mesh = cut.as_mut().unwrap_or(&mut read);
     if let Some(heights) = &preparation.heights {
         progress.enter(Stage::Heights);
-        let heights = Arc::new(heights.load(&mesh, &progress.part(0.4, 1.0))?);
-        let mesh = Arc::make_mut(&mut mesh);
+        let heights = heights.load(mesh, &budget, &progress.part(0.4, 1.0))?;
         mesh.warnings.extend(heights.warning(mesh));
-        mesh.heights = Some(heights);
+        mesh.heights = Some(Arc::new(heights));
     }
     if topology.patches.is_empty() {
-        let sentence = "there is nothing to show: every triangle has two corners on one point.";
-        Arc::make_mut(&mut mesh).warnings.push(sentence.to_owned());
+        mesh.warnings.push("there is nothing to show: every triangle has two corners on one point.".to_owned());
     }
+    let read = Arc::new(read);
     Ok(Loaded {
         source: source.clone(),
         preparation: preparation.clone(),
-        rim: made,
+        rim,
+        mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
-        mesh,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
     })
+}
+
+/// What was to be made of a mesh and wasn't, as an error.
+fn unfinished(source: &Source, what: &'static str, error: Unfinished) -> LoadError {
+    match error {
+        Unfinished::Cancelled(cancelled) => cancelled.into(),
+        Unfinished::TooLarge(reason) => LoadError::TooMuch { path: source.to_string().into(), what, reason },
+    }
 }
 
 /// How often something is timed: as many times as fit `within`, but from `least` to `most`.

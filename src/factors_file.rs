@@ -121,7 +121,7 @@ mod tests {
         let at =
             |x: f32, y: f32| Corner { position: glam::vec3(x, y, 0.0), normal: glam::Vec3::Z, uv: glam::Vec2::ZERO };
         let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
-        let mesh = Mesh { corners, triangles: vec![[0, 1, 2], [1, 1, 2], [1, 3, 2]], ..Mesh::default() };
+        let mesh = Mesh { corners, triangles: vec![[0, 1, 2], [1, 1, 2], [1, 3, 2]].into(), ..Mesh::default() };
         Topology::build(&mesh, &Progress::default()).expect("nobody cancels")
     }
 

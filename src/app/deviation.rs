@@ -221,7 +221,7 @@ impl App {
         if self.frozen.is_none() && follows_view(&self.settings) {
             self.frozen = self.viewport.shown_view();
         }
-        let corners: [Vec3; 3] = patch.corners.map(|corner| mesh.corners[corner as usize].position);
+        let corners: [Vec3; 3] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].position);
         self.camera.frame_triangle(corners, &document.scene.bounds);
         self.camera.target = worst.emitted.as_vec3();
         if let Some(split) = self.settings.split {

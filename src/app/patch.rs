@@ -225,7 +225,7 @@ impl Shown<'_> {
     /// Position, normal and uv of every corner.
     fn corner_rows(&self, ui: &mut Ui) {
         title(ui, "Corners", "As loaded: object units, unit normals, texture coordinates. Exact numbers on hover.");
-        for (k, corner) in (0..).zip(self.topology.patches[self.patch as usize].corners) {
+        for (k, corner) in (0..).zip(self.topology.patch_corners(self.patch)) {
             let point = self.topology.corner_points[corner as usize];
             let (at, letter) = (&self.mesh.corners[corner as usize], letter(self.convention, k));
             ui.label(dense(format!("{k} {letter}  corner {corner}, point {point}")));

@@ -131,7 +131,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let topology = &document.shown().1;
         let Some(chosen) = topology.edges.get(edge as usize) else { return };
-        let ends = chosen.points.map(|point| topology.points[point as usize]);
+        let ends = topology.edge_points(chosen).map(|point| topology.points[point as usize]);
         self.camera.frame_edge(ends, topology.edge_facing(chosen), &document.scene.bounds);
         self.selected_edge = Some(edge);
         self.keep_triangle_of(edge);
@@ -149,8 +149,12 @@ impl App {
         let sides = self.measured(half).found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
         if polylines.iter().all(|points| points.len() < 2) {
-            polylines =
-                vec![topology.edges[edge as usize].points.map(|point| topology.points[point as usize]).to_vec()];
+            polylines = vec![
+                topology
+                    .edge_points(&topology.edges[edge as usize])
+                    .map(|point| topology.points[point as usize])
+                    .to_vec(),
+            ];
         }
         let strip = |points: &[Vec3], color, half_width| {
             let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);

@@ -114,7 +114,7 @@ fn difference_said(loaded: &Loaded, difference: &IndexDifference, given: &[u32],
     let corners = |indices: &[u32]| {
         let indices = &indices[places.clone()];
         let list = indices.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
-        let is_own = |k: u32| indices == [k, (k + 1) % 3].map(|k| own.corners[k as usize]);
+        let is_own = |k: u32| indices == [k, (k + 1) % 3].map(|k| loaded.topology.corners(&own)[k as usize]);
         if matches!(part, Part::Side(k) if is_own(*k)) { format!("{list} (the patch's own)") } else { list }
     };
     // They count alike up to the first degenerate triangle.

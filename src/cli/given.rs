@@ -100,7 +100,7 @@ fn edge_said(topology: &Topology, edge: &Disagreement) -> String {
 
 /// The end points of an edge.
 fn end_points(topology: &Topology, edge: u32) -> [[f32; 3]; 2] {
-    topology.edges[edge as usize].points.map(|point| topology.points[point as usize].to_array())
+    topology.edge_points(&topology.edges[edge as usize]).map(|point| topology.points[point as usize].to_array())
 }
 
 /// Which convention makes the file consistent.

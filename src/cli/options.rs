@@ -269,16 +269,21 @@ pub struct LimitOption {
     /// GiB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
     pub max_size: u64,
+    /// Refuse what would take more memory to load than this and four times the size of its files; a number of bytes, or one
+    /// of KiB, MiB or GiB
+    #[arg(long, value_name = "SIZE", default_value = "256MiB", value_parser = bytes)]
+    pub max_memory: u64,
 }
 
 impl Default for LimitOption {
     fn default() -> Self {
-        Self { max_size: Limits::default().file }
+        let Limits { file, memory } = Limits::default();
+        Self { max_size: file, max_memory: memory }
     }
 }
 
 impl LimitOption {
     pub fn limits(&self) -> Limits {
-        Limits { file: self.max_size }
+        Limits { file: self.max_size, memory: self.max_memory }
     }
 }

@@ -41,7 +41,7 @@ impl<'a> Exported<'a> {
     /// Attributes of every emitted vertex: positions and uvs as they are; normals in full precision, which what is drawn
     /// doesn't need.
     pub fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
-        let corners = |patch: u32| topology.patches[patch as usize].corners.map(|c| &mesh.corners[c as usize]);
+        let corners = |patch: u32| topology.patch_corners(patch).map(|c| &mesh.corners[c as usize]);
         let vertices = &tessellated.vertices;
         let attributes = vertices.iter().map(|vertex| {
             let ([u, v], corners) = (vertex.domain(), corners(vertex.patch()));

@@ -124,8 +124,8 @@ fn patches(topology: &Topology, grouped: &Curves) -> Vec<Patch> {
         .patches
         .iter()
         .map(|patch| Patch {
-            points: patch.corners.map(|c| topology.corner_points[c as usize]),
-            corners: patch.corners,
+            points: topology.corners(patch).map(|c| topology.corner_points[c as usize]),
+            corners: topology.corners(patch),
             curves: patch
                 .sides
                 .map(|s| grouped.side_curves[s as usize] << 1 | u32::from(grouped.runs_against(topology, s))),

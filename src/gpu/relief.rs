@@ -138,7 +138,8 @@ pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
 /// Where each corner's run of patches starts, and where the last ends; and the patches.
 fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; mesh.corners.len() + 1];
-    let corners = || (0..).zip(&topology.patches).flat_map(|(patch, own)| own.corners.map(|corner| (corner, patch)));
+    let corners =
+        || (0..).zip(&topology.patches).flat_map(|(patch, own)| topology.corners(own).map(|corner| (corner, patch)));
     corners().for_each(|(corner, _)| starts[corner as usize + 1] += 1);
     for corner in 0..mesh.corners.len() {
         starts[corner + 1] += starts[corner];

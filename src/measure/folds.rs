@@ -49,7 +49,7 @@ pub fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u
 }
 
 fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
-    let corners = topology.patches[patch as usize].corners;
+    let corners = topology.patch_corners(patch);
     corners.map(|corner| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3())
 }
 

@@ -173,7 +173,7 @@ impl Rims {
     /// What the sides of an edge (an index into [`Topology::edges`]) have made of it. Patches that emit nothing are left
     /// out.
     pub fn edge(&self, topology: &Topology, edge: u32) -> Vec<EdgeSide> {
-        topology.edges[edge as usize].sides.clone().filter_map(|side| self.side(topology, side)).collect()
+        topology.side_range(&topology.edges[edge as usize]).filter_map(|side| self.side(topology, side)).collect()
     }
 
     /// What a patch (an index into [`Topology::patches`]) has made of its sides 0, 1 and 2; none if it emits nothing.

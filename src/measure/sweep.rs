@@ -239,6 +239,8 @@ impl States<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::mesh::Shape;
     use crate::settings::Settings;
@@ -250,7 +252,7 @@ mod tests {
     /// Sweeps the first face of the cube with split normals: two patches, and the diagonal between them.
     fn swept(surface: Surface, partitioning: Partitioning, factors: RangeInclusive<f32>, step: f32) -> Sweep {
         let mut mesh = Shape::CubeSplit.build();
-        mesh.triangles.truncate(2);
+        Arc::make_mut(&mut mesh.triangles).truncate(2);
         mesh.materials[0].triangles = 0..2;
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
         let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);

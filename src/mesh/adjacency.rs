@@ -115,8 +115,9 @@ pub fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
 
 /// The twelve of a patch as if it had no neighbours.
 fn alone(topology: &Topology, patch: &Patch) -> [u32; 12] {
-    let [a, b, c] = patch.corners;
-    let [d, e, f] = patch.corners.map(|corner| {
+    let corners = topology.corners(patch);
+    let [a, b, c] = corners;
+    let [d, e, f] = corners.map(|corner| {
         let point = topology.corner_points[corner as usize];
         topology.point_corners[point as usize]
     });
@@ -131,7 +132,7 @@ fn pair(k: usize) -> Range<usize> {
 /// The corners that the one other patch has along a side (an index into [`Topology::sides`]).
 fn neighbour(topology: &Topology, own: u32) -> Option<[u32; 2]> {
     let side = &topology.sides[own as usize];
-    let range = topology.edges[side.edge as usize].sides.clone();
+    let range = topology.side_range(&topology.edges[side.edge as usize]);
     if range.len() != 2 {
         return None;
     }
@@ -147,6 +148,8 @@ fn across(topology: &Topology, own: &Side, other: &Side) -> [u32; 2] {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::{Vec2, Vec3};
 
     use super::*;
@@ -165,7 +168,7 @@ mod tests {
         let at = |x: f32, y: f32, n: Vec3| Corner { position: Vec3::new(x, y, 0.0), normal: n, uv: Vec2::ZERO };
         let one = [at(0.0, 0.0, Vec3::Z), at(1.0, 0.0, Vec3::Z), at(1.0, 1.0, Vec3::Z)];
         let two = [at(0.0, 0.0, Vec3::X), at(1.0, 1.0, Vec3::X), at(0.0, 1.0, Vec3::X)];
-        Mesh { corners: [one, two].concat(), triangles: vec![[0, 1, 2], [3, 4, 5]], ..Mesh::default() }
+        Mesh { corners: [one, two].concat(), triangles: vec![[0, 1, 2], [3, 4, 5]].into(), ..Mesh::default() }
     }
 
     #[test]
@@ -181,14 +184,14 @@ mod tests {
     fn three_sides_have_no_single_neighbour() {
         let mut mesh = square();
         mesh.corners.push(Corner { position: Vec3::Z, normal: Vec3::Z, uv: Vec2::ZERO });
-        mesh.triangles.push([0, 2, 6]);
+        Arc::make_mut(&mut mesh.triangles).push([0, 2, 6]);
         assert_eq!(nine(&topology(&mesh), 0)[7..], [2, 0]);
     }
 
     #[test]
     fn neighbours_wound_the_same_way_are_neighbours() {
         let mut mesh = square();
-        mesh.triangles[1] = [4, 3, 5];
+        Arc::make_mut(&mut mesh.triangles)[1] = [4, 3, 5];
         assert_eq!(nine(&topology(&mesh), 0)[7..], [4, 3]);
     }
 
@@ -212,7 +215,7 @@ mod tests {
         let of = |layout: Layout| layout.indices(&topology).chunks(layout.per_patch()).map(<[u32]>::to_vec).collect();
         let [six, nine, twelve]: [Vec<Vec<u32>>; 3] = Layout::ALL.map(of);
         for (patch, six) in six.iter().enumerate() {
-            assert_eq!([&topology.patches[patch].corners[..], six].concat(), nine[patch]);
+            assert_eq!([&topology.patch_corners(patch as u32)[..], six].concat(), nine[patch]);
             assert_eq!(nine[patch], twelve[patch][..9]);
         }
         for layout in Layout::ALL {

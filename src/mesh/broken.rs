@@ -57,8 +57,8 @@ fn read(format: Format, bytes: &[u8]) -> Result<Mesh, Fault> {
     let progress = Progress::new();
     let mesh = match format {
         Format::Obj => obj::read(bytes.to_vec(), Path::new("nowhere"), "broken", &Limits::default(), &progress),
-        Format::Stl => stl::read(bytes.to_vec(), "broken", &progress),
-        Format::Ply => ply::read(bytes.to_vec(), "broken", &progress),
+        Format::Stl => stl::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
+        Format::Ply => ply::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
     };
     let (took, length) = (time() - start, bytes.len());
     assert!(took < LIMIT, "{format:?} of {length} bytes took {took:?}");

@@ -9,17 +9,28 @@
 //!   by half, and old and new are both alive: `80 V`.
 //! - where normals are made, when the file's bytes are gone: `32 V + 24 T + 4 P`, and 16 for each corner that a crease adds.
 //! - at the end `36 V + 12 T`, or `24 T` where triangles came in several runs.
+//! - with its topology `32 V + 12 T`, and beside it first `32 V` for points, then `16 P + 4 V + 40 T` for patches and sides, and
+//!   8 for each edge; of a closed mesh that is 92 for each triangle in all.
 
 use std::cell::Cell;
+use std::sync::Arc;
 
-/// What is allowed whatever the files' size, in bytes.
-pub const FREE: u64 = 256 << 20;
-/// What each byte of a file allows beyond that, in bytes.
+use super::{Limits, Material, Mesh};
+
+/// What each byte of a file allows, in bytes, beyond what is allowed whatever the files' size ([`Limits::memory`]).
 pub const PER_BYTE: u64 = 4;
+
+/// A mesh of more triangles than this is refused: sides would no longer be counted in 32 bits (see [`super::Side`]), nor its data
+/// fit most memories.
+pub const MAX_TRIANGLES: u64 = 1 << 27;
+const _: () = assert!(6 * MAX_TRIANGLES <= 1 << 32);
 
 /// Counts what is about to be taken, before it is.
 pub struct Budget {
-    allowed: Cell<u64>,
+    /// Allowed whatever the files' size.
+    free: u64,
+    /// Bytes of all files.
+    files: Cell<u64>,
     /// Taken until the end.
     held: Cell<u64>,
     /// Given back soon.
@@ -28,21 +39,35 @@ pub struct Budget {
 
 impl Budget {
     /// For a document's own file of so many bytes, which are held.
-    pub fn new(file: usize) -> Self {
-        let (allowed, held) = (Cell::new(FREE), Cell::new(file as u64));
-        let budget = Self { allowed, held, passing: Cell::new(0) };
-        budget.allow(file as u64);
-        budget
+    pub fn new(file: usize, limits: &Limits) -> Self {
+        let file = file as u64;
+        Self { free: limits.memory, files: Cell::new(file), held: Cell::new(file), passing: Cell::new(0) }
+    }
+
+    /// For what is made of a mesh that has been read, which is held: endless if it is from no file.
+    pub fn of_mesh(mesh: &Mesh, limits: &Limits) -> Self {
+        let Some(files) = mesh.file_bytes else { return Self::endless() };
+        Self { free: limits.memory, files: Cell::new(files), held: Cell::new(bytes_of(mesh)), passing: Cell::new(0) }
     }
 
     /// For what no file asks for.
     pub fn endless() -> Self {
-        Self { allowed: Cell::new(u64::MAX), held: Cell::new(0), passing: Cell::new(0) }
+        Self { free: u64::MAX, files: Cell::new(0), held: Cell::new(0), passing: Cell::new(0) }
     }
 
     /// There is another file of so many bytes.
     pub fn allow(&self, file: u64) {
-        self.allowed.set(self.allowed.get().saturating_add(file.saturating_mul(PER_BYTE)));
+        self.files.set(self.files.get().saturating_add(file));
+    }
+
+    /// Bytes of all files.
+    pub fn files(&self) -> u64 {
+        self.files.get()
+    }
+
+    /// What may be taken in all.
+    fn allowed(&self) -> u64 {
+        self.free.saturating_add(self.files.get().saturating_mul(PER_BYTE))
     }
 
     /// Takes memory until the end.
@@ -92,18 +117,32 @@ impl Budget {
 
     /// What may still be taken.
     pub fn left(&self) -> u64 {
-        self.allowed.get().saturating_sub(self.held.get() + self.passing.get())
+        self.allowed().saturating_sub(self.held.get() + self.passing.get())
     }
 
     fn check(&self, bytes: u64) -> Result<(), String> {
         let needed = (self.held.get() + self.passing.get()).saturating_add(bytes);
-        let allowed = self.allowed.get();
+        let allowed = self.allowed();
         if needed <= allowed {
             return Ok(());
         }
         let (needed, allowed) = (needed.div_ceil(1 << 20), allowed >> 20);
-        Err(format!("would take {needed} MiB of memory, and files of this size may take {allowed} MiB"))
+        Err(format!(
+            "would take {needed} MiB of memory, and files of this size may take {allowed} MiB (--max-memory allows more)"
+        ))
     }
+}
+
+/// What a mesh takes, in bytes: textures that materials share count once.
+fn bytes_of(mesh: &Mesh) -> u64 {
+    let mut textures: Vec<_> = mesh.materials.iter().filter_map(|material| material.texture.as_ref()).collect();
+    textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
+    textures.dedup_by_key(|texture| Arc::as_ptr(texture));
+    let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
+    let materials: usize = mesh.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();
+    let rig = mesh.rig.as_ref().map_or(0, |rig| rig.bytes());
+    let [corners, triangles] = [mesh.corners.capacity() * 32, mesh.triangles.capacity() * 12];
+    (corners + triangles + textures + materials + rig) as u64
 }
 
 #[cfg(test)]
@@ -112,15 +151,16 @@ mod tests {
 
     #[test]
     fn files_bring_their_allowance() {
-        let budget = Budget::new(1 << 20);
-        assert_eq!(budget.left(), FREE + (3 << 20));
+        let free = Limits::default().memory;
+        let budget = Budget::new(1 << 20, &Limits::default());
+        assert_eq!(budget.left(), free + (3 << 20));
         budget.allow(10 << 20);
-        assert_eq!(budget.left(), FREE + (43 << 20));
-        assert!(budget.borrow(FREE).is_ok() && budget.hold(43 << 20).is_ok());
+        assert_eq!(budget.left(), free + (43 << 20));
+        assert!(budget.borrow(free).is_ok() && budget.hold(43 << 20).is_ok());
         let said = budget.hold(1).unwrap_err();
         assert!(said.contains("would take 301 MiB of memory, and files of this size may take 300 MiB"), "{said}");
         budget.pass(0);
-        assert_eq!(budget.left(), FREE);
+        assert_eq!(budget.left(), free);
         assert!(budget.hold(u64::MAX).is_err());
     }
 }

@@ -59,7 +59,10 @@ impl Curves {
                 curves.factor_curves.push(curves.curves.len() as u32);
             }
             match sharing {
-                Sharing::AllSides => curves.push_shared(topology, edge, edge.sides.clone(), edge.sides.clone()),
+                Sharing::AllSides => {
+                    let sides = topology.side_range(edge);
+                    curves.push_shared(topology, edge, sides.clone(), sides);
+                }
                 Sharing::EqualNormals => curves.push_by_normals(mesh, topology, edge),
                 Sharing::None | Sharing::NoneAveraged => {
                     curves.push_own(topology, edge, sharing == Sharing::NoneAveraged);
@@ -93,7 +96,8 @@ impl Curves {
         asked: impl Iterator<Item = u32>,
         all: impl Iterator<Item = u32>,
     ) {
-        let curve = self.push(edge.points, asked.map(|side| topology.side_corners(&topology.sides[side as usize])));
+        let curve = self
+            .push(topology.edge_points(edge), asked.map(|side| topology.side_corners(&topology.sides[side as usize])));
         all.for_each(|side| self.side_curves[side as usize] = curve);
     }
 
@@ -102,7 +106,7 @@ impl Curves {
             let [a, b] = topology.side_corners(&topology.sides[side as usize]);
             [a, b].map(|c| mesh.corners[c as usize].normal.to_array().map(|x| (x + 0.0).to_bits()))
         };
-        let mut sides: Vec<u32> = edge.sides.clone().collect();
+        let mut sides: Vec<u32> = topology.side_range(edge).collect();
         sides.sort_by_key(|&side| normals(side));
         for group in sides.chunk_by(|&x, &y| normals(x) == normals(y)) {
             // Equal normals propose equal control points: the first side speaks for all.
@@ -112,7 +116,7 @@ impl Curves {
 
     /// A curve for each side, in its patch's direction, and a factor for each.
     fn push_own(&mut self, topology: &Topology, edge: &Edge, averaged: bool) {
-        let sides = edge.sides.clone();
+        let sides = topology.side_range(edge);
         for side in sides.clone() {
             let reversed = topology.sides[side as usize].reversed();
             let turned = |[a, b]: [u32; 2]| if reversed { [b, a] } else { [a, b] };
@@ -121,7 +125,7 @@ impl Curves {
             let asked = std::iter::once(side).chain(other);
             self.factor_curves.push(self.curves.len() as u32);
             let corners = asked.map(|side| turned(topology.side_corners(&topology.sides[side as usize])));
-            self.side_curves[side as usize] = self.push(turned(edge.points), corners);
+            self.side_curves[side as usize] = self.push(turned(topology.edge_points(edge)), corners);
         }
     }
 

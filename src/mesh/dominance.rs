@@ -33,7 +33,7 @@ impl Dominance {
         let mut factors: Vec<(u32, u32)> = Vec::with_capacity(6 * topology.patches.len());
         for (index, patch) in (0..).zip(&topology.patches) {
             for k in 0..3 {
-                let corner = patch.corners[k];
+                let corner = topology.corners(patch)[k];
                 let point = topology.corner_points[corner as usize];
                 let known = &mut corners[point as usize];
                 *known = (*known).min(index * 4 + k as u32);
@@ -62,7 +62,7 @@ impl Dominance {
 fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
     let mut sides = vec![0; curves.factor_count() as usize];
     for (index, side) in (0..).zip(&topology.sides) {
-        let first = &topology.sides[topology.edges[side.edge as usize].sides.start as usize];
+        let first = &topology.sides[topology.edges[side.edge as usize].first_side as usize];
         sides[curves.factor(topology, index) as usize] = first.patch() * 4 + first.index() as u32;
     }
     sides
@@ -105,7 +105,7 @@ mod tests {
                     assert_eq!(topology.sides[other as usize].edge, side.edge, "{shape:?} {sharing:?}");
                 }
                 for (point, &dominant) in (0..).zip(&dominance.corners) {
-                    let corner = topology.patches[dominant as usize / 4].corners[dominant as usize % 4];
+                    let corner = topology.patch_corners(dominant / 4)[dominant as usize % 4];
                     assert_eq!(topology.corner_points[corner as usize], point, "{shape:?}");
                 }
             }
@@ -126,9 +126,9 @@ mod tests {
         assert_eq!(dominance.factor_starts.len(), topology.points.len() + 1);
         for (point, ends) in (0..).zip(dominance.factor_starts.windows(2)) {
             let own = &dominance.factors[ends[0] as usize..ends[1] as usize];
-            let expected = topology.edges.iter().filter(|edge| edge.points.contains(&point)).count();
+            let expected = topology.edges.iter().filter(|edge| topology.edge_points(edge).contains(&point)).count();
             assert_eq!(own.len(), expected);
-            assert!(own.iter().all(|&factor| topology.edges[factor as usize].points.contains(&point)));
+            assert!(own.iter().all(|&factor| topology.edge_points(&topology.edges[factor as usize]).contains(&point)));
         }
         assert_eq!(curves.factor_count() as usize, topology.edges.len());
     }

@@ -2,9 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::budget::Budget;
+use super::budget::{Budget, MAX_TRIANGLES};
 use super::fault::{Fault, Place};
-use super::gltf::extent::MAX_TRIANGLES;
 use super::merge::{LooseCorner, MeshBuilder};
 use super::polygon::{self, Cut, triangulate};
 use super::rig::LARGEST_COORDINATE;
@@ -143,6 +142,7 @@ impl<'a> Faces<'a> {
             ),
         ]));
         let (mut mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
+        mesh.file_bytes = Some(self.memory.files());
         mesh.warnings.splice(0..0, warnings);
         Ok(mesh)
     }

@@ -59,7 +59,7 @@ const MAX_WARNINGS: usize = 100;
 /// # Errors
 /// [`Problem`].
 pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Problem> {
-    let budget = Budget::new(bytes.len());
+    let budget = Budget::new(bytes.len(), limits);
     let document::Parsed { document, blob, extensions, animations, mut warnings } =
         document::parse(bytes, &budget, progress)?;
     progress.check()?;
@@ -114,6 +114,7 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
     warnings.extend(mesh.repairs.warnings());
     mesh.warnings = warnings;
     mesh.files = files.named();
+    mesh.file_bytes = Some(budget.files());
     Ok(mesh)
 }
 

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec2;
 use image::ColorType;
 
+use super::budget::Budget;
 use super::progress::{Cancelled, Progress};
 use super::{Mesh, Texture};
 use crate::names::shown_path;
@@ -49,6 +50,8 @@ pub enum HeightError {
     NoImage { name: String },
     #[error("{name} has {count} images to displace by, and at most {MAX_MAPS} are taken; name one height image")]
     TooMany { name: String, count: usize },
+    #[error("heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
+    TooMuchOfMaterials { name: String, count: usize, reason: String },
 }
 
 /// Where height images come from. As text: `material`, or a path.
@@ -61,15 +64,15 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// Reads heights for a mesh; `progress` goes from 0 to 1 meanwhile.
+    /// Reads heights for a mesh, within what a load may take; `progress` goes from 0 to 1 meanwhile.
     ///
     /// # Errors
     /// [`HeightError`].
-    pub fn load(&self, mesh: &Mesh, progress: &Progress) -> Result<Heights, HeightError> {
+    pub fn load(&self, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
         progress.set(0.0);
         let heights = match self {
-            Self::Materials => Heights::of_materials(mesh, progress)?,
-            Self::File(path) => Heights::read(path, mesh, progress)?,
+            Self::Materials => Heights::of_materials(mesh, budget, progress)?,
+            Self::File(path) => Heights::read(path, mesh, budget, progress)?,
         };
         progress.set(1.0);
         Ok(heights)
@@ -138,16 +141,16 @@ impl Heights {
     }
 
     /// Reads a PNG or JPEG image and lays it over all materials.
-    fn read(path: &Path, mesh: &Mesh, progress: &Progress) -> Result<Self, HeightError> {
-        let map = HeightMap::read(path, &progress.part(0.0, 0.8))?;
+    fn read(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Self, HeightError> {
+        let map = HeightMap::read(path, mesh.corners.len(), budget, &progress.part(0.0, 0.8))?;
         Ok(Self::all_over(mesh, map, &progress.part(0.8, 1.0))?)
     }
 
     /// The brightness of every material's base colour image, each image once.
     ///
     /// # Errors
-    /// [`HeightError::NoImage`].
-    pub fn of_materials(mesh: &Mesh, progress: &Progress) -> Result<Self, HeightError> {
+    /// [`HeightError::NoImage`], [`HeightError::TooMany`] and [`HeightError::TooMuchOfMaterials`].
+    pub fn of_materials(mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Self, HeightError> {
         let mut known: Vec<&Texture> = Vec::new();
         let of_material = mesh.materials.iter().map(|material| {
             let texture = material.texture.as_deref()?;
@@ -165,6 +168,9 @@ impl Heights {
         if count > MAX_MAPS {
             return Err(HeightError::TooMany { name: mesh.name.clone(), count });
         }
+        let kept = known.iter().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
+        let too_much = |reason| HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason };
+        budget.hold(angle_bytes(mesh.corners.len())).and_then(|()| budget.hold(kept)).map_err(too_much)?;
         let part = |index: usize| 0.7 * index as f32 / count as f32;
         let of = |(index, texture): (usize, &&Texture)| {
             let progress = progress.part(part(index), part(index + 1));
@@ -226,9 +232,14 @@ impl Heights {
     }
 }
 
+/// What [`Heights::angles`] takes, in bytes.
+fn angle_bytes(corners: usize) -> u64 {
+    4 * corners as u64
+}
+
 fn angles(mesh: &Mesh) -> Vec<f32> {
     let mut angles = vec![0.0; mesh.corners.len()];
-    for triangle in &mesh.triangles {
+    for triangle in mesh.triangles.iter() {
         let at = triangle.map(|corner| mesh.corners[corner as usize].position.as_dvec3());
         for k in 0..3 {
             let [a, b] = [1, 2].map(|step| (at[(k + step) % 3] - at[k]).normalize_or_zero());
@@ -259,11 +270,14 @@ mod tests {
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        assert!(matches!(Heights::of_materials(&mesh, &Progress::new()), Err(HeightError::NoImage { .. })));
+        assert!(matches!(
+            Heights::of_materials(&mesh, &Budget::endless(), &Progress::new()),
+            Err(HeightError::NoImage { .. })
+        ));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = crate::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
-        let heights = Heights::of_materials(&mesh, &Progress::new()).expect("an image");
+        let heights = Heights::of_materials(&mesh, &Budget::endless(), &Progress::new()).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
     }
 
@@ -279,7 +293,9 @@ mod tests {
     #[test]
     fn a_file_that_is_no_image_is_a_sentence() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
-        let error = Heights::read(path, &Mesh::default(), &Progress::new()).expect_err("no image").to_string();
+        let error = Heights::read(path, &Mesh::default(), &Budget::endless(), &Progress::new())
+            .expect_err("no image")
+            .to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }
 }

@@ -208,7 +208,7 @@ impl Info {
 fn t_junction(topology: &Topology, junction: &TJunction) -> TJunctionInfo {
     let at = |point: u32| topology.points[point as usize].to_array();
     let TJunction { edge, point, t, distance } = *junction;
-    TJunctionInfo { edge: topology.edges[edge as usize].points.map(at), point: at(point), t, distance }
+    TJunctionInfo { edge: topology.edge_points(&topology.edges[edge as usize]).map(at), point: at(point), t, distance }
 }
 
 fn material(material: &super::Material) -> MaterialInfo {
@@ -229,7 +229,7 @@ fn animations(rig: &Rig) -> Vec<AnimationInfo> {
 fn euler_characteristic(topology: &Topology) -> i64 {
     let mut used = vec![false; topology.points.len()];
     for edge in &topology.edges {
-        for point in edge.points {
+        for point in topology.edge_points(edge) {
             used[point as usize] = true;
         }
     }
@@ -273,7 +273,7 @@ mod tests {
         let tooth = |i: u32| [corner(i as f32, 0.0), corner(i as f32 - 0.5, -1.0), corner(i as f32 + 0.5, -1.0)];
         let mut corners = vec![corner(0.0, 0.0), corner(16.0, 0.0), corner(8.0, 1.0)];
         corners.extend((1..13).flat_map(tooth));
-        let triangles = (0..13).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let triangles = (0..13).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect::<Vec<_>>().into();
         Mesh { corners, triangles, ..Mesh::default() }
     }
 
@@ -297,7 +297,7 @@ mod tests {
         let mut corners = comb().corners;
         // Twice the comb, one half a part of 1e-4 to 1e-3 of its diagonal away.
         corners.extend(corners.clone().iter().map(|c| Corner { position: c.position + 0.01 * Vec3::Z, ..*c }));
-        let triangles = (0..26).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let triangles = (0..26).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect::<Vec<_>>().into();
         let info = info(&Mesh { corners, triangles, ..Mesh::default() }, 0.0);
         assert_eq!(info.joins.iter().map(|join| join.edges).collect::<Vec<_>>(), [0, 0, 0, 0, 78, 78]);
         let text = info.to_string();

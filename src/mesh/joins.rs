@@ -76,7 +76,7 @@ impl Exact {
     fn of(topology: &Topology) -> Self {
         let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
         let open = open.map(|edge| {
-            let side = topology.sides[edge.sides.start as usize];
+            let side = topology.sides[edge.first_side as usize];
             (topology.patches[side.patch() as usize].triangle, side.index() as u8)
         });
         Self { open: open.collect(), degenerate: topology.degenerate }
@@ -125,7 +125,7 @@ mod tests {
     fn soup(triangles: &[[[f32; 2]; 3]]) -> Mesh {
         let corner = |&[x, y]: &[f32; 2]| Corner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z, uv: Vec2::ZERO };
         let corners = triangles.as_flattened().iter().map(corner).collect();
-        let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let triangles = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect::<Vec<_>>().into();
         Mesh { corners, triangles, ..Mesh::default() }
     }
 

@@ -20,11 +20,13 @@ const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
 pub struct Limits {
     /// Bytes of the model's file, and of each file that it names.
     pub file: u64,
+    /// Bytes of memory, beyond four times the size of all files.
+    pub memory: u64,
 }
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { file: 2 << 30 }
+        Self { file: 2 << 30, memory: 256 << 20 }
     }
 }
 
@@ -61,6 +63,8 @@ pub enum LoadError {
     Broken { path: PathBuf, fault: Box<Fault> },
     #[error(transparent)]
     Heights(HeightError),
+    #[error("{}: {what} {reason}; split the model into several files", shown_path(path))]
+    TooMuch { path: PathBuf, what: &'static str, reason: String },
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },
 }
@@ -170,8 +174,8 @@ pub fn read(
     match format {
         Format::Gltf => gltf::read(bytes, folder, &name, limits, progress).map_err(|problem| of_problem(problem, path)),
         Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Stl => stl::read(bytes, &name, progress).map_err(|fault| of_fault(fault, path)),
-        Format::Ply => ply::read(bytes, &name, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
     }
 }
 
@@ -313,7 +317,7 @@ mod tests {
     fn large_files_are_refused_with_both_numbers() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"));
         let bytes = std::fs::metadata(path).unwrap().len();
-        let load = |file| load(path, &Limits { file }, &Progress::new());
+        let load = |file| load(path, &Limits { file, ..Limits::default() }, &Progress::new());
         assert!(load(bytes).is_ok());
         let message = load(bytes - 1).unwrap_err().to_string();
         let expected = format!("has {bytes} bytes, and {} are read at most", bytes - 1);
@@ -326,7 +330,7 @@ mod tests {
     fn files_that_turn_out_larger_are_refused_too() {
         let path = Path::new("/proc/self/status");
         assert_eq!(std::fs::metadata(path).unwrap().len(), 0);
-        let read = |file| read_file(path, &Limits { file }, |_| Ok(()), &Progress::new());
+        let read = |file| read_file(path, &Limits { file, ..Limits::default() }, |_| Ok(()), &Progress::new());
         let message = read(100).unwrap_err().to_string();
         assert!(message.contains("has 101 bytes, and 100 are read at most"), "{message}");
         assert!(read(1 << 20).is_ok_and(|bytes| bytes.len() > 100));
@@ -338,7 +342,8 @@ mod tests {
         let write = |bytes: usize| std::fs::write(&path, vec![b' '; bytes]).unwrap();
         let opened = || open_file(&path).unwrap().expect("a file");
         let read = |(file, about): (File, Metadata)| {
-            read_whole(file, &about, &path, &Limits { file: 1000 }, &Progress::new()).map_err(|error| error.to_string())
+            read_whole(file, &about, &path, &Limits { file: 1000, ..Limits::default() }, &Progress::new())
+                .map_err(|error| error.to_string())
         };
         write(100);
         assert_eq!(read(opened()).map(|bytes| bytes.len()), Ok(100));

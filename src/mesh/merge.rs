@@ -224,7 +224,10 @@ impl MeshBuilder {
         }
         let repairs = self.repairs;
         let warnings = repairs.warnings();
-        Ok((Mesh { name, corners, triangles, materials, repairs, warnings, ..Mesh::default() }, bindings))
+        Ok((
+            Mesh { name, corners, triangles: triangles.into(), materials, repairs, warnings, ..Mesh::default() },
+            bindings,
+        ))
     }
 
     /// All triangles in one list, and the materials that own some.

@@ -46,6 +46,7 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
+pub use budget::Budget;
 pub use curves::{Curve, Curves, Sharing};
 pub use dominance::Dominance;
 pub use fault::Fault;
@@ -54,6 +55,7 @@ pub use heights::{HeightError, HeightMap, HeightSource, Heights, MAX_LEVELS, MAX
 pub use info::Info;
 pub use joins::{Joins, joins};
 pub use load::{Format, Limits, LoadError, load, open_file, read, read_file};
+pub use merge::Unfinished;
 pub use normal_faults::NormalFaults;
 pub use progress::{Cancelled, Progress, Stage};
 pub use repairs::Repairs;
@@ -81,7 +83,7 @@ pub struct Mesh {
     /// Distinct corners: no two have the same bits in all three attributes (-0 counts as 0), unless they move differently.
     pub corners: Vec<Corner>,
     /// Indices into `corners`, counter-clockwise seen from outside.
-    pub triangles: Vec<[u32; 3]>,
+    pub triangles: Arc<Vec<[u32; 3]>>,
     /// Each owns one contiguous range of `triangles`; the ranges follow one another and cover all of them.
     pub materials: Vec<Material>,
     /// What it can be displaced by.
@@ -91,9 +93,11 @@ pub struct Mesh {
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,
     /// How it moves, if it does.
-    pub rig: Option<std::sync::Arc<rig::Rig>>,
+    pub rig: Option<Arc<rig::Rig>>,
     /// Files that its own names and that were read, wherever links led.
     pub files: Vec<PathBuf>,
+    /// Bytes of those and of the mesh's own; none if it was made in code.
+    pub file_bytes: Option<u64>,
 }
 
 /// What a patch looks like.

@@ -43,9 +43,10 @@ impl NormalFaults {
 
     fn add(&mut self, mesh: &Mesh, topology: &Topology, patch: &Patch) {
         let point = |corner: u32| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3();
-        let at = patch.corners.map(point);
+        let corners = topology.corners(patch);
+        let at = corners.map(point);
         let face = (at[1] - at[0]).cross(at[2] - at[0]);
-        for (k, corner) in patch.corners.into_iter().enumerate() {
+        for (k, corner) in corners.into_iter().enumerate() {
             let normal = mesh.corners[corner as usize].normal.as_dvec3();
             let parallel = |other: DVec3| (other - at[k]).normalize_or_zero().dot(normal).abs() > PARALLEL;
             self.against_face += u32::from(face.dot(normal) < 0.0);
@@ -66,6 +67,8 @@ fn opposed(mesh: &Mesh, topology: &Topology, edge: &Edge, end: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::Vec2;
 
     use super::*;
@@ -84,7 +87,7 @@ mod tests {
             let face = Vec3::X.cross(tip).normalize();
             [corner(Vec3::ZERO, normals[0]), corner(Vec3::X, normals[1]), corner(tip, face)]
         });
-        let triangles = (0..normals.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let triangles = (0..normals.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect::<Vec<_>>().into();
         Mesh { corners: pages.collect(), triangles, ..Mesh::default() }
     }
 
@@ -104,7 +107,7 @@ mod tests {
     #[test]
     fn a_shape_inside_out_is_against_every_face() {
         let mut mesh = Shape::Torus.build();
-        mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+        Arc::make_mut(&mut mesh.triangles).iter_mut().for_each(|triangle| triangle.reverse());
         assert_eq!(faults(&mesh), NormalFaults { against_face: 3 * 256, ..NormalFaults::default() });
     }
 

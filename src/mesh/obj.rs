@@ -62,7 +62,7 @@ const SILENT: [&[u8]; 24] = [
 /// # Errors
 /// [`Fault`]. A missing material or texture is none: it becomes a warning.
 pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Fault> {
-    let budget = Budget::new(bytes.len());
+    let budget = Budget::new(bytes.len(), limits);
     let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
     each(&bytes, &progress.part(0.0, 0.2), |line| vertices.take(line, &budget))?;

@@ -15,7 +15,7 @@ use super::faces::{Faces, MAX_CORNERS, counted};
 use super::fault::{Fault, Place};
 use super::lines::shown;
 use super::merge::LooseCorner;
-use super::{Material, Mesh, Progress};
+use super::{Limits, Material, Mesh, Progress};
 use header::{Element, Kind, Property};
 use values::{Values, plain};
 
@@ -39,8 +39,8 @@ const ATTRIBUTES: [(&[u8], usize); 12] = [
 ///
 /// # Errors
 /// [`Fault`].
-pub fn read(bytes: Vec<u8>, name: &str, progress: &Progress) -> Result<Mesh, Fault> {
-    let budget = Budget::new(bytes.len());
+pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Fault> {
+    let budget = Budget::new(bytes.len(), limits);
     let (faces, holds, warnings) = gather(&bytes, &budget, progress)?;
     budget.release(bytes.len() as u64);
     drop(bytes);

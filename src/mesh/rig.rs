@@ -178,6 +178,19 @@ impl Rig {
         if self.is_held(&pose) { pose } else { self.rest() }
     }
 
+    /// What it takes, in bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let keys = |channel: &Channel| channel.keys.times.len() + channel.keys.values.len();
+        let clips =
+            self.clips.iter().flat_map(|clip| &clip.channels).map(|channel| size_of::<Channel>() + 4 * keys(channel));
+        size_of_val(&self.bindings[..])
+            + size_of_val(&self.deltas[..])
+            + size_of_val(&self.alike[..])
+            + size_of_val(&self.movers[..])
+            + size_of_val(&self.joints[..])
+            + clips.sum::<usize>()
+    }
+
     /// The pose without any clip.
     pub fn rest(&self) -> Pose {
         let placements: Vec<Placement> = self.movers.iter().map(|mover| mover.rest).collect();

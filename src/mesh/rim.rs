@@ -19,16 +19,20 @@ mod pieces;
 
 use serde::Serialize;
 
-use cuts::{Cuts, width_in_units};
+use cuts::{Cuts, EdgeCuts, width_in_units};
 use fans::Fans;
 use pieces::Cutter;
 
-use super::merge::{LooseCorner, MeshBuilder};
-use super::progress::{Cancelled, Progress};
+use super::budget::{Budget, MAX_TRIANGLES};
+use super::merge::{LooseCorner, MeshBuilder, Unfinished};
+use super::progress::Progress;
 use super::{Corner, Mesh, Topology};
 
 /// The widest rim that can be asked for, relative to the bounding diagonal.
 pub const WIDEST: f32 = 0.1;
+
+/// Memory for a patch's corners, their fans and those fans' normals, and for finding patches on the same points, in bytes.
+const PER_PATCH: usize = 160;
 
 /// A rim and what came of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -64,42 +68,46 @@ impl Rim {
 /// should follow. A mesh without creases stays as it is but for that. Triangles without a patch stay degenerate.
 ///
 /// Afterwards all sides of an edge have the same normals, however many there are. What was closed stays so, and boundaries
-/// are only subdivided. Linear in triangles, but for sorts. Returns the mesh with its exact topology.
+/// are only subdivided. Linear in triangles, but for sorts. Returns the mesh with its exact topology, which the budget holds.
 ///
 /// # Errors
-/// [`Cancelled`] when `progress` says so.
+/// [`Unfinished`].
 pub fn with_rim(
     mesh: &Mesh,
     topology: &Topology,
     width: f32,
+    budget: &Budget,
     progress: &Progress,
-) -> Result<(Mesh, Topology, Rim), Cancelled> {
+) -> Result<(Mesh, Topology, Rim), Unfinished> {
+    let take = |bytes: usize| budget.hold(bytes as u64).map_err(Unfinished::TooLarge);
+    take(PER_PATCH * topology.patches.len() + size_of::<EdgeCuts>() * topology.edges.len())?;
     let fans = Fans::of(mesh, topology);
     progress.check()?;
     let units = width_in_units(mesh, topology, width);
     let cuts = Cuts::of(mesh, topology, &fans, units);
     progress.check()?;
     let mut cutter = Cutter::new(mesh, topology, &fans, &cuts, units);
-    let cut = rebuilt(mesh, topology, progress, |patch, add| cutter.pieces(patch, add))?;
+    let cut = rebuilt(mesh, topology, budget, progress, |patch, add| cutter.pieces(patch, add))?;
     let rim = Rim { width, creases: cuts.creases(), narrowed: cuts.narrowed + cutter.narrowed };
-    let (mut made, topology) = agreed(cut, progress)?;
+    let (mut made, topology) = agreed(cut, budget, progress)?;
     made.warnings.extend(rim.warnings());
     Ok((made, topology, rim))
 }
 
 /// Where parts of a mesh lie on each other, cuts of one may fall onto those of another, and make edges that neither had:
 /// there too all sides get one normal.
-fn agreed(cut: Mesh, progress: &Progress) -> Result<(Mesh, Topology), Cancelled> {
-    let topology = Topology::build(&cut, progress)?;
+fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topology), Unfinished> {
+    let topology = Topology::build_afforded(&cut, 0.0, budget, progress)?;
+    budget.hold((PER_PATCH * topology.patches.len()) as u64).map_err(Unfinished::TooLarge)?;
     let fans = Fans::of(&cut, &topology);
     if !fans.any_split() {
         return Ok((cut, topology));
     }
-    let agreed = rebuilt(&cut, &topology, progress, |patch, add| {
-        let corners = topology.patches[patch as usize].corners.map(|corner| cut.corners[corner as usize]);
+    let agreed = rebuilt(&cut, &topology, budget, progress, |patch, add| {
+        let corners = topology.patch_corners(patch).map(|corner| cut.corners[corner as usize]);
         add([0, 1, 2].map(|k| Corner { normal: fans.normal(patch, k).unwrap_or(corners[k].normal), ..corners[k] }));
     })?;
-    let topology = Topology::build(&agreed, progress)?;
+    let topology = Topology::build_afforded(&agreed, 0.0, budget, progress)?;
     Ok((agreed, topology))
 }
 
@@ -108,23 +116,31 @@ fn agreed(cut: Mesh, progress: &Progress) -> Result<(Mesh, Topology), Cancelled>
 fn rebuilt(
     mesh: &Mesh,
     topology: &Topology,
+    budget: &Budget,
     progress: &Progress,
     mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
-) -> Result<Mesh, Cancelled> {
-    let mut builder = MeshBuilder::new();
+) -> Result<Mesh, Unfinished> {
+    let (mut builder, mut made) = (MeshBuilder::new(), Vec::new());
     for material in &mesh.materials {
         progress.check()?;
         let index = builder.material(material.clone());
         for triangle in material.triangles.clone() {
-            let mut add = |corners: [Corner; 3]| builder.triangle(index, corners.map(LooseCorner::from));
             match topology.patch_of(triangle) {
-                Some(patch) => pieces(patch, &mut add),
-                None => add(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),
+                Some(patch) => pieces(patch, &mut |corners| made.push(corners)),
+                None => made.push(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),
+            }
+            let room = builder.make_room_for_triangles(index, made.len(), budget);
+            room.and_then(|()| builder.make_room(3 * made.len(), budget)).map_err(Unfinished::TooLarge)?;
+            for corners in made.drain(..) {
+                builder.triangle(index, corners.map(LooseCorner::from));
+            }
+            if builder.len() as u64 > MAX_TRIANGLES {
+                return Err(Unfinished::TooLarge(format!("would have more than {MAX_TRIANGLES} triangles")));
             }
         }
     }
-    let made = builder.finish(mesh.name.clone(), progress)?;
-    Ok(Mesh { repairs: mesh.repairs, warnings: mesh.warnings.clone(), ..made })
+    let (made, _) = builder.finish_bound(mesh.name.clone(), budget, progress)?;
+    Ok(Mesh { repairs: mesh.repairs, warnings: mesh.warnings.clone(), file_bytes: mesh.file_bytes, ..made })
 }
 
 /// A corner of the mesh, on its point.

@@ -15,7 +15,7 @@ use super::faces::{Faces, counted};
 use super::fault::{Fault, Place};
 use super::lines::{Line, Lines, first_word, number, shown, words};
 use super::merge::LooseCorner;
-use super::{Material, Mesh, Progress};
+use super::{Limits, Material, Mesh, Progress};
 
 /// A binary file's header and its count of triangles, in bytes.
 const HEADER: usize = 84;
@@ -27,8 +27,8 @@ const TRIANGLE: usize = 50;
 ///
 /// # Errors
 /// [`Fault`].
-pub fn read(bytes: Vec<u8>, name: &str, progress: &Progress) -> Result<Mesh, Fault> {
-    let budget = Budget::new(bytes.len());
+pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Fault> {
+    let budget = Budget::new(bytes.len(), limits);
     let mut faces = Faces::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader { faces, material, corners: Vec::new(), progress, bytes: bytes.len() };

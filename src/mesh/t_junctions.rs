@@ -103,8 +103,8 @@ fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &
 
 /// The points of the corners of the boundary edge's one triangle.
 fn corners(topology: &Topology, edge: &Edge) -> [u32; 3] {
-    let side = topology.sides[edge.sides.start as usize];
-    topology.patches[side.patch() as usize].corners.map(|corner| topology.corner_points[corner as usize])
+    let side = topology.sides[edge.first_side as usize];
+    topology.patch_points(side.patch())
 }
 
 #[cfg(test)]

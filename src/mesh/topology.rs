@@ -1,10 +1,14 @@
 //! From triangles to patches, points, edges and sides: who meets whom, and how.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use glam::Vec3;
 use serde::Serialize;
 
+use super::budget::Budget;
+use super::ids::Ids;
+use super::merge::Unfinished;
 use super::parts::Parts;
 use super::progress::{Cancelled, Progress};
 use super::weld::weld_alike;
@@ -14,6 +18,9 @@ use super::{Corner, Mesh};
 ///
 /// Order: points by first appearance among the corners, patches as their triangles, edges by their two points, an
 /// edge's sides by patch. So the same mesh always gives the same topology.
+///
+/// Of a mesh whose edges mostly have two sides it takes about 62 bytes a triangle, so what follows from something else is not
+/// kept: where a patch's corners are (in the mesh's triangles), where an edge ends, and how many sides it has.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
     /// Welded positions (see [`weld_alike`]), in object units.
@@ -22,6 +29,8 @@ pub struct Topology {
     pub corner_points: Vec<u32>,
     /// The lowest corner on each point: the dominant one, which speaks for all of them.
     pub point_corners: Vec<u32>,
+    /// The mesh's.
+    triangles: Arc<Vec<[u32; 3]>>,
     pub patches: Vec<Patch>,
     pub edges: Vec<Edge>,
     /// Grouped by edge.
@@ -35,8 +44,6 @@ pub struct Topology {
 /// An input triangle with three distinct points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patch {
-    /// Indices into the mesh's corners, in the triangle's own order.
-    pub corners: [u32; 3],
     /// Indices into [`Topology::sides`]; side k runs from corner k to corner (k + 1) % 3.
     pub sides: [u32; 3],
     /// Index into the mesh's triangles.
@@ -46,10 +53,8 @@ pub struct Patch {
 /// An unordered pair of points that at least one patch connects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// The lower point first: the edge's own direction runs from there to the other.
-    pub points: [u32; 2],
-    /// Indices into [`Topology::sides`].
-    pub sides: Range<u32>,
+    /// Index into [`Topology::sides`], of the first of its sides.
+    pub first_side: u32,
     pub kind: EdgeKind,
     /// Whether it has two sides, with the same two corners of the mesh.
     pub shares_corners: bool,
@@ -135,23 +140,55 @@ impl Topology {
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
-        let (points, corner_points) = weld_corners(mesh, tolerance);
+        match Self::build_afforded(mesh, tolerance, &Budget::endless(), progress) {
+            Ok(topology) => Ok(topology),
+            // Of which an endless budget knows no other kind.
+            Err(Unfinished::Cancelled(_) | Unfinished::TooLarge(_)) => Err(Cancelled),
+        }
+    }
+
+    /// The same within a budget, which holds what the topology takes.
+    ///
+    /// # Errors
+    /// [`Unfinished`].
+    pub fn build_afforded(
+        mesh: &Mesh,
+        tolerance: f32,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<Self, Unfinished> {
+        let borrowed = budget.borrowed();
+        let take = |bytes: usize| budget.hold(bytes as u64).map_err(Unfinished::TooLarge);
+        budget.borrow(weld_bytes(mesh.corners.len(), tolerance)).map_err(Unfinished::TooLarge)?;
+        let (mut points, corner_points) = weld_corners(mesh, tolerance);
+        points.shrink_to_fit();
+        budget.pass(borrowed);
+        take(16 * points.len() + 4 * corner_points.len())?;
         progress.check()?;
+        take(mesh.triangles.len() * size_of::<Patch>())?;
         let patches = patches(mesh, &corner_points);
         progress.check()?;
-        let (sides, starts) = sides(&patches, &corner_points, points.len());
+        take(3 * patches.len() * size_of::<Side>())?;
+        budget.borrow(8 * points.len() as u64).map_err(Unfinished::TooLarge)?;
+        let (sides, starts) = sides(&patches, &mesh.triangles, &corner_points, points.len());
         progress.check()?;
         let mut topology = Self {
             point_corners: first_corners(&corner_points, points.len()),
             degenerate: (mesh.triangles.len() - patches.len()) as u32,
             material_patches: material_patches(mesh, &patches),
+            triangles: mesh.triangles.clone(),
             points,
             corner_points,
             patches,
             sides,
             edges: Vec::new(),
         };
+        let count = topology.count_edges(&starts);
+        take(count * size_of::<Edge>())?;
+        // Exactly: one more than there is room for would double what edges take.
+        topology.edges.reserve_exact(count);
         topology.connect(&starts, &mesh.corners);
+        budget.pass(borrowed);
         progress.check()?;
         Ok(topology)
     }
@@ -190,8 +227,8 @@ impl Topology {
             }
         }
         let mut volumes = vec![None; self.patches.len()];
-        for (i, patch) in self.patches.iter().enumerate() {
-            let [a, b, c] = patch.corners.map(|c| self.points[self.corner_points[c as usize] as usize].as_dvec3());
+        for i in 0..self.patches.len() {
+            let [a, b, c] = self.patch_positions(i as u32).map(Vec3::as_dvec3);
             // From a place of the part's own, so that what is far away is no less exact.
             let (at, volume) = volumes[parts.of(i as u32) as usize].get_or_insert((a, 0.0));
             *volume += (a - *at).dot((b - *at).cross(c - *at)) / 6.0;
@@ -199,9 +236,44 @@ impl Topology {
         volumes.into_iter().flatten().map(|(_, volume)| volume)
     }
 
+    /// Where the sides of an edge are among all of them.
+    pub fn side_range(&self, edge: &Edge) -> Range<u32> {
+        let first = edge.first_side;
+        let count = match edge.kind {
+            EdgeKind::Boundary => 1,
+            EdgeKind::Smooth | EdgeKind::Split | EdgeKind::Seam => 2,
+            EdgeKind::NonManifold => {
+                let (own, rest) = (self.sides[first as usize].edge, &self.sides[first as usize..]);
+                rest.iter().take_while(|side| side.edge == own).count() as u32
+            }
+        };
+        first..first + count
+    }
+
     /// The sides of an edge.
     pub fn edge_sides(&self, edge: &Edge) -> &[Side] {
-        &self.sides[edge.sides.start as usize..edge.sides.end as usize]
+        let range = self.side_range(edge);
+        &self.sides[range.start as usize..range.end as usize]
+    }
+
+    /// The points of an edge, the lower first: its own direction runs from there to the other.
+    pub fn edge_points(&self, edge: &Edge) -> [u32; 2] {
+        self.side_corners(&self.sides[edge.first_side as usize]).map(|corner| self.corner_points[corner as usize])
+    }
+
+    /// The corners of a patch: indices into the mesh's, in its triangle's own order.
+    pub fn patch_corners(&self, patch: u32) -> [u32; 3] {
+        self.corners(&self.patches[patch as usize])
+    }
+
+    /// The same of a patch at hand.
+    pub fn corners(&self, patch: &Patch) -> [u32; 3] {
+        self.triangles[patch.triangle as usize]
+    }
+
+    /// The points of a patch's corners.
+    pub fn patch_points(&self, patch: u32) -> [u32; 3] {
+        self.patch_corners(patch).map(|corner| self.corner_points[corner as usize])
     }
 
     /// The patch that a triangle of the mesh has become; none if it is degenerate.
@@ -212,8 +284,7 @@ impl Topology {
 
     /// Where a patch's corners lie, in object units.
     pub fn patch_positions(&self, patch: u32) -> [Vec3; 3] {
-        let corners = self.patches[patch as usize].corners;
-        corners.map(|corner| self.points[self.corner_points[corner as usize] as usize])
+        self.patch_points(patch).map(|point| self.points[point as usize])
     }
 
     /// The material (an index into [`Mesh::materials`]) of a patch.
@@ -233,19 +304,21 @@ impl Topology {
 
     /// The corners that a side's patch has there, in the edge's own direction.
     pub fn side_corners(&self, side: &Side) -> [u32; 2] {
-        let own = self.patches[side.patch() as usize].corners;
+        let own = self.patch_corners(side.patch());
         let [a, b] = [own[side.index()], own[(side.index() + 1) % 3]];
         if side.reversed() { [b, a] } else { [a, b] }
     }
 
-    /// Makes edges of sorted sides, which know the edge's higher point in its place, and tells patches and sides of each other.
-    fn connect(&mut self, starts: &[u32], corners: &[Corner]) {
+    /// How many edges sorted sides have, which know the edge's higher point in its place.
+    fn count_edges(&self, starts: &[u32]) -> usize {
         let is_last = |i: usize, end: usize| i + 1 == end || self.sides[i].edge != self.sides[i + 1].edge;
-        let ends = starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize);
-        let count = ends.clone().map(|around| around.clone().filter(|&i| is_last(i, around.end)).count()).sum();
-        // Exactly: one more than there is room for would double what edges take.
-        self.edges.reserve_exact(count);
-        for (low, around) in (0..).zip(ends) {
+        let of = |around: Range<usize>| around.clone().filter(|&i| is_last(i, around.end)).count();
+        runs(starts).map(of).sum()
+    }
+
+    /// Makes edges of such sides, and tells patches and sides of each other.
+    fn connect(&mut self, starts: &[u32], corners: &[Corner]) {
+        for around in runs(starts) {
             let mut start = around.start;
             while start < around.end {
                 let high = self.sides[start].edge;
@@ -255,8 +328,7 @@ impl Topology {
                     self.patches[side.patch() as usize].sides[side.index()] = index;
                 }
                 let (kind, shares_corners) = self.kind(&self.sides[start..start + run], corners);
-                let sides = start as u32..(start + run) as u32;
-                self.edges.push(Edge { points: [low, high], sides, kind, shares_corners });
+                self.edges.push(Edge { first_side: start as u32, kind, shares_corners });
                 start += run;
             }
         }
@@ -297,20 +369,35 @@ pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
+/// What [`weld_corners`] takes at most meanwhile, in bytes.
+fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
+    // Every corner's point, and points as lists of them are copied when those shrink.
+    let exactly = 36;
+    // Points twice over with their cells, in lists and a table that double as they grow.
+    let within = if tolerance > 0.0 { 64 } else { 0 };
+    Ids::bytes_for(corners) + (exactly + within) * corners as u64
+}
+
+/// Where the sides of each point are.
+fn runs(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
+    starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
+}
+
 /// The triangles with three distinct points; their sides are not known yet.
 fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
     let whole = |corners: &[u32; 3]| !is_degenerate(corners.map(|corner| corner_points[corner as usize]));
-    let triangles = mesh.triangles.iter().enumerate().filter(|(_, corners)| whole(corners));
+    let triangles = (0..).zip(mesh.triangles.iter()).filter(|(_, corners)| whole(corners));
     let mut patches = Vec::with_capacity(mesh.triangles.len());
-    patches.extend(triangles.map(|(i, &corners)| Patch { corners, sides: [0; 3], triangle: i as u32 }));
+    patches.extend(triangles.map(|(triangle, _)| Patch { sides: [0; 3], triangle }));
     patches
 }
 
 /// The sides of all patches by their lower points, then by their higher ones, which stand where their edges will, then by patch.
 /// Those of point p are `starts[p]..starts[p + 1]`.
-fn sides(patches: &[Patch], corner_points: &[u32], points: usize) -> (Vec<Side>, Vec<u32>) {
+fn sides(patches: &[Patch], triangles: &[[u32; 3]], corner_points: &[u32], points: usize) -> (Vec<Side>, Vec<u32>) {
     let ends = |patch: &Patch, k: usize| {
-        [patch.corners[k], patch.corners[(k + 1) % 3]].map(|corner| corner_points[corner as usize])
+        let corners = triangles[patch.triangle as usize];
+        [corners[k], corners[(k + 1) % 3]].map(|corner| corner_points[corner as usize])
     };
     let mut starts = vec![0_u32; points + 1];
     for patch in patches {
@@ -332,8 +419,9 @@ fn sides(patches: &[Patch], corner_points: &[u32], points: usize) -> (Vec<Side>,
             *place += 1;
         }
     }
-    for ends in starts.windows(2) {
-        sides[ends[0] as usize..ends[1] as usize].sort_unstable_by_key(|side| (side.edge, side.code));
+    drop(next);
+    for around in runs(&starts) {
+        sides[around].sort_unstable_by_key(|side| (side.edge, side.code));
     }
     (sides, starts)
 }

@@ -11,7 +11,7 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
     let at = |point: u32| topology.points[point as usize];
     let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
     let marks = junctions.iter().flat_map(|junction| {
-        let [a, b] = topology.edges[junction.edge as usize].points.map(at);
+        let [a, b] = topology.edge_points(&topology.edges[junction.edge as usize]).map(at);
         [LineSegment::new(a, b, T_JUNCTION_COLOR), dot(at(junction.point))]
     });
     marks.collect()

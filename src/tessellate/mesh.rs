@@ -191,7 +191,7 @@ impl Nets<'_> {
 
     /// Position, normal and uv as the patch alone has them.
     fn inside(&self, patch: u32, net: &ControlNet, u: u32, v: u32) -> (Vec3, Vec3, Vec2) {
-        let corners = self.topology.patches[patch as usize].corners.map(|c| self.mesh.corners[c as usize]);
+        let corners = self.topology.patch_corners(patch).map(|c| self.mesh.corners[c as usize]);
         let normals = corners.map(|corner| corner.normal);
         let normal = match self.normals {
             Normals::Quadratic => quadratic_normal(net.corners, normals, u, v),
@@ -203,7 +203,7 @@ impl Nets<'_> {
     /// Position, normal and uv of a point on a patch's rim, computed in the edge's own direction.
     fn rim(&self, patch: u32, side: usize, t: u32) -> (Vec3, Vec3, Vec2) {
         let (curve, reversed) = self.curve(patch, side);
-        let corners = self.topology.patches[patch as usize].corners;
+        let corners = self.topology.patch_corners(patch);
         let (start, end) = (side, (side + 1) % 3);
         let (from, to, t) = if reversed { (end, start, FIXED_ONE - t) } else { (start, end, t) };
         let (a, b) = (self.corner(patch, from), self.corner(patch, to));

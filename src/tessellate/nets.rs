@@ -135,7 +135,7 @@ impl<'a> Nets<'a> {
     }
 
     pub(super) fn corner(&self, patch: u32, k: usize) -> Vec3 {
-        let corner = self.topology.patches[patch as usize].corners[k];
+        let corner = self.topology.patch_corners(patch)[k];
         self.topology.points[self.topology.corner_points[corner as usize] as usize]
     }
 

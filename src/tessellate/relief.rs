@@ -190,7 +190,7 @@ impl<'a> Relief<'a> {
     }
 
     fn uvs(&self, patch: u32) -> [Vec2; 3] {
-        self.topology.patches[patch as usize].corners.map(|corner| self.mesh.corners[corner as usize].uv)
+        self.topology.patch_corners(patch).map(|corner| self.mesh.corners[corner as usize].uv)
     }
 
     /// The level inside a patch that is cut into so many segments.
@@ -250,7 +250,7 @@ impl<'a> Relief<'a> {
     }
 
     fn point(&self, patch: u32, k: usize) -> u32 {
-        self.topology.corner_points[self.topology.patches[patch as usize].corners[k] as usize]
+        self.topology.corner_points[self.topology.patch_corners(patch)[k] as usize]
     }
 
     fn factor(&self, patch: u32, side: usize) -> u32 {
@@ -279,7 +279,7 @@ impl<'a> Relief<'a> {
         if self.mode == Displacement::On {
             return [0, 1, 2].map(|k| self.directions[self.point(patch, k) as usize]);
         }
-        self.topology.patches[patch as usize].corners.map(|corner| self.mesh.corners[corner as usize].normal)
+        self.topology.patch_corners(patch).map(|corner| self.mesh.corners[corner as usize].normal)
     }
 
     /// How far a point moves, in object units.
@@ -294,7 +294,7 @@ impl<'a> Relief<'a> {
         let Some(map) = self.map(at.patch) else { return Vec3::ZERO };
         let level = at.level.min((map.levels - 1) as f32);
         let rises = height_slopes(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) * self.scale;
-        let [a, b, c] = self.topology.patches[at.patch as usize].corners.map(|corner| self.frames[corner as usize]);
+        let [a, b, c] = self.topology.patch_corners(at.patch).map(|corner| self.frames[corner as usize]);
         let [x, y, z] = [at.u, at.v, FIXED_ONE - at.u - at.v].map(|weight| weight as f32 * UNIT);
         let along_u = a[0] * x + b[0] * y + c[0] * z;
         let along_v = a[1] * x + b[1] * y + c[1] * z;
@@ -323,9 +323,9 @@ impl<'a> Relief<'a> {
 fn frames(mesh: &Mesh, topology: &Topology) -> Vec<[Vec3; 2]> {
     let mut sums = vec![([Vec3::ZERO; 2], 0.0_f32); mesh.corners.len()];
     for (index, patch) in (0..).zip(&topology.patches) {
-        let uvs = patch.corners.map(|corner| mesh.corners[corner as usize].uv);
+        let uvs = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv);
         let (gradients, area) = uv_gradients(topology.patch_positions(index), uvs);
-        for corner in patch.corners {
+        for corner in topology.corners(patch) {
             let sum = &mut sums[corner as usize];
             *sum = ([sum.0[0] + gradients[0], sum.0[1] + gradients[1]], sum.1 + area);
         }

@@ -71,6 +71,8 @@ pub fn is_beyond_near(clip_from_object: Mat4, [min, max]: [Vec3; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::mesh::{Progress, Shape};
     use crate::settings::Settings;
@@ -87,7 +89,7 @@ mod tests {
             let closed = !matches!(shape, Shape::Saddle | Shape::Bicubic | Shape::Moebius);
             assert_eq!(solid(&mesh).is_some(), closed, "{shape:?}");
             let mut inward = mesh.clone();
-            inward.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+            Arc::make_mut(&mut inward.triangles).iter_mut().for_each(|triangle| triangle.reverse());
             assert_eq!(solid(&inward), None, "{shape:?} wound inward");
             let mut double = mesh.clone();
             double.materials[0].double_sided = true;
@@ -103,7 +105,7 @@ mod tests {
         mesh.corners.extend(smaller);
         let inner: Vec<_> = mesh.triangles.iter().map(|&[a, b, c]| [a + count, c + count, b + count]).collect();
         assert!(solid(&mesh).is_some());
-        mesh.triangles.extend(inner);
+        Arc::make_mut(&mut mesh.triangles).extend(inner);
         mesh.materials[0].triangles.end = mesh.triangles.len() as u32;
         assert_eq!(solid(&mesh), None, "a hollow ball's inside could be seen through nothing, but that isn't proved");
     }

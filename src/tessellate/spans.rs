@@ -34,7 +34,7 @@ pub fn spans(heights: &Heights, mesh: &Mesh, topology: &Topology, dominance: &Do
     for (index, patch) in (0..).zip(&topology.patches) {
         let number = map_number(heights, topology, index);
         let Some(map) = number.checked_sub(1).and_then(|map| heights.maps.get(map as usize)) else { continue };
-        let uvs = patch.corners.map(|corner| mesh.corners[corner as usize].uv);
+        let uvs = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv);
         for (side, factor) in dominance.patch_factors[index as usize].into_iter().enumerate() {
             let own = own_span(&mut spans, factor as usize, number);
             own.texels = own.texels.max(texel_length(map, uvs[side], uvs[(side + 1) % 3]));

@@ -178,9 +178,16 @@ fn files_beyond_the_limit_are_refused() {
         &["vase.glb has ", "and 1 are read at most"],
     );
     output(&["info", vase, "--max-size", "11 KiB"]);
-    for size in ["0", "1.5GiB", "much"] {
-        let errors = failure(&["info", vase, "--max-size", size], 2);
-        assert!(errors.contains("or of KiB, MiB or GiB"), "{errors}");
+    sentence(
+        &["info", vase, "--max-memory", "1"],
+        &["vase.glb: ", "MiB of memory, and files of this size may take 0 MiB (--max-memory allows more); "],
+    );
+    output(&["info", vase, "--max-memory", "1MiB"]);
+    for option in ["--max-size", "--max-memory"] {
+        for size in ["0", "1.5GiB", "much"] {
+            let errors = failure(&["info", vase, option, size], 2);
+            assert!(errors.contains("or of KiB, MiB or GiB"), "{errors}");
+        }
     }
 }
 

@@ -217,7 +217,9 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
                 let own = edge.iter().find(|side| side.patch == index).expect("nothing is culled");
                 let ends =
                     [&own.points[0], &own.points[own.points.len() - 1]].map(|point| glam::Vec3::from(point.position));
-                let points = loaded.topology.edges[loaded.topology.sides[side as usize].edge as usize].points;
+                let points = loaded
+                    .topology
+                    .edge_points(&loaded.topology.edges[loaded.topology.sides[side as usize].edge as usize]);
                 assert_eq!(ends, points.map(|point| loaded.topology.points[point as usize]), "{convention:?}");
                 assert_eq!((own.factor as u32, own.points.len() as u32 - 1), (segments(own.word), segments(own.word)));
                 segments(own.word)

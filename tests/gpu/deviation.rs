@@ -52,7 +52,7 @@ fn place_of(picture: &RgbaImage, camera: &Camera, scene: &Scene, at: Vec3, scale
 /// A flat icosahedron, seen along the normal of its first face.
 fn face(target: &Target) -> (Scene, Camera, [Vec3; 3]) {
     let (loaded, scene) = crate::scene(Shape::Icosahedron);
-    let corners = loaded.topology.patches[0].corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+    let corners = loaded.topology.patch_corners(0).map(|corner| loaded.mesh.corners[corner as usize].position);
     let mut camera = Camera::framing(&scene.bounds, target.viewport());
     camera.frame_triangle(corners, &scene.bounds);
     (scene, camera, corners)

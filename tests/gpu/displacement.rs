@@ -7,7 +7,9 @@ use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::Timing;
 use pnaen::measure::{Measured, ulp};
 use pnaen::mesh::rim::Rim;
-use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Progress, Shape, Source, Texture, Topology};
+use pnaen::mesh::{
+    Budget, Corner, HeightMap, Heights, Material, Mesh, Moment, Progress, Shape, Source, Texture, Topology,
+};
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::CASES;
@@ -39,7 +41,9 @@ fn shifted_torus() -> Mesh {
     let (half, count) = (mesh.triangles.len() / 2, mesh.corners.len() as u32);
     let shifted = mesh.corners.clone().into_iter().map(|c| Corner { uv: c.uv + glam::vec2(0.37, 0.21), ..c });
     mesh.corners.extend(shifted);
-    mesh.triangles[half..].iter_mut().for_each(|triangle| *triangle = triangle.map(|corner| corner + count));
+    Arc::make_mut(&mut mesh.triangles)[half..]
+        .iter_mut()
+        .for_each(|triangle| *triangle = triangle.map(|corner| corner + count));
     mesh
 }
 
@@ -318,7 +322,7 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
         ..mesh.materials[0].clone()
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
-    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &Progress::new()).expect("images")));
+    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &Budget::endless(), &Progress::new()).expect("images")));
     on_device(Shape::Torus, mesh)
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
-use pnaen::mesh::{Corner, Material, Mesh, Progress, Rim, Shape, Source, Topology};
+use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Progress, Rim, Shape, Source, Topology};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
@@ -142,7 +142,7 @@ fn factors_by_edge_length_are_those_of_the_formula_behind_the_eye_too() {
     let beyond = |point: u32| beyond_near(view.clip_from_object * loaded.topology.points[point as usize].extend(1.0));
     let mut kinds = [0; 3];
     for edge in &loaded.topology.edges {
-        kinds[edge.points.into_iter().filter(|&point| beyond(point)).count()] += 1;
+        kinds[loaded.topology.edge_points(edge).into_iter().filter(|&point| beyond(point)).count()] += 1;
     }
     assert!(
         kinds.into_iter().all(|count| count > 5),
@@ -207,7 +207,7 @@ fn every_shared_point_has_the_same_bits_from_all_sides() {
                     engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
                     let cracks = engine().measure(&mut scene).expect("a readback").cracks;
                     assert_eq!(cracks.different_bits, 0, "{shape:?} {surface:?} {partitioning} {lod:?}");
-                    let inner = loaded.topology.edges.iter().filter(|edge| edge.sides.len() > 1).count();
+                    let inner = loaded.topology.edges.iter().filter(|edge| edge.kind != EdgeKind::Boundary).count();
                     assert!(cracks.edge_points >= 2 * inner as u64, "both ends of every inner edge");
                 }
             }
@@ -231,7 +231,7 @@ fn subtriangulation_is_watertight_at_every_factor() {
             );
             let cracks = engine().measure(&mut scene).expect("a readback").cracks;
             assert_eq!(cracks.different_bits + cracks.different_factors, 0, "{shape:?} {n}");
-            let inner = loaded.topology.edges.iter().filter(|edge| edge.sides.len() > 1).count() as u64;
+            let inner = loaded.topology.edges.iter().filter(|edge| edge.kind != EdgeKind::Boundary).count() as u64;
             assert!(cracks.edge_points >= inner * (n + 1), "{shape:?} {n}: every point of every inner edge");
         }
     }
@@ -283,7 +283,7 @@ pub fn sheet(columns: u32, rows: u32) -> Loaded {
     let triangles: Vec<_> = cells.flat_map(quad).collect();
     let mut material = Material::plain("plain", [1.0; 4]);
     material.triangles = 0..triangles.len() as u32;
-    let mesh = Mesh { corners, triangles, materials: vec![material], ..Mesh::default() };
+    let mesh = Mesh { corners, triangles: triangles.into(), materials: vec![material], ..Mesh::default() };
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
     let (read, rim) = (mesh.clone(), Rim::default());

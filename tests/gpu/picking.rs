@@ -141,7 +141,7 @@ fn the_nearest_edge_is_the_one_whose_weight_is_least() {
     count(&loaded, &mut scene, &settings);
     let mut picked_sides = 0;
     for (index, patch) in (0..).zip(&loaded.topology.patches) {
-        let corners = patch.corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+        let corners = loaded.topology.corners(patch).map(|corner| loaded.mesh.corners[corner as usize].position);
         for weight in 0..3_u32 {
             let [a, b] = [1, 2].map(|step| corners[(weight as usize + step) % 3]);
             let inwards = corners[weight as usize];

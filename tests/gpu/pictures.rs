@@ -188,7 +188,7 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
     let picture = target.read(&engine.gpu).expect("a readback");
     let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
     for patch in &loaded.topology.patches {
-        let corners = patch.corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+        let corners = loaded.topology.corners(patch).map(|corner| loaded.mesh.corners[corner as usize].position);
         if corners.iter().any(|corner| corner.z < 0.0) {
             continue;
         }
@@ -271,7 +271,7 @@ fn every_edge_has_the_colour_of_its_own_factor() {
     let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
     let (mut wrong, mut differ) = (Vec::new(), 0);
     for (patch, factors) in loaded.topology.patches.iter().zip(&factors) {
-        let corners = patch.corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+        let corners = loaded.topology.corners(patch).map(|corner| loaded.mesh.corners[corner as usize].position);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let sides = (0..3).map(|i| {
             let k = domain_side(Convention::D3d11, i) as usize;
@@ -305,7 +305,7 @@ fn patches_of_every_slab_have_the_colours_of_their_own_factors() {
     let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
     let sampled: Vec<_> = (0..factors.len()).step_by(1009).collect();
     let wrong = sampled.iter().filter(|&&patch| {
-        let corners = loaded.topology.patches[patch].corners.map(|c| loaded.mesh.corners[c as usize].position);
+        let corners = loaded.topology.patch_corners(patch as u32).map(|c| loaded.mesh.corners[c as usize].position);
         let at = project(clip, target.viewport(), (corners[0] + corners[1] + corners[2]) / 3.0);
         !shows(&picture, at.expect("in front of the eye"), value(factors[patch].inside))
     });

@@ -2,7 +2,7 @@
 
 use pnaen::engine::{Preparation, load};
 use pnaen::measure::Measured;
-use pnaen::mesh::{Progress, Shape, Source, Topology, with_rim};
+use pnaen::mesh::{Budget, Progress, Shape, Source, Topology, with_rim};
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::{CASES, soup};
@@ -56,7 +56,7 @@ fn with_a_rim_pn_is_whole_on_whatever_breaks_tessellators() {
     let cases = CASES.iter().map(|case| (case.name, (case.mesh)(), case.weld));
     for (name, mesh, weld) in cases.chain((0..8).map(|seed| ("soup", soup(seed), 0.0))) {
         let welded = Topology::build_within(&mesh, weld, &progress).expect("nobody cancels");
-        let (mesh, ..) = with_rim(&mesh, &welded, 0.01, &progress).expect("nobody cancels");
+        let (mesh, ..) = with_rim(&mesh, &welded, 0.01, &Budget::endless(), &progress).expect("nobody cancels");
         let mut scene = scene_of(mesh, 0.0);
         let camera = camera(&scene);
         for edges in [Edges::PerEdge, Edges::AsPublished] {

@@ -4,18 +4,19 @@ use std::io::Cursor;
 use std::sync::PoisonError;
 
 use image::{DynamicImage, ImageFormat, RgbImage};
-use pnaen::mesh::{HeightError, HeightSource, Heights, Progress, Shape};
+use pnaen::mesh::{Budget, HeightError, HeightSource, Heights, Limits, Mesh, Progress, Shape};
 
 use super::counting::peak_of;
 use super::{ALONE, Temporary};
 
 /// Reads an image from a file, and holds what that took against what its size allows. What it took, in bytes.
 fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
-    let path = std::env::temp_dir().join(format!("pnaen-heights-{}-{name}", std::process::id()));
-    std::fs::write(&path, bytes).expect("a writable temporary folder");
-    let file = Temporary(path);
+    let file = Temporary::new(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.0.clone()));
-    let (result, took) = peak_of(|| source.load(&mesh, &Progress::new()));
+    // Of a mesh that brings nothing, as one of an empty file would.
+    let mesh = Mesh { file_bytes: Some(0), ..mesh };
+    let budget = Budget::of_mesh(&mesh, &Limits::default());
+    let (result, took) = peak_of(|| source.load(&mesh, &budget, &Progress::new()));
     let allowed = 4 * bytes.len() + (256 << 20);
     println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());
     assert!(took <= allowed, "{name}: {took} of {allowed} bytes");

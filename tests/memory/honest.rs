@@ -80,6 +80,6 @@ fn edges_and_what_welding_would_do() {
         let topology = topology.expect("nobody cancels");
         let (joins, welds) = peak_of(|| joins(&mesh, Some(&topology), &Progress::new()));
         println!("    {count} triangles: {} bytes each for edges, {} for welds", edges / count, welds / count);
-        assert!(joins.is_ok() && edges <= 97 * count + FIXED && welds <= 40 * count + FIXED, "{edges} {welds} {count}");
+        assert!(joins.is_ok() && edges <= 65 * count + FIXED && welds <= 40 * count + FIXED, "{edges} {welds} {count}");
     }
 }

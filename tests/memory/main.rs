@@ -3,6 +3,7 @@
 //!
 //! `PNAEN_TRIANGLES=3000000 cargo test --release --test memory -- --nocapture` measures larger meshes than tests have time for.
 
+mod bounded;
 #[path = "../counting/mod.rs"]
 mod counting;
 mod glb;
@@ -21,6 +22,14 @@ use serde_json::{Value, json};
 /// A file in the temporary folder, gone with its test.
 struct Temporary(PathBuf);
 
+impl Temporary {
+    fn new(name: &str, bytes: &[u8]) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-memory-{}-{name}", std::process::id()));
+        std::fs::write(&path, bytes).expect("a writable temporary folder");
+        Self(path)
+    }
+}
+
 impl Drop for Temporary {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.0);
@@ -38,9 +47,7 @@ fn measured(name: &str, bytes: Vec<u8>) -> (Result<Mesh, LoadError>, usize) {
 
 /// The same of any file, whose bytes are gone before. What it took, in bytes.
 fn taken(name: &str, bytes: Vec<u8>) -> (Result<Mesh, LoadError>, usize) {
-    let path = std::env::temp_dir().join(format!("pnaen-memory-{}-{name}", std::process::id()));
-    std::fs::write(&path, &bytes).expect("a writable temporary folder");
-    let (file, size) = (Temporary(path), bytes.len());
+    let (file, size) = (Temporary::new(name, &bytes), bytes.len());
     drop(bytes);
     let (result, took) = peak_of(|| load(&file.0, &Limits::default(), &Progress::new()));
     let allowed = 4 * size + (256 << 20);
@@ -111,6 +118,33 @@ fn with_image(image: &[u8]) -> Vec<u8> {
             { "buffer": 0, "byteLength": 36 },
             { "buffer": 0, "byteOffset": 36, "byteLength": bin.len() - 36 },
         ],
+        "buffers": [{ "byteLength": bin.len() }],
+    });
+    glb(&root, &bin)
+}
+
+/// Triangles with a texture each, of so many px a side, gray.
+fn textures(count: usize, side: u32) -> Vec<u8> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let gray = image::GrayImage::from_pixel(side, side, image::Luma([128]));
+    gray.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+    let at = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0_f32].into_iter().flat_map(f32::to_le_bytes);
+    let mut bin: Vec<u8> = at.collect();
+    let mut views = vec![json!({ "buffer": 0, "byteLength": 36 })];
+    for _ in 0..count {
+        views.push(json!({ "buffer": 0, "byteOffset": bin.len(), "byteLength": png.get_ref().len() }));
+        bin.extend(png.get_ref());
+    }
+    let each = |value: &dyn Fn(usize) -> Value| (0..count).map(value).collect::<Vec<_>>();
+    let root = json!({
+        "asset": { "version": "2.0" },
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": each(&|i| json!({ "attributes": { "POSITION": 0 }, "material": i })) }],
+        "materials": each(&|i| json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": i } } })),
+        "textures": each(&|i| json!({ "source": i })),
+        "images": each(&|i| json!({ "bufferView": i + 1, "mimeType": "image/png" })),
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3 }],
+        "bufferViews": views,
         "buffers": [{ "byteLength": bin.len() }],
     });
     glb(&root, &bin)

@@ -5,10 +5,13 @@ use std::sync::PoisonError;
 use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh, MeshEncoder, PointAttribute,
 };
+use pnaen::engine::Preparation;
+use pnaen::mesh::Limits;
 use serde_json::json;
 
+use super::bounded::loaded;
 use super::grid::Grid;
-use super::{ALONE, glb, measured, taken};
+use super::{ALONE, Temporary, glb, measured, taken};
 
 /// A primitive of positions, and of other attributes by their names, kinds and widths; `from` is the buffer.
 fn document(vertices: usize, triangles: usize, others: &[(String, u8)], from: &[u8]) -> Vec<u8> {
@@ -92,6 +95,20 @@ fn what_programs_pack_fits() {
             assert_eq!(mesh.expect("a file without a fault").triangles.len(), grid.triangle_count());
         }
     }
+}
+
+/// What decoding might take is refused, not what it takes: who trusts a file can have it.
+#[test]
+fn larger_ones_are_read_with_more_memory() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let grid = Grid::of(500_000, 0.0);
+    let bytes = sheet(grid, &[("TEXCOORD_0".to_owned(), 2)], false, 5);
+    let file = Temporary::new("packed-trusted.glb", &bytes);
+    let said = loaded(&file, &Preparation::default(), Limits::default().memory).0.map(|_| ()).expect_err("too much");
+    assert!(said.to_string().contains("(--max-memory allows more); decompress the model first"), "{said}");
+    let (result, took) = loaded(&file, &Preparation::default(), 2 << 30);
+    println!("packed-trusted: {} bytes of file, {} MiB taken", bytes.len(), took >> 20);
+    assert_eq!(result.expect("a file without a fault").mesh.triangles.len(), grid.triangle_count());
 }
 
 /// Indices of one triangle, as symbols of a table: that says it has as many as its bytes could name, and has `rest` for bytes.

@@ -37,7 +37,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
     let app = harness.state();
     assert_eq!(app.selected_edge(), Some(edge));
     let topology = &app.loaded().expect("a mesh").topology;
-    let [a, b] = topology.edges[edge as usize].points.map(|point| topology.points[point as usize]);
+    let [a, b] = topology.edge_points(&topology.edges[edge as usize]).map(|point| topology.points[point as usize]);
     assert_ne!(*app.camera(), before);
     assert!(app.camera().target.distance((a + b) / 2.0) < 1e-6, "the edge is in the middle");
     // Named, with its two triangles, both sides' factors and points.

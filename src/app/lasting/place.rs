@@ -49,7 +49,7 @@ pub fn read(folder: &Path) -> Found {
         Ok(file) if !file.is_file() => return unread("it is no file".into()),
         Ok(_) => {}
     }
-    let kept = match read_file(&place, &Limits { file: MAX_BYTES }, |_| Ok(()), &Progress::new()) {
+    let kept = match read_file(&place, &Limits { file: MAX_BYTES, ..Limits::default() }, |_| Ok(()), &Progress::new()) {
         Ok(bytes) => Kept::read(&bytes),
         Err(LoadError::Io { source, .. }) => return unread(source.to_string()),
         Err(_) => None,

@@ -49,7 +49,7 @@ fn square_truth(half: f32) -> Truth {
         normal: Vec3::Y,
         uv: Vec2::ZERO,
     };
-    let mesh = Mesh { corners: (0..4).map(corner).collect(), triangles, ..Mesh::default() };
+    let mesh = Mesh { corners: (0..4).map(corner).collect(), triangles: triangles.into(), ..Mesh::default() };
     Truth::of_mesh(&mesh).unwrap()
 }
 

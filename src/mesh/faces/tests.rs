@@ -23,7 +23,7 @@ pub fn assert_cube(mesh: &Mesh) {
     assert_eq!((found.patches.len(), found.points.len(), found.degenerate), (12, 8, 0));
     assert_eq!(found.edge_counts(), expected.edge_counts());
     assert_eq!((mesh.bounds().min, mesh.bounds().max), (Vec3::NEG_ONE, Vec3::ONE));
-    for &[a, b, c] in &mesh.triangles {
+    for &[a, b, c] in mesh.triangles.iter() {
         let [a, b, c] = [a, b, c].map(|corner| mesh.corners[corner as usize]);
         let face = (b.position - a.position).cross(c.position - a.position).normalize();
         assert!(face.dot(a.position) > 0.0, "wound inward");

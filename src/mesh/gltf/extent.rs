@@ -6,13 +6,11 @@ use ::gltf::accessor::Accessor;
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Semantic};
 
-use super::budget::Budget;
+use super::budget::{Budget, MAX_TRIANGLES};
 use super::nodes::Placed;
 use super::{Accessors, Problem, primitive};
 use crate::mesh::ids::Ids;
 
-/// A scene of more triangles than this is refused: its indices would no longer fit 32 bits, nor its data most memories.
-pub const MAX_TRIANGLES: u64 = 1 << 27;
 /// Vertices, displacements of them and indices that are read at most, each as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
 

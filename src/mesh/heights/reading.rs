@@ -19,13 +19,13 @@ const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
 
 impl HeightMap {
     /// Reads a PNG or JPEG image: PNG row by row, so that a large one takes no more than what is kept of it; a JPEG, and a PNG
-    /// that is interlaced, whole. Memory is held to a [`Budget`] of the file's size.
+    /// that is interlaced, whole. The file's size is added to the budget, and `corners` are those of the mesh.
     ///
     /// # Errors
     /// It is no such image, or a larger one than is read; or `progress` was cancelled.
-    pub(super) fn read(path: &Path, progress: &Progress) -> Result<Self, HeightError> {
+    pub(super) fn read(path: &Path, corners: usize, budget: &Budget, progress: &Progress) -> Result<Self, HeightError> {
         progress.check()?;
-        let image = ImageFile { path, progress };
+        let image = ImageFile { path, corners, budget, progress };
         let unread = |error: io::Error| image.fail(file_reason(&error));
         let no_file = || image.fail("it is not a file; choose a PNG or JPEG image".to_owned());
         let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
@@ -84,6 +84,8 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 /// Where an image is read from, and who is told how far that is.
 struct ImageFile<'a> {
     path: &'a Path,
+    corners: usize,
+    budget: &'a Budget,
     progress: &'a Progress,
 }
 
@@ -143,12 +145,18 @@ impl ImageFile<'_> {
         Ok(HeightMap::of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)
     }
 
-    /// Whether an image of this size takes no more than its file allows: `px` bytes at once, and `decoding` before a map is
-    /// made of them.
+    /// Whether an image of this size takes no more than a load may: `px` bytes at once, and `decoding` before a map is made of
+    /// them, which is held.
     fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
-        let all = px.saturating_add(HeightMap::bytes_to_build(size).max(decoding));
+        let kept = HeightMap::bytes_to_build(size).saturating_add(super::angle_bytes(self.corners));
         let too_much = |reason| HeightError::TooMuch { path: self.path.to_owned(), size, reason };
-        Budget::new(usize::try_from(length).unwrap_or(usize::MAX)).borrow(all).map_err(too_much)
+        self.budget.allow(length);
+        // A decoder has the file's bytes too.
+        let all = px.saturating_add(kept.max(decoding)).saturating_add(length);
+        let borrowed = self.budget.borrowed();
+        self.budget.borrow(all).map_err(too_much)?;
+        self.budget.pass(borrowed);
+        self.budget.hold(kept).map_err(too_much)
     }
 }
 
@@ -249,10 +257,13 @@ mod tests {
         let image: DynamicImage = RgbImage::from_fn(9, 5, |x, y| Rgb([(20 * x) as u8, (40 * y) as u8, 7])).into();
         let file = Temporary::new("px.png", &png(&image));
         let progress = Progress::new();
-        assert_eq!(HeightMap::read(&file.0, &progress).expect("an image"), of(&image));
+        assert_eq!(HeightMap::read(&file.0, 0, &Budget::endless(), &progress).expect("an image"), of(&image));
         assert!(progress.fraction() > 0.8, "{}", progress.fraction());
         progress.cancel();
-        assert!(matches!(HeightMap::read(&file.0, &progress), Err(HeightError::Cancelled(Cancelled))));
+        assert!(matches!(
+            HeightMap::read(&file.0, 0, &Budget::endless(), &progress),
+            Err(HeightError::Cancelled(Cancelled))
+        ));
     }
 
     #[test]
@@ -263,7 +274,8 @@ mod tests {
         header.extend([8, 0, 0, 0, 0]);
         let start = Instant::now();
         let file = Temporary::new("large.png", &header);
-        let error = HeightMap::read(&file.0, &Progress::new()).expect_err("too large").to_string();
+        let error =
+            HeightMap::read(&file.0, 0, &Budget::endless(), &Progress::new()).expect_err("too large").to_string();
         assert!(start.elapsed() < Duration::from_millis(100), "{:?}", start.elapsed());
         let expected =
             "is 20000 x 20000 px large, and at most 16384 px a side are read; scale it to 4096 px a side or less";
@@ -271,7 +283,8 @@ mod tests {
         // One px more than is read, with a decoder that would take it.
         let wide = DynamicImage::new_luma8(MAX_SIZE + 1, 1);
         let file = Temporary::new("wide.png", &png(&wide));
-        let error = HeightMap::read(&file.0, &Progress::new()).expect_err("too large").to_string();
+        let error =
+            HeightMap::read(&file.0, 0, &Budget::endless(), &Progress::new()).expect_err("too large").to_string();
         assert!(error.contains("is 16385 x 1 px large"), "{error}");
     }
 }

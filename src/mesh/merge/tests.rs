@@ -17,7 +17,7 @@ fn triangles_are_grouped_and_corners_shared() {
     builder.triangle(red, [corner(-0.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
     builder.triangle(blue, [corner(1.0, 0.0), corner(2.0, 0.0), corner(1.0, 1.0)]);
     let mesh = builder.finish("two".to_owned(), &Progress::new()).unwrap();
-    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 3, 1], [3, 4, 1]]);
+    assert_eq!(**mesh.triangles, [[0, 1, 2], [0, 3, 1], [3, 4, 1]]);
     assert_eq!(mesh.corners.len(), 5);
     let ranges: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.triangles.clone())).collect();
     assert_eq!(ranges, [("red", 0..1), ("blue", 1..3)]);

@@ -64,7 +64,7 @@ fn corners_are_given_in_four_ways_and_from_either_end() {
         ("f 1/1/ 2/1/ 3/1/", Vec2::new(0.25, 0.75), Vec3::Z),
     ] {
         let mesh = read(&format!("{vertices}{face}\nv 9 9 9\nvn 1 0 0\n"));
-        assert_eq!(mesh.triangles, [[0, 1, 2]], "{face}");
+        assert_eq!(**mesh.triangles, [[0, 1, 2]], "{face}");
         assert!(mesh.corners.iter().all(|corner| (corner.uv, corner.normal) == (uv, normal)), "{face}");
     }
 }

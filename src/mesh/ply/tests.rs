@@ -5,7 +5,7 @@ use crate::mesh::faces::tests::{POINTS, SIDES, assert_cube};
 use header::{Encoding, Scalar};
 
 fn read(bytes: &[u8]) -> Mesh {
-    super::read(bytes.to_vec(), "cube", &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// Numbers in one of the encodings.
@@ -135,7 +135,7 @@ fn faces_may_come_before_their_vertices() {
     let (format, vertices) = vertices.split_once("element vertex").unwrap();
     let (rows, last) = body.split_at(body.rfind("3 0 1 2").unwrap());
     let text = format!("{format}element face{face}element vertex{vertices}end_header\n{last}{rows}");
-    assert_eq!(read(text.as_bytes()).triangles, [[0, 1, 2]]);
+    assert_eq!(**read(text.as_bytes()).triangles, [[0, 1, 2]]);
 }
 
 /// Six vertices in two rows, and strips of them.
@@ -166,5 +166,5 @@ fn strips_alternate_begin_anew_and_are_stitched() {
 fn a_cancel_is_heard() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(cube(1, 6, 4), "", &progress), Err(Fault::Cancelled(_))));
+    assert!(matches!(super::read(cube(1, 6, 4), "", &Limits::default(), &progress), Err(Fault::Cancelled(_))));
 }

@@ -56,7 +56,7 @@ impl Cuts {
         let mut cuts = Self { edges: edges.collect(), narrowed: 0 };
         for (index, edge) in topology.edges.iter().enumerate() {
             let reach = [0, 1].map(|end| cuts.reach(mesh, topology, fans, edge, end).map(|reach| width * reach));
-            let [a, b] = edge.points.map(|point| topology.points[point as usize].as_dvec3());
+            let [a, b] = topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3());
             let most = LARGEST_PART * a.distance(b);
             cuts.narrowed += u32::from(reach.iter().flatten().any(|reach| *reach > most));
             let sides = topology.edge_sides(edge);

@@ -30,7 +30,7 @@ impl Fans {
             }
         }
         let fan_of: Vec<u32> = (0..count as u32).map(|slot| parts.of(slot)).collect();
-        let corners = topology.patches.iter().flat_map(|patch| patch.corners);
+        let corners = topology.patches.iter().flat_map(|patch| topology.corners(patch));
         let mut keys: Vec<_> =
             fan_of.iter().zip(corners).map(|(&fan, c)| (fan, key(mesh.corners[c as usize].normal))).collect();
         keys.sort_unstable();

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec2, Vec3};
 use super::cuts::{Cuts, EdgeCuts};
 use super::fans::{Fans, blend};
 use super::on_point;
-use crate::mesh::{Corner, Mesh, Patch, Topology};
+use crate::mesh::{Corner, Mesh, Topology};
 
 /// The largest part of the way from a corner to the middle of the incircle.
 const LARGEST_PART: f64 = 0.5;
@@ -90,7 +90,7 @@ impl<'a> Cutter<'a> {
 
     fn whole(&self, patch: u32) -> Whole {
         let Self { mesh, topology, fans, cuts, .. } = self;
-        let own = topology.patches[patch as usize].corners.map(|corner| on_point(mesh, topology, corner));
+        let own = topology.patch_corners(patch).map(|corner| on_point(mesh, topology, corner));
         let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize]);
         let edges: [&EdgeCuts; 3] = sides.map(|side| &cuts.edges[side.edge as usize]);
         let cut = |k: usize, end: usize| {
@@ -124,12 +124,12 @@ impl<'a> Cutter<'a> {
 
 /// Which of the patches on the same three points a patch is, where it isn't the first.
 fn twins(topology: &Topology) -> HashMap<u32, u32> {
-    let points = |(patch, index): (&Patch, u32)| {
-        let mut points = patch.corners.map(|corner| topology.corner_points[corner as usize]);
+    let points = |index: u32| {
+        let mut points = topology.patch_points(index);
         points.sort_unstable();
         (points, index)
     };
-    let mut patches: Vec<_> = topology.patches.iter().zip(0..).map(points).collect();
+    let mut patches: Vec<_> = (0..topology.patches.len() as u32).map(points).collect();
     patches.sort_unstable();
     let groups = patches.chunk_by(|a, b| a.0 == b.0);
     groups.flat_map(|group| group.iter().zip(0..).skip(1)).map(|(&(_, patch), rank)| (patch, rank)).collect()

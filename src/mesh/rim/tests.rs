@@ -15,7 +15,7 @@ fn topology(mesh: &Mesh) -> Topology {
 fn rimmed_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, Rim) {
     let progress = Progress::new();
     let before = Topology::build_within(mesh, weld, &progress).unwrap();
-    let (made, after, rim) = with_rim(mesh, &before, width, &progress).unwrap();
+    let (made, after, rim) = with_rim(mesh, &before, width, &Budget::endless(), &progress).unwrap();
     assert_eq!(after.edges, topology(&made).edges);
     for edge in &after.edges {
         let normals = |side: &Side| after.side_corners(side).map(|corner| made.corners[corner as usize].normal);
@@ -63,7 +63,7 @@ fn volume(mesh: &Mesh, at: DVec3) -> f64 {
 fn boundary_length(topology: &Topology) -> f64 {
     let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
     open.map(|edge| {
-        let [a, b] = edge.points.map(|point| topology.points[point as usize].as_dvec3());
+        let [a, b] = topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3());
         a.distance(b)
     })
     .sum()
@@ -359,5 +359,5 @@ fn a_cancel_is_heard() {
     let cube = Shape::CubeSplit.build();
     let topology = topology(&cube);
     progress.cancel();
-    assert!(matches!(with_rim(&cube, &topology, 0.01, &progress), Err(Cancelled)));
+    assert!(matches!(with_rim(&cube, &topology, 0.01, &Budget::endless(), &progress), Err(Unfinished::Cancelled(_))));
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::mesh::faces::tests::{POINTS, assert_cube, triangles};
 
 fn read(bytes: &[u8]) -> Mesh {
-    super::read(bytes.to_vec(), "cube", &Progress::new()).unwrap()
+    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
 /// A cube of which every normal is nonsense.
@@ -77,6 +77,6 @@ fn a_cancel_is_heard() {
     let progress = Progress::new();
     progress.cancel();
     for bytes in [text().into_bytes(), binary(b"")] {
-        assert!(matches!(super::read(bytes.to_vec(), "", &progress), Err(Fault::Cancelled(_))));
+        assert!(matches!(super::read(bytes.to_vec(), "", &Limits::default(), &progress), Err(Fault::Cancelled(_))));
     }
 }

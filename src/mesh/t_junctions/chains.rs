@@ -53,7 +53,7 @@ impl<'a> Chains<'a> {
         let mut starts = vec![0; topology.points.len() + 1];
         let mut open = 0;
         for (_, edge) in open_edges(topology) {
-            edge.points.iter().for_each(|&point| starts[point as usize + 1] += 1);
+            topology.edge_points(edge).into_iter().for_each(|point| starts[point as usize + 1] += 1);
             open += 1;
         }
         for point in 1..starts.len() {
@@ -119,8 +119,8 @@ fn links(topology: &Topology, starts: &[u32]) -> Vec<Link> {
     let mut links = vec![Link::default(); starts.last().map_or(0, |&end| end as usize)];
     let mut next = starts.to_vec();
     for (_, edge) in open_edges(topology) {
-        let [a, b] = edge.points;
-        let patch = topology.sides[edge.sides.start as usize].patch();
+        let [a, b] = topology.edge_points(edge);
+        let patch = topology.sides[edge.first_side as usize].patch();
         let third = third(topology, edge);
         for (from, to) in [(a, b), (b, a)] {
             links[next[from as usize] as usize] = Link { to, patch, third };
@@ -138,7 +138,7 @@ fn links_at<'a>(starts: &[u32], links: &'a [Link], point: u32) -> &'a [Link] {
 
 /// The point of the boundary edge's triangle that isn't the edge's.
 fn third(topology: &Topology, edge: &Edge) -> u32 {
-    let [a, b] = edge.points;
+    let [a, b] = topology.edge_points(edge);
     corners(topology, edge).into_iter().find(|point| ![a, b].contains(point)).unwrap_or(a)
 }
 
@@ -159,8 +159,8 @@ impl Beside {
         let (line, third) = (Line::of(topology, edge), third(topology, edge));
         let up = line.across(topology.points[third as usize].as_dvec3());
         let (length, height) = (line.length(), up.length());
-        let patch = topology.sides[edge.sides.start as usize].patch();
-        let beside = Self { line, length, ends: edge.points, patch, third, side: up / height };
+        let patch = topology.sides[edge.first_side as usize].patch();
+        let beside = Self { line, length, ends: topology.edge_points(edge), patch, third, side: up / height };
         (height > HEIGHT * length).then_some(beside)
     }
 

@@ -12,7 +12,7 @@ pub(super) struct Line {
 
 impl Line {
     pub fn of(topology: &Topology, edge: &Edge) -> Self {
-        Self { ends: edge.points.map(|point| topology.points[point as usize].as_dvec3()) }
+        Self { ends: topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3()) }
     }
 
     pub fn way(&self) -> DVec3 {

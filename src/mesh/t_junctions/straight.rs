@@ -46,7 +46,7 @@ impl<'a> Straight<'a> {
     /// Whether a point lies on an edge, is no near miss of its ends and no corner of its triangle.
     pub fn is_inside(&self, edge: &Edge, line: &Line, point: u32, place: DVec3) -> bool {
         let (t, distance) = line.project(place);
-        let ends = edge.points.into_iter().zip(line.ends);
+        let ends = self.topology.edge_points(edge).into_iter().zip(line.ends);
         t > 0.0
             && t < 1.0
             && distance <= self.tolerance
@@ -68,7 +68,10 @@ fn shortest(topology: &Topology) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; topology.points.len()];
     for (_, edge) in open_edges(topology) {
         let length = Line::of(topology, edge).length();
-        edge.points.iter().for_each(|&point| shortest[point as usize] = length.min(shortest[point as usize]));
+        topology
+            .edge_points(edge)
+            .into_iter()
+            .for_each(|point| shortest[point as usize] = length.min(shortest[point as usize]));
     }
     shortest
 }

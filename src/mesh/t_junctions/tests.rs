@@ -8,7 +8,7 @@ use crate::mesh::{Corner, Mesh, joins};
 /// Triangles over corners at these places.
 fn mesh(places: &[Vec3], triangles: &[[u32; 3]]) -> Mesh {
     let corner = |&position: &Vec3| Corner { position, normal: Vec3::Z, uv: Vec2::ZERO };
-    Mesh { corners: places.iter().map(corner).collect(), triangles: triangles.to_vec(), ..Mesh::default() }
+    Mesh { corners: places.iter().map(corner).collect(), triangles: triangles.to_vec().into(), ..Mesh::default() }
 }
 
 fn topology(places: &[Vec3], triangles: &[[u32; 3]]) -> Topology {
@@ -43,7 +43,7 @@ fn a_refined_side_has_a_t_junction_at_every_point_between() {
         assert_eq!(found.len(), 4, "{found:?}");
         let edge = &topology.edges[found[0].edge as usize];
         assert_eq!(
-            edge.points.map(|point| topology.points[point as usize] / scale),
+            topology.edge_points(edge).map(|point| topology.points[point as usize] / scale),
             [Vec3::X, Vec3::new(1.0, 1.0, 0.0)]
         );
         for (junction, i) in found.iter().zip(1..) {
@@ -216,7 +216,7 @@ fn slow(topology: &Topology) -> Vec<(u32, u32)> {
     let at = |point: u32| topology.points[point as usize].as_dvec3();
     let mut found = Vec::new();
     for (i, edge) in open() {
-        let mut points: Vec<u32> = open().flat_map(|(_, other)| other.points).collect();
+        let mut points: Vec<u32> = open().flat_map(|(_, other)| topology.edge_points(other)).collect();
         points.sort_unstable();
         points.dedup();
         let line = Line::of(topology, edge);

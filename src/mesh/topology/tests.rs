@@ -18,7 +18,7 @@ fn mesh(corners: &[u32], triangles: &[[u32; 3]]) -> Mesh {
     material.triangles = 0..triangles.len() as u32;
     Mesh {
         corners: corners.iter().map(corner).collect(),
-        triangles: triangles.to_vec(),
+        triangles: triangles.to_vec().into(),
         materials: vec![material],
         ..Mesh::default()
     }
@@ -28,28 +28,34 @@ fn build(mesh: &Mesh) -> Topology {
     Topology::build(mesh, &Progress::new()).unwrap()
 }
 
+fn points_of_edges(topology: &Topology) -> Vec<[u32; 2]> {
+    topology.edges.iter().map(|edge| topology.edge_points(edge)).collect()
+}
+
 /// What must hold for every topology.
 fn check(mesh: &Mesh, topology: &Topology) {
     assert_eq!(topology.sides.len(), 3 * topology.patches.len());
     assert_eq!(topology.patches.len() + topology.degenerate as usize, mesh.triangles.len());
     let mut next = 0;
     for (i, edge) in topology.edges.iter().enumerate() {
-        assert!(edge.points[0] < edge.points[1]);
-        assert_eq!(edge.sides.start, next, "sides are grouped by edge, without gaps");
-        next = edge.sides.end;
+        let points = topology.edge_points(edge);
+        assert!(points[0] < points[1]);
+        assert_eq!(edge.first_side, next, "sides are grouped by edge, without gaps");
+        next = topology.side_range(edge).end;
         for side in topology.edge_sides(edge) {
             assert_eq!(side.edge as usize, i);
-            assert_eq!(topology.side_corners(side).map(|c| topology.corner_points[c as usize]), edge.points);
+            assert_eq!(topology.side_corners(side).map(|c| topology.corner_points[c as usize]), points);
         }
     }
     assert_eq!(next as usize, topology.sides.len());
-    assert!(topology.edges.windows(2).all(|pair| pair[0].points < pair[1].points), "every pair of points once");
+    assert!(points_of_edges(topology).is_sorted_by(|a, b| a < b), "every pair of points once");
     for (p, patch) in topology.patches.iter().enumerate() {
-        assert_eq!(patch.corners, mesh.triangles[patch.triangle as usize]);
+        let corners = topology.patch_corners(p as u32);
+        assert_eq!(corners, mesh.triangles[patch.triangle as usize]);
         for k in 0..3 {
             let side = topology.sides[patch.sides[k] as usize];
             assert_eq!((side.patch() as usize, side.index()), (p, k));
-            let mut own = [patch.corners[k], patch.corners[(k + 1) % 3]];
+            let mut own = [corners[k], corners[(k + 1) % 3]];
             if side.reversed() {
                 own.reverse();
             }
@@ -65,7 +71,7 @@ fn two_triangles_share_one_smooth_edge() {
     check(&mesh, &topology);
     assert_eq!(topology.edge_counts(), EdgeCounts { smooth: 1, boundary: 4, ..Default::default() });
     let shared = &topology.edges[2];
-    assert_eq!((shared.points, shared.kind), ([1, 2], EdgeKind::Smooth));
+    assert_eq!((topology.edge_points(shared), shared.kind), ([1, 2], EdgeKind::Smooth));
     assert_eq!(topology.edge_sides(shared).iter().map(|s| s.reversed()).collect::<Vec<_>>(), [false, true]);
 }
 
@@ -129,7 +135,7 @@ fn a_fan_of_300_000_triangles() {
         corners.insert(apex as usize, corner(0));
         let rim = |i: u32| if apex == 0 { i + 1 } else { i };
         let triangles: Vec<_> = (0..n).map(|i| [apex, rim(i), rim(i + 1)]).collect();
-        let topology = build(&Mesh { corners, triangles, ..Mesh::default() });
+        let topology = build(&Mesh { corners, triangles: triangles.into(), ..Mesh::default() });
         let counts = topology.edge_counts();
         assert_eq!((counts.smooth, counts.boundary), (n - 1, n + 2));
     }
@@ -209,15 +215,15 @@ proptest! {
         check(&mesh, &topology);
         // The same edges, the slow way.
         let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
-        for patch in &topology.patches {
-            let p = patch.corners.map(|c| topology.corner_points[c as usize]);
+        for patch in 0..topology.patches.len() as u32 {
+            let p = topology.patch_points(patch);
             for (a, b) in [(p[0], p[1]), (p[1], p[2]), (p[2], p[0])] {
                 *uses.entry([a.min(b), a.max(b)]).or_default() += 1;
             }
         }
         prop_assert_eq!(uses.len(), topology.edges.len());
         for edge in &topology.edges {
-            prop_assert_eq!(uses[&edge.points], edge.sides.len() as u32);
+            prop_assert_eq!(uses[&topology.edge_points(edge)], topology.edge_sides(edge).len() as u32);
         }
     }
 }

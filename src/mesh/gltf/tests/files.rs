@@ -113,7 +113,7 @@ fn files_that_are_named_have_the_same_limit() {
     std::fs::write(&path, text).unwrap();
     std::fs::write(folder.0.join("large.png"), [&png()[..], &vec![0; 100_000]].concat()).unwrap();
     std::fs::write(folder.0.join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
-    let load = |file| load(&path, &Limits { file }, &Progress::new());
+    let load = |file| load(&path, &Limits { file, ..Limits::default() }, &Progress::new());
     let said = load(own).unwrap_err().to_string();
     let expected = format!("data.bin has {} bytes, and {own} are read at most", own + data);
     assert!(said.contains("/buffers/0 (data.bin) can't be read") && said.contains(&expected), "{said}");

@@ -1,0 +1,112 @@
+//! All of a load: reading, edges, a rim, heights. It takes no more than it is allowed, whatever that is, and isn't refused what
+//! it needs.
+
+use std::sync::PoisonError;
+
+use pnaen::engine::{Loaded, Preparation, load};
+use pnaen::mesh::{HeightSource, Limits, LoadError, Progress, Source};
+
+use super::counting::peak_of;
+use super::glb::{blocks, indexed, loose};
+use super::grid::Grid;
+use super::{ALONE, Temporary, textures};
+
+/// For what doesn't grow with the file, in bytes.
+const FIXED: usize = 1 << 20;
+
+/// What is allowed, of what it takes.
+const PARTS: [f64; 7] = [0.15, 0.3, 0.5, 0.65, 0.8, 0.9, 0.97];
+
+/// All of a load, with so many bytes of memory beyond four times the files' size, and what that took.
+pub fn loaded(file: &Temporary, preparation: &Preparation, memory: u64) -> (Result<Loaded, LoadError>, usize) {
+    let preparation = Preparation { limits: Limits { memory, ..Limits::default() }, ..preparation.clone() };
+    let source = Source::File(file.0.clone());
+    peak_of(|| load(&source, &preparation, &Progress::new()))
+}
+
+/// Loads a file with more and more memory. `most` is how many times what it takes may be asked for, `image` the size of a file of
+/// heights.
+fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
+    let file = Temporary::new(name, bytes);
+    let (result, needed) = loaded(&file, preparation, u64::MAX);
+    let triangles = result.expect("a file without a fault").read.triangles.len();
+    println!("{name}: {needed} bytes, {} a triangle, of a file of {}", needed / triangles, bytes.len() / triangles);
+    let free = 4 * (bytes.len() + image);
+    let (mut refused, mut least) = (0, free);
+    for part in PARTS {
+        let Some(memory) = ((needed as f64 * part) as usize).checked_sub(free) else { continue };
+        let allowed = free + memory;
+        let (result, took) = loaded(&file, preparation, memory as u64);
+        assert!(took <= allowed + FIXED, "{name}: {took} of {allowed} bytes");
+        if let Err(error) = result {
+            let said = error.to_string();
+            let is_budget = said.contains(" MiB of memory, and files of this size may take ");
+            // Textures that would take too much are left out.
+            assert!(is_budget || said.contains("has no image to displace by"), "{said}");
+            (refused, least) = (refused + 1, allowed);
+        }
+    }
+    let memory = (most * needed as f64) as u64 + FIXED as u64;
+    let result = loaded(&file, preparation, memory.saturating_sub(free as u64)).0;
+    println!("    refused {refused} times of {}, the last time with {least} bytes", PARTS.len());
+    assert!(result.is_ok(), "{name}: {}", result.expect_err("an error"));
+}
+
+/// Large enough for what grows to be most of it.
+const TRIANGLES: usize = 57_000;
+
+#[test]
+fn edges_are_part_of_it() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let grid = Grid::of(TRIANGLES, 0.0);
+    let plain = Preparation::default();
+    assert_bounded("floats.glb", &indexed(grid, false), 0, &plain, 1.1);
+    assert_bounded("quantised.glb", &indexed(grid, true), 0, &plain, 1.1);
+    assert_bounded("blocks.glb", &blocks(grid), 0, &plain, 1.1);
+    assert_bounded("loose.glb", &loose(grid, false), 0, &plain, 1.1);
+    assert_bounded("apart.stl", &grid.stl(0.1), 0, &plain, 1.1);
+    assert_bounded("creased.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &plain, 1.1);
+    assert_bounded("plain.obj", &grid.obj(false), 0, &plain, 1.1);
+}
+
+#[test]
+fn welds_and_rims_are_part_of_it() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let welded = Preparation { weld: 1e-5, ..Preparation::default() };
+    assert_bounded("welded.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &welded, 1.5);
+    assert_bounded("welded.stl", &Grid::of(TRIANGLES, 0.0).stl(0.1), 0, &welded, 1.5);
+    let rim = Preparation { rim: 1e-4, ..Preparation::default() };
+    assert_bounded("rim.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &rim, 1.5);
+    assert_bounded("no-rim.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &rim, 1.5);
+}
+
+#[test]
+fn heights_are_part_of_it() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let of = |heights| Preparation { heights: Some(heights), ..Preparation::default() };
+    assert_bounded("materials.glb", &textures(3, 700), 0, &of(HeightSource::Materials), 1.1);
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::new(1500, 900).write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+    let image = Temporary::new("heights.png", png.get_ref());
+    let sheet = indexed(Grid::of(TRIANGLES, 0.0), true);
+    assert_bounded("file.glb", &sheet, png.get_ref().len(), &of(HeightSource::File(image.0.clone())), 1.1);
+}
+
+/// A small file whose images are large: each is kept twice, as a texture and as heights.
+#[test]
+fn many_materials_images_are_refused_as_heights() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let bytes = textures(14, 2048);
+    let allowed = 4 * bytes.len() + (256 << 20);
+    let file = Temporary::new("images.glb", &bytes);
+    let heights = Preparation { heights: Some(HeightSource::Materials), ..Preparation::default() };
+    let memory = Limits::default().memory;
+    assert!(loaded(&file, &Preparation::default(), memory).0.is_ok());
+    let (result, took) = loaded(&file, &heights, memory);
+    assert!(took <= allowed, "{took} of {allowed} bytes");
+    let said = result.map(|_| ()).expect_err("500 MB").to_string();
+    assert!(said.contains("heights of ") && said.contains("'s 14 images would take 5"), "{said}");
+    assert!(said.ends_with("(--max-memory allows more); scale them down, or name one height image"), "{said}");
+    let (result, took) = loaded(&file, &heights, 1 << 30);
+    assert!(result.is_ok() && took > 400 << 20, "{took}");
+}
