@@ -1,6 +1,8 @@
 //! Everything that a picture is a function of, besides mesh and camera. The window edits it, commands parse into it.
 
 mod overlays;
+#[cfg(test)]
+pub mod random;
 
 use clap::ValueEnum;
 use glam::{Mat4, Vec2};

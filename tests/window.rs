@@ -8,6 +8,8 @@ mod chart;
 mod deviation;
 #[path = "window/driver.rs"]
 mod driver;
+#[path = "window/editing.rs"]
+mod editing;
 #[path = "window/lasting.rs"]
 mod lasting;
 #[path = "window/lists.rs"]

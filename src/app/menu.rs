@@ -12,10 +12,13 @@ use crate::tessellate::{Edges, Lod};
 
 const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
 const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
+const COPY: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::K);
+const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
 pub(super) const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 34] = [
+pub const KEYS: [(&str, &str); 37] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -48,6 +51,9 @@ pub const KEYS: [(&str, &str); 34] = [
     ("R", "reload the file"),
     ("Ctrl+O", "open a file"),
     ("Ctrl+L", "type a path to open"),
+    ("Ctrl+Z", "undo a setting"),
+    ("Ctrl+Shift+Z", "redo it"),
+    ("Ctrl+K", "copy the command that draws this picture"),
     ("Esc", "cancel loading, close a message, deselect"),
     ("Ctrl+Q", "quit"),
 ];
@@ -75,6 +81,7 @@ impl App {
     pub(super) fn menu_bar(&mut self, ui: &mut egui::Ui) {
         egui::MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| self.file_menu(ui));
+            ui.menu_button("Edit", |ui| self.edit_menu(ui));
             ui.menu_button("View", |ui| self.view_menu(ui));
             ui.menu_button("Help", |ui| {
                 if ui.button("Keys…").clicked() {
@@ -142,6 +149,24 @@ impl App {
         }
     }
 
+    fn edit_menu(&mut self, ui: &mut egui::Ui) {
+        let entry = |ui: &mut egui::Ui, text: &str, shortcut: &KeyboardShortcut, is_enabled: bool, hover: &str| {
+            let button = egui::Button::new(text).shortcut_text(ui.ctx().format_shortcut(shortcut));
+            ui.add_enabled(is_enabled, button).on_hover_text(hover).clicked()
+        };
+        if entry(ui, "Undo", &UNDO, self.can_undo(), "Goes back to the settings before the last change.") {
+            self.undo();
+        }
+        if entry(ui, "Redo", &REDO, self.can_redo(), "Goes forward to the settings that were undone.") {
+            self.redo();
+        }
+        ui.separator();
+        let hover = "Copies the pnaen command that draws this picture without a window.";
+        if entry(ui, "Copy as command", &COPY, self.document.is_some(), hover) {
+            self.copy_command(ui.ctx());
+        }
+    }
+
     fn view_menu(&mut self, ui: &mut egui::Ui) {
         let entry =
             |ui: &mut egui::Ui, text: &str, key: &str| ui.add(egui::Button::new(text).shortcut_text(key)).clicked();
@@ -205,6 +230,7 @@ impl App {
                 self.error = None;
                 self.typed = None;
                 self.shows_keys = false;
+                self.command = None;
                 self.deselect();
             }
         }
@@ -223,6 +249,7 @@ impl App {
         if asks || context.egui_wants_keyboard_input() {
             return;
         }
+        self.edit_keys(context);
         self.overlay_keys(context);
         self.camera_keys(context);
         let steps = presses(context, Key::Plus) + presses(context, Key::Equals) - presses(context, Key::Minus);
@@ -252,6 +279,19 @@ impl App {
         if pressed(context, Key::E) {
             let published = self.settings.edges == Edges::AsPublished;
             self.settings.set_edges(if published { Edges::PerEdge } else { Edges::AsPublished });
+        }
+    }
+
+    /// The longer shortcut first: the other one is taken with Shift as well.
+    fn edit_keys(&mut self, context: &egui::Context) {
+        if context.input_mut(|input| input.consume_shortcut(&REDO)) {
+            self.redo();
+        }
+        if context.input_mut(|input| input.consume_shortcut(&UNDO)) {
+            self.undo();
+        }
+        if context.input_mut(|input| input.consume_shortcut(&COPY)) {
+            self.copy_command(context);
         }
     }
 

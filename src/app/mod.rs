@@ -15,6 +15,7 @@ mod document;
 mod facts;
 mod farewell;
 mod heights;
+mod history;
 mod labels;
 mod lasting;
 mod left;
@@ -56,6 +57,7 @@ use chart::Chart;
 use deviating::Deviating;
 use document::{Document, Load};
 use farewell::Farewell;
+use history::History;
 use left::Left;
 use lost::Losses;
 use marked::Marked;
@@ -110,6 +112,9 @@ pub struct App {
     losses: Losses,
     /// In place of all else, once the device isn't replaced any more.
     farewell: Option<Farewell>,
+    history: History,
+    /// The command that was copied, while it is shown.
+    command: Option<String>,
     /// What went wrong last, until it is closed.
     error: Option<String>,
 }
@@ -152,6 +157,8 @@ impl App {
             lasting: Lasting::default(),
             losses: Losses::default(),
             farewell: None,
+            history: History::default(),
+            command: None,
             error: None,
         };
         app.open(&context.egui_ctx, source.unwrap_or_default());
@@ -271,6 +278,7 @@ impl eframe::App for App {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
         self.hold_chart();
+        self.note_settings(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {
             // egui can't paint what was just made of it.

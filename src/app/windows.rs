@@ -6,6 +6,7 @@ use super::beside::Beside;
 use super::menu::KEYS;
 use super::typed::{Dialog, Purpose};
 use super::{App, desktop};
+use crate::cli::Shown;
 
 /// Ends of names of files that hold meshes.
 pub(super) const MESHES: [&str; 5] = ["gltf", "glb", "obj", "stl", "ply"];
@@ -47,6 +48,7 @@ impl App {
             });
         });
         self.shows_keys = open;
+        self.command_window(context);
         let Some(error) = &self.error else { return };
         let mut closed = false;
         let anchor = (egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0));
@@ -57,6 +59,44 @@ impl App {
         });
         if closed {
             self.error = None;
+        }
+    }
+}
+
+impl App {
+    /// Copies the command that draws what is shown, and shows it.
+    pub(super) fn copy_command(&mut self, context: &egui::Context) {
+        let Some(document) = &self.document else { return };
+        let clips = document.loaded.mesh.rig.as_deref().map_or(&[][..], |rig| &rig.clips);
+        let shown = Shown {
+            source: &document.loaded.source,
+            preparation: &document.loaded.preparation,
+            settings: &self.settings,
+            camera: &self.camera,
+            radius: document.scene.bounds.radius(),
+            size: self.viewport.size().to_array().map(|side| side as u32),
+            animation: self.moment().map(|moment| (&*clips[moment.clip].name, moment.time)),
+            truth: self.truth.as_ref().map(|truth| &truth.source),
+            triangle: self.selected_triangle(),
+        };
+        let command = shown.command();
+        context.copy_text(command.clone());
+        self.command = Some(command);
+    }
+
+    fn command_window(&mut self, context: &egui::Context) {
+        let Some(command) = &self.command else { return };
+        let mut is_open = true;
+        let window = egui::Window::new("Copied").open(&mut is_open).resizable(false).collapsible(false);
+        window.anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0)).default_width(520.0).show(context, |ui| {
+            ui.label("This command draws the picture without a window:");
+            ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap().selectable(true));
+            if self.frozen.is_some() {
+                ui.weak("Its LOD is for this camera, not for the frozen one.");
+            }
+        });
+        if !is_open {
+            self.command = None;
         }
     }
 }

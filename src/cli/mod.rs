@@ -18,6 +18,7 @@ mod stability;
 mod stats;
 mod tessellate;
 mod truth;
+mod written;
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -36,6 +37,7 @@ pub use given::GivenOption;
 pub use options::{LimitOption, SurfaceOptions, WeldOption};
 pub use split::SplitOption;
 pub use truth::TruthOption;
+pub use written::Shown;
 
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;

@@ -16,8 +16,8 @@ use crate::settings::{ARENA_BYTES, Settings, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, fit_budget};
 
 pub use values::{
-    CameraOption, Distances, Size, color, factor, fraction, height_scale, model, partitioning, picture, pixels, source,
-    threshold, tolerance,
+    CameraOption, Distances, Place, Size, color, factor, fraction, height_scale, model, partitioning, picture, pixels,
+    source, threshold, tolerance,
 };
 
 use values::{alpha, bytes, rim, weld};
@@ -99,6 +99,12 @@ pub struct SurfaceOptions {
     /// far as shows all)
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
     pub camera: CameraOption,
+    /// Look at this place, in object units (by default at the middle of all that is shown)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub target: Option<Place>,
+    /// No perspective
+    #[arg(long)]
+    pub orthographic: bool,
 }
 
 impl Default for SurfaceOptions {
@@ -232,6 +238,8 @@ impl SurfaceOptions {
         if let Some(radii) = self.camera.distance {
             camera.distance = radii * bounds.radius();
         }
+        camera.target = self.target.map_or(camera.target, |place| place.0);
+        camera.orthographic = self.orthographic;
         camera
     }
 

@@ -110,6 +110,14 @@ impl Overlays {
         }
     }
 
+    /// Those that are on.
+    pub fn on(mut self) -> impl Iterator<Item = Overlay> {
+        Overlay::ALL.into_iter().filter(move |overlay| match self.control(*overlay) {
+            Control::Switch(switch) => *switch,
+            Control::Colors(colors, own) => *colors == own,
+        })
+    }
+
     /// These overlays on, all others off; none if two of them colour the surface.
     pub fn of(overlays: &[Overlay]) -> Option<Self> {
         let mut all = Self::default();

@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use super::kept::Fields;
 use crate::settings::{
-    ALPHA_RANGE, Control, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, MIDLEVEL_RANGE, Overlay, Overlays, PIXELS_RANGE,
-    Settings, TOLERANCE_RANGE, option_name,
+    ALPHA_RANGE, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, MIDLEVEL_RANGE, Overlay, Overlays, PIXELS_RANGE, Settings,
+    TOLERANCE_RANGE, option_name,
 };
 
 /// Every field but what displaces a mesh, which is bound to it.
@@ -52,7 +52,7 @@ pub fn written_settings(settings: &Settings) -> Value {
         "convention": option_name(*convention),
         "height_scale": height_scale,
         "midlevel": midlevel,
-        "overlays": written_overlays(*overlays),
+        "overlays": overlays.on().map(option_name).collect::<Vec<_>>(),
         "deviation_in": option_name(*deviation_in),
         "split": split,
         "split_surface": split_surface.map(option_name),
@@ -94,14 +94,6 @@ pub fn read_settings(value: &Value) -> Settings {
         split_surface: fields.choice_of("split_surface"),
         background: read_color(&value["background"]).unwrap_or(opening.background),
     }
-}
-
-fn written_overlays(mut overlays: Overlays) -> Vec<String> {
-    let is_on = |overlay: &Overlay| match overlays.control(*overlay) {
-        Control::Switch(switch) => *switch,
-        Control::Colors(colors, own) => *colors == own,
-    };
-    Overlay::ALL.into_iter().filter(is_on).map(option_name).collect()
 }
 
 /// Those that are known; none if two of them colour the surface.

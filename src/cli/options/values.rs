@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
+use glam::Vec3;
 
 use crate::mesh::Source;
 use crate::mesh::rim::WIDEST;
@@ -98,6 +99,21 @@ impl FromStr for CameraOption {
             }
             _ => Err("expected AZIMUTH,ELEVATION in degrees and perhaps a DISTANCE above 0 in bounding radii, such as 30,20,2.5".into()),
         }
+    }
+}
+
+/// A place in object units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place(pub Vec3);
+
+impl FromStr for Place {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f32>> =
+            text.split(',').map(|number| number.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
+        let place = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
+        place.map(|place| Self(place.into())).ok_or_else(|| "expected X,Y,Z in object units, such as 0,1.5,0".into())
     }
 }
 

@@ -1,0 +1,117 @@
+//! Settings as they were: undo and redo.
+
+use std::collections::VecDeque;
+
+use super::App;
+use crate::settings::Settings;
+
+/// Steps back, at most.
+const MOST: usize = 200;
+
+/// What settings were before they changed, and after.
+#[derive(Default)]
+pub struct History {
+    /// None before there is a window.
+    now: Option<Settings>,
+    past: VecDeque<Settings>,
+    future: Vec<Settings>,
+}
+
+impl History {
+    /// Takes note of settings that have come to rest: what changes while a pointer drags is one step.
+    fn note(&mut self, settings: &Settings) {
+        let before = self.now.replace(*settings);
+        let Some(before) = before.filter(|before| before != settings) else { return };
+        self.past.push_back(before);
+        if self.past.len() > MOST {
+            self.past.pop_front();
+        }
+        self.future.clear();
+    }
+
+    fn undo(&mut self, settings: &Settings) -> Option<Settings> {
+        self.note(settings);
+        let before = self.past.pop_back()?;
+        self.future.extend(self.now.replace(before));
+        Some(before)
+    }
+
+    fn redo(&mut self, settings: &Settings) -> Option<Settings> {
+        self.note(settings);
+        let after = self.future.pop()?;
+        self.past.extend(self.now.replace(after));
+        Some(after)
+    }
+}
+
+impl App {
+    /// At the end of every frame.
+    pub(super) fn note_settings(&mut self, context: &egui::Context) {
+        if !context.egui_is_using_pointer() {
+            self.history.note(&self.settings);
+        }
+    }
+
+    pub(super) fn can_undo(&self) -> bool {
+        !self.history.past.is_empty()
+    }
+
+    pub(super) fn can_redo(&self) -> bool {
+        !self.history.future.is_empty()
+    }
+
+    /// Goes back to the settings before the last change.
+    pub fn undo(&mut self) {
+        let before = self.history.undo(&self.settings);
+        self.take_back(before);
+    }
+
+    /// Goes forward to those that [`Self::undo`] left.
+    pub fn redo(&mut self) {
+        let after = self.history.redo(&self.settings);
+        self.take_back(after);
+    }
+
+    fn take_back(&mut self, settings: Option<Settings>) {
+        let Some(settings) = settings else { return };
+        // Displacement is bound to the heights that there are, which no setting brings back.
+        let displacement = match self.document.as_ref().and_then(|document| document.loaded.mesh.heights.as_ref()) {
+            Some(_) => settings.displacement,
+            None => self.settings.displacement,
+        };
+        self.settings = Settings { displacement, ..settings };
+        self.history.now = Some(self.settings);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(factor: f32) -> Settings {
+        Settings { factor, ..Settings::default() }
+    }
+
+    #[test]
+    fn steps_go_back_and_forward_until_something_else_changes() {
+        let mut history = History::default();
+        [1.0, 2.0, 2.0, 3.0].map(of).iter().for_each(|settings| history.note(settings));
+        assert_eq!(history.undo(&of(3.0)), Some(of(2.0)));
+        assert_eq!(history.undo(&of(2.0)), Some(of(1.0)));
+        assert_eq!(history.undo(&of(1.0)), None);
+        assert_eq!(history.redo(&of(1.0)), Some(of(2.0)));
+        // What nobody has noted yet is a step too.
+        assert_eq!(history.undo(&of(7.0)), Some(of(2.0)));
+        assert_eq!(history.redo(&of(2.0)), Some(of(7.0)));
+        history.note(&of(8.0));
+        assert_eq!(history.redo(&of(8.0)), None);
+        assert_eq!(history.undo(&of(8.0)), Some(of(7.0)));
+    }
+
+    #[test]
+    fn there_is_an_end_to_it() {
+        let mut history = History::default();
+        (0..2 * MOST).for_each(|i| history.note(&of(i as f32)));
+        assert_eq!((history.past.len(), history.past[0]), (MOST, of((MOST - 1) as f32)));
+    }
+}

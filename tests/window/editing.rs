@@ -1,0 +1,125 @@
+//! Undo and redo, and the command that draws what is shown.
+
+use std::process::Command;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, OutputCommand};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
+use pnaen::measure::compare;
+use pnaen::mesh::{Shape, Source};
+use pnaen::tessellate::{Lod, Surface};
+
+use crate::{choose, click, press, settle, uniform, vase, window};
+
+fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    settle(harness);
+}
+
+#[test]
+fn settings_go_back_and_forward() {
+    let mut harness = window(None);
+    let first = *harness.state().settings();
+    choose(&mut harness, "Surface", "PN");
+    press(&mut harness, Key::W);
+    choose(&mut harness, "LOD", "Uniform");
+    let last = *harness.state().settings();
+    assert_eq!((last.surface, last.lod, last.overlays.wireframe), (Surface::Pn, Lod::Uniform, false));
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    let between = *harness.state().settings();
+    assert_eq!((between.surface, between.lod, between.overlays.wireframe), (Surface::Pn, first.lod, true));
+    click(&mut harness, "Edit");
+    harness.get_by_label_contains("Undo").click();
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), first);
+    assert_eq!(harness.state().cracks().map(|cracks| cracks.edges.len()), Some(0), "and it is drawn again");
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().settings(), first, "there is nothing before");
+    for _ in 0..3 {
+        press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    }
+    assert_eq!(*harness.state().settings(), last);
+    // A mesh is not a setting.
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    let before = *harness.state().settings();
+    let context = harness.ctx.clone();
+    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    assert_eq!((*harness.state().settings(), harness.state().source()), (before, Some(&Source::Shape(Shape::Torus))));
+    press(&mut harness, Key::C);
+    press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    assert!(harness.state().settings().overlays.cracks, "what was undone is gone once something else has changed");
+}
+
+#[test]
+fn a_drag_is_one_step() {
+    let mut harness = uniform(None);
+    let before = harness.state().settings().factor;
+    let slider = harness.get_by_role_and_label(Role::Slider, "Factor").rect();
+    harness.drag_at(slider.center());
+    for x in [10.0, 20.0, 25.0] {
+        harness.run_steps(2);
+        harness.hover_at(slider.center() + egui::vec2(x, 0.0));
+    }
+    harness.run_steps(2);
+    harness.drop_at(slider.center() + egui::vec2(25.0, 0.0));
+    settle(&mut harness);
+    assert_ne!(harness.state().settings().factor, before);
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(harness.state().settings().factor, before);
+}
+
+/// The command that the menu copies, which is shown.
+fn copied(harness: &mut Harness<App>) -> String {
+    click(harness, "Edit");
+    harness.get_by_label_contains("Copy as command").click();
+    harness.step();
+    let commands = &harness.output().platform_output.commands;
+    let copied = commands.iter().find_map(|command| match command {
+        OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    settle(harness);
+    let command = copied.expect("a command");
+    assert!(harness.query_by_label(&command).is_some(), "it is shown");
+    press(harness, Key::Escape);
+    assert!(harness.query_by_label(&command).is_none());
+    press_with(harness, Modifiers::COMMAND, Key::K);
+    assert!(harness.query_by_label(&command).is_some(), "the key does the same");
+    command
+}
+
+/// Runs a command in a folder of its own, and holds its picture against the window's.
+fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
+    let folder = std::env::temp_dir().join(format!("pnaen-editing-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a writable temporary folder");
+    let line = command.replacen("pnaen ", concat!("'", env!("CARGO_BIN_EXE_pnaen"), "' "), 1);
+    let output = Command::new("sh").args(["-c", &line]).current_dir(&folder).output().expect("a shell");
+    assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+    let drawn = image::open(folder.join(format!("{name}.png"))).expect("a picture").to_rgba8();
+    let shown = harness.state().read_picture().expect("a device").expect("a picture");
+    std::fs::remove_dir_all(&folder).expect("removed");
+    let difference = compare(&drawn, &shown).expect("one size").difference;
+    // The camera's distance is written in bounding radii, which rounds its last bit.
+    assert!(difference < 1e-3, "{command}: {difference}");
+}
+
+#[test]
+fn the_copied_command_draws_what_is_shown() {
+    let mut harness = window(Some(vase()));
+    choose(&mut harness, "Surface", "Phong");
+    choose(&mut harness, "Colours", "Barycentric");
+    press(&mut harness, Key::A);
+    press(&mut harness, Key::S);
+    for key in [Key::ArrowLeft, Key::ArrowUp, Key::Num5] {
+        press(&mut harness, key);
+    }
+    press_with(&mut harness, Modifiers::SHIFT, Key::ArrowRight);
+    let command = copied(&mut harness);
+    assert!(command.contains("--surface phong ") && command.contains("--split 0.5 "), "{command}");
+    assert!(command.contains("--overlay wireframe,barycentric,adjacency "), "{command}");
+    assert_draws(&harness, &command, "vase");
+}
