@@ -70,8 +70,9 @@ pub fn style(context: &egui::Context) {
         style.spacing.combo_width = 148.0;
         style.interaction.tooltip_delay = 0.4;
     });
-    // Pale on white as it comes: boxes and tracks get an outline.
+    // Pale on white as it comes: boxes and tracks get an outline, and warnings are dark enough to be read.
     context.style_mut_of(egui::Theme::Light, |style| {
+        style.visuals.warn_fg_color = egui::Color32::from_rgb(150, 75, 0);
         style.visuals.widgets.inactive.bg_stroke = egui::Stroke::new(1.0, egui::Color32::from_gray(165));
         style.visuals.weak_text_color = Some(egui::Color32::from_gray(95));
     });
