@@ -15,10 +15,11 @@ const OPEN_PATH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Ke
 const COPY: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::K);
 const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
 const REDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+const SEARCH: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::P);
 pub(super) const QUIT: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Q);
 
 /// Every key, and what it does; shown under Help, and listed in the README.
-pub const KEYS: [(&str, &str); 37] = [
+pub const KEYS: [(&str, &str); 38] = [
     ("Click", "select the triangle, its patch and its nearest edge"),
     ("Left drag, arrows", "orbit"),
     ("Middle or Shift drag, Shift arrows", "pan"),
@@ -51,6 +52,7 @@ pub const KEYS: [(&str, &str); 37] = [
     ("R", "reload the file"),
     ("Ctrl+O", "open a file"),
     ("Ctrl+L", "type a path to open"),
+    ("Ctrl+P", "search commands"),
     ("Ctrl+Z", "undo a setting"),
     ("Ctrl+Shift+Z", "redo it"),
     ("Ctrl+K", "copy the command that draws this picture"),
@@ -85,6 +87,11 @@ impl App {
             ui.menu_button("Edit", |ui| self.edit_menu(ui));
             ui.menu_button("View", |ui| self.view_menu(ui));
             ui.menu_button("Help", |ui| {
+                let search = egui::Button::new("Search commands…").shortcut_text(ui.ctx().format_shortcut(&SEARCH));
+                if ui.add(search).on_hover_text("Everything that can be done, by name.").clicked() {
+                    self.search_commands();
+                    ui.close();
+                }
                 if ui.button("Keys…").clicked() {
                     self.shows_keys = true;
                     ui.close();
@@ -223,7 +230,9 @@ impl App {
     pub(super) fn shortcuts(&mut self, context: &egui::Context) {
         // A list that is open takes the key for itself.
         if context.input(|input| input.key_pressed(Key::Escape)) && !egui::Popup::is_any_open(context) {
-            if self.load.is_none() && self.viewport.is_long() {
+            if self.palette.take().is_some() {
+                // Only that.
+            } else if self.load.is_none() && self.viewport.is_long() {
                 self.viewport.cancel();
             } else {
                 self.load = None;
@@ -246,7 +255,12 @@ impl App {
         if context.input_mut(|input| input.consume_shortcut(&QUIT)) {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
-        let asks = self.typed.is_some() || self.dialog.as_ref().is_some_and(|dialog| dialog.is_new(context));
+        if context.input_mut(|input| input.consume_shortcut(&SEARCH)) {
+            self.search_commands();
+        }
+        let asks = self.typed.is_some()
+            || self.palette.is_some()
+            || self.dialog.as_ref().is_some_and(|dialog| dialog.is_new(context));
         if asks || context.egui_wants_keyboard_input() {
             return;
         }

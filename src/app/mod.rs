@@ -26,6 +26,7 @@ mod marked;
 mod measuring;
 mod menu;
 mod names;
+mod palette;
 mod panels;
 mod patch;
 mod pattern;
@@ -62,6 +63,7 @@ use left::Left;
 use lost::Losses;
 use marked::Marked;
 use measuring::Measuring;
+use palette::Palette;
 use pick::Selection;
 use picture::Viewport;
 use truth::{Chosen, TruthLoad};
@@ -113,6 +115,8 @@ pub struct App {
     /// In place of all else, once the device isn't replaced any more.
     farewell: Option<Farewell>,
     history: History,
+    /// While commands are searched.
+    palette: Option<Palette>,
     /// The command that was copied, while it is shown.
     command: Option<String>,
     /// What went wrong last, until it is closed.
@@ -158,6 +162,7 @@ impl App {
             losses: Losses::default(),
             farewell: None,
             history: History::default(),
+            palette: None,
             command: None,
             error: None,
         };

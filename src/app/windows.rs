@@ -49,6 +49,7 @@ impl App {
         });
         self.shows_keys = open;
         self.command_window(context);
+        self.palette_window(context);
         let Some(error) = &self.error else { return };
         let mut closed = false;
         let anchor = (egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0));

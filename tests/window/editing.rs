@@ -1,4 +1,4 @@
-//! Undo and redo, and the command that draws what is shown.
+//! Undo and redo, the command that draws what is shown, and the search for commands.
 
 use std::process::Command;
 
@@ -122,4 +122,37 @@ fn the_copied_command_draws_what_is_shown() {
     assert!(command.contains("--surface phong ") && command.contains("--split 0.5 "), "{command}");
     assert!(command.contains("--overlay wireframe,barycentric,adjacency "), "{command}");
     assert_draws(&harness, &command, "vase");
+}
+
+#[test]
+fn commands_are_found_by_typing_a_part_of_them() {
+    let mut harness = window(None);
+    press_with(&mut harness, Modifiers::COMMAND, Key::P);
+    harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("surf aen");
+    settle(&mut harness);
+    harness.get_by_label("Surface: PN-AEN");
+    assert!(harness.query_by_label("Surface: Flat").is_none());
+    for key in [Key::ArrowDown, Key::ArrowDown, Key::ArrowUp, Key::Enter] {
+        press(&mut harness, key);
+    }
+    assert_eq!(harness.state().settings().surface, Surface::PhongAen);
+    assert!(harness.query_by_label("Search commands").is_none(), "it closes");
+    // From the menu, with a click; letters that are keys are letters here.
+    click(&mut harness, "Help");
+    harness.get_by_label_contains("Search commands").click();
+    settle(&mut harness);
+    let before = *harness.state().settings();
+    harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("wire");
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), before);
+    click(&mut harness, "Overlay: Wireframe");
+    assert!(!harness.state().settings().overlays.wireframe);
+    press_with(&mut harness, Modifiers::COMMAND, Key::P);
+    press(&mut harness, Key::Escape);
+    assert!(harness.query_by_label("Search commands").is_none());
+    press_with(&mut harness, Modifiers::COMMAND, Key::P);
+    harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("torus");
+    settle(&mut harness);
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
 }
