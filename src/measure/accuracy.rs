@@ -121,8 +121,7 @@ impl<'a> Measurement<'a> {
         let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
         let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
         let corners = |triangle: &[u32; 3]| triangle.map(|index| Vec3::from(vertices[index as usize].position));
-        let positions: Vec<[Vec3; 3]> = triangles.iter().map(corners).collect();
-        let Some(tree) = Triangles::new(&positions) else { return };
+        let Some(tree) = Triangles::new(triangles.iter().map(corners)) else { return };
         self.take_triangles(vertices, &triangles);
         let samples = std::mem::take(&mut self.samples);
         self.samples = blocks(samples.len(), self.options.threads, |range| {

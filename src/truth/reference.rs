@@ -1,17 +1,20 @@
 //! A mesh as the truth: the high-poly original, say.
 
+use std::sync::Arc;
+
 use glam::{DVec3, Vec3};
 
 use super::spread::{find, radical_inverse};
 use super::triangles::{Closest, Triangles};
 use super::{Nearest, ON_CREASE, Sample};
-use crate::mesh::Mesh;
+use crate::mesh::{Corner, Mesh};
 
 /// A mesh's triangles as they are, with their normals interpolated as they are shaded.
 pub struct Reference {
     triangles: Triangles,
-    corners: Vec<[Vec3; 3]>,
-    normals: Vec<[Vec3; 3]>,
+    /// The mesh's, with the corners of each of its triangles.
+    corners: Vec<Corner>,
+    faces: Arc<Vec<[u32; 3]>>,
     /// Area up to the end of each triangle.
     areas: Vec<f64>,
     diagonal: f64,
@@ -20,17 +23,19 @@ pub struct Reference {
 impl Reference {
     /// None if there is no triangle.
     pub fn new(mesh: &Mesh) -> Option<Self> {
-        let of = |triangle: &[u32; 3]| triangle.map(|corner| mesh.corners[corner as usize]);
-        let corners: Vec<_> =
-            mesh.triangles.iter().map(|triangle| of(triangle).map(|corner| corner.position)).collect();
-        let normals = mesh.triangles.iter().map(|triangle| of(triangle).map(|corner| corner.normal)).collect();
-        let triangles = Triangles::new(&corners)?;
-        let areas = corners.iter().scan(0.0, |sum, triangle| {
-            *sum += cross(triangle).length() / 2.0;
+        let (corners, faces) = (mesh.corners.clone(), mesh.triangles.clone());
+        let of = |triangle: &[u32; 3]| triangle.map(|corner| corners[corner as usize].position);
+        let triangles = Triangles::new(faces.iter().map(of))?;
+        let areas = faces.iter().scan(0.0, |sum, triangle| {
+            *sum += cross(&of(triangle)).length() / 2.0;
             Some(*sum)
         });
         let (areas, [min, max]) = (areas.collect(), triangles.extent());
-        Some(Self { triangles, normals, areas, diagonal: min.distance(max), corners })
+        Some(Self { triangles, areas, diagonal: min.distance(max), corners, faces })
+    }
+
+    fn triangle(&self, index: usize) -> [Corner; 3] {
+        self.faces[index].map(|corner| self.corners[corner as usize])
     }
 
     pub(super) fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
@@ -52,9 +57,12 @@ impl Reference {
 
     /// The shading normal; where that has no direction the face's, and of a face that has none a corner's.
     fn normal(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
-        let normals = self.normals[triangle].map(Vec3::as_dvec3);
+        let corners = self.triangle(triangle);
+        let normals = corners.map(|corner| corner.normal.as_dvec3());
         let sum: DVec3 = (0..3).map(|i| normals[i] * weights[i]).sum();
-        sum.try_normalize().or_else(|| cross(&self.corners[triangle]).try_normalize()).unwrap_or(normals[0])
+        sum.try_normalize()
+            .or_else(|| cross(&corners.map(|corner| corner.position)).try_normalize())
+            .unwrap_or(normals[0])
     }
 
     /// So many points, spread evenly by area.
@@ -65,7 +73,8 @@ impl Reference {
             let (x, y) = (radical_inverse(2, i), radical_inverse(3, i));
             let (b, c) = if x + y > 1.0 { (1.0 - x, 1.0 - y) } else { (x, y) };
             let weights = [1.0 - b - c, b, c];
-            let point = (0..3).map(|k| self.corners[triangle][k].as_dvec3() * weights[k]).sum();
+            let corners = self.triangle(triangle);
+            let point = (0..3).map(|k| corners[k].position.as_dvec3() * weights[k]).sum();
             Sample { point, normal: self.normal(triangle, weights) }
         };
         (0..count).map(sample).collect()

@@ -40,14 +40,12 @@ impl Boundable for Bounded {
 
 impl Triangles {
     /// Corners of triangles; none if there is no triangle. Coordinates must be finite.
-    pub fn new(triangles: &[[Vec3; 3]]) -> Option<Self> {
-        if triangles.is_empty() {
-            return None;
-        }
-        let largest = triangles.iter().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);
+    pub fn new(triangles: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
+        triangles.clone().next()?;
+        let largest = triangles.clone().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);
         let scale = if largest > 0.0 { f64::from(largest).log2().floor().exp2().recip() } else { 1.0 };
         let scaled = |corner: Vec3| (corner.as_dvec3() * scale).as_vec3();
-        let bounded: Vec<Bounded> = triangles.iter().map(|triangle| Bounded(triangle.map(scaled))).collect();
+        let bounded: Vec<Bounded> = triangles.map(|triangle| Bounded(triangle.map(scaled))).collect();
         let tree = build_bvh2(&bounded, BvhBuildParams::very_fast_build(), &mut Duration::default());
         let corners = tree.primitive_indices.iter().map(|triangle| bounded[*triangle as usize].0).collect();
         Some(Self { tree, corners, scale })
