@@ -50,12 +50,19 @@ impl App {
         self.prepare(context, |preparation| preparation.heights = heights);
     }
 
-    /// Another mesh is shown, or the same with other heights: first ones displace it.
+    /// Another mesh is shown, or the same with other heights: first ones displace it, and without any nothing does.
     pub(super) fn take_heights(&mut self, before: Option<&HeightSource>) {
-        let has_new = self.document.as_ref().is_some_and(|document| document.loaded.preparation.heights.is_some());
-        if has_new && before.is_none() {
-            self.settings.displacement = Displacement::On;
-        }
+        self.settings.displacement = match (self.has_heights(), before) {
+            (true, None) => Displacement::On,
+            (true, Some(_)) => return,
+            (false, _) => Displacement::Off,
+        };
+        // Nobody set it, so nobody takes it back.
+        self.history.displace(self.settings.displacement);
+    }
+
+    fn has_heights(&self) -> bool {
+        self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some())
     }
 
     /// The image's row; and while there is one, what is done with it.
@@ -89,12 +96,15 @@ impl App {
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
             self.displace(ui.ctx(), chosen);
         }
-        if self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some()) {
+        if self.has_heights() {
             self.displacement_rows(ui);
         }
     }
 
     pub(super) fn toggle_displacement(&mut self) {
+        if !self.has_heights() {
+            return;
+        }
         let last = std::mem::replace(&mut self.last_displacement, self.settings.displacement);
         self.settings.displacement = match self.settings.displacement {
             Displacement::Off if last == Displacement::Off => Displacement::On,

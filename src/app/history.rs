@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use super::App;
 use crate::settings::Settings;
+use crate::tessellate::Displacement;
 
 /// Steps back, at most.
 const MOST: usize = 200;
@@ -27,6 +28,12 @@ impl History {
             self.past.pop_front();
         }
         self.future.clear();
+    }
+
+    /// All of them are displaced like this: what the mesh does is no step.
+    pub(super) fn displace(&mut self, displacement: Displacement) {
+        let all = self.now.iter_mut().chain(&mut self.past).chain(&mut self.future);
+        all.for_each(|settings| settings.displacement = displacement);
     }
 
     fn undo(&mut self, settings: &Settings) -> Option<Settings> {
@@ -73,14 +80,7 @@ impl App {
     }
 
     fn take_back(&mut self, settings: Option<Settings>) {
-        let Some(settings) = settings else { return };
-        // Displacement is bound to the heights that there are, which no setting brings back.
-        let displacement = match self.document.as_ref().and_then(|document| document.loaded.mesh.heights.as_ref()) {
-            Some(_) => settings.displacement,
-            None => self.settings.displacement,
-        };
-        self.settings = Settings { displacement, ..settings };
-        self.history.now = Some(self.settings);
+        self.settings = settings.unwrap_or(self.settings);
     }
 }
 

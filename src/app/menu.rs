@@ -72,6 +72,10 @@ pub fn style(context: &egui::Context) {
         style.spacing.combo_width = 148.0;
         style.interaction.tooltip_delay = 0.4;
     });
+    // Dim on black as it comes.
+    context.style_mut_of(egui::Theme::Dark, |style| {
+        style.visuals.weak_text_color = Some(egui::Color32::from_gray(135));
+    });
     // Pale on white as it comes: boxes and tracks get an outline, and warnings are dark enough to be read.
     context.style_mut_of(egui::Theme::Light, |style| {
         style.visuals.warn_fg_color = egui::Color32::from_rgb(150, 75, 0);
@@ -230,7 +234,7 @@ impl App {
     pub(super) fn shortcuts(&mut self, context: &egui::Context) {
         // A list that is open takes the key for itself.
         if context.input(|input| input.key_pressed(Key::Escape)) && !egui::Popup::is_any_open(context) {
-            if self.palette.take().is_some() {
+            if self.palette.take().is_some() || self.command.take().is_some() {
                 // Only that.
             } else if self.load.is_none() && self.viewport.is_long() {
                 self.viewport.cancel();
@@ -240,7 +244,6 @@ impl App {
                 self.error = None;
                 self.typed = None;
                 self.shows_keys = false;
-                self.command = None;
                 self.deselect();
             }
         }

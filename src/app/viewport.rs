@@ -186,7 +186,7 @@ impl App {
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
         let response = ui.interact(reach, ui.scope_id().with("divider"), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Split divider"));
-        if response.dragged()
+        if response.dragged_by(PointerButton::Primary)
             && let Some(pointer) = response.interact_pointer_pos()
         {
             *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);

@@ -7,6 +7,7 @@ use super::menu::KEYS;
 use super::typed::{Dialog, Purpose};
 use super::{App, desktop};
 use crate::cli::Shown;
+use crate::mesh::{HeightSource, Source};
 
 /// Ends of names of files that hold meshes.
 pub(super) const MESHES: [&str; 5] = ["gltf", "glb", "obj", "stl", "ply"];
@@ -68,16 +69,23 @@ impl App {
     /// Copies the command that draws what is shown, and shows it.
     pub(super) fn copy_command(&mut self, context: &egui::Context) {
         let Some(document) = &self.document else { return };
-        let clips = document.loaded.mesh.rig.as_deref().map_or(&[][..], |rig| &rig.clips);
+        let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
+        let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
+        let source = anywhere(&document.loaded.source);
+        let truth = self.truth.as_ref().map(|truth| anywhere(&truth.source));
+        let mut preparation = document.loaded.preparation.clone();
+        if let Some(HeightSource::File(path)) = &mut preparation.heights {
+            *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
+        }
         let shown = Shown {
-            source: &document.loaded.source,
-            preparation: &document.loaded.preparation,
+            source: &source,
+            preparation: &preparation,
             settings: &self.settings,
             camera: &self.camera,
             radius: document.scene.bounds.radius(),
             size: self.viewport.size().to_array().map(|side| side as u32),
-            animation: self.moment().map(|moment| (&*clips[moment.clip].name, moment.time)),
-            truth: self.truth.as_ref().map(|truth| &truth.source),
+            animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
+            truth: truth.as_ref(),
             triangle: self.selected_triangle(),
         };
         let command = shown.command();
@@ -99,6 +107,14 @@ impl App {
         if !is_open {
             self.command = None;
         }
+    }
+}
+
+/// A source as it is called in every folder.
+fn anywhere(source: &Source) -> Source {
+    match source {
+        Source::File(path) => Source::File(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+        shape => shape.clone(),
     }
 }
 

@@ -33,7 +33,8 @@ impl Shown<'_> {
             Source::File(path) => path.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned()),
             Source::Shape(shape) | Source::FineShape(shape, _) => shape.to_string(),
         };
-        let picture = Source::File(format!("{name}.png").into());
+        // Not the name alone: a texture may have that.
+        let picture = Source::File(format!("{name}-view.png").into());
         let mut line = Line(format!("pnaen render {} -o {}", word(&named(self.source)), word(&named(&picture))));
         self.mesh(&mut line);
         self.surface(&mut line);
@@ -218,7 +219,7 @@ mod tests {
         let camera = Camera { azimuth: -30.0, distance: 5.0, ..camera() };
         let line = shown(&source, &preparation, &Settings::default(), &camera).command();
         let mesh = if cfg!(windows) { "\"my models/it's.glb\"" } else { r"'my models/it'\''s.glb'" };
-        let picture = if cfg!(windows) { "\"it's.png\"" } else { r"'it'\''s.png'" };
+        let picture = if cfg!(windows) { "\"it's-view.png\"" } else { r"'it'\''s-view.png'" };
         let view = "--size 640x480 --camera=-30,20,2.5 --target 0,0,0";
         assert_eq!(line, format!("pnaen render {mesh} -o {picture} {view}"));
     }

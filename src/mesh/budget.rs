@@ -44,10 +44,10 @@ impl Budget {
         Self { free: limits.memory, files: Cell::new(file), held: Cell::new(file), passing: Cell::new(0) }
     }
 
-    /// For what is made of a mesh that has been read, which is held: endless if it is from no file.
+    /// For what is made of a mesh, which is held.
     pub fn of_mesh(mesh: &Mesh, limits: &Limits) -> Self {
-        let Some(files) = mesh.file_bytes else { return Self::endless() };
-        Self { free: limits.memory, files: Cell::new(files), held: Cell::new(bytes_of(mesh)), passing: Cell::new(0) }
+        let (files, held) = (Cell::new(mesh.file_bytes), Cell::new(bytes_of(mesh)));
+        Self { free: limits.memory, files, held, passing: Cell::new(0) }
     }
 
     /// For what no file asks for.
@@ -128,7 +128,7 @@ impl Budget {
         }
         let (needed, allowed) = (needed.div_ceil(1 << 20), allowed >> 20);
         Err(format!(
-            "would take {needed} MiB of memory, and files of this size may take {allowed} MiB (--max-memory allows more)"
+            "would take at least {needed} MiB of memory, and files of this size may take {allowed} MiB (--max-memory allows more)"
         ))
     }
 }
@@ -158,7 +158,10 @@ mod tests {
         assert_eq!(budget.left(), free + (43 << 20));
         assert!(budget.borrow(free).is_ok() && budget.hold(43 << 20).is_ok());
         let said = budget.hold(1).unwrap_err();
-        assert!(said.contains("would take 301 MiB of memory, and files of this size may take 300 MiB"), "{said}");
+        assert!(
+            said.contains("would take at least 301 MiB of memory, and files of this size may take 300 MiB"),
+            "{said}"
+        );
         budget.pass(0);
         assert_eq!(budget.left(), free);
         assert!(budget.hold(u64::MAX).is_err());

@@ -142,7 +142,7 @@ impl<'a> Faces<'a> {
             ),
         ]));
         let (mut mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        mesh.file_bytes = Some(self.memory.files());
+        mesh.file_bytes = self.memory.files();
         mesh.warnings.splice(0..0, warnings);
         Ok(mesh)
     }

@@ -114,7 +114,7 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
     warnings.extend(mesh.repairs.warnings());
     mesh.warnings = warnings;
     mesh.files = files.named();
-    mesh.file_bytes = Some(budget.files());
+    mesh.file_bytes = budget.files();
     Ok(mesh)
 }
 

@@ -45,9 +45,9 @@ pub enum HeightError {
     )]
     TooMuch { path: PathBuf, size: [u32; 2], reason: String },
     #[error(
-        "{name} has no image to displace by: no material has a base colour image that can be read; name a height image"
+        "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"
     )]
-    NoImage { name: String },
+    NoImage { name: String, why: String },
     #[error("{name} has {count} images to displace by, and at most {MAX_MAPS} are taken; name one height image")]
     TooMany { name: String, count: usize },
     #[error("heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
@@ -163,7 +163,9 @@ impl Heights {
         let of_material = of_material.collect();
         let count = known.len();
         if count == 0 {
-            return Err(HeightError::NoImage { name: mesh.name.clone() });
+            let left_out = mesh.warnings.iter().find(|warning| warning.starts_with("the texture of "));
+            let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
+            return Err(HeightError::NoImage { name: mesh.name.clone(), why });
         }
         if count > MAX_MAPS {
             return Err(HeightError::TooMany { name: mesh.name.clone(), count });

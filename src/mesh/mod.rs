@@ -96,8 +96,8 @@ pub struct Mesh {
     pub rig: Option<Arc<rig::Rig>>,
     /// Files that its own names and that were read, wherever links led.
     pub files: Vec<PathBuf>,
-    /// Bytes of those and of the mesh's own; none if it was made in code.
-    pub file_bytes: Option<u64>,
+    /// Bytes of those and of the mesh's own; 0 if it was made in code.
+    pub file_bytes: u64,
 }
 
 /// What a patch looks like.

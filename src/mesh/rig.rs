@@ -152,12 +152,29 @@ impl fmt::Display for Moved {
 pub const LARGEST_COORDINATE: f32 = 1e37;
 
 impl Rig {
-    /// The clip of this name; of several, the first. Without one, the only clip of this name but for its case.
+    /// The clip of this name; of several, the first, and the second is `NAME#2`. Without one, the only clip of this name but for
+    /// its case.
     pub fn clip(&self, name: &str) -> Option<usize> {
-        let exact = self.clips.iter().position(|clip| clip.name == name);
+        let named = |name: &str, nth: usize| {
+            self.clips.iter().enumerate().filter(|(_, clip)| clip.name == name).nth(nth).map(|(index, _)| index)
+        };
+        let of_several = || {
+            let (name, number) = name.rsplit_once('#')?;
+            named(name, number.parse::<usize>().ok()?.checked_sub(1)?)
+        };
+        let exact = named(name, 0).or_else(of_several);
         let alike = |clip: &Clip| clip.name.to_lowercase() == name.to_lowercase();
         let only = || self.clips.iter().filter(|clip| alike(clip)).count() == 1;
         exact.or_else(|| self.clips.iter().position(alike).filter(|_| only()))
+    }
+
+    /// The name by which [`Self::clip`] finds a clip.
+    pub fn clip_name(&self, clip: usize) -> String {
+        let name = &self.clips[clip].name;
+        match self.clips[..clip].iter().filter(|other| other.name == *name).count() {
+            0 => name.clone(),
+            before => format!("{name}#{}", before + 1),
+        }
     }
 
     /// Where everything is at a moment. Before the first and after the last key a channel keeps its value. A pose in

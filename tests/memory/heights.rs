@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::sync::PoisonError;
 
 use image::{DynamicImage, ImageFormat, RgbImage};
-use pnaen::mesh::{Budget, HeightError, HeightSource, Heights, Limits, Mesh, Progress, Shape};
+use pnaen::mesh::{Budget, HeightError, HeightSource, Heights, Limits, Progress, Shape};
 
 use super::counting::peak_of;
 use super::{ALONE, Temporary};
@@ -13,8 +13,6 @@ use super::{ALONE, Temporary};
 fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
     let file = Temporary::new(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.0.clone()));
-    // Of a mesh that brings nothing, as one of an empty file would.
-    let mesh = Mesh { file_bytes: Some(0), ..mesh };
     let budget = Budget::of_mesh(&mesh, &Limits::default());
     let (result, took) = peak_of(|| source.load(&mesh, &budget, &Progress::new()));
     let allowed = 4 * bytes.len() + (256 << 20);
@@ -75,7 +73,7 @@ fn a_jpeg_fits_or_is_refused_with_both_numbers() {
     };
     assert!(read("small.jpg", &jpeg(600, 0xc0)).0.is_ok());
     let error = refusal(12000, 0xc0);
-    assert!(error.contains("is 12000 x 12000 px large and would take 51"), "{error}");
+    assert!(error.contains("is 12000 x 12000 px large and would take at least 51"), "{error}");
     assert!(error.contains("MiB of memory, and files of this size may take 25"), "{error}");
     assert!(
         error.ends_with("scale it to 4096 px a side or less, or save it as a PNG that isn't interlaced"),
@@ -84,5 +82,25 @@ fn a_jpeg_fits_or_is_refused_with_both_numbers() {
     // As large as fits, most of it missing; a progressive one's coefficients don't.
     assert!(read("sequential.jpg", &jpeg(7000, 0xc0)).1 > 140 << 20);
     let error = refusal(7000, 0xc2);
-    assert!(error.contains("is 7000 x 7000 px large and would take 42"), "{error}");
+    assert!(error.contains("is 7000 x 7000 px large and would take at least 42"), "{error}");
+}
+
+/// A profile of colours that unpacks to a thousand times its size is never unpacked: not of heights, and not of textures.
+#[test]
+fn profiles_of_colours_are_not_unpacked() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut info = png::Info::with_size(16, 16);
+    info.icc_profile = Some(vec![0; 300 << 20].into());
+    let mut bytes = Vec::new();
+    let mut writer =
+        png::Encoder::with_info(&mut bytes, info).and_then(|encoder| encoder.write_header()).expect("in memory");
+    writer.write_image_data(&[128; 256]).expect("in memory");
+    writer.finish().expect("in memory");
+    assert!(bytes.len() < 1 << 20, "{} bytes", bytes.len());
+    let (result, took) = read("profile.png", &bytes);
+    assert!(result.is_ok() && took < 4 << 20, "{took} bytes");
+    let (result, took) = super::measured("profile", super::with_image(&bytes));
+    let mesh = result.expect("a mesh, with its texture or without");
+    assert!(took < 8, "{took} MiB");
+    assert!(mesh.materials[0].texture.is_some() || mesh.warnings[0].contains("is left out"), "{:?}", mesh.warnings);
 }

@@ -8,8 +8,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::measure::compare;
-use pnaen::mesh::{Shape, Source};
-use pnaen::tessellate::{Lod, Surface};
+use pnaen::mesh::{HeightSource, Shape, Source};
+use pnaen::settings::Settings;
+use pnaen::tessellate::{Displacement, Lod, Surface};
 
 use crate::{choose, click, press, settle, uniform, vase, window};
 
@@ -121,7 +122,7 @@ fn the_copied_command_draws_what_is_shown() {
     let command = copied(&mut harness);
     assert!(command.contains("--surface phong ") && command.contains("--split 0.5 "), "{command}");
     assert!(command.contains("--overlay wireframe,barycentric,adjacency "), "{command}");
-    assert_draws(&harness, &command, "vase");
+    assert_draws(&harness, &command, "vase-view");
 }
 
 #[test]
@@ -155,4 +156,29 @@ fn commands_are_found_by_typing_a_part_of_them() {
     settle(&mut harness);
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
+}
+
+#[test]
+fn what_isnt_displaced_has_no_displacement() {
+    let mut harness = window(None);
+    let drawn = |harness: &Harness<App>| harness.state().totals();
+    let (settings, before) = (*harness.state().settings(), drawn(&harness));
+    press(&mut harness, Key::D);
+    assert_eq!((*harness.state().settings(), drawn(&harness)), (settings, before), "there are no heights");
+    press(&mut harness, Key::W);
+    let without_wires = *harness.state().settings();
+    let context = harness.ctx.clone();
+    let waves = HeightSource::File(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png").into());
+    harness.state_mut().displace(&context, Some(waves));
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().displacement, Displacement::On);
+    // Nobody set that, so it isn't undone: what was set before is.
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().settings(), Settings { displacement: Displacement::On, ..settings });
+    press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    harness.state_mut().displace(&context, None);
+    settle(&mut harness);
+    assert_eq!((*harness.state().settings(), drawn(&harness)), (without_wires, before));
+    press_with(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().settings(), settings);
 }

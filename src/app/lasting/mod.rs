@@ -247,6 +247,7 @@ impl App {
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = Frame::default();
         self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
+        self.history = Default::default();
         self.last_split = 0.5;
         self.frozen = None;
         self.camera = Camera::framing(&Default::default(), glam::Vec2::ONE);

@@ -1,7 +1,5 @@
 //! From bytes to a document that the `gltf` crate can't stumble over.
 
-use std::collections::HashSet;
-
 use ::gltf::Document;
 use ::gltf::json::Root;
 use ::gltf::json::validation::Error as Fault;
@@ -55,7 +53,7 @@ pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result
     check::check(root, schema::DOCUMENT)?;
     let extensions = Extensions::of(root, requires_draco);
     complete(root);
-    complete_packed(root, &extensions, budget)?;
+    complete_bare(root, budget)?;
     let warnings = complete_textures(root);
     let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
     let document = Document::from_json(root).map_err(first_fault)?;
@@ -120,25 +118,17 @@ fn complete(root: &mut Map<String, Value>) {
     }
 }
 
-/// Accessors of what Draco compressed need no buffer view, but the crate wants one, or sparse values: they get none of those.
-fn complete_packed(root: &mut Map<String, Value>, extensions: &Extensions, budget: &Budget) -> Result<(), Problem> {
-    let mut packed = HashSet::new();
-    for (mesh, is_packed) in objects(root, "meshes").zip(&extensions.packed) {
-        let primitives = mesh.get("primitives").and_then(Value::as_array).into_iter().flatten();
-        for (primitive, _) in primitives.zip(is_packed).filter(|(_, is_packed)| is_packed.is_some()) {
-            let attributes = primitive.get("attributes").and_then(Value::as_object).into_iter().flat_map(Map::values);
-            packed.extend(attributes.chain(primitive.get("indices")).filter_map(Value::as_u64));
-        }
-    }
-    let too_large = |reason| Problem::Document { pointer: "its JSON".to_owned(), reason };
-    budget.borrow(packed.len() as u64 * 3 * json::PER_OBJECT).map_err(too_large)?;
+/// Accessors without a buffer view are zeros (glTF 2.0, section 3.6.2), or what Draco compressed; but the crate wants one, or
+/// sparse values: they get none of those.
+fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), Problem> {
     let is_bare =
-        |accessor: &Map<String, Value>| ["bufferView", "sparse"].iter().all(|name| !accessor.contains_key(*name));
-    for (_, accessor) in objects(root, "accessors").enumerate().filter(|(i, _)| packed.contains(&(*i as u64))) {
-        if is_bare(accessor) {
-            let (indices, values) = (json!({ "bufferView": 0, "componentType": 5121 }), json!({ "bufferView": 0 }));
-            accessor.insert("sparse".to_owned(), json!({ "count": 0, "indices": indices, "values": values }));
-        }
+        |accessor: &&mut Map<String, Value>| ["bufferView", "sparse"].iter().all(|name| !accessor.contains_key(*name));
+    let count = objects(root, "accessors").filter(is_bare).count();
+    let too_large = |reason| Problem::Document { pointer: "its JSON".to_owned(), reason };
+    budget.borrow(count as u64 * 3 * json::PER_OBJECT).map_err(too_large)?;
+    for accessor in objects(root, "accessors").filter(is_bare) {
+        let (indices, values) = (json!({ "bufferView": 0, "componentType": 5121 }), json!({ "bufferView": 0 }));
+        accessor.insert("sparse".to_owned(), json!({ "count": 0, "indices": indices, "values": values }));
     }
     Ok(())
 }

@@ -117,6 +117,14 @@ impl<'a> Materials<'a> {
     }
 }
 
+/// What an image may take before its px are asked for: a profile of its colours, which nobody here looks at, may unpack to a
+/// thousand times its size.
+pub fn beside_px() -> Limits {
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(4 << 20);
+    limits
+}
+
 /// PNG or JPEG (its first bytes tell which) as RGBA, if it isn't too large by what it says of itself.
 ///
 /// # Errors
@@ -124,7 +132,8 @@ impl<'a> Materials<'a> {
 pub fn decode(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
-    let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    reader.limits(beside_px());
     let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
     let (width, height) = decoder.dimensions();

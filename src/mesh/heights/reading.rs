@@ -9,6 +9,7 @@ use png::{BitDepth, DecodingError};
 
 use super::{HeightError, HeightMap, MAX_SIZE};
 use crate::mesh::budget::Budget;
+use crate::mesh::gltf::materials::beside_px;
 use crate::mesh::jpeg::{coefficient_bytes, most_coefficient_bytes};
 use crate::mesh::load::open_file;
 use crate::mesh::progress::{Cancelled, Progress};
@@ -110,6 +111,8 @@ impl ImageFile<'_> {
     fn read_rows(&self, reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
         let undecoded = |error: DecodingError| self.stopped_or(self.fail(error.to_string()));
         let mut decoder = png::Decoder::new(reader);
+        decoder.set_ignore_iccp_chunk(true);
+        decoder.set_ignore_text_chunk(true);
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(undecoded)?;
         let size = self.check(reader.info().size().into())?;
@@ -132,7 +135,8 @@ impl ImageFile<'_> {
         };
         let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
         let known = coefficient_bytes(&mut reader).map_err(unread)?;
-        let reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
+        let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
+        reader.limits(beside_px());
         let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
         let decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;

@@ -118,3 +118,16 @@ fn what_would_leave_f32_rests() {
     assert_ne!(rig.pose(Moment { clip: 1, time: 1e-9 }), rig.rest());
     assert_eq!(rig.pose(Moment { clip: 1, time: 1.0 }), rig.rest());
 }
+
+#[test]
+fn clips_of_one_name_are_told_apart_by_number() {
+    let clips = ["run", "walk", "run", "run#2", "Walk", "run"];
+    let clip = |name: &str| Clip { name: name.to_owned(), duration: 1.0, channels: Vec::new() };
+    let rig = Rig { clips: clips.map(clip).to_vec(), ..Rig::default() };
+    let found = ["run", "run#1", "run#3", "run#4", "run#", "walk", "WALK", "walk#1"].map(|name| rig.clip(name));
+    assert_eq!(found, [Some(0), Some(0), Some(5), None, None, Some(1), None, Some(1)]);
+    // A name of its own comes first.
+    assert_eq!(rig.clip("run#2"), Some(3));
+    let found: Vec<_> = (0..clips.len()).map(|index| rig.clip(&rig.clip_name(index))).collect();
+    assert_eq!(found, [0, 1, 3, 3, 4, 5].map(Some), "all but one that another clip is called");
+}

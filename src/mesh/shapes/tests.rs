@@ -128,3 +128,15 @@ fn boundary_loops(topology: &Topology) -> usize {
     }
     loops
 }
+
+#[test]
+fn every_level_of_every_shape_fits_into_what_a_load_may_take() {
+    for shape in Shape::ALL.into_iter().filter(|shape| shape.has_levels()) {
+        let mesh = shape.build_at(1);
+        // Each level has four times as many of all; with its topology a mesh takes 92 bytes a triangle where all corners are shared.
+        let (times, corners) =
+            (4_usize.pow(MAX_LEVEL - 1), 68 * mesh.corners.len().saturating_sub(mesh.triangles.len() / 2));
+        let bytes = times * (92 * mesh.triangles.len() + corners);
+        assert!(bytes < 256 << 20, "{shape}: {bytes} bytes");
+    }
+}

@@ -53,12 +53,12 @@ pub fn cases() -> Vec<Case> {
         refused(
             "as many zeros as are read",
             &zeros(1 << 24),
-            "the scene of 5592405 triangles would take 1770 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); split the model into several files",
+            "the scene of 5592405 triangles would take at least 1770 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); split the model into several files",
         ),
         refused(
             "6000 triangles on 3000 nodes",
             &instances(6000, 3000),
-            "the scene of 18000000 triangles would take 415 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); split the model into several files",
+            "the scene of 18000000 triangles would take at least 415 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); split the model into several files",
         ),
         refused(
             "60,000 triangles on 3000 nodes",
@@ -68,7 +68,7 @@ pub fn cases() -> Vec<Case> {
         refused(
             "2000 primitives on 2000 nodes",
             &twins,
-            "the scene of 4000000 triangles would take 766 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); split the model into several files",
+            "the scene of 4000000 triangles would take at least 766 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); split the model into several files",
         ),
         refused(
             "1000 morph targets of zeros",
@@ -78,7 +78,7 @@ pub fn cases() -> Vec<Case> {
         Case::refused(
             "objects beyond memory",
             format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}{{}}]}}"#, "{\"\":0},".repeat(500_000)),
-            "its JSON would take 378 MiB of memory, and files of this size may take 269 MiB (--max-memory allows more); export the model again",
+            "its JSON would take at least 378 MiB of memory, and files of this size may take 269 MiB (--max-memory allows more); export the model again",
         ),
     ]
 }

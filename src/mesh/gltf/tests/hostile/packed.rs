@@ -223,12 +223,12 @@ pub fn cases() -> Vec<Case> {
         Case::refused(
             "2^31 triangles",
             huge(3 << 31).document().to_string(),
-            &format!("{EXTENSION} would take 24577 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); {UNPACK}"),
+            &format!("{EXTENSION} would take at least 24577 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); {UNPACK}"),
         ),
         Case::refused(
             "a table of 2^26 symbols",
             table().document().to_string(),
-            &format!("{EXTENSION} would take 523 MiB of memory, and files of this size may take 261 MiB (--max-memory allows more); {UNPACK}"),
+            &format!("{EXTENSION} would take at least 523 MiB of memory, and files of this size may take 261 MiB (--max-memory allows more); {UNPACK}"),
         ),
     ]);
     cases

@@ -96,12 +96,12 @@ pub fn cases(folder: &Folder) -> Vec<Case> {
         compressed(
             "a count of 2^62, compressed",
             |view| view["count"] = json!(1_u64 << 62),
-            "/bufferViews/0/extensions/EXT_meshopt_compression would take 17592186044416 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); export the model again",
+            "/bufferViews/0/extensions/EXT_meshopt_compression would take at least 17592186044416 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); export the model again",
         ),
         compressed(
             "as much as fits a byte count, compressed",
             |view| view["count"] = json!(1_u64 << 30),
-            "/bufferViews/0/extensions/EXT_meshopt_compression would take 12289 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); export the model again",
+            "/bufferViews/0/extensions/EXT_meshopt_compression would take at least 12289 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); export the model again",
         ),
         compressed(
             "a stride of 6, compressed",
@@ -136,7 +136,7 @@ pub fn cases(folder: &Folder) -> Vec<Case> {
             "an image of 1 GiB in 60 bytes",
             textured(&png(16_384, 16_384)),
             Gets::Repaired(
-                "the texture of material \"m\" is left out: its image of 16384 x 16384 px would take 1025 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); scale it down.",
+                "the texture of material \"m\" is left out: its image of 16384 x 16384 px would take at least 1025 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); scale it down.",
             ),
         ),
         Case::new(
