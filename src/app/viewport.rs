@@ -191,6 +191,10 @@ impl App {
         {
             *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
             self.last_split = *split;
+        } else if response.dragged_by(PointerButton::Middle) {
+            // As beside it.
+            let drag = response.drag_delta();
+            self.camera.pan(vec2(drag.x, drag.y), vec2(rect.width(), rect.height()));
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
         // Over the picture, which is dark in both themes.

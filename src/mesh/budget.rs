@@ -126,9 +126,11 @@ impl Budget {
         if needed <= allowed {
             return Ok(());
         }
-        let (needed, allowed) = (needed.div_ceil(1 << 20), allowed >> 20);
+        let allowed =
+            if allowed < 1 << 20 { format!("{} KiB", allowed >> 10) } else { format!("{} MiB", allowed >> 20) };
+        let needed = needed.div_ceil(1 << 20);
         Err(format!(
-            "would take at least {needed} MiB of memory, and files of this size may take {allowed} MiB (--max-memory allows more)"
+            "would take at least {needed} MiB of memory, and files of this size may take {allowed} (--max-memory allows more)"
         ))
     }
 }

@@ -117,11 +117,16 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// What an image may take before its px are asked for: a profile of its colours, which nobody here looks at, may unpack to a
-/// thousand times its size.
-pub fn beside_px() -> Limits {
+/// Bytes that an image's profile and notes may take at most.
+const MOST_BESIDE: u64 = 16 << 20;
+
+/// What a PNG image may take beside its px, borrowed: a profile of its colours, which nobody here looks at, may unpack to a thousand
+/// times its size.
+pub fn beside_px(budget: &Budget) -> Limits {
     let mut limits = Limits::default();
-    limits.max_alloc = Some(4 << 20);
+    let bytes = (budget.left() / 8).min(MOST_BESIDE);
+    // As it grows, old and new are both alive.
+    limits.max_alloc = Some(if budget.borrow(bytes).is_ok() { bytes / 2 } else { 0 });
     limits
 }
 
@@ -133,7 +138,9 @@ pub fn decode(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
-    reader.limits(beside_px());
+    if reader.format() == Some(ImageFormat::Png) {
+        reader.limits(beside_px(budget));
+    }
     let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
     let (width, height) = decoder.dimensions();

@@ -116,6 +116,7 @@ impl ImageFile<'_> {
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(undecoded)?;
         let size = self.check(reader.info().size().into())?;
+        self.budget.allow(length);
         self.afford(size, length, 0, 0)?;
         let (color, depth) = reader.output_color_type();
         let line = reader.output_line_size(size[0]).ok_or_else(|| self.fail("its rows are too long".to_owned()))?;
@@ -136,7 +137,11 @@ impl ImageFile<'_> {
         let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
         let known = coefficient_bytes(&mut reader).map_err(unread)?;
         let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
-        reader.limits(beside_px());
+        self.budget.allow(length);
+        let borrowed = self.budget.borrowed();
+        if reader.format() == Some(ImageFormat::Png) {
+            reader.limits(beside_px(self.budget));
+        }
         let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
         let decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
@@ -146,6 +151,7 @@ impl ImageFile<'_> {
         self.afford(size, length, count, coefficients)?;
         let mut bytes = vec![0; count as usize];
         decoder.read_image(&mut bytes).map_err(undecoded)?;
+        self.budget.pass(borrowed);
         Ok(HeightMap::of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)
     }
 
@@ -154,7 +160,6 @@ impl ImageFile<'_> {
     fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
         let kept = HeightMap::bytes_to_build(size).saturating_add(super::angle_bytes(self.corners));
         let too_much = |reason| HeightError::TooMuch { path: self.path.to_owned(), size, reason };
-        self.budget.allow(length);
         // A decoder has the file's bytes too.
         let all = px.saturating_add(kept.max(decoding)).saturating_add(length);
         let borrowed = self.budget.borrowed();

@@ -136,7 +136,7 @@ pub fn cases(folder: &Folder) -> Vec<Case> {
             "an image of 1 GiB in 60 bytes",
             textured(&png(16_384, 16_384)),
             Gets::Repaired(
-                "the texture of material \"m\" is left out: its image of 16384 x 16384 px would take at least 1025 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); scale it down.",
+                "the texture of material \"m\" is left out: its image of 16384 x 16384 px would take at least 1041 MiB of memory, and files of this size may take 256 MiB (--max-memory allows more); scale it down.",
             ),
         ),
         Case::new(
