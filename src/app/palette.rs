@@ -25,8 +25,10 @@ struct Command {
     title: String,
     /// That does the same; empty if none does.
     key: &'static str,
-    run: Box<dyn Fn(&mut App, &Context)>,
+    run: Run,
 }
+
+type Run = Box<dyn Fn(&mut App, &Context)>;
 
 type Plain = (&'static str, &'static str, fn(&mut App, &Context));
 
