@@ -1,6 +1,6 @@
 //! How much memory a load takes: a small file can't ask for much, and a large one gets by with what it brings.
 //!
-//! At most [`PER_BYTE`] times the files' size, and [`FREE`]. What counts is what is alive at one time. Of a file of `F` bytes that
+//! At most [`PER_BYTE`] times the files' size, and [`Limits::memory`]. What counts is what is alive at one time. Of a file of `F` bytes that
 //! becomes `T` triangles with `V` distinct corners and `P` points, in bytes, beside textures and what moves:
 //!
 //! - while it is read, `F + 32 V + 5 S + 12 T`: the bytes as they are, corners, the table that tells them apart (`S` is the next
