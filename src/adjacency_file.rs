@@ -202,7 +202,8 @@ mod tests {
     use super::*;
     use crate::measure::index_differences;
     use crate::mesh::adjacency::Part;
-    use crate::mesh::{Corner, Progress, Shape};
+    use crate::mesh::{Corner, Shape};
+    use crate::progress::Progress;
 
     fn shape(shape: Shape) -> (Mesh, Topology) {
         let mesh = shape.build();

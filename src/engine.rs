@@ -5,14 +5,15 @@ mod measured;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::files::Limits;
 use crate::gpu::{
     AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of,
     wait,
 };
+use crate::load::{Budget, HeightSource, LoadError, Source, untextured_warning};
 use crate::measure::AskedFactors;
-use crate::mesh::{
-    Budget, HeightSource, Limits, LoadError, Mesh, Moment, Progress, Rim, Source, Stage, Topology, Unfinished, with_rim,
-};
+use crate::mesh::{BuildError, Mesh, Moment, Rim, Topology, with_rim};
+use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Half, Settings};
 use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex};
@@ -81,7 +82,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     if let Some(heights) = &preparation.heights {
         progress.enter(Stage::Heights);
         let heights = heights.load(mesh, &budget, &progress.part(0.4, 1.0))?;
-        mesh.warnings.extend(heights.warning(mesh));
+        mesh.warnings.extend(untextured_warning(&heights, mesh));
         mesh.heights = Some(Arc::new(heights));
     }
     if topology.patches.is_empty() {
@@ -101,10 +102,10 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
 }
 
 /// What was to be made of a mesh and wasn't, as an error.
-fn unfinished(source: &Source, what: &'static str, error: Unfinished) -> LoadError {
+fn unfinished(source: &Source, what: &'static str, error: BuildError) -> LoadError {
     match error {
-        Unfinished::Cancelled(cancelled) => cancelled.into(),
-        Unfinished::TooLarge(reason) => LoadError::TooMuch { path: source.to_string().into(), what, reason },
+        BuildError::Cancelled(cancelled) => cancelled.into(),
+        other => LoadError::TooMuch { path: source.to_string().into(), what, reason: other.to_string() },
     }
 }
 

@@ -114,7 +114,8 @@ fn line_at(text: &str, byte: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Corner, Mesh, Progress};
+    use crate::mesh::{Corner, Mesh};
+    use crate::progress::Progress;
 
     /// Three triangles, the middle one of which is degenerate.
     fn topology() -> Topology {

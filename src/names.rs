@@ -1,7 +1,5 @@
-//! Names that someone else gave, of files and in them, as they are shown: on one line, and no longer than anyone reads. And what
-//! the system says of files, in words that tell what to do.
+//! Names and paths that a file or a person gave, made fit to be shown: on one line, and no longer than anyone reads.
 
-use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// Characters of a name that are shown, at most.
@@ -32,33 +30,9 @@ pub fn shown_path(path: &Path) -> String {
     if surplus == 0 { path } else { ['…'].into_iter().chain(path.chars().skip(surplus + 1)).collect() }
 }
 
-/// Why a file couldn't be read or written.
-pub fn file_reason(error: &io::Error) -> String {
-    match error.kind() {
-        // Somebody has said it already.
-        _ if error.raw_os_error().is_none() => error.to_string(),
-        ErrorKind::NotFound => "there is no such file or folder; check its path".to_owned(),
-        ErrorKind::PermissionDenied => {
-            "the system doesn't allow it; change its permissions or choose another".to_owned()
-        }
-        ErrorKind::ReadOnlyFilesystem => "nothing can be written there; choose another folder".to_owned(),
-        ErrorKind::StorageFull => "there is no room left; delete something or choose another disk".to_owned(),
-        ErrorKind::IsADirectory => "it is a folder; name a file".to_owned(),
-        ErrorKind::NotADirectory => "a part of its path is no folder; check its path".to_owned(),
-        _ => error.to_string(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_system_says_what_to_do() {
-        let missing = std::fs::read("no/such/file").expect_err("it isn't there");
-        assert_eq!(file_reason(&missing), "there is no such file or folder; check its path");
-        assert_eq!(file_reason(&io::Error::other("it is a device")), "it is a device");
-    }
 
     #[test]
     fn names_are_on_one_line_and_short() {

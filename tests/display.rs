@@ -9,8 +9,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pnaen::app::{App, run_watched};
+use pnaen::files::Limits;
 use pnaen::gpu::{AdapterChoice, Gpu};
-use pnaen::mesh::{Limits, Shape, Source};
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
 use pnaen::render::Camera;
 use pnaen::settings::Settings;
 

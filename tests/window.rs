@@ -31,14 +31,17 @@ mod typing;
 
 use std::path::PathBuf;
 
-use driver::{PATIENCE, settle};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
-use pnaen::mesh::{Limits, Shape, Source};
+use pnaen::files::Limits;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+
+use driver::{PATIENCE, settle};
 
 fn window(source: Option<Source>) -> Harness<'static, App> {
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {

@@ -4,7 +4,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::beside::{Beside, Stopped};
 use crate::engine::Loaded;
-use crate::mesh::{Joins, NormalFaults, Progress, TJunction, joins, t_junctions};
+use crate::mesh::{Joins, NormalFaults, TJunction, joins, t_junctions};
+use crate::progress::Progress;
 
 /// Checks under way or done; dropping them stops them.
 #[derive(Default)]

@@ -6,7 +6,7 @@ use super::beside::{Stopped, caught, spawn};
 use super::measuring::{Copying, Part, PartKind, Trouble, WAITING, copy_chunk, copy_on};
 use crate::gpu::{Gpu, mapped_bytes, vertices_of};
 use crate::measure::{Field, Place, Yardstick};
-use crate::mesh::Progress;
+use crate::progress::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
 use crate::tessellate::{Posed, Surface};
 

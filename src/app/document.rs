@@ -6,8 +6,11 @@ use std::sync::Arc;
 use super::beside::Beside;
 use super::checks::Checks;
 use crate::engine::{self, Engine, Loaded, Preparation};
+use crate::files::FileError;
 use crate::gpu::GpuError;
-use crate::mesh::{EdgeCounts, LoadError, Moment, Progress, Source};
+use crate::load::{LoadError, Source};
+use crate::mesh::{EdgeCounts, Moment};
+use crate::progress::Progress;
 use crate::render::Scene;
 use crate::settings::{ARENA_BYTES, Half};
 use crate::tessellate::Deformed;
@@ -133,7 +136,8 @@ fn load(
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
         Err(error) => {
-            let is_gone = matches!(&error, LoadError::Io { source, .. } if source.kind() == ErrorKind::NotFound);
+            let is_gone =
+                matches!(&error, LoadError::File(FileError::Io { source, .. }) if source.kind() == ErrorKind::NotFound);
             return Err(Some(NotLoaded { why: error.to_string(), is_gone }));
         }
     };

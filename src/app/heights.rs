@@ -6,7 +6,7 @@ use super::App;
 use super::text::short;
 use super::typed::Purpose;
 use super::widgets::value_chooser;
-use crate::mesh::{HeightSource, Source};
+use crate::load::{HeightSource, Source};
 use crate::settings::{HEIGHT_RANGE, MIDLEVEL_RANGE};
 use crate::tessellate::Displacement;
 

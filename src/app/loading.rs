@@ -8,7 +8,7 @@ use super::measuring::Measuring;
 use super::windows::MESHES;
 use crate::engine::{Loaded, Preparation};
 use crate::export::ending;
-use crate::mesh::Source;
+use crate::load::Source;
 
 impl App {
     /// Starts to load a mesh beside the window; a load that is under way is cancelled. The mesh that is open keeps its

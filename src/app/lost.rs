@@ -3,14 +3,13 @@
 
 use std::time::{Duration, Instant};
 
-use super::App;
 use super::checks::Checks;
 use super::document::{Load, scene_of};
 use super::farewell::Farewell;
 use super::lasting::Frame;
-use super::menu;
 use super::picture::Viewport;
 use super::typed::Dialog;
+use super::{App, menu};
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
 
@@ -164,7 +163,9 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     use super::*;
-    use crate::mesh::{Limits, Shape, Source};
+    use crate::files::Limits;
+    use crate::load::Source;
+    use crate::mesh::Shape;
 
     /// Steps until nothing is under way.
     fn settle(harness: &mut Harness<App>) {

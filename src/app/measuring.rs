@@ -9,7 +9,8 @@ use thiserror::Error;
 use super::beside::{Stopped, caught, spawn};
 use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer, vertices_of};
 use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
-use crate::mesh::{Mesh, Progress, Topology};
+use crate::mesh::{Mesh, Topology};
+use crate::progress::Progress;
 use crate::render::Scene;
 use crate::tessellate::{Convention, Edges, PatchFactors, Vertex};
 

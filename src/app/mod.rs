@@ -46,9 +46,10 @@ mod worst;
 use image::RgbaImage;
 
 use crate::engine::{Engine, Loaded};
+use crate::files::Limits;
 use crate::gpu::{Gpu, GpuError};
+use crate::load::Source;
 use crate::measure::{Cracks, Sizes};
-use crate::mesh::{Limits, Source};
 use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Displacement, LodView};

@@ -5,7 +5,8 @@ use egui::{Button, Context, Key, TextEdit, ThemePreference};
 use super::App;
 use super::choices::{CLIPS, COLORS, CONVENTIONS, EDGES, LODS, NORMALS, OVERLAYS, PARTITIONINGS, SURFACES};
 use super::typed::Purpose;
-use crate::mesh::{Shape, Source};
+use crate::load::Source;
+use crate::mesh::Shape;
 use crate::render::Standpoint;
 use crate::settings::Settings;
 

@@ -10,8 +10,9 @@ use thiserror::Error;
 use super::lasting::{Frame, LEAST_SIZE, folder};
 use super::lost::Next;
 use super::{App, Lasting};
+use crate::files::Limits;
 use crate::gpu::{AdapterChoice, BACKENDS, GpuError, device_descriptor};
-use crate::mesh::{Limits, Source};
+use crate::load::Source;
 
 #[derive(Debug, Error)]
 pub enum WindowError {

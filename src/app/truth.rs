@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::App;
 use super::beside::Beside;
-use crate::mesh::{Limits, LoadError, Progress, Source};
+use crate::files::Limits;
+use crate::load::{LoadError, Source};
+use crate::progress::Progress;
 use crate::settings::Colors;
 use crate::tessellate::Displacement;
 use crate::truth::Truth;

@@ -6,7 +6,7 @@ use egui::{Event, Id, Key, KeyboardShortcut, TextEdit};
 use super::App;
 use super::beside::Beside;
 use super::desktop::Asked;
-use crate::mesh::Source;
+use crate::load::Source;
 
 /// What a path is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

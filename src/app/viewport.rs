@@ -12,7 +12,7 @@ use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
-use crate::mesh::Stage;
+use crate::progress::Stage;
 use crate::render::Scene;
 use crate::settings::{Colors, Half};
 

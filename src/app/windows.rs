@@ -7,7 +7,7 @@ use super::menu::KEYS;
 use super::typed::{Dialog, Purpose};
 use super::{App, desktop};
 use crate::cli::Shown;
-use crate::mesh::{HeightSource, Source};
+use crate::load::{HeightSource, Source};
 
 /// Ends of names of files that hold meshes.
 pub(super) const MESHES: [&str; 5] = ["gltf", "glb", "obj", "stl", "ply"];

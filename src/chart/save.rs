@@ -7,7 +7,8 @@ use image::ImageFormat;
 use thiserror::Error;
 
 use super::{COLUMNS, Subject, bitmap, svg};
-use crate::names::{file_reason, shown_path};
+use crate::files::file_reason;
+use crate::names::shown_path;
 use crate::plot::ChartError;
 
 #[derive(Debug, Error)]
@@ -39,7 +40,7 @@ pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
         "csv" => table(subject).map_err(|error| failed(error.to_string()))?,
         _ => return Err(SaveError::Ending(path.to_owned())),
     };
-    crate::export::write_whole(path, &bytes).map_err(|error| failed(file_reason(&error)))
+    crate::files::write_whole(path, &bytes).map_err(|error| failed(file_reason(&error)))
 }
 
 fn table(subject: &Subject) -> std::io::Result<Vec<u8>> {

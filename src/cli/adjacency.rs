@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::{CliError, WeldOption, file_of, keep_apart, load_apart, read_bytes, write_bytes};
 use crate::adjacency_file::{Format, read, to_bin, to_json};
 use crate::engine::Loaded;
+use crate::load::Source;
 use crate::measure::{IndexDifference, Meaning, index_differences};
-use crate::mesh::Source;
 use crate::mesh::adjacency::{Layout, Part};
 use crate::names::shown_path;
 

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::CliError;
-use crate::mesh::{HeightSource, Source};
+use crate::load::{HeightSource, Source};
 use crate::names::shown_path;
 
 /// # Errors

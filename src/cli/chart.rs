@@ -18,9 +18,10 @@ use super::{
 use crate::chart::report::{LeftOut, Part, TABLE};
 use crate::chart::{Bench, COLUMNS, Effort, LodKind, Plan, Setting, Subject, bitmap, has_converged, svg};
 use crate::engine::{Engine, Loaded};
+use crate::files::file_reason;
+use crate::load::Source;
 use crate::measure::AccuracyOptions;
-use crate::mesh::{Progress, Source};
-use crate::names::file_reason;
+use crate::progress::Progress;
 use crate::render::Target;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Normals, Partitioning, Surface};

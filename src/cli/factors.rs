@@ -7,7 +7,7 @@ use super::{AdapterOption, CliError, SurfaceOptions, file_of, file_of_heights, k
 use crate::engine::Engine;
 use crate::factors_file::to_csv;
 use crate::gpu::Timing;
-use crate::mesh::Source;
+use crate::load::Source;
 use crate::settings::Settings;
 use crate::tessellate::{self, bounds_through};
 

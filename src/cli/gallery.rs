@@ -6,9 +6,9 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
 use crate::engine::{Engine, Preparation};
+use crate::files::file_reason;
 use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
-use crate::mesh::{HeightSource, Source};
-use crate::names::file_reason;
+use crate::load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -3,7 +3,9 @@
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
 use crate::engine;
-use crate::mesh::{Info, LoadError, Progress, Source, joins};
+use crate::load::{LoadError, Source};
+use crate::mesh::{Info, joins};
+use crate::progress::Progress;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

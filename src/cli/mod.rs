@@ -41,10 +41,13 @@ pub use written::Shown;
 
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
+use crate::files::Limits;
+use crate::files::file_reason;
 use crate::gpu::GpuError;
+use crate::load::{LoadError, Source};
 use crate::measure::CompareError;
-use crate::mesh::{Limits, LoadError, Progress, Source};
-use crate::names::{file_reason, on_one_line, shown_path};
+use crate::names::{on_one_line, shown_path};
+use crate::progress::Progress;
 
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
@@ -253,7 +256,7 @@ fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
         let mut out = std::io::stdout().lock();
         return out.write_all(bytes).and_then(|()| out.flush()).map_err(CliError::Output);
     }
-    crate::export::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
+    crate::files::write_whole(path, bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
 /// Writes a PNG file, whatever its name ends in.
@@ -261,7 +264,7 @@ fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliEr
     let mut bytes = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
     picture.write_with_encoder(encoder).map_err(|error| file_error(path, "encoded", &error))?;
-    crate::export::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
+    crate::files::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
 /// Serialised on several lines, with a line end.

@@ -10,7 +10,9 @@ use glam::Vec2;
 
 use super::{AnimationOption, CliError};
 use crate::engine::Preparation;
-use crate::mesh::{Bounds, HeightSource, Limits, Mesh};
+use crate::files::Limits;
+use crate::load::HeightSource;
+use crate::mesh::{Bounds, Mesh};
 use crate::render::Camera;
 use crate::settings::{ARENA_BYTES, Settings, TOLERANCE_RANGE};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, fit_budget};

@@ -11,8 +11,10 @@ use super::{
 };
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gpu::Timing;
+use crate::load::{LoadError, Source};
 use crate::measure::{AccuracyOptions, Field, Measured, ScreenView, patch_edges};
-use crate::mesh::{LoadError, Moment, Progress, Source, t_junctions};
+use crate::mesh::{Moment, t_junctions};
+use crate::progress::Progress;
 use crate::render::{
     Camera, LineSegment, Scale, Scene, Target, deviation_scale, patch_lines, t_junction_lines, worst_lines,
 };

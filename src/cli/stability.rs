@@ -8,8 +8,8 @@ use clap::builder::PossibleValuesParser;
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, WeldOption, file_error, to_json, write_text};
 use crate::engine::Engine;
-use crate::mesh::Source;
-use crate::names::file_reason;
+use crate::files::file_reason;
+use crate::load::Source;
 use crate::stability::{
     CASES, Case, Effort, LEGEND, PAGE, Row, Section, Subject, Verdict, lines, page, picture, run as run_case, table,
 };

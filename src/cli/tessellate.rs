@@ -10,7 +10,7 @@ use super::{
 use crate::engine::Engine;
 use crate::export::Exported;
 use crate::gpu::Timing;
-use crate::mesh::Source;
+use crate::load::Source;
 use crate::settings::Settings;
 use crate::tessellate::{self, bounds_through};
 

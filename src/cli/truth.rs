@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use super::{CliError, SurfaceOptions, options};
 use crate::engine::Loaded;
+use crate::load::Source;
 use crate::measure::{Accuracy, Angles, Distances, Field, Yardstick};
-use crate::mesh::{Progress, Source};
+use crate::progress::Progress;
 use crate::render::Scale;
 use crate::settings::DeviationUnit;
 use crate::tessellate::{Displacement, Inputs};

@@ -4,7 +4,8 @@
 use std::fmt::{Display, Write};
 
 use crate::engine::Preparation;
-use crate::mesh::{HeightSource, Limits, Source};
+use crate::files::Limits;
+use crate::load::{HeightSource, Source};
 use crate::render::Camera;
 use crate::settings::{Settings, option_name};
 use crate::tessellate::{Displacement, Lod, Surface};

@@ -5,7 +5,7 @@ use crate::gpu::GpuError;
 use crate::measure::{
     Accuracy, AccuracyOptions, Deviant, Deviation, Field, Measured, Measurement, ScreenView, Sizes, Survey, Yardstick,
 };
-use crate::mesh::Progress;
+use crate::progress::Progress;
 use crate::render::{Camera, Scene};
 use crate::tessellate::{Inputs, LodView, is_beyond_near};
 use crate::truth::Truth;

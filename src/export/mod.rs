@@ -3,14 +3,14 @@
 mod glb;
 mod obj;
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::{Vec2, Vec3};
 use thiserror::Error;
 
+use crate::files::{file_reason, write_whole};
 use crate::mesh::{Mesh, Topology};
-use crate::names::{file_reason, shown_path};
+use crate::names::shown_path;
 use crate::tessellate::{Tessellated, linear_normal, linear_uv};
 
 /// A mesh with attributes, one run of triangles a material.
@@ -92,50 +92,4 @@ impl<'a> Exported<'a> {
 /// In lower case; empty without one.
 pub fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
-}
-
-/// Links that are followed to a file that isn't there yet, at most.
-const MAX_LINKS: usize = 40;
-
-/// Writes a file beside its place, then renames it there, so that a full disk or a kill leaves what was there whole. What
-/// is no file (a pipe, a device) is written directly; a link stays one, also to a file that isn't there yet, and
-/// permissions stay what they were.
-///
-/// # Errors
-/// The file system's; and a file that is there and may not be written isn't replaced either.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    if path.exists() && !path.is_file() {
-        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
-    }
-    let place = std::fs::canonicalize(path).unwrap_or_else(|_| end_of_links(path));
-    let permissions = std::fs::metadata(&place).ok().map(|metadata| metadata.permissions());
-    if permissions.as_ref().is_some_and(std::fs::Permissions::readonly) {
-        return Err(std::io::Error::new(std::io::ErrorKind::PermissionDenied, "it is read-only"));
-    }
-    let mut beside = place.as_os_str().to_owned();
-    beside.push(format!(".{}.part", std::process::id()));
-    let beside = Path::new(&beside);
-    let write = || {
-        let mut file = std::fs::File::create(beside)?;
-        file.write_all(bytes)?;
-        // A network's or a full disk's failure may come only now.
-        file.sync_all()?;
-        permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(beside, permissions))
-    };
-    let written = write().and_then(|()| std::fs::rename(beside, &place));
-    if written.is_err() {
-        let _ = std::fs::remove_file(beside);
-    }
-    written
-}
-
-/// Where links lead that end at no file.
-fn end_of_links(path: &Path) -> PathBuf {
-    let mut place = path.to_owned();
-    for _ in 0..MAX_LINKS {
-        let Ok(next) = std::fs::read_link(&place) else { break };
-        // What a link says is seen from its own folder.
-        place = place.parent().unwrap_or(Path::new("")).join(next);
-    }
-    place
 }

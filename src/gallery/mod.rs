@@ -16,9 +16,10 @@ pub use tile::Shown;
 
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
+use crate::load::{LoadError, Source};
 use crate::measure::sheet;
-use crate::mesh::{LoadError, Progress, Source};
 use crate::plot::ChartError;
+use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Surface, reach};

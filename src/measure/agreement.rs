@@ -117,7 +117,8 @@ fn factor(given: &[HullFactors], side: &Side, order: [u32; 3]) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Progress, Shape};
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
     use crate::settings::Settings;
     use crate::tessellate::{Lod, LodView, hull_factors};
 

@@ -7,7 +7,8 @@ use std::thread;
 use glam::DVec3;
 
 use super::accuracy::{Place, blocks, worse};
-use crate::mesh::{Cancelled, Mesh, Progress, Topology};
+use crate::mesh::{Mesh, Topology};
+use crate::progress::{Cancelled, Progress};
 use crate::tessellate::{FIXED_ONE, Inputs, Limit, Vertex};
 use crate::truth::Truth;
 

@@ -56,7 +56,8 @@ fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Progress, Shape};
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
     use crate::settings::Settings;
     use crate::tessellate::{LodView, Partitioning, Surface, tessellate};
     use glam::{Mat4, Vec2};

@@ -132,7 +132,8 @@ impl Dominants {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Progress, Shape};
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
 
     fn cylinder() -> (Mesh, Topology) {
         let mesh = Shape::Cylinder.build();

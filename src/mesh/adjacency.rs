@@ -154,7 +154,8 @@ mod tests {
 
     use super::*;
     use crate::mesh::shapes::Shape;
-    use crate::mesh::{Corner, Mesh, Progress};
+    use crate::mesh::{Corner, Mesh};
+    use crate::progress::Progress;
 
     fn topology(mesh: &Mesh) -> Topology {
         let topology = Topology::build(mesh, &Progress::new()).unwrap();

@@ -141,7 +141,8 @@ impl Curves {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Progress, Shape, adjacency};
+    use crate::mesh::{Shape, adjacency};
+    use crate::progress::Progress;
 
     #[test]
     fn as_published_each_side_asks_for_what_the_nine_indices_hold() {

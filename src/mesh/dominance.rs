@@ -83,7 +83,8 @@ fn starts(points: usize, sorted: impl Iterator<Item = u32>) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{HeightMap, Heights, Progress, Shape, Sharing};
+    use crate::mesh::{HeightMap, Heights, Shape, Sharing};
+    use crate::progress::Progress;
 
     fn dominance(shape: Shape, sharing: Sharing) -> (Topology, Curves, Dominance) {
         let mesh = shape.build();

@@ -5,13 +5,13 @@ use std::fmt;
 use serde::Serialize;
 
 use super::joins::{Joins, joins};
-use super::progress::{Cancelled, Progress};
 use super::rig::{Clip, Moved, Rig};
 use super::t_junctions::{TJunction, t_junctions};
 use super::topology::{EdgeCounts, Topology};
 use super::{Mesh, NormalFaults, Repairs, Rim};
 use crate::names::{on_one_line, shown};
 use crate::numbers::exact;
+use crate::progress::{Cancelled, Progress};
 
 /// T-junctions that are printed for people.
 const SHOWN: usize = 10;

@@ -7,8 +7,8 @@ use foldhash::fast::RandomState;
 use serde::Serialize;
 
 use super::Mesh;
-use super::progress::{Cancelled, Progress};
 use super::topology::{EdgeKind, Topology, is_degenerate, weld_corners};
+use crate::progress::{Cancelled, Progress};
 
 /// What welding within a tolerance changes, compared with the exact weld.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -72,8 +72,9 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
+    use crate::mesh::Corner;
     use crate::mesh::shapes::Shape;
-    use crate::mesh::{Corner, Progress};
+    use crate::progress::Progress;
 
     fn faults(mesh: &Mesh) -> NormalFaults {
         NormalFaults::of(mesh, &Topology::build(mesh, &Progress::new()).unwrap())

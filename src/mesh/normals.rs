@@ -137,9 +137,9 @@ fn gather(fan: &[Face], along: f64) -> (Vec<Face>, Vec<u32>) {
 mod tests {
     use super::*;
     use crate::mesh::Material;
-    use crate::mesh::merge::{LooseCorner, MeshBuilder};
-    use crate::mesh::progress::{Cancelled, Progress};
+    use crate::mesh::mesh_builder::{LooseCorner, MeshBuilder};
     use crate::mesh::shapes::Shape;
+    use crate::progress::{Cancelled, Progress};
     use glam::Vec2;
 
     /// The normals that triangles get, corner by corner.

@@ -9,9 +9,9 @@ use glam::{DVec2, DVec3, Vec3};
 
 /// What is left of the work that one file may cause: containment tests.
 #[derive(Clone, Copy, Debug)]
-pub struct Budget(u64);
+pub struct WorkBudget(u64);
 
-impl Budget {
+impl WorkBudget {
     /// For a file of so many bytes: enough for outlines of 3,000 corners of which every ear has all others beside it, and for
     /// many times as many corners of what people draw.
     pub fn new(bytes: usize) -> Self {
@@ -30,7 +30,7 @@ pub enum Cut {
 
 /// Cuts a polygon into as many triangles as it has corners, less two; corners are numbers into `outline`, and triangles turn as
 /// it does. Of three corners or more. Quadratic in corners that turn inward, and never beyond the budget.
-pub fn triangulate(outline: &[Vec3], budget: &mut Budget, triangles: &mut Vec<[usize; 3]>) -> Cut {
+pub fn triangulate(outline: &[Vec3], budget: &mut WorkBudget, triangles: &mut Vec<[usize; 3]>) -> Cut {
     if outline.len() == 3 {
         triangles.push([0, 1, 2]);
         return Cut::Exactly;
@@ -75,12 +75,12 @@ struct Ears<'a> {
     /// When each corner was looked at last, in looks at it.
     looks: Vec<u32>,
     gone: Vec<bool>,
-    budget: &'a mut Budget,
+    budget: &'a mut WorkBudget,
     forced: bool,
 }
 
 impl<'a> Ears<'a> {
-    fn new(points: Vec<DVec2>, budget: &'a mut Budget) -> Self {
+    fn new(points: Vec<DVec2>, budget: &'a mut WorkBudget) -> Self {
         let count = points.len();
         let least = points.iter().fold(points[0], |least, p| least.min(*p));
         let size = points.iter().fold(points[0], |most, p| most.max(*p)) - least;
@@ -206,7 +206,7 @@ mod tests {
 
     fn cut(outline: &[Vec3]) -> (Vec<[usize; 3]>, Cut) {
         let mut triangles = Vec::new();
-        let cut = triangulate(outline, &mut Budget::new(0), &mut triangles);
+        let cut = triangulate(outline, &mut WorkBudget::new(0), &mut triangles);
         (triangles, cut)
     }
 
@@ -303,7 +303,7 @@ mod tests {
         // A comb: every tooth spans all that turns inward.
         let tooth = |i: u32| [[0.0, i as f32], [1e7, i as f32 + 0.5]];
         let comb: Vec<[f32; 2]> = (0..50_000).flat_map(tooth).chain([[0.0, 5e4], [-1.0, 5e4], [-1.0, 0.0]]).collect();
-        let (outline, mut budget, mut triangles) = (in_plane(&comb), Budget::new(0), Vec::new());
+        let (outline, mut budget, mut triangles) = (in_plane(&comb), WorkBudget::new(0), Vec::new());
         assert_eq!(triangulate(&outline, &mut budget, &mut triangles), Cut::Somehow);
         assert_eq!((triangles.len(), budget.0), (outline.len() - 2, 0));
     }

@@ -196,7 +196,7 @@ impl Rig {
     }
 
     /// What it takes, in bytes.
-    pub(super) fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         let keys = |channel: &Channel| channel.keys.times.len() + channel.keys.values.len();
         let clips =
             self.clips.iter().flat_map(|clip| &clip.channels).map(|channel| size_of::<Channel>() + 4 * keys(channel));

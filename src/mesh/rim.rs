@@ -19,14 +19,14 @@ mod pieces;
 
 use serde::Serialize;
 
+use super::build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount};
+use super::mesh_builder::{LooseCorner, MeshBuilder};
+use super::{Corner, Mesh, Topology};
+use crate::progress::Progress;
+
 use cuts::{Cuts, EdgeCuts, width_in_units};
 use fans::Fans;
 use pieces::Cutter;
-
-use super::budget::{Budget, MAX_TRIANGLES};
-use super::merge::{LooseCorner, MeshBuilder, Unfinished};
-use super::progress::Progress;
-use super::{Corner, Mesh, Topology};
 
 /// The widest rim that can be asked for, relative to the bounding diagonal.
 pub const WIDEST: f32 = 0.1;
@@ -71,15 +71,15 @@ impl Rim {
 /// are only subdivided. Linear in triangles, but for sorts. Returns the mesh with its exact topology, which the budget holds.
 ///
 /// # Errors
-/// [`Unfinished`].
+/// [`BuildError`].
 pub fn with_rim(
     mesh: &Mesh,
     topology: &Topology,
     width: f32,
-    budget: &Budget,
+    budget: &dyn MemoryAccount,
     progress: &Progress,
-) -> Result<(Mesh, Topology, Rim), Unfinished> {
-    let take = |bytes: usize| budget.hold(bytes as u64).map_err(Unfinished::TooLarge);
+) -> Result<(Mesh, Topology, Rim), BuildError> {
+    let take = |bytes: usize| budget.hold(bytes as u64);
     take(PER_PATCH * topology.patches.len() + size_of::<EdgeCuts>() * topology.edges.len())?;
     let fans = Fans::of(mesh, topology);
     progress.check()?;
@@ -96,9 +96,9 @@ pub fn with_rim(
 
 /// Where parts of a mesh lie on each other, cuts of one may fall onto those of another, and make edges that neither had:
 /// there too all sides get one normal.
-fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topology), Unfinished> {
+fn agreed(cut: Mesh, budget: &dyn MemoryAccount, progress: &Progress) -> Result<(Mesh, Topology), BuildError> {
     let topology = Topology::build_afforded(&cut, 0.0, budget, progress)?;
-    budget.hold((PER_PATCH * topology.patches.len()) as u64).map_err(Unfinished::TooLarge)?;
+    budget.hold((PER_PATCH * topology.patches.len()) as u64)?;
     let fans = Fans::of(&cut, &topology);
     if !fans.any_split() {
         return Ok((cut, topology));
@@ -116,10 +116,10 @@ fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topo
 fn rebuilt(
     mesh: &Mesh,
     topology: &Topology,
-    budget: &Budget,
+    budget: &dyn MemoryAccount,
     progress: &Progress,
     mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
-) -> Result<Mesh, Unfinished> {
+) -> Result<Mesh, BuildError> {
     let (mut builder, mut made) = (MeshBuilder::new(), Vec::new());
     for material in &mesh.materials {
         progress.check()?;
@@ -130,12 +130,12 @@ fn rebuilt(
                 None => made.push(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),
             }
             let room = builder.make_room_for_triangles(index, made.len(), budget);
-            room.and_then(|()| builder.make_room(3 * made.len(), budget)).map_err(Unfinished::TooLarge)?;
+            room.and_then(|()| builder.make_room(3 * made.len(), budget))?;
             for corners in made.drain(..) {
                 builder.triangle(index, corners.map(LooseCorner::from));
             }
             if builder.len() as u64 > MAX_TRIANGLES {
-                return Err(Unfinished::TooLarge(format!("would have more than {MAX_TRIANGLES} triangles")));
+                return Err(BuildError::TooManyTriangles);
             }
         }
     }

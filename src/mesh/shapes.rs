@@ -12,8 +12,9 @@ use std::str::FromStr;
 
 use glam::{Vec2, Vec3};
 
-use super::merge::MeshBuilder;
-use super::{Corner, Material, Mesh, Progress};
+use super::mesh_builder::MeshBuilder;
+use super::{Corner, Material, Mesh};
+use crate::progress::Progress;
 
 /// A shape that needs no file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -6,12 +6,12 @@ mod straight;
 
 use serde::Serialize;
 
+use super::topology::{Edge, EdgeKind, Topology};
+use crate::progress::{Cancelled, Progress};
+
 use chains::Chains;
 use line::Line;
 use straight::Straight;
-
-use super::progress::{Cancelled, Progress};
-use super::topology::{Edge, EdgeKind, Topology};
 
 /// Boundary edges at one point, and boundary points on one spot, that are tried. More than that is noise, and trying
 /// all of them would be quadratic.

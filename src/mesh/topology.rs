@@ -6,13 +6,13 @@ use std::sync::Arc;
 use glam::Vec3;
 use serde::Serialize;
 
-use super::budget::Budget;
-use super::ids::Ids;
-use super::merge::Unfinished;
-use super::parts::Parts;
-use super::progress::{Cancelled, Progress};
+use super::build_limits::{BuildError, Unlimited};
+use super::interner::Interner;
+use super::union_find::UnionFind;
 use super::weld::weld_alike;
 use super::{Corner, Mesh};
+use crate::mesh::build_limits::MemoryAccount;
+use crate::progress::{Cancelled, Progress};
 
 /// A mesh's patches and the edges between them.
 ///
@@ -140,36 +140,36 @@ impl Topology {
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
-        match Self::build_afforded(mesh, tolerance, &Budget::endless(), progress) {
+        match Self::build_afforded(mesh, tolerance, &Unlimited, progress) {
             Ok(topology) => Ok(topology),
-            // Of which an endless budget knows no other kind.
-            Err(Unfinished::Cancelled(_) | Unfinished::TooLarge(_)) => Err(Cancelled),
+            // Memory is unlimited, so that nothing but a cancellation ends it.
+            Err(_) => Err(Cancelled),
         }
     }
 
     /// The same within a budget, which holds what the topology takes.
     ///
     /// # Errors
-    /// [`Unfinished`].
+    /// [`BuildError`].
     pub fn build_afforded(
         mesh: &Mesh,
         tolerance: f32,
-        budget: &Budget,
+        budget: &dyn MemoryAccount,
         progress: &Progress,
-    ) -> Result<Self, Unfinished> {
+    ) -> Result<Self, BuildError> {
         let borrowed = budget.borrowed();
-        let take = |bytes: usize| budget.hold(bytes as u64).map_err(Unfinished::TooLarge);
-        budget.borrow(weld_bytes(mesh.corners.len(), tolerance)).map_err(Unfinished::TooLarge)?;
+        let take = |bytes: usize| budget.hold(bytes as u64);
+        budget.borrow(weld_bytes(mesh.corners.len(), tolerance))?;
         let (mut points, corner_points) = weld_corners(mesh, tolerance);
         points.shrink_to_fit();
-        budget.pass(borrowed);
+        budget.give_back_to(borrowed);
         take(16 * points.len() + 4 * corner_points.len())?;
         progress.check()?;
         take(mesh.triangles.len() * size_of::<Patch>())?;
         let patches = patches(mesh, &corner_points);
         progress.check()?;
         take(3 * patches.len() * size_of::<Side>())?;
-        budget.borrow(8 * points.len() as u64).map_err(Unfinished::TooLarge)?;
+        budget.borrow(8 * points.len() as u64)?;
         let (sides, starts) = sides(&patches, &mesh.triangles, &corner_points, points.len());
         progress.check()?;
         let mut topology = Self {
@@ -188,7 +188,7 @@ impl Topology {
         // Exactly: one more than there is room for would double what edges take.
         topology.edges.reserve_exact(count);
         topology.connect(&starts, &mesh.corners);
-        budget.pass(borrowed);
+        budget.give_back_to(borrowed);
         progress.check()?;
         Ok(topology)
     }
@@ -220,7 +220,7 @@ impl Topology {
     /// The volumes of the parts that hang together by edges, in cubic object units: less than 0 where a part is wound
     /// inward. Only of a closed mesh do they mean anything.
     pub fn part_volumes(&self) -> impl Iterator<Item = f64> {
-        let mut parts = Parts::new(self.patches.len());
+        let mut parts = UnionFind::new(self.patches.len());
         for edge in &self.edges {
             for pair in self.edge_sides(edge).windows(2) {
                 parts.join(pair[0].patch(), pair[1].patch());
@@ -377,7 +377,7 @@ fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
     let exactly = 36;
     // Points twice over with their cells, in lists and a table that double as they grow.
     let within = if tolerance > 0.0 { 64 } else { 0 };
-    Ids::bytes_for(corners) + (exactly + within) * corners as u64
+    Interner::bytes_for(corners) + (exactly + within) * corners as u64
 }
 
 /// Where the sides of each point are.

@@ -6,7 +6,7 @@ use std::num::NonZero;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::grid::Grid;
-use super::ids::Ids;
+use super::interner::Interner;
 
 /// Points by exact position: two positions are one point when all three coordinates have the same value (-0 equals 0;
 /// no tolerance). Points come in the order of their first appearance, with +0 for every zero.
@@ -20,7 +20,7 @@ pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) 
 /// As [`weld`], of positions with a number each, which must be equal too.
 fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
     let count = positions.size_hint().0;
-    let (mut ids, mut points) = (Ids::with_capacity(count), Vec::with_capacity(count));
+    let (mut ids, mut points) = (Interner::with_capacity(count), Vec::with_capacity(count));
     // Two words a key: foldhash takes them several times faster than an array.
     let key = |(point, number): (Vec3, u32)| {
         let [x, y, z] = point.to_array().map(|coordinate| u64::from(coordinate.to_bits()));

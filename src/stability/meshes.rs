@@ -6,8 +6,9 @@ pub use techniques::{dart, height_seams, height_splits, inflection, moving};
 
 use glam::{Vec2, Vec3, vec3};
 
-use crate::mesh::merge::{LooseCorner, MeshBuilder};
-use crate::mesh::{Corner, Material, Mesh, Progress, Shape};
+use crate::mesh::mesh_builder::{LooseCorner, MeshBuilder};
+use crate::mesh::{Corner, Material, Mesh, Shape};
+use crate::progress::Progress;
 
 /// A mesh of loose triangles, made as a file's would be: normals repaired, equal corners merged.
 fn mesh(triangles: impl IntoIterator<Item = [LooseCorner; 3]>) -> Mesh {

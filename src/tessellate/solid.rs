@@ -74,7 +74,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::mesh::{Progress, Shape};
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
     use crate::settings::Settings;
     use crate::tessellate::{Limit, LodView};
 

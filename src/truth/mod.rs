@@ -19,7 +19,10 @@ pub use reference::Reference;
 pub(crate) use spread::radical_inverse;
 pub use triangles::{Closest, Triangles};
 
-use crate::mesh::{Limits, LoadError, Mesh, Progress, Shape, Source};
+use crate::files::Limits;
+use crate::load::{LoadError, Source};
+use crate::mesh::{Mesh, Shape};
+use crate::progress::Progress;
 
 /// The point of a surface that is nearest to some place. Where several are equally near it is one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]

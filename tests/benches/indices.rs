@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use glam::{Vec2, Vec3};
 use pnaen::mesh::adjacency::Layout;
-use pnaen::mesh::{Corner, Mesh, Progress, Topology};
+use pnaen::mesh::{Corner, Mesh, Topology};
+use pnaen::progress::Progress;
 
 /// Runs of each, by turns.
 const RUNS: usize = 9;

@@ -4,7 +4,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use pnaen::mesh::{Format, Limits, Mesh, Progress, Topology, read};
+use pnaen::files::Limits;
+use pnaen::load::{Format, read};
+use pnaen::mesh::{Mesh, Topology};
+use pnaen::progress::Progress;
 use pnaen::tessellate::factors::{outer_count, point_count, triangle_count};
 use pnaen::tessellate::{HullFactors, Partitioning, PatchFactors, domain_plan, domain_point, domain_triangle};
 

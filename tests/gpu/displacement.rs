@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::Timing;
+use pnaen::load::{Budget, HeightSource, Source};
 use pnaen::measure::{Measured, ulp};
 use pnaen::mesh::rim::Rim;
-use pnaen::mesh::{
-    Budget, Corner, HeightMap, Heights, Material, Mesh, Moment, Progress, Shape, Source, Texture, Topology,
-};
+use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Topology};
+use pnaen::progress::Progress;
 use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::CASES;
@@ -322,7 +322,8 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
         ..mesh.materials[0].clone()
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
-    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &Budget::endless(), &Progress::new()).expect("images")));
+    mesh.heights =
+        Some(Arc::new(HeightSource::Materials.load(&mesh, &Budget::unlimited(), &Progress::new()).expect("images")));
     on_device(Shape::Torus, mesh)
 }
 

@@ -3,7 +3,8 @@
 use glam::Vec2;
 use pnaen::gpu::Timing;
 use pnaen::measure::Deviation;
-use pnaen::mesh::{Mesh, Progress, Shape, Topology};
+use pnaen::mesh::{Mesh, Shape, Topology};
+use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, hull_factors, tessellate};

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use pnaen::engine::Engine;
 use pnaen::gpu::{Gpu, GpuError, Timing, best_adapter};
-use pnaen::mesh::{Progress, Shape};
+use pnaen::load::{Budget, HeightSource};
+use pnaen::mesh::Shape;
+use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use pnaen::tessellate::{Clip, Displacement, Lod, Normals, Surface};
@@ -71,8 +73,7 @@ fn heights_need_no_more_either() {
     let texture = pnaen::mesh::Texture { size: [64, 64], rgba: image.into_raw() };
     let own = Arc::make_mut(&mut mesh.mesh);
     own.materials.iter_mut().for_each(|material| material.texture = Some(Arc::new(texture.clone())));
-    let heights =
-        pnaen::mesh::Heights::of_materials(own, &pnaen::mesh::Budget::endless(), &Progress::new()).expect("images");
+    let heights = HeightSource::Materials.load(own, &Budget::unlimited(), &Progress::new()).expect("images");
     own.heights = Some(Arc::new(heights));
     let settings = Settings { displacement: Displacement::On, lod: Lod::Error, ..Settings::default() };
     let [expected, found] = [engine(), &small].map(|engine| {

@@ -24,7 +24,9 @@ use std::sync::OnceLock;
 
 use pnaen::engine::{Engine, Loaded, Preparation, load};
 use pnaen::gpu::Timing;
-use pnaen::mesh::{Progress, Shape, Source};
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
+use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
 

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::{Timing, read_buffer, take_times};
+use pnaen::load::Source;
 use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
-use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Progress, Rim, Shape, Source, Topology};
+use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Rim, Shape, Topology};
+use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{

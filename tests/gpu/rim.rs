@@ -1,8 +1,10 @@
 //! A rim along creases, under PN triangles: nothing is left to tear.
 
 use pnaen::engine::{Preparation, load};
+use pnaen::load::{Budget, Source};
 use pnaen::measure::Measured;
-use pnaen::mesh::{Budget, Progress, Shape, Source, Topology, with_rim};
+use pnaen::mesh::{Shape, Topology, with_rim};
+use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::{CASES, soup};

@@ -12,14 +12,17 @@ mod figures;
 
 use std::path::{Path, PathBuf};
 
-use driver::settle;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
-use figures::Part;
 use image::RgbaImage;
 use pnaen::app::{App, Lasting};
-use pnaen::mesh::{Limits, Shape, Source};
+use pnaen::files::Limits;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
+
+use driver::settle;
+use figures::Part;
 
 /// Width and height of the window, in points.
 const SIZE: [f32; 2] = [1000.0, 700.0];

@@ -4,7 +4,9 @@
 use std::sync::PoisonError;
 
 use pnaen::engine::{Loaded, Preparation, load};
-use pnaen::mesh::{HeightSource, Limits, LoadError, Progress, Source};
+use pnaen::files::Limits;
+use pnaen::load::{HeightSource, LoadError, Source};
+use pnaen::progress::Progress;
 
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};

@@ -4,7 +4,10 @@ use std::io::Cursor;
 use std::sync::PoisonError;
 
 use image::{DynamicImage, ImageFormat, RgbImage};
-use pnaen::mesh::{Budget, HeightError, HeightSource, Heights, Limits, Progress, Shape};
+use pnaen::files::Limits;
+use pnaen::load::{Budget, HeightError, HeightSource};
+use pnaen::mesh::{Heights, Shape};
+use pnaen::progress::Progress;
 
 use super::counting::peak_of;
 use super::{ALONE, Temporary};

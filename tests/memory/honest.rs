@@ -2,7 +2,8 @@
 
 use std::sync::PoisonError;
 
-use pnaen::mesh::{Progress, Topology, joins};
+use pnaen::mesh::{Topology, joins};
+use pnaen::progress::Progress;
 
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};

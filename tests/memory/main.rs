@@ -15,9 +15,13 @@ mod packed;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use counting::peak_of;
-use pnaen::mesh::{Limits, LoadError, Mesh, Progress, load};
+use pnaen::files::Limits;
+use pnaen::load::{LoadError, load};
+use pnaen::mesh::Mesh;
+use pnaen::progress::Progress;
 use serde_json::{Value, json};
+
+use counting::peak_of;
 
 /// A file in the temporary folder, gone with its test.
 struct Temporary(PathBuf);

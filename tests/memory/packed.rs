@@ -6,7 +6,7 @@ use draco_core::{
     DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh, MeshEncoder, PointAttribute,
 };
 use pnaen::engine::Preparation;
-use pnaen::mesh::Limits;
+use pnaen::files::Limits;
 use serde_json::json;
 
 use super::bounded::loaded;

@@ -5,7 +5,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::mesh::{Moment, Shape, Source};
+use pnaen::load::Source;
+use pnaen::mesh::{Moment, Shape};
 
 use crate::moving::{CLIPS, moving};
 use crate::{choose, click, press, settle, uniform, window};

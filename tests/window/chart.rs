@@ -8,8 +8,9 @@ use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::chart::{Effort, LodKind, Plan, Row, Setting};
 use pnaen::engine::Runs;
+use pnaen::load::Source;
 use pnaen::measure::AccuracyOptions;
-use pnaen::mesh::{Shape, Source};
+use pnaen::mesh::Shape;
 use pnaen::tessellate::{Clip, Surface};
 
 use crate::{PATIENCE, choose, click, press, settle, window};

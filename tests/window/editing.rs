@@ -7,8 +7,9 @@ use egui::{Key, Modifiers, OutputCommand};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
+use pnaen::load::{HeightSource, Source};
 use pnaen::measure::compare;
-use pnaen::mesh::{HeightSource, Shape, Source};
+use pnaen::mesh::Shape;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Displacement, Lod, Surface};
 

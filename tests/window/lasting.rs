@@ -6,7 +6,9 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::{App, Lasting};
-use pnaen::mesh::{Limits, Shape, Source};
+use pnaen::files::Limits;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Displacement, Surface};
 

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
-use pnaen::mesh::{Shape, Source};
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
 use pnaen::tessellate::Surface;
 
 use crate::{PATIENCE, choose, press, settle, uniform};

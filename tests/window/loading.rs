@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::mesh::{Limits, Shape, Source};
+use pnaen::files::Limits;
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
 
 use crate::lasting::Folder;
 use crate::{click, press, settle, uniform, vase};

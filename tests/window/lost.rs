@@ -8,7 +8,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::engine::Loaded;
-use pnaen::mesh::{Limits, Progress, Shape, Source, load};
+use pnaen::files::Limits;
+use pnaen::load::{Source, load};
+use pnaen::mesh::Shape;
+use pnaen::progress::Progress;
 use pnaen::settings::Half;
 
 use crate::{choose, click, press, settle, uniform, window};

@@ -4,7 +4,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::mesh::{EdgeKind, Shape, Source};
+use pnaen::load::Source;
+use pnaen::mesh::{EdgeKind, Shape};
 use pnaen::tessellate::Surface;
 
 use crate::{choose, click, press, settle, uniform};

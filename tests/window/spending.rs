@@ -6,7 +6,8 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
-use pnaen::mesh::{Shape, Source};
+use pnaen::load::Source;
+use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use pnaen::tessellate::Convention;
 

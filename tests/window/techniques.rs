@@ -3,7 +3,8 @@
 use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::mesh::{HeightSource, Shape, Source};
+use pnaen::load::{HeightSource, Source};
+use pnaen::mesh::Shape;
 use pnaen::tessellate::{Displacement, Normals, Surface};
 
 use crate::{choose, press, settle, uniform};

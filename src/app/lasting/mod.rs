@@ -12,9 +12,10 @@ use egui::ViewportCommand;
 
 use super::App;
 use super::beside::Beside;
-use crate::mesh::Source;
+use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::Settings;
+
 use kept::{Kept, KeptFile, MAX_FILES, Seen};
 
 pub use kept::{Frame, LEAST_SIZE};

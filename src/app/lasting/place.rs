@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use etcetera::BaseStrategy;
 
 use super::kept::Kept;
-use crate::export::write_whole;
-use crate::mesh::{Limits, LoadError, Progress, read_file};
+use crate::files::{FileError, Limits, read_file, write_whole};
+use crate::progress::Progress;
 
 /// Names another folder; empty, nothing is kept.
 const FOLDER: &str = "PNAEN_CONFIG";
@@ -49,9 +49,14 @@ pub fn read(folder: &Path) -> Found {
         Ok(file) if !file.is_file() => return unread("it is no file".into()),
         Ok(_) => {}
     }
-    let kept = match read_file(&place, &Limits { file: MAX_BYTES, ..Limits::default() }, |_| Ok(()), &Progress::new()) {
+    let kept = match read_file(
+        &place,
+        &Limits { file: MAX_BYTES, ..Limits::default() },
+        |_| Ok::<(), FileError>(()),
+        &Progress::new(),
+    ) {
         Ok(bytes) => Kept::read(&bytes),
-        Err(LoadError::Io { source, .. }) => return unread(source.to_string()),
+        Err(FileError::Io { source, .. }) => return unread(source.to_string()),
         Err(_) => None,
     };
     if let Some(kept) = kept {

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::kept::{Frame, Kept, KeptFile, MAX_FILES, Seen};
 use super::{Lasting, place};
-use crate::mesh::Source;
+use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::random::settings;
 use crate::settings::{Overlays, Settings};

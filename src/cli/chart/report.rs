@@ -7,9 +7,10 @@ use std::time::SystemTime;
 use super::super::{CliError, file_error, write_text};
 use crate::chart::report::{Occasion, PAGE, Part, page};
 use crate::chart::svg;
+use crate::files::file_reason;
 use crate::gpu::Gpu;
-use crate::mesh::{Shape, Source};
-use crate::names::file_reason;
+use crate::load::Source;
+use crate::mesh::Shape;
 use crate::numbers::utc;
 
 /// Shapes with an exact surface each, round ones first.

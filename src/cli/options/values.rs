@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::Vec3;
 
-use crate::mesh::Source;
+use crate::load::Source;
 use crate::mesh::rim::WIDEST;
 use crate::settings::{ALPHA_RANGE, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, PIXELS_RANGE, TOLERANCE_RANGE};
 use crate::tessellate::Partitioning;
@@ -196,7 +196,7 @@ fn within(text: &str, range: std::ops::RangeInclusive<f32>) -> Result<f32, Strin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Limits;
+    use crate::files::Limits;
 
     #[test]
     fn sizes_colors_and_cameras_are_read_or_refused() {

@@ -1,7 +1,8 @@
 use glam::{Mat4, Vec2, vec3};
 
 use super::*;
-use crate::mesh::{Mesh, Progress, Shape, Topology};
+use crate::mesh::{Mesh, Shape, Topology};
+use crate::progress::Progress;
 use crate::settings::Settings;
 use crate::tessellate::{Partitioning, Surface, Tessellated, pack_key, pack_normal, tessellate};
 

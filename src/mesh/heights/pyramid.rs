@@ -3,7 +3,7 @@
 use std::num::NonZero;
 
 use super::{HeightMap, MAX_KEPT, MAX_LEVELS};
-use crate::mesh::progress::{Cancelled, Progress};
+use crate::progress::{Cancelled, Progress};
 
 impl HeightMap {
     /// Of rows from the top. Sides of more than 4,096 px are made smaller first. What is no image is one black px.
@@ -19,7 +19,7 @@ impl HeightMap {
     ///
     /// # Errors
     /// Those of `row`, and [`Cancelled`] when `progress` says so.
-    pub(super) fn build<E: From<Cancelled>>(
+    pub(crate) fn build<E: From<Cancelled>>(
         size: [u32; 2],
         progress: &Progress,
         row: impl FnMut(&mut [f32]) -> Result<(), E>,
@@ -45,7 +45,7 @@ impl HeightMap {
     }
 
     /// Bytes that building a map of an image of this size takes, the map among them.
-    pub(super) fn bytes_to_build(size: [u32; 2]) -> u64 {
+    pub(crate) fn bytes_to_build(size: [u32; 2]) -> u64 {
         // All levels are 4/3 of the first, and the second is made beside them.
         px_of(size.map(|side| side.min(MAX_KEPT))) as u64 * 4 * 19 / 12 + (64 << 10)
     }

@@ -4,8 +4,6 @@
 
 use glam::DQuat;
 
-use super::mover::unit;
-
 /// An animation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
@@ -120,4 +118,9 @@ impl Keys {
             }
         }
     }
+}
+
+/// Normalised, because f32 quaternions are of unit length only roughly; a zero one turns nothing.
+pub(super) fn unit(rotation: DQuat) -> DQuat {
+    if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
 }

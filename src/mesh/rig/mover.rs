@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec3};
 
-use super::clip::{Channel, Property};
+use super::clip::{Channel, Property, unit};
 
 /// A node that a clip moves. Nodes that none does are folded into `between`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,9 +51,4 @@ impl Placement {
             Property::Weights => {}
         }
     }
-}
-
-/// Normalised, because f32 quaternions are of unit length only roughly; a zero one turns nothing.
-pub(super) fn unit(rotation: DQuat) -> DQuat {
-    if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
 }

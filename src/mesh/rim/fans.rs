@@ -2,14 +2,14 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::mesh::parts::Parts;
+use crate::mesh::union_find::UnionFind;
 use crate::mesh::weld::plus_zero3;
 use crate::mesh::{Mesh, Side, Topology};
 
 /// Shorter sums of unit normals than this are what rounding leaves of normals that cancel.
 const CANCELLED: f64 = 1e-6;
 
-/// All fans of a mesh. Parts of a mesh that meet in a point without an edge have a fan each: there is nothing to tear.
+/// All fans of a mesh. UnionFind of a mesh that meet in a point without an edge have a fan each: there is nothing to tear.
 pub struct Fans {
     /// The fan of every patch's every corner, at 3 * patch + k.
     fan_of: Vec<u32>,
@@ -20,7 +20,7 @@ pub struct Fans {
 impl Fans {
     pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
         let count = 3 * topology.patches.len();
-        let mut parts = Parts::new(count);
+        let mut parts = UnionFind::new(count);
         for edge in &topology.edges {
             for pair in topology.edge_sides(edge).windows(2) {
                 for end in 0..2 {

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{EdgeCounts, EdgeKind, Material, Shape, Side, weld};
+use crate::mesh::{EdgeCounts, EdgeKind, Material, Shape, Side, Unlimited, weld};
 use crate::stability::{CASES, soup};
 
 fn topology(mesh: &Mesh) -> Topology {
@@ -15,7 +15,7 @@ fn topology(mesh: &Mesh) -> Topology {
 fn rimmed_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, Rim) {
     let progress = Progress::new();
     let before = Topology::build_within(mesh, weld, &progress).unwrap();
-    let (made, after, rim) = with_rim(mesh, &before, width, &Budget::endless(), &progress).unwrap();
+    let (made, after, rim) = with_rim(mesh, &before, width, &Unlimited, &progress).unwrap();
     assert_eq!(after.edges, topology(&made).edges);
     for edge in &after.edges {
         let normals = |side: &Side| after.side_corners(side).map(|corner| made.corners[corner as usize].normal);
@@ -359,5 +359,5 @@ fn a_cancel_is_heard() {
     let cube = Shape::CubeSplit.build();
     let topology = topology(&cube);
     progress.cancel();
-    assert!(matches!(with_rim(&cube, &topology, 0.01, &Budget::endless(), &progress), Err(Unfinished::Cancelled(_))));
+    assert!(matches!(with_rim(&cube, &topology, 0.01, &Unlimited, &progress), Err(BuildError::Cancelled(_))));
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DMat4, Vec2, Vec3, vec3};
 
 use super::{corner, mesh, triangles};
-use crate::mesh::merge::LooseCorner;
+use crate::mesh::mesh_builder::LooseCorner;
 use crate::mesh::rig::{
     Binding, Channel, Clip, Delta, Interpolation, Joint, Keys, Morph, Mover, Placement, Property, Reach,
 };

@@ -2,7 +2,8 @@ use glam::{Mat3, Vec2, Vec3, vec3};
 use proptest::prelude::*;
 
 use crate::mesh::t_junctions::{TJunction, t_junctions};
-use crate::mesh::{Corner, EdgeKind, Mesh, Progress, Shape, Topology};
+use crate::mesh::{Corner, EdgeKind, Mesh, Shape, Topology};
+use crate::progress::Progress;
 
 type Triangles = Vec<[Vec3; 3]>;
 

@@ -1,0 +1,278 @@
+//! Files on disk: how large a file may be, reading one whole, writing one so that a failure loses nothing, and what the
+//! system says of files, in words that tell what to do.
+
+use std::fs::{File, Metadata};
+use std::io::{self, ErrorKind, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use crate::names::shown_path;
+use crate::progress::{Cancelled, Progress};
+
+/// How much a load may read and take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The largest file that is read, in bytes: the model's, and each file that it names.
+    pub file: u64,
+    /// Memory that a load may take, in bytes, beyond four times the size of all its files.
+    pub memory: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { file: 2 << 30, memory: 256 << 20 }
+    }
+}
+
+/// Why a file could not be read whole.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    #[error("{} is not a file", shown_path(path))]
+    NoFile { path: PathBuf },
+    #[error("{} changed while it was read; open it again once it is whole", shown_path(path))]
+    Changed { path: PathBuf },
+    #[error("{} can't be read: {}", shown_path(path), file_reason(source))]
+    Io { path: PathBuf, source: io::Error },
+    #[error(
+        "{} has {bytes} bytes, and {limit} are read at most; if you trust it, allow more with --max-size",
+        shown_path(path)
+    )]
+    TooLarge { path: PathBuf, bytes: u64, limit: u64 },
+}
+
+/// Why a file couldn't be read or written, as a clause that says what to do.
+pub fn file_reason(error: &io::Error) -> String {
+    match error.kind() {
+        // Made by this program, which has given a reason already.
+        _ if error.raw_os_error().is_none() => error.to_string(),
+        ErrorKind::NotFound => "there is no such file or folder; check its path".to_owned(),
+        ErrorKind::PermissionDenied => {
+            "the system doesn't allow it; change its permissions or choose another".to_owned()
+        }
+        ErrorKind::ReadOnlyFilesystem => "nothing can be written there; choose another folder".to_owned(),
+        ErrorKind::StorageFull => "there is no room left; delete something or choose another disk".to_owned(),
+        ErrorKind::IsADirectory => "it is a folder; name a file".to_owned(),
+        ErrorKind::NotADirectory => "a part of its path is no folder; check its path".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// Opens a regular file for reading. A folder, a device or a pipe gives [`None`]: opening those may block for ever.
+///
+/// # Errors
+/// Those of the file system.
+pub fn open_file(path: &Path) -> io::Result<Option<(File, Metadata)>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Ok(None);
+    }
+    let file = File::open(path)?;
+    let about = file.metadata()?;
+    // Something else may be there by now.
+    Ok(about.is_file().then_some((file, about)))
+}
+
+/// A file's length and time of change: where they differ, the file was changed in between.
+#[derive(Debug, PartialEq)]
+pub struct Stamp {
+    bytes: u64,
+    /// None where the file system keeps no times.
+    modified: Option<SystemTime>,
+}
+
+impl Stamp {
+    pub fn of(about: &Metadata) -> Self {
+        Self { bytes: about.len(), modified: about.modified().ok() }
+    }
+
+    /// Checks that the file at `path` hasn't changed since this stamp was taken: the files that it names may belong to
+    /// another version of it by now.
+    ///
+    /// # Errors
+    /// [`FileError::Changed`].
+    pub fn check(&self, path: &Path) -> Result<(), FileError> {
+        match std::fs::metadata(path) {
+            Ok(about) if Self::of(&about) != *self => Err(FileError::Changed { path: path.to_owned() }),
+            // What is gone was read before.
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Reads a whole file, unless it is larger than `limits` allows, by its length or by what there turns out to be. The bytes
+/// are all of one time: a file that changes meanwhile is refused.
+///
+/// `check_start` sees the first bytes (at most 4,096) before the rest is read, and may refuse the file.
+///
+/// # Errors
+/// [`FileError`], and what `check_start` gives.
+pub fn read_file<E: From<FileError>>(
+    path: &Path,
+    limits: &Limits,
+    check_start: impl FnOnce(&[u8]) -> Result<(), E>,
+    progress: &Progress,
+) -> Result<Vec<u8>, E> {
+    let io = |source| FileError::Io { path: path.to_owned(), source };
+    let opened = open_file(path).map_err(io)?;
+    let (mut file, about) = opened.ok_or_else(|| FileError::NoFile { path: path.to_owned() })?;
+    if about.len() <= limits.file {
+        let mut start = Vec::new();
+        Read::by_ref(&mut file).take(START).read_to_end(&mut start).map_err(io)?;
+        check_start(&start)?;
+        file.rewind().map_err(io)?;
+    }
+    Ok(read_whole(file, &about, path, limits, progress)?)
+}
+
+/// How many first bytes of a file tell its format.
+const START: u64 = 4096;
+/// How many bytes are read between two checks for cancellation.
+const PIECE: u64 = 1 << 24;
+
+fn read_whole(
+    file: File,
+    about: &Metadata,
+    path: &Path,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<Vec<u8>, FileError> {
+    let io = |source| FileError::Io { path: path.to_owned(), source };
+    let too_large = |bytes| FileError::TooLarge { path: path.to_owned(), bytes, limit: limits.file };
+    let said = about.len();
+    if said > limits.file {
+        return Err(too_large(said));
+    }
+    let mut bytes = Vec::new();
+    // Reserved at once: growing step by step would take up to twice as much.
+    let room = usize::try_from(said).unwrap_or(usize::MAX).saturating_add(1);
+    bytes.try_reserve_exact(room).map_err(|error| io(error.into()))?;
+    let mut rest = file.take(limits.file.saturating_add(1));
+    while rest.by_ref().take(PIECE).read_to_end(&mut bytes).map_err(io)? > 0 {
+        progress.check()?;
+    }
+    let now = rest.into_inner().metadata().map_err(io)?;
+    match bytes.len() as u64 {
+        read if read > limits.file => Err(too_large(read)),
+        _ if Stamp::of(&now) != Stamp::of(about) => Err(FileError::Changed { path: path.to_owned() }),
+        _ => Ok(bytes),
+    }
+}
+
+/// How many symbolic links are followed to a file that isn't there yet.
+const MAX_LINKS: usize = 40;
+
+/// Writes a file: first beside its place under another name, then renamed, so that a full disk or a killed process leaves
+/// the old file whole. A pipe or a device is written directly. A symbolic link stays one, and permissions are kept.
+///
+/// # Errors
+/// Those of the file system. An existing file that is read-only is not replaced.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if path.exists() && !path.is_file() {
+        return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
+    }
+    let place = std::fs::canonicalize(path).unwrap_or_else(|_| end_of_links(path));
+    let permissions = std::fs::metadata(&place).ok().map(|metadata| metadata.permissions());
+    if permissions.as_ref().is_some_and(std::fs::Permissions::readonly) {
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
+    }
+    let mut beside = place.as_os_str().to_owned();
+    beside.push(format!(".{}.part", std::process::id()));
+    let beside = Path::new(&beside);
+    let write = || {
+        let mut file = std::fs::File::create(beside)?;
+        file.write_all(bytes)?;
+        // A network's or a full disk's failure may come only now.
+        file.sync_all()?;
+        permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(beside, permissions))
+    };
+    let written = write().and_then(|()| std::fs::rename(beside, &place));
+    if written.is_err() {
+        let _ = std::fs::remove_file(beside);
+    }
+    written
+}
+
+/// The place that symbolic links lead to, where no file is yet.
+fn end_of_links(path: &Path) -> PathBuf {
+    let mut place = path.to_owned();
+    for _ in 0..MAX_LINKS {
+        let Ok(next) = std::fs::read_link(&place) else { break };
+        // A relative link is relative to its own folder.
+        place = place.parent().unwrap_or(Path::new("")).join(next);
+    }
+    place
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_system_says_what_to_do() {
+        let missing = std::fs::read("no/such/file").expect_err("it isn't there");
+        assert_eq!(file_reason(&missing), "there is no such file or folder; check its path");
+        assert_eq!(file_reason(&io::Error::other("it is a device")), "it is a device");
+    }
+
+    /// What the system writes as it is read has no length before.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn files_that_turn_out_larger_are_refused_too() {
+        let path = Path::new("/proc/self/status");
+        assert_eq!(std::fs::metadata(path).unwrap().len(), 0);
+        let read = |file| {
+            read_file(path, &Limits { file, ..Limits::default() }, |_| Ok::<(), FileError>(()), &Progress::new())
+        };
+        let message = read(100).unwrap_err().to_string();
+        assert!(message.contains("has 101 bytes, and 100 are read at most"), "{message}");
+        assert!(read(1 << 20).is_ok_and(|bytes| bytes.len() > 100));
+    }
+
+    #[test]
+    fn a_file_that_changes_while_it_is_read_is_refused() {
+        let path = std::env::temp_dir().join(format!("pnaen-changes-{}.stl", std::process::id()));
+        let write = |bytes: usize| std::fs::write(&path, vec![b' '; bytes]).unwrap();
+        let opened = || open_file(&path).unwrap().expect("a file");
+        let read = |(file, about): (File, Metadata)| {
+            read_whole(file, &about, &path, &Limits { file: 1000, ..Limits::default() }, &Progress::new())
+                .map_err(|error| error.to_string())
+        };
+        write(100);
+        assert_eq!(read(opened()).map(|bytes| bytes.len()), Ok(100));
+        for (bytes, expected) in
+            [(90, "changed while it was read"), (110, "changed while it was read"), (2000, "has 1001 bytes")]
+        {
+            write(100);
+            let before = opened();
+            write(bytes);
+            assert!(read(before).is_err_and(|error| error.contains(expected)), "{bytes}");
+        }
+        write(100);
+        let before = opened();
+        let later = SystemTime::now() + std::time::Duration::from_secs(2);
+        File::options().write(true).open(&path).and_then(|file| file.set_modified(later)).unwrap();
+        assert!(read(before).is_err_and(|error| error.contains("open it again")), "the same length, another time");
+        let before = Stamp::of(&std::fs::metadata(&path).unwrap());
+        assert!(before.check(&path).is_ok());
+        write(100);
+        assert!(before.check(&path).is_err_and(|error| error.to_string().contains("changed while it was read")));
+        // What takes its place under its name is another file.
+        let before = opened();
+        std::fs::remove_file(&path).unwrap();
+        write(7);
+        assert_eq!(read(before).map(|bytes| bytes.len()), Ok(100));
+        std::fs::remove_file(&path).unwrap();
+    }
+
+    #[test]
+    fn reading_stops_when_nobody_waits_for_it() {
+        let path = std::env::temp_dir().join(format!("pnaen-cancelled-{}.stl", std::process::id()));
+        File::create(&path).and_then(|file| file.set_len(1 << 30)).unwrap();
+        let progress = Progress::new();
+        progress.cancel();
+        let result = read_file(&path, &Limits::default(), |_| Ok::<(), FileError>(()), &progress);
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(result, Err(FileError::Cancelled(_))));
+    }
+}

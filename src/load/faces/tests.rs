@@ -1,0 +1,73 @@
+//! Faces one by one, and the cube that every format must be able to say.
+
+use super::*;
+use crate::mesh::shapes::Shape;
+use crate::mesh::topology::Topology;
+
+/// The corners of a cube.
+pub const POINTS: [[i8; 3]; 8] =
+    [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
+
+/// Its sides, counter-clockwise seen from outside.
+pub const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
+
+/// Its triangles.
+pub fn triangles() -> Vec<[usize; 3]> {
+    SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
+}
+
+/// Whether a mesh is that cube, with the topology of the one that is made in code: its normals may be given or made.
+pub fn assert_cube(mesh: &Mesh) {
+    let topology = |mesh: &Mesh| Topology::build(mesh, &Progress::new()).unwrap();
+    let (expected, found) = (topology(&Shape::CubeSplit.build()), topology(mesh));
+    assert_eq!((found.patches.len(), found.points.len(), found.degenerate), (12, 8, 0));
+    assert_eq!(found.edge_counts(), expected.edge_counts());
+    assert_eq!((mesh.bounds().min, mesh.bounds().max), (Vec3::NEG_ONE, Vec3::ONE));
+    for &[a, b, c] in mesh.triangles.iter() {
+        let [a, b, c] = [a, b, c].map(|corner| mesh.corners[corner as usize]);
+        let face = (b.position - a.position).cross(c.position - a.position).normalize();
+        assert!(face.dot(a.position) > 0.0, "wound inward");
+        assert!([a, b, c].iter().all(|corner| corner.normal.distance(face) < 1e-6));
+    }
+}
+
+fn corners(places: &[[f32; 2]]) -> Vec<LooseCorner> {
+    let corner = |&[x, y]: &[f32; 2]| LooseCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO };
+    places.iter().map(corner).collect()
+}
+
+fn added(places: &[&[[f32; 2]]]) -> Result<Mesh, ReadError> {
+    let budget = Budget::unlimited();
+    let mut faces = Faces::new(0, &budget);
+    let material = faces.material(Material::plain("default", [1.0; 4]))?;
+    for places in places {
+        faces.add(material, &mut corners(places), Place::Line(7))?;
+    }
+    faces.finish("faces", "nothing".to_owned(), vec!["said first.".to_owned()], &Progress::new())
+}
+
+#[test]
+fn corners_on_one_place_are_left_out_of_polygons_and_kept_in_triangles() {
+    let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let mesh = added(&[&[a, a, b, c, c, d, a], &[a, a, b]]).unwrap();
+    assert_eq!(mesh.triangles.len(), 3);
+    assert_eq!(mesh.warnings, ["said first.", "corners of polygons where the one before is, left out: 3."]);
+}
+
+#[test]
+fn faces_that_are_none_are_left_out() {
+    let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
+    let mesh = added(&[&[], &[a], &[a, b], &[a, b, b, a], &[a, b, c]]).unwrap();
+    assert_eq!(mesh.triangles.len(), 1);
+    assert!(mesh.warnings.contains(&"faces of fewer than 3 corners, left out: 4.".to_owned()));
+    let message = added(&[&[a, b]]).unwrap_err().to_string();
+    assert_eq!(message, "no triangles: nothing, and 1 faces of fewer than 3 corners");
+}
+
+#[test]
+fn positions_must_be_finite_and_leave_room_for_sums() {
+    let at = |x| added(&[&[[0.0, 0.0], [x, 0.0], [0.0, 1.0]]]).unwrap_err().to_string();
+    let unfit = "line 7: the face has a position that isn't finite; export the model again";
+    assert_eq!([at(f32::NAN), at(f32::NEG_INFINITY)], [unfit; 2]);
+    assert_eq!(at(-1.1e37), "line 7: the face has a coordinate beyond 1e37; export the model again");
+}

@@ -1,0 +1,335 @@
+//! Accessors: typed lists in buffers, sparse or not, normalised or not, with every range checked first.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use ::gltf::accessor::sparse::{IndexType, Sparse};
+use ::gltf::accessor::{Accessor, DataType, Dimensions};
+use ::gltf::{Document, buffer};
+
+use super::Problem;
+use super::extensions::{Compressed, Extensions, Mode};
+use super::meshopt::{Decompressed, decompress};
+use super::unpacked::Unpacked;
+use crate::load::memory_budget::Budget;
+use crate::mesh::MemoryAccount;
+
+/// The largest list without a buffer view behind it (all zeros but for its sparse values): nothing else bounds those.
+const MAX_ZEROS: usize = 1 << 24;
+
+/// Reads the accessors of one document.
+pub struct Accessors<'a> {
+    document: &'a Document,
+    buffers: &'a [Vec<u8>],
+    /// By buffer view: those that are compressed, and from one element to the next.
+    decompressed: Vec<Option<(Decompressed, usize)>>,
+    /// By mesh and primitive: what Draco compressed.
+    pub unpacked: HashMap<[usize; 2], Unpacked>,
+    pub budget: &'a Budget,
+}
+
+/// What an element's bytes stand for.
+type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + 'a>;
+
+/// The values of an accessor. What lies in a buffer as it is stays there, and is decoded when it is asked for.
+pub struct List<'a, T: Clone> {
+    elements: Elements<'a>,
+    decode: Decode<'a, T>,
+    /// In place of all that: what is sparse, or nowhere, or was decoded before.
+    decoded: Option<Cow<'a, [T]>>,
+    zero: T,
+}
+
+impl<'a, T: Copy + 'a> List<'a, T> {
+    /// Of what was decoded before.
+    pub fn of(values: &'a [T], zero: T) -> Self {
+        let decode: Decode<T> = Box::new(move |_| zero);
+        Self { elements: Elements::default(), decode, decoded: Some(Cow::Borrowed(values)), zero }
+    }
+
+    /// Zero beyond its end.
+    pub fn get(&self, i: usize) -> T {
+        match &self.decoded {
+            Some(values) => values.get(i).copied().unwrap_or(self.zero),
+            None => self.elements.get(i).map_or(self.zero, &self.decode),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.decoded.as_ref().map_or(self.elements.count, |values| values.len())
+    }
+}
+
+/// Elements in a buffer view: `stride` bytes from one to the next, and all there.
+#[derive(Clone, Copy, Default)]
+struct Elements<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+    count: usize,
+}
+
+impl<'a> Elements<'a> {
+    fn get(&self, i: usize) -> Option<&'a [u8]> {
+        self.bytes.get(i * self.stride..)?.get(..self.size)
+    }
+
+    fn iter(self) -> impl Iterator<Item = &'a [u8]> {
+        (0..self.count).filter_map(move |i| self.get(i))
+    }
+}
+
+impl<'a> Accessors<'a> {
+    /// Decompresses what is compressed.
+    ///
+    /// # Errors
+    /// [`Problem::Document`] when something can't be.
+    pub fn new(
+        document: &'a Document,
+        extensions: &Extensions,
+        buffers: &'a [Vec<u8>],
+        budget: &'a Budget,
+    ) -> Result<Self, Problem> {
+        let mut accessors = Self { document, buffers, decompressed: Vec::new(), unpacked: HashMap::new(), budget };
+        for (view, compressed) in document.views().zip(&extensions.compressed) {
+            let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
+            accessors.decompressed.push(made.map_err(|reason| {
+                let pointer = format!("/bufferViews/{}/extensions/{}", view.index(), super::schema::MESHOPT);
+                Problem::Document { pointer, reason }
+            })?);
+        }
+        Ok(accessors)
+    }
+
+    fn decompress(&self, view: &buffer::View, compressed: &Compressed) -> Result<(Decompressed, usize), String> {
+        let Compressed { buffer, offset, length, stride, count, mode, .. } = *compressed;
+        let made = decompress(compressed, self.range(buffer, offset, length)?, self.budget)?;
+        let (said, has) = (view.length(), made.bytes().len());
+        if said != has {
+            return Err(format!("has {count} elements of {stride} bytes, {has}, and its view's byteLength is {said}"));
+        }
+        // Indices lie tight; attributes as the view says, and if it doesn't as they were compressed.
+        let stride = if mode == Mode::Attributes { stride } else { 0 };
+        Ok((made, stride))
+    }
+
+    /// Lists of N numbers, normalised integers as -1 to 1 or 0 to 1. `role` says what for, in messages.
+    ///
+    /// # Errors
+    /// [`Problem::Accessor`] when there aren't N numbers an element, or the data isn't where it should be.
+    pub fn numbers<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<Vec<[f32; N]>, Problem> {
+        let list = self.list::<N>(accessor, role)?;
+        if let Some(values) = list.decoded {
+            return Ok(values.into_owned());
+        }
+        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        self.budget
+            .borrow((list.elements.count * size_of::<[f32; N]>()) as u64)
+            .map_err(|refused| fail(refused.into()))?;
+        let mut values = Vec::with_capacity(list.elements.count);
+        values.extend(list.elements.iter().map(&list.decode));
+        Ok(values)
+    }
+
+    /// The same, decoded as they are asked for.
+    ///
+    /// # Errors
+    /// As [`Self::numbers`].
+    pub fn list<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<List<'_, [f32; N]>, Problem> {
+        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        if accessor.dimensions().multiplicity() != N {
+            return Err(fail(format!("has {:?} elements where {N} numbers are needed", accessor.dimensions())));
+        }
+        let (kind, normalized) = (accessor.data_type(), accessor.normalized());
+        let decode = move |bytes: &[u8]| {
+            let mut numbers = [0.0; N];
+            for (number, bytes) in numbers.iter_mut().zip(bytes.chunks_exact(kind.size())) {
+                *number = component(bytes, kind, normalized);
+            }
+            numbers
+        };
+        self.read(accessor, [0.0; N], Box::new(decode)).map_err(fail)
+    }
+
+    /// Single unsigned integers, exactly.
+    ///
+    /// # Errors
+    /// [`Problem::Accessor`] when it holds anything else, or the data isn't where it should be.
+    pub fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, Problem> {
+        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        let unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
+        if accessor.dimensions() != Dimensions::Scalar || !unsigned {
+            let kind = (accessor.dimensions(), accessor.data_type());
+            return Err(fail(format!("holds {kind:?} where unsigned integers are needed")));
+        }
+        self.read(accessor, 0, Box::new(unsigned_integer)).map_err(fail)
+    }
+
+    /// Of all buffers, and of what was decompressed.
+    pub fn buffer_bytes(&self) -> u64 {
+        let decompressed =
+            self.decompressed.iter().flatten().map(|(decompressed, _)| decompressed.bytes().len() as u64);
+        let unpacked = self.unpacked.values().map(Unpacked::bytes);
+        self.buffers.iter().map(|buffer| buffer.len() as u64).chain(decompressed).chain(unpacked).sum()
+    }
+
+    /// The bytes of a buffer view.
+    ///
+    /// # Errors
+    /// A clause that names the view when its buffer is too short.
+    pub fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
+        let i = view.index();
+        if let Some(Some((decompressed, _))) = self.decompressed.get(i) {
+            return Ok(decompressed.bytes());
+        }
+        let bytes = self.range(view.buffer().index(), view.offset() as u64, view.length() as u64);
+        bytes.map_err(|reason| format!("uses /bufferViews/{i}, which {reason}"))
+    }
+
+    /// # Errors
+    /// A clause when the buffer is too short.
+    fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&'a [u8], String> {
+        let bytes = self.buffers.get(buffer).map_or(&[][..], Vec::as_slice);
+        let start = usize::try_from(offset).ok();
+        let end = start.zip(usize::try_from(length).ok()).and_then(|(start, length)| start.checked_add(length));
+        let range = start.zip(end).and_then(|(start, end)| bytes.get(start..end));
+        range.ok_or_else(|| {
+            format!("takes {length} bytes from byte {offset} of /buffers/{buffer}, which has {}", bytes.len())
+        })
+    }
+
+    /// Whether an accessor's elements are where it says, and so many; the rest is seen when they are read.
+    ///
+    /// # Errors
+    /// As [`Self::numbers`].
+    pub fn check(&self, accessor: &Accessor, role: &str) -> Result<(), Problem> {
+        let found = match accessor.view() {
+            Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
+            None => zeros(accessor.count()),
+        };
+        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        found.map_err(fail)
+    }
+
+    /// The view with this index, if there is one.
+    pub fn view(&self, index: usize) -> Option<buffer::View<'a>> {
+        self.document.views().nth(index)
+    }
+
+    fn read<'b, T: Copy>(&'b self, accessor: &Accessor, zero: T, decode: Decode<'b, T>) -> Result<List<'b, T>, String> {
+        let (size, count) = (accessor.size(), accessor.count());
+        let elements = match accessor.view() {
+            Some(view) => Some(self.elements(&view, accessor.offset(), size, count)?),
+            None => {
+                zeros(count)?;
+                None
+            }
+        };
+        if let (Some(elements), None) = (elements, accessor.sparse()) {
+            return Ok(List { elements, decode, decoded: None, zero });
+        }
+        self.budget.borrow((count as u64).saturating_mul(size_of::<T>() as u64))?;
+        let mut values = Vec::with_capacity(count);
+        values.extend(elements.into_iter().flat_map(Elements::iter).map(&decode));
+        values.resize(count, zero);
+        if let Some(sparse) = accessor.sparse() {
+            self.replace(&mut values, &sparse, size, &decode)?;
+        }
+        Ok(List { elements: Elements::default(), decode, decoded: Some(Cow::Owned(values)), zero })
+    }
+
+    /// Puts an accessor's sparse values in their places.
+    fn replace<T>(
+        &self,
+        values: &mut [T],
+        sparse: &Sparse,
+        size: usize,
+        decode: impl Fn(&[u8]) -> T,
+    ) -> Result<(), String> {
+        let (indices, new) = (sparse.indices(), sparse.values());
+        let index_size = match indices.index_type() {
+            IndexType::U8 => 1,
+            IndexType::U16 => 2,
+            IndexType::U32 => 4,
+        };
+        let places = self.elements(&indices.view(), indices.offset(), index_size, sparse.count())?;
+        let new = self.elements(&new.view(), new.offset(), size, sparse.count())?;
+        let count = values.len();
+        for (place, bytes) in places.iter().map(unsigned_integer).zip(new.iter()) {
+            let value = values.get_mut(place as usize);
+            *value.ok_or_else(|| format!("replaces element {place} of {count}, in /sparse/indices"))? = decode(bytes);
+        }
+        Ok(())
+    }
+
+    /// `count` elements of `size` bytes in a view, from a byte offset on.
+    fn elements(&self, view: &buffer::View, offset: usize, size: usize, count: usize) -> Result<Elements<'_>, String> {
+        let bytes = self.view_bytes(view)?;
+        let compressed = self.decompressed.get(view.index()).and_then(Option::as_ref);
+        let stride = view.stride().or(compressed.map(|(_, stride)| *stride).filter(|stride| *stride > 0));
+        let stride = stride.unwrap_or(size);
+        if stride < size {
+            let i = view.index();
+            return Err(format!("has elements of {size} bytes, and /bufferViews/{i} has them {stride} bytes apart"));
+        }
+        let needed = match count {
+            0 => Some(0),
+            _ => stride.checked_mul(count - 1).and_then(|last| last.checked_add(size)?.checked_add(offset)),
+        };
+        match needed {
+            Some(needed) if needed <= bytes.len() => {
+                Ok(Elements { bytes: bytes.get(offset..).unwrap_or(&[]), stride, size, count })
+            }
+            _ => {
+                let needed = needed.map_or("more than 2^64".to_owned(), |needed| needed.to_string());
+                Err(format!("needs {needed} bytes of /bufferViews/{}, which has {}", view.index(), bytes.len()))
+            }
+        }
+    }
+}
+
+/// Whether so many elements may be zeros.
+fn zeros(count: usize) -> Result<(), String> {
+    match count {
+        0..=MAX_ZEROS => Ok(()),
+        _ => Err(format!("has {count} elements but no data, and {MAX_ZEROS} such are read at most")),
+    }
+}
+
+fn unsigned_integer(bytes: &[u8]) -> u32 {
+    if let Ok(word) = bytes.try_into() {
+        return u32::from_le_bytes(word);
+    }
+    bytes.iter().rev().fold(0, |value, &byte| (value << 8) | u32::from(byte))
+}
+
+/// One number, as the specification's section 3.6.2.2 (data types) and 3.11 (normalised integers) say.
+pub fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
+    let bits = unsigned_integer(bytes);
+    let (value, one) = match kind {
+        DataType::F32 => return f32::from_bits(bits),
+        DataType::I8 => (f32::from(bits as u8 as i8), 127.0),
+        DataType::U8 => (f32::from(bits as u8), 255.0),
+        DataType::I16 => (f32::from(bits as u16 as i16), 32767.0),
+        DataType::U16 => (f32::from(bits as u16), 65535.0),
+        DataType::U32 => (bits as f32, u32::MAX as f32),
+    };
+    if normalized { (value / one).max(-1.0) } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn components_of_all_types() {
+        assert_eq!(component(&1.5_f32.to_le_bytes(), DataType::F32, false), 1.5);
+        assert_eq!(component(&[0x80], DataType::I8, true), -1.0);
+        assert_eq!(component(&[0x81], DataType::I8, true), -1.0);
+        assert_eq!(component(&[255], DataType::U8, true), 1.0);
+        assert_eq!(component(&[255], DataType::U8, false), 255.0);
+        assert_eq!(component(&[0xfe, 0xff], DataType::I16, false), -2.0);
+        assert_eq!(component(&[0xff, 0xff], DataType::U16, true), 1.0);
+        assert_eq!(unsigned_integer(&[1, 2, 3, 4]), 0x0403_0201);
+    }
+}

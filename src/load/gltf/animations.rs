@@ -1,0 +1,176 @@
+//! Animations: clips whose channels move nodes of the document. What is wrong with one is said, and it is left out.
+//!
+//! They are read here and not by the `gltf` crate, for which one bad index makes the whole document bad.
+
+use std::collections::HashMap;
+
+use ::gltf::Document;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::{Accessors, Problem, nodes};
+use crate::mesh::MemoryAccount;
+use crate::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
+
+/// Numbers that all clips together may have: beyond any model, within any memory.
+const MAX_NUMBERS: usize = 1 << 26;
+
+#[derive(Deserialize)]
+struct Animation {
+    #[serde(default)]
+    channels: Vec<ChannelEntry>,
+    #[serde(default)]
+    samplers: Vec<Sampler>,
+}
+
+#[derive(Deserialize)]
+struct ChannelEntry {
+    sampler: usize,
+    target: Target,
+}
+
+#[derive(Deserialize)]
+struct Target {
+    node: Option<usize>,
+    path: String,
+}
+
+#[derive(Deserialize)]
+struct Sampler {
+    input: usize,
+    output: usize,
+    interpolation: Option<String>,
+}
+
+/// The document's clips; their channels' targets are nodes of the document. Those left out are among the warnings.
+pub fn read(
+    animations: Vec<Value>,
+    document: &Document,
+    accessors: &Accessors,
+    warnings: &mut Vec<String>,
+) -> Vec<Clip> {
+    let mut reader = Reader { document, accessors, numbers_left: MAX_NUMBERS, target_counts: HashMap::new() };
+    let mut clips = Vec::new();
+    for (i, value) in animations.into_iter().enumerate() {
+        let own_name = own_name(&value);
+        let quoted = own_name.as_ref().map_or_else(String::new, |name| format!(" \"{name}\""));
+        match reader.clip(own_name.unwrap_or_else(|| format!("animation {i}")), value) {
+            Ok(clip) => clips.push(clip),
+            Err(reason) => warnings.push(format!("animation {i}{quoted} is left out: {reason}.")),
+        }
+    }
+    clips
+}
+
+/// An animation's name, if it has one, on one line.
+fn own_name(animation: &Value) -> Option<String> {
+    let name = animation.get("name")?.as_str()?.replace(char::is_control, " ");
+    (!name.trim().is_empty()).then_some(name)
+}
+
+struct Reader<'a> {
+    document: &'a Document,
+    accessors: &'a Accessors<'a>,
+    numbers_left: usize,
+    /// By node.
+    target_counts: HashMap<usize, usize>,
+}
+
+impl Reader<'_> {
+    /// # Errors
+    /// A clause that says what is wrong.
+    fn clip(&mut self, name: String, value: Value) -> Result<Clip, String> {
+        let animation: Animation =
+            serde_json::from_value(value).map_err(|error| format!("it can't be read ({error})"))?;
+        let mut channels: Vec<Channel> = Vec::new();
+        for (i, entry) in animation.channels.iter().enumerate() {
+            let channel = self.channel(entry, &animation.samplers).map_err(|reason| format!("channel {i} {reason}"))?;
+            channels.extend(channel);
+        }
+        let last = channels.iter().filter_map(|channel| channel.keys.times.last()).fold(0.0, |a: f32, b| a.max(*b));
+        Ok(Clip { name, duration: last.into(), channels })
+    }
+
+    /// None where an extension says what is animated.
+    fn channel(&mut self, entry: &ChannelEntry, samplers: &[Sampler]) -> Result<Option<Channel>, String> {
+        let Some(index) = entry.target.node else { return Ok(None) };
+        let node = self.document.nodes().nth(index);
+        let node = node.ok_or_else(|| {
+            let count = self.document.nodes().len();
+            format!("moves node {index}, and /nodes has {count}")
+        })?;
+        let (property, width) = match entry.target.path.as_str() {
+            "translation" => (Property::Translation, 3),
+            "rotation" => (Property::Rotation, 4),
+            "scale" => (Property::Scale, 3),
+            "weights" => {
+                (Property::Weights, *self.target_counts.entry(index).or_insert_with(|| nodes::target_count(&node)))
+            }
+            _ => return Ok(None),
+        };
+        if width == 0 {
+            return Err(format!("weighs morph targets of node {index}, which has none"));
+        }
+        if property != Property::Weights && nodes::placement(&node).is_none() {
+            return Err(format!("moves node {index}, which is placed by a matrix"));
+        }
+        let sampler = samplers.get(entry.sampler);
+        let sampler = sampler.ok_or_else(|| format!("uses sampler {} of {}", entry.sampler, samplers.len()))?;
+        let keys = self.keys(sampler, property, width)?;
+        Ok(Some(Channel { target: index as u32, property, keys }))
+    }
+
+    fn keys(&mut self, sampler: &Sampler, property: Property, width: usize) -> Result<Keys, String> {
+        let interpolation = match sampler.interpolation.as_deref() {
+            None | Some("LINEAR") => Interpolation::Linear,
+            Some("STEP") => Interpolation::Step,
+            Some("CUBICSPLINE") => Interpolation::CubicSpline,
+            Some(other) => return Err(format!("has an interpolation {other:?}, which isn't known")),
+        };
+        let times = self.numbers::<1>(sampler.input, "times")?;
+        let values = match property {
+            Property::Translation | Property::Scale => self.numbers::<3>(sampler.output, "values")?,
+            Property::Rotation => self.numbers::<4>(sampler.output, "values")?,
+            Property::Weights => self.numbers::<1>(sampler.output, "values")?,
+        };
+        let later = |pair: &[f32]| pair[0] < pair[1];
+        if times.first().is_none_or(|first| *first < 0.0) || !times.windows(2).all(later) {
+            return Err("has times that don't rise from 0 or later".to_owned());
+        }
+        let elements = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+        // Neither is more than the memory that holds it.
+        if values.len() != times.len() * elements * width {
+            return Err(format!("has {} numbers for {} keys of {}", values.len(), times.len(), elements * width));
+        }
+        Ok(Keys { times, values, width, interpolation })
+    }
+
+    /// All numbers of an accessor, which are finite.
+    fn numbers<const N: usize>(&mut self, index: usize, role: &str) -> Result<Vec<f32>, String> {
+        let accessor = self.document.accessors().nth(index);
+        let accessor = accessor.ok_or_else(|| {
+            let count = self.document.accessors().len();
+            format!("names accessor {index}, and /accessors has {count}")
+        })?;
+        let left = accessor.count().checked_mul(N).and_then(|count| self.numbers_left.checked_sub(count));
+        self.numbers_left = left.ok_or_else(|| format!("takes the document beyond {MAX_NUMBERS} animated numbers"))?;
+        let budget = self.accessors.budget;
+        let borrowed = budget.borrowed();
+        let numbers = self.accessors.numbers::<N>(&accessor, role);
+        budget.give_back_to(borrowed);
+        let numbers = numbers.map_err(|problem| match problem {
+            Problem::Accessor { accessor, reason, .. } => {
+                format!("has {role} in /accessors/{accessor}, which {reason}")
+            }
+            problem => problem.to_string(),
+        })?;
+        let numbers = numbers.into_flattened();
+        // They stay as long as the mesh.
+        let kept = budget.hold(size_of_val(&numbers[..]) as u64);
+        kept.map_err(|reason| format!("has {role} in /accessors/{index}, which {reason}"))?;
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return Err(format!("has {role} that aren't finite"));
+        }
+        Ok(numbers)
+    }
+}

@@ -1,0 +1,165 @@
+//! From bytes to a document that the `gltf` crate can't stumble over.
+
+use ::gltf::Document;
+use ::gltf::json::Root;
+use ::gltf::json::validation::Error as ValidationError;
+use serde_json::{Map, Value, json};
+
+use super::extensions::{self, Extensions};
+use super::{Problem, check, glb, json, schema};
+use crate::load::memory_budget::Budget;
+use crate::mesh::MemoryAccount;
+use crate::progress::Progress;
+
+/// A validated document, the binary chunk of a `.glb`, and what was left out.
+pub struct Parsed {
+    pub document: Document,
+    pub blob: Option<Vec<u8>>,
+    pub extensions: Extensions,
+    /// As the document has them, not checked: see [`super::animations`].
+    pub animations: Vec<Value>,
+    pub warnings: Vec<String>,
+}
+
+/// Parses and validates a `.gltf` or `.glb`; which one, its first bytes tell.
+///
+/// # Errors
+/// [`Problem::NotGltf`], [`Problem::Extension`], [`Problem::Document`], and [`Problem::Cancelled`].
+pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, Problem> {
+    let mut blob = None;
+    let mut value = if glb::is_glb(&bytes) {
+        let parts = glb::parts(&bytes)?;
+        let value = json::parse(&bytes[parts.json], budget, progress)?;
+        if let Some(bin) = parts.bin {
+            // In place: a copy would take the file's size once more.
+            bytes.truncate(bin.end);
+            bytes.drain(..bin.start);
+            blob = Some(bytes);
+        }
+        value
+    } else {
+        let value = json::parse(&bytes, budget, progress)?;
+        drop(bytes);
+        value
+    };
+    let Value::Object(root) = &mut value else { return Err(not_gltf("it is no JSON object")) };
+    check_version(root)?;
+    extensions::check_required(root)?;
+    let requires_draco = extensions::requires(root, schema::DRACO);
+    // Set aside: nothing in them can be the reason why a model doesn't load.
+    let animations = match root.remove("animations") {
+        Some(Value::Array(animations)) => animations,
+        _ => Vec::new(),
+    };
+    check::check(root, schema::DOCUMENT)?;
+    let extensions = Extensions::of(root, requires_draco);
+    complete(root);
+    complete_bare(root, budget)?;
+    let warnings = complete_textures(root);
+    let root: Root = serde_json::from_value(value).map_err(not_gltf)?;
+    let document = Document::from_json(root).map_err(first_fault)?;
+    budget.give_back_to(0);
+    Ok(Parsed { document, blob, extensions, animations, warnings })
+}
+
+fn not_gltf(reason: impl ToString) -> Problem {
+    Problem::NotGltf { reason: reason.to_string() }
+}
+
+/// What the crate's own validation found that ours didn't: the first of it, since there may be as many faults as members.
+fn first_fault(error: ::gltf::Error) -> Problem {
+    let ::gltf::Error::Validation(faults) = error else { return not_gltf(error) };
+    let Some((path, fault)) = faults.first() else { return not_gltf("it is invalid") };
+    let pointer = format!("/{}", path.as_str().replace(['.', '['], "/").replace([']', '"'], ""));
+    let reason = match fault {
+        ValidationError::IndexOutOfBounds => "names something that isn't there",
+        ValidationError::Invalid => "has a value that isn't allowed",
+        ValidationError::Missing => "is missing",
+        ValidationError::Oversize => "is more than any memory",
+        ValidationError::Unsupported => "isn't supported",
+    };
+    Problem::Document { pointer, reason: reason.to_owned() }
+}
+
+fn check_version(root: &Map<String, Value>) -> Result<(), Problem> {
+    let version = root.get("asset").and_then(|asset| asset.get("version")).and_then(Value::as_str);
+    match version {
+        Some(version) if version.starts_with("2.") => Ok(()),
+        Some(version) => Err(not_gltf(format!("its /asset/version is {:?}", crate::load::uri::shown(version)))),
+        None => Err(not_gltf("it has no /asset/version")),
+    }
+}
+
+/// The objects in one of the document's lists.
+pub fn objects<'a>(root: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Map<String, Value>> {
+    root.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
+}
+
+/// Adds what the crate's validation takes for granted.
+fn complete(root: &mut Map<String, Value>) {
+    for scene in objects(root, "scenes") {
+        // A scene may be empty, but the crate wants to be told.
+        scene.entry("nodes").or_insert_with(|| json!([]));
+    }
+    let mut positions = Vec::new();
+    for mesh in objects(root, "meshes") {
+        let primitives = mesh.get("primitives").and_then(Value::as_array).into_iter().flatten();
+        let position = |primitive: &Value| primitive.get("attributes")?.get("POSITION")?.as_u64();
+        positions.extend(primitives.filter_map(position));
+    }
+    positions.sort_unstable();
+    positions.dedup();
+    let mut accessors: Vec<_> = objects(root, "accessors").collect();
+    for index in positions {
+        if let Some(accessor) = usize::try_from(index).ok().and_then(|index| accessors.get_mut(index)) {
+            // Required by the specification, forgotten by some exporters, and not used here.
+            accessor.insert("min".to_owned(), json!([0.0, 0.0, 0.0]));
+            accessor.insert("max".to_owned(), json!([0.0, 0.0, 0.0]));
+        }
+    }
+}
+
+/// Accessors without a buffer view are zeros (glTF 2.0, section 3.6.2), or what Draco compressed; but the crate wants one, or
+/// sparse values: they get none of those.
+fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), Problem> {
+    let is_bare =
+        |accessor: &&mut Map<String, Value>| ["bufferView", "sparse"].iter().all(|name| !accessor.contains_key(*name));
+    let count = objects(root, "accessors").filter(is_bare).count();
+    let too_large = |reason| Problem::Document { pointer: "its JSON".to_owned(), reason };
+    budget.borrow(count as u64 * 3 * json::PER_OBJECT).map_err(|refused| too_large(refused.into()))?;
+    for accessor in objects(root, "accessors").filter(is_bare) {
+        let (indices, values) = (json!({ "bufferView": 0, "componentType": 5121 }), json!({ "bufferView": 0 }));
+        accessor.insert("sparse".to_owned(), json!({ "count": 0, "indices": indices, "values": values }));
+    }
+    Ok(())
+}
+
+/// A texture without a source (its image is in a format that an extension adds) stops the crate. Materials do without
+/// it, with a warning, and the entry gets some source so that the others keep their indices.
+fn complete_textures(root: &mut Map<String, Value>) -> Vec<String> {
+    let mut without = Vec::new();
+    for (i, texture) in objects(root, "textures").enumerate() {
+        if !texture.contains_key("source") {
+            texture.insert("source".to_owned(), json!(0));
+            without.push(i as u64);
+        }
+    }
+    if without.is_empty() {
+        return Vec::new();
+    }
+    if let Some(images) = root.entry("images").or_insert(json!([])).as_array_mut()
+        && images.is_empty()
+    {
+        images.push(json!({ "uri": "" }));
+    }
+    for pbr in objects(root, "materials").filter_map(|m| m.get_mut("pbrMetallicRoughness")?.as_object_mut()) {
+        let texture = pbr.get("baseColorTexture").and_then(|info| info.get("index")).and_then(Value::as_u64);
+        if texture.is_some_and(|texture| without.binary_search(&texture).is_ok()) {
+            pbr.remove("baseColorTexture");
+        }
+    }
+    without
+        .iter()
+        .map(|i| format!("texture {i} has no PNG or JPEG image; its materials are shown without it."))
+        .collect()
+}

@@ -1,0 +1,84 @@
+//! A primitive's vertices, bound to what moves them.
+
+use super::Problem;
+use super::binder::{Frame, MAX_BOUND, NodeBinder, Undeformed};
+use super::vertices::{Source, Target, Vertices};
+use crate::mesh::MemoryAccount;
+use crate::mesh::mesh_builder::LooseCorner;
+use crate::mesh::rig::Delta;
+
+/// Memory for a displacement of a vertex that is bound, and for telling it from others, in bytes.
+const PER_DELTA: u64 = 250;
+
+pub struct Moving<'a, 'b, 'c> {
+    binder: &'b mut NodeBinder<'c>,
+    frame: Frame,
+    source: Source<'a>,
+    /// Where the node's weights start, if a clip changes them.
+    first_weight: Option<u32>,
+    /// Those whose weights that are.
+    targets: Vec<Target<'a>>,
+    /// The vertex's that is being bound.
+    deltas: Vec<Delta>,
+    /// Displacements of vertices so far.
+    found: usize,
+}
+
+impl<'a, 'b, 'c> Moving<'a, 'b, 'c> {
+    pub fn new(source: Source<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
+        let (frame, first_weight) = (binder.frame(vertices.is_skinned()), binder.first_weight());
+        let mut moving =
+            Self { binder, frame, source, first_weight, targets: Vec::new(), deltas: Vec::new(), found: 0 };
+        if first_weight.is_some() {
+            match moving.read_targets(vertices.count) {
+                Ok(targets) => moving.targets = targets,
+                Err(problem) => moving.binder.give_up(problem),
+            }
+        }
+        moving
+    }
+
+    /// # Errors
+    /// In words: they can't be read, or there are too many.
+    fn read_targets(&mut self, count: usize) -> Result<Vec<Target<'a>>, String> {
+        let targets = self.source.primitive.morph_targets();
+        self.binder.look_at(targets.clone().count().saturating_mul(count))?;
+        let targets: Result<_, Problem> = targets.map(|target| self.source.target(&target, count)).collect();
+        targets.map_err(|problem| problem.to_string())
+    }
+
+    /// The number of the binding of the vertex that was read last.
+    pub fn bind(&mut self, i: usize, vertices: &Vertices, corner: &LooseCorner) -> u32 {
+        if let Err(problem) = self.displace(i) {
+            self.binder.give_up(problem);
+        }
+        let (position, normal) = vertices.undeformed(i, self.first_weight.is_none());
+        let normal = normal.unwrap_or_default();
+        let vertex = Undeformed { position, normal, influences: vertices.joints(), deltas: &mut self.deltas };
+        self.binder.bind(&self.frame, vertex, corner)
+    }
+
+    /// Gathers what each target of weight 1 adds to a vertex, of those that move or turn it; 0 for what isn't finite.
+    ///
+    /// # Errors
+    /// In words: it is too much.
+    fn displace(&mut self, i: usize) -> Result<(), String> {
+        self.deltas.clear();
+        let Some(first_weight) = self.first_weight else { return Ok(()) };
+        for (target, weight) in self.targets.iter().zip(first_weight..) {
+            let [position, normal] = [&target.positions, &target.normals].map(|list| {
+                let vector = list.as_ref().map_or([0.0; 3], |list| list.get(i));
+                vector.map(|x| if x.is_finite() { x } else { 0.0 })
+            });
+            if position != [0.0; 3] || normal != [0.0; 3] {
+                self.deltas.push(Delta { position, weight, normal, _pad: 0.0 });
+            }
+        }
+        self.found += self.deltas.len();
+        if self.found > MAX_BOUND {
+            return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
+        }
+        let kept = self.source.accessors.budget.hold(self.deltas.len() as u64 * PER_DELTA);
+        kept.map_err(|reason| format!("{} displacements of vertices {reason}", self.found))
+    }
+}

@@ -1,0 +1,248 @@
+//! A primitive's triangles: lists, strips and fans, indexed or not.
+
+use ::gltf::mesh::Mode;
+use ::gltf::{Document, Mesh, Primitive};
+
+use super::accessor::List;
+use super::binder::NodeBinder;
+use super::materials::Resolved;
+use super::moving::Moving;
+use crate::mesh::{MemoryAccount, MemoryRefused};
+
+pub use super::vertices::Pose;
+use super::vertices::{Source, Vertex, Vertices};
+use super::{Accessors, Problem, vertices};
+use crate::mesh::mesh_builder::{Kept, Mended, MeshBuilder};
+
+/// Reads primitives and remembers what was odd about them.
+#[derive(Debug, Default)]
+pub struct Primitives {
+    read: usize,
+    points: usize,
+    lines: usize,
+    /// Primitives without normals, vertices with bad uvs or weights.
+    without_normals: usize,
+    bad_uvs: usize,
+    bad_weights: usize,
+    /// Indices at the end of lists that make no whole triangle.
+    left_over: usize,
+    /// Corners of triangles whose normal wasn't of unit length in the file.
+    pub rescaled: u32,
+}
+
+/// What is read, and where it goes.
+pub struct Job<'a, 'b> {
+    pub mesh: &'a Mesh<'a>,
+    pub primitive: &'a Primitive<'a>,
+    pub pose: &'a Pose<'a>,
+    pub material: Resolved,
+    pub accessors: &'a Accessors<'a>,
+    pub builder: &'b mut MeshBuilder,
+}
+
+/// The vertices of a primitive's triangles: as they follow each other without indices.
+struct Indices<'a> {
+    list: Option<List<'a, u32>>,
+    count: usize,
+}
+
+impl Indices<'_> {
+    fn get(&self, i: usize) -> u32 {
+        self.list.as_ref().map_or(i as u32, |list| list.get(i))
+    }
+}
+
+impl Primitives {
+    /// Whether there are no triangles in it by its very kind; counts it then.
+    pub fn skip(&mut self, primitive: &Primitive) -> bool {
+        let count = match primitive.mode() {
+            Mode::Points => &mut self.points,
+            Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.lines,
+            Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => return false,
+        };
+        *count += 1;
+        true
+    }
+
+    /// Adds the triangles of a primitive to the builder, in the scene's space, counter-clockwise seen from outside.
+    ///
+    /// # Errors
+    /// [`Problem::Accessor`], [`Problem::Primitive`] and [`Problem::TooLarge`].
+    pub fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), Problem> {
+        let Job { mesh, primitive, pose, material, accessors, builder } = job;
+        let name = name(mesh, primitive);
+        let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
+        let source = Source { primitive, name: &name, accessors, unpacked };
+        let mut vertices = Vertices::new(source, pose, material.uvs)?;
+        let mut moving = binder.map(|binder| Moving::new(source, &vertices, binder));
+        let list = primitive.indices().map(|accessor| match unpacked {
+            Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
+            None => accessors.indices(&accessor, &format!("indices of {name}")),
+        });
+        let list = list.transpose()?;
+        let count = list.as_ref().map_or(vertices.count, List::len);
+        let (indices, mode) = (Indices { list, count }, primitive.mode());
+        let (budget, too_large) = (accessors.budget, |refused: MemoryRefused| Problem::TooLarge {
+            what: "the scene".to_owned(),
+            reason: refused.into(),
+        });
+        // Each vertex's corner with what is to be known of it, and a bit whether it is used.
+        budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
+        let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
+        let mut kept = KeptVertices::new(vertices.count);
+        for i in 0..vertices.count {
+            let vertex = vertices.read(i)?;
+            let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, &vertices, &vertex.corner));
+            if used[i / 64] & 1 << (i % 64) == 0 {
+                kept.push(Kept::default(), &vertex);
+                continue;
+            }
+            builder.make_room(1, budget).map_err(too_large)?;
+            kept.push(builder.corner(vertex.corner, binding), &vertex);
+        }
+        self.count(&vertices.repairs, mode, count);
+        builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
+        for [a, b, c] in triangles(mode, count, |i| indices.get(i)) {
+            let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
+            self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
+            builder.kept_triangle(material.index, outward.map(|i| kept.get(i)));
+        }
+        Ok(())
+    }
+
+    fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
+        self.read += 1;
+        self.without_normals += usize::from(repairs.no_normals > 0);
+        self.bad_uvs += repairs.bad_uvs;
+        self.bad_weights += repairs.bad_weights;
+        if mode == Mode::Triangles {
+            self.left_over += indices % 3;
+        }
+    }
+
+    /// What was left out or repaired, one sentence each; what the mesh's own repairs count is not among them.
+    pub fn warnings(&self) -> Vec<String> {
+        let sentences = [
+            (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
+            (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
+            (self.bad_weights, "vertices with unusable joints or weights, left unskinned"),
+            (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),
+            (self.points, "primitives of points, left out"),
+            (self.lines, "primitives of lines, left out"),
+        ];
+        let found = sentences.into_iter().filter(|(count, _)| *count > 0);
+        found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect()
+    }
+
+    /// What there is in place of triangles.
+    pub fn holds(&self, document: &Document) -> String {
+        match (document.meshes().len(), self.points, self.lines) {
+            (0, ..) => "the document has no meshes".to_owned(),
+            (_, 0, 0) if self.read == 0 => "no node of its scene has a mesh".to_owned(),
+            (_, 0, 0) => format!("the {} primitives of its scene are empty", self.read),
+            (_, points, lines) => format!("its scene holds {points} primitives of points and {lines} of lines"),
+        }
+    }
+}
+
+/// What has become of a primitive's vertices.
+struct KeptVertices {
+    ids: Vec<u32>,
+    /// What was mended, and two bits more.
+    marks: Vec<u8>,
+}
+
+impl KeptVertices {
+    const MIRRORED: u8 = 1 << Mended::BITS;
+    const RESCALED: u8 = 2 << Mended::BITS;
+
+    fn new(count: usize) -> Self {
+        Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
+    }
+
+    fn push(&mut self, kept: Kept, vertex: &Vertex) {
+        let mark = |is: bool, bit: u8| if is { bit } else { 0 };
+        self.ids.push(kept.id);
+        self.marks.push(kept.mended.0 | mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
+    }
+
+    fn has(&self, i: u32, mark: u8) -> bool {
+        self.marks[i as usize] & mark != 0
+    }
+
+    fn get(&self, i: u32) -> Kept {
+        let mended = Mended(self.marks[i as usize] & (Self::MIRRORED - 1));
+        Kept { id: self.ids[i as usize], mended }
+    }
+}
+
+/// A bit for each vertex that an index names.
+///
+/// # Errors
+/// A clause: an index names none.
+fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
+    if indices.list.is_none() {
+        return Ok(vec![u64::MAX; count.div_ceil(64)]);
+    }
+    let mut used = vec![0; count.div_ceil(64)];
+    for i in 0..indices.count {
+        let index = indices.get(i) as usize;
+        if index >= count {
+            return Err(format!("uses vertex {index} of {count}, at index {i}"));
+        }
+        used[index / 64] |= 1 << (index % 64);
+    }
+    Ok(used)
+}
+
+/// A primitive's place in the document, for messages.
+pub fn name(mesh: &Mesh, primitive: &Primitive) -> String {
+    let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", crate::load::uri::shown(name)));
+    format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
+}
+
+/// How many triangles there are of so many indices, at most.
+pub fn most_triangles(mode: Mode, indices: usize) -> usize {
+    if mode == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) }
+}
+
+/// Indices as triangles (specification, section 3.7.2.1). Triangles of a strip or fan that use a vertex twice only
+/// carry it to its next part and are dropped; those of a list are kept.
+fn triangles(mode: Mode, count: usize, at: impl Fn(usize) -> u32) -> impl Iterator<Item = [u32; 3]> {
+    (0..most_triangles(mode, count)).filter_map(move |i| {
+        let triangle = match mode {
+            Mode::TriangleStrip if i % 2 == 0 => [i, i + 1, i + 2],
+            Mode::TriangleStrip => [i, i + 2, i + 1],
+            Mode::TriangleFan => [i + 1, i + 2, 0],
+            _ => [3 * i, 3 * i + 1, 3 * i + 2],
+        };
+        let [a, b, c] = triangle.map(&at);
+        let is_whole = a != b && b != c && c != a;
+        (is_whole || mode == Mode::Triangles).then_some([a, b, c])
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+        triangles(mode, indices.len(), |i| indices[i]).collect()
+    }
+
+    #[test]
+    fn strips_alternate_and_fans_turn() {
+        let indices = [0, 1, 2, 3, 4];
+        assert_eq!(all(Mode::TriangleStrip, &indices), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(all(Mode::TriangleFan, &indices), [[1, 2, 0], [2, 3, 0], [3, 4, 0]]);
+        assert_eq!(all(Mode::Triangles, &indices), [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn stitches_of_strips_are_dropped() {
+        assert_eq!(all(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]), [[0, 1, 2], [3, 5, 4]]);
+        for mode in [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan] {
+            assert!(all(mode, &[]).is_empty() && all(mode, &[7]).is_empty());
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! What is read of a document, and what each of its members may be. Animations are [read elsewhere](super::animations).
+//!
+//! Source: glTF 2.0 specification, section 5 (properties reference).
+
+/// A member of an object.
+pub struct Field {
+    pub name: &'static str,
+    pub kind: Kind,
+    pub required: bool,
+}
+
+pub enum Kind {
+    /// Of one of the document's lists.
+    Index(&'static str),
+    Indices(&'static str),
+    Whole {
+        least: u64,
+        most: u64,
+    },
+    /// That an f32 holds.
+    Number,
+    /// So many, or any number of them.
+    Numbers(Option<usize>),
+    /// So many from one to another.
+    Within {
+        count: usize,
+        least: f64,
+        most: f64,
+    },
+    Text,
+    /// Text, and nothing if it is something else.
+    Name,
+    Flag,
+    Code(&'static [u64]),
+    Word(&'static [&'static str]),
+    Object(&'static [Field]),
+    Objects(&'static [Field]),
+    /// Accessors by name, of those names that are read.
+    Attributes(fn(&str) -> bool),
+    Targets(fn(&str) -> bool),
+    /// Numbers of whatever the names stand for.
+    Interner,
+}
+
+use Kind::{
+    Attributes, Code, Flag, Index, Indices, Interner, Name, Number, Numbers, Object, Objects, Targets, Text, Whole,
+    Within, Word,
+};
+
+const fn needed(name: &'static str, kind: Kind) -> Field {
+    Field { name, kind, required: true }
+}
+
+const fn may(name: &'static str, kind: Kind) -> Field {
+    Field { name, kind, required: false }
+}
+
+/// A number of bytes or elements.
+const COUNT: Kind = Whole { least: 0, most: u64::MAX };
+
+/// The extension that compresses buffer views, which marks buffers too.
+pub const MESHOPT: &str = "EXT_meshopt_compression";
+/// The extension that compresses primitives.
+pub const DRACO: &str = "KHR_draco_mesh_compression";
+/// The extension that moves texture coordinates.
+pub const TRANSFORM: &str = "KHR_texture_transform";
+
+pub static DOCUMENT: &[Field] = &[
+    needed("asset", Object(&[needed("version", Text)])),
+    may("nodes", Objects(NODE)),
+    may("meshes", Objects(MESH)),
+    may("skins", Objects(SKIN)),
+    may("materials", Objects(MATERIAL)),
+    may("textures", Objects(&[may("source", Index("images"))])),
+    may("images", Objects(&[may("uri", Text), may("bufferView", Index("bufferViews"))])),
+    may("accessors", Objects(ACCESSOR)),
+    may("bufferViews", Objects(VIEW)),
+    may("buffers", Objects(BUFFER)),
+    may("scene", Index("scenes")),
+    may("scenes", Objects(&[may("nodes", Indices("nodes"))])),
+];
+
+static NODE: &[Field] = &[
+    may("children", Indices("nodes")),
+    may("mesh", Index("meshes")),
+    may("skin", Index("skins")),
+    may("matrix", Numbers(Some(16))),
+    may("translation", Numbers(Some(3))),
+    may("rotation", Within { count: 4, least: -1.0, most: 1.0 }),
+    may("scale", Numbers(Some(3))),
+    may("weights", Numbers(None)),
+];
+
+static MESH: &[Field] = &[may("name", Name), needed("primitives", Objects(PRIMITIVE)), may("weights", Numbers(None))];
+
+static PRIMITIVE: &[Field] = &[
+    needed("attributes", Attributes(is_attribute)),
+    may("indices", Index("accessors")),
+    may("material", Index("materials")),
+    may("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
+    may("targets", Targets(is_displacement)),
+    may("extensions", Object(&[may(DRACO, Object(PACKED))])),
+];
+
+static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Interner)];
+
+static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
+
+static MATERIAL: &[Field] = &[
+    may("name", Name),
+    may("doubleSided", Flag),
+    may(
+        "pbrMetallicRoughness",
+        Object(&[
+            may("baseColorFactor", Within { count: 4, least: 0.0, most: 1.0 }),
+            may("baseColorTexture", Object(TEXTURE_INFO)),
+        ]),
+    ),
+];
+
+static TEXTURE_INFO: &[Field] = &[
+    needed("index", Index("textures")),
+    may("texCoord", TEXTURE_COORDINATES),
+    may("extensions", Object(&[may(TRANSFORM, Object(TEXTURE_TRANSFORM))])),
+];
+
+static TEXTURE_TRANSFORM: &[Field] = &[
+    may("offset", Numbers(Some(2))),
+    may("rotation", Number),
+    may("scale", Numbers(Some(2))),
+    may("texCoord", TEXTURE_COORDINATES),
+];
+
+/// The n of TEXCOORD_n.
+const TEXTURE_COORDINATES: Kind = Whole { least: 0, most: u32::MAX as u64 };
+
+static ACCESSOR: &[Field] = &[
+    may("bufferView", Index("bufferViews")),
+    may("byteOffset", COUNT),
+    needed("componentType", Code(&[5120, 5121, 5122, 5123, 5125, 5126])),
+    needed("count", COUNT),
+    needed("type", Word(&["SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"])),
+    may("normalized", Flag),
+    may("sparse", Object(SPARSE)),
+];
+
+static SPARSE: &[Field] = &[
+    needed("count", COUNT),
+    needed("indices", Object(SPARSE_INDICES)),
+    needed("values", Object(&[needed("bufferView", Index("bufferViews")), may("byteOffset", COUNT)])),
+];
+
+static SPARSE_INDICES: &[Field] = &[
+    needed("bufferView", Index("bufferViews")),
+    may("byteOffset", COUNT),
+    needed("componentType", Code(&[5121, 5123, 5125])),
+];
+
+static VIEW: &[Field] = &[
+    needed("buffer", Index("buffers")),
+    may("byteOffset", COUNT),
+    needed("byteLength", COUNT),
+    may("byteStride", Whole { least: 4, most: 252 }),
+    may("extensions", Object(&[may(MESHOPT, Object(COMPRESSED))])),
+];
+
+static COMPRESSED: &[Field] = &[
+    needed("buffer", Index("buffers")),
+    may("byteOffset", COUNT),
+    needed("byteLength", COUNT),
+    needed("byteStride", Whole { least: 1, most: 256 }),
+    needed("count", COUNT),
+    needed("mode", Word(&["ATTRIBUTES", "TRIANGLES", "INDICES"])),
+    may("filter", Word(&["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"])),
+];
+
+static BUFFER: &[Field] = &[
+    needed("byteLength", COUNT),
+    may("uri", Text),
+    may("extensions", Object(&[may(MESHOPT, Object(&[may("fallback", Flag)]))])),
+];
+
+pub fn is_attribute(name: &str) -> bool {
+    let known = ["POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0"].contains(&name);
+    known || name.strip_prefix("TEXCOORD_").is_some_and(|set| set.parse::<u32>().is_ok())
+}
+
+fn is_displacement(name: &str) -> bool {
+    ["POSITION", "NORMAL"].contains(&name)
+}

@@ -1,0 +1,140 @@
+//! Textures, and files next to the document.
+
+use std::path::PathBuf;
+
+use super::*;
+use crate::load::{LoadError, load, uri};
+use crate::progress::Cancelled;
+
+/// A triangle whose material wears an image.
+fn textured(image: Value) -> Draft {
+    let mut draft = triangle();
+    let uvs = draft.floats("VEC2", &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+    let primitive = &mut draft.root["meshes"][0]["primitives"][0];
+    primitive["attributes"]["TEXCOORD_1"] = json!(uvs);
+    primitive["material"] = json!(0);
+    let texture = json!({ "index": 0, "texCoord": 1 });
+    draft.root["materials"] = json!([{ "name": "skin", "pbrMetallicRoughness": { "baseColorTexture": texture } }]);
+    draft.root["textures"] = json!([{ "source": 0 }]);
+    draft.root["images"] = json!([image]);
+    draft
+}
+
+fn png() -> Vec<u8> {
+    let pixels = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 0, 255, 128]).unwrap();
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    pixels.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn textures_are_decoded_wherever_they_are() {
+    let data = json!({ "uri": format!("data:image/png;base64,{}", uri::to_base64(&png())) });
+    let mut in_view = textured(json!({ "mimeType": "image/png", "bufferView": 0 }));
+    let view = in_view.view(&png());
+    in_view.root["images"][0]["bufferView"] = json!(view);
+    for draft in [textured(data), in_view] {
+        let mesh = draft.read().unwrap();
+        let texture = mesh.materials[0].texture.as_ref().unwrap();
+        assert_eq!((texture.size, texture.rgba.as_slice()), ([2, 1], &[255, 0, 0, 255, 0, 0, 255, 128][..]));
+        assert_eq!(mesh.corners[2].uv, Vec2::Y, "the set that the texture names");
+        assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    }
+}
+
+#[test]
+fn missing_and_broken_textures_are_warnings() {
+    let images = [
+        (json!({ "uri": "missing%20one.png" }), "missing one.png"),
+        (json!({ "uri": "/elsewhere.png" }), "an absolute path"),
+        (json!({ "uri": "data:image/png;base64,AAAA" }), "can't be decoded"),
+        (json!({ "bufferView": 0 }), "can't be decoded"),
+        (json!({}), "neither"),
+    ];
+    for (image, reason) in images {
+        let mesh = textured(image).read().unwrap();
+        assert!(mesh.materials[0].texture.is_none());
+        assert_eq!(mesh.warnings.len(), 1);
+        assert!(mesh.warnings[0].contains("\"skin\"") && mesh.warnings[0].contains(reason), "{}", mesh.warnings[0]);
+    }
+    let mut elsewhere = textured(json!({}));
+    elsewhere.root["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+    assert!(elsewhere.read().unwrap().warnings[0].contains("texture 0 has no PNG or JPEG"));
+}
+
+/// A folder of this test's own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
+fn files_next_to_the_document_are_found() {
+    let folder = Folder::new("files");
+    let draft = textured(json!({ "uri": "my%20skin.png" }));
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("data.bin");
+    let path = folder.0.join("model.GLTF");
+    std::fs::write(&path, document.to_string()).unwrap();
+    let progress = Progress::new();
+    let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
+    assert!(error.contains("model.GLTF: /buffers/0 (data.bin) can't be read"), "{error}");
+    std::fs::write(folder.0.join("data.bin"), &draft.bytes).unwrap();
+    std::fs::write(folder.0.join("my skin.png"), png()).unwrap();
+    let mesh = load(&path, &Limits::default(), &progress).unwrap();
+    assert!(mesh.materials[0].texture.is_some());
+    assert_eq!((mesh.name.as_str(), progress.fraction()), ("model", 1.0));
+    std::fs::write(folder.0.join("data.bin"), &draft.bytes[1..]).unwrap();
+    let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
+    assert!(error.contains("it should have 96 bytes and has 95"), "{error}");
+    progress.cancel();
+    assert!(matches!(load(&path, &Limits::default(), &progress), Err(LoadError::Cancelled(Cancelled))));
+}
+
+#[test]
+fn files_that_are_named_have_the_same_limit() {
+    let folder = Folder::new("limits");
+    let draft = textured(json!({ "uri": "large.png" }));
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("data.bin");
+    let path = folder.0.join("model.gltf");
+    let text = document.to_string();
+    let [own, data] = [text.len() as u64, draft.bytes.len() as u64];
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(folder.0.join("large.png"), [&png()[..], &vec![0; 100_000]].concat()).unwrap();
+    std::fs::write(folder.0.join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
+    let load = |file| load(&path, &Limits { file, ..Limits::default() }, &Progress::new());
+    let said = load(own).unwrap_err().to_string();
+    let expected = format!("data.bin has {} bytes, and {own} are read at most", own + data);
+    assert!(said.contains("/buffers/0 (data.bin) can't be read") && said.contains(&expected), "{said}");
+    let mesh = load(own + data).unwrap();
+    let said = mesh.warnings.first().unwrap();
+    assert!(mesh.materials[0].texture.is_none() && said.contains("large.png has 1000"), "{said}");
+    assert!(load(200_000).unwrap().materials[0].texture.is_some());
+}
+
+#[cfg(unix)]
+#[test]
+fn links_within_the_folder_are_followed() {
+    let folder = Folder::new("links");
+    let draft = triangle();
+    let mut document = draft.document();
+    document["buffers"][0]["uri"] = json!("link/data.bin");
+    let path = folder.0.join("model.gltf");
+    std::fs::write(&path, document.to_string()).unwrap();
+    std::fs::create_dir_all(folder.0.join("there")).unwrap();
+    std::fs::write(folder.0.join("there/data.bin"), &draft.bytes).unwrap();
+    std::os::unix::fs::symlink("there", folder.0.join("link")).unwrap();
+    assert_eq!(load(&path, &Limits::default(), &Progress::new()).unwrap().triangles.len(), 1);
+}

@@ -1,0 +1,200 @@
+//! Copies of documents with bits flipped, ends cut off, bytes swapped and numbers replaced: each a mesh or a sentence, within
+//! a second.
+//!
+//! `PNAEN_MUTATIONS=10000` tries so many; `PNAEN_MUTATE=a.glb:b.gltf` those files too, each read where it lies.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use super::*;
+use crate::load::Format;
+use crate::load::hostile_files::{Random, named_files, time};
+
+/// Copies that every run of the tests tries.
+const COPIES: usize = 300;
+/// What a number in the JSON becomes.
+const NUMBERS: [&str; 8] =
+    ["0", "-1", "2147483648", "4294967295", "4611686018427387904", "18446744073709551615", "1e308", "0.5"];
+/// Longer files would make all others wait.
+const LONGEST: usize = 16 << 20;
+
+/// A document, and where it lies.
+struct Subject {
+    name: String,
+    bytes: Vec<u8>,
+    folder: PathBuf,
+}
+
+impl Subject {
+    fn own(name: &str, bytes: Vec<u8>) -> Self {
+        Self { name: name.to_owned(), bytes, folder: "nowhere".into() }
+    }
+
+    fn file(path: PathBuf) -> Self {
+        let bytes = std::fs::read(&path).expect("a file that can be read");
+        let folder = path.parent().expect("a file has a folder").to_owned();
+        Self { name: path.display().to_string(), bytes, folder }
+    }
+}
+
+fn subjects() -> Vec<Subject> {
+    let vase = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"));
+    let mut subjects = vec![
+        Subject::own("a triangle", triangle().document().to_string().into_bytes()),
+        Subject::own("something of everything", rich().glb()),
+        Subject::own("a compressed grid", compressed::grid().glb()),
+        Subject::own("a packed grid", packed::grid(packed::Order::Walked).glb()),
+        Subject::own("a packed triangle that is skinned", packed::skinned().glb()),
+        Subject::file(vase),
+    ];
+    let of_documents = |path: &PathBuf| Format::of(path).is_ok_and(|format| format == Format::Gltf);
+    subjects.extend(named_files().into_iter().filter(of_documents).map(Subject::file));
+    subjects.retain(|subject| subject.bytes.len() <= LONGEST);
+    subjects
+}
+
+/// Small documents that fuzzers start from: the target, a name, and the bytes.
+pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
+    let drafts = [
+        ("triangle", triangle()),
+        ("rich", rich()),
+        ("compressed", compressed::grid()),
+        ("packed", packed::grid(packed::Order::Walked)),
+        ("packed-skinned", packed::skinned()),
+    ];
+    let both = |(name, draft): (&str, Draft)| {
+        let document = draft.document().to_string().into_bytes();
+        [("gltf", format!("{name}.gltf"), document), ("glb", format!("{name}.glb"), draft.glb())]
+    };
+    drafts.into_iter().flat_map(both).collect()
+}
+
+/// A triangle with a skin, a morph target, a strip of indices and sparse values: something of everything.
+fn rich() -> Draft {
+    let mut draft = triangle();
+    let (places, indices) = (draft.view(&[2]), draft.indices(&[0, 1, 2]));
+    let joints = draft.accessor(&[0; 12], 5121, "VEC4", 3);
+    let weights = draft.floats("VEC4", &[0.25; 12]);
+    let binds = draft.floats("MAT4", &glam::Mat4::IDENTITY.to_cols_array());
+    let primitive = &mut draft.root["meshes"][0]["primitives"][0];
+    primitive["attributes"]["JOINTS_0"] = json!(joints);
+    primitive["attributes"]["WEIGHTS_0"] = json!(weights);
+    primitive["indices"] = json!(indices);
+    primitive["mode"] = json!(5);
+    primitive["targets"] = json!([{ "POSITION": 0, "NORMAL": 1 }]);
+    draft.root["accessors"][0]["sparse"] = json!({
+        "count": 1,
+        "indices": { "bufferView": places, "componentType": 5121 },
+        "values": { "bufferView": 1 },
+    });
+    draft.root["meshes"][0]["weights"] = json!([0.5]);
+    draft.root["nodes"] = json!([{ "mesh": 0, "skin": 0 }, {}]);
+    draft.root["skins"] = json!([{ "joints": [1], "inverseBindMatrices": binds }]);
+    draft
+}
+
+/// Where the JSON lies.
+fn json_of(bytes: &[u8]) -> std::ops::Range<usize> {
+    if glb::is_glb(bytes) { glb::parts(bytes).map_or(0..0, |parts| parts.json) } else { 0..bytes.len() }
+}
+
+/// Changes a document in one to four places.
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    for _ in 0..=random.below(4) {
+        let length = bytes.len();
+        if length == 0 {
+            return;
+        }
+        match random.below(8) {
+            0 => bytes[random.below(length)] ^= 1 << random.below(8),
+            1 => {
+                // Half of the cuts are near the end, where most is read before.
+                let cut = if random.below(2) == 0 { random.below(length) } else { random.below(64).min(length) };
+                bytes.truncate(length - cut);
+            }
+            2 => bytes.swap(random.below(length), random.below(length)),
+            3 => {
+                let json = json_of(bytes);
+                if !json.is_empty() {
+                    bytes[json.start + random.below(json.len())] ^= 1 << random.below(7);
+                }
+            }
+            _ => replace_number(bytes, random),
+        }
+    }
+}
+
+/// Replaces a number of the JSON; the lengths of a `.glb` stay true.
+fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
+    let json = json_of(bytes);
+    let is_start = |i: usize| bytes[i].is_ascii_digit() && matches!(bytes[i - 1], b':' | b',' | b'[' | b' ');
+    let starts: Vec<usize> = (json.start + 1..json.end).filter(|&i| is_start(i)).collect();
+    if starts.is_empty() {
+        return;
+    }
+    let start = starts[random.below(starts.len())];
+    let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
+    let end = start + bytes[start..json.end].iter().take_while(|byte| is_part(byte)).count();
+    let mut number = NUMBERS[random.below(NUMBERS.len())].to_owned();
+    if random.below(3) == 0 {
+        number = random.below(40).to_string();
+    }
+    let (old, new) = (end - start, number.len());
+    bytes.splice(start..end, number.into_bytes());
+    if glb::is_glb(bytes) {
+        for at in [8, 12] {
+            let length = u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
+            bytes[at..at + 4].copy_from_slice(&(length + new as u32 - old as u32).to_le_bytes());
+        }
+    }
+}
+
+#[test]
+fn mutations_become_a_mesh_or_a_sentence() {
+    let copies = std::env::var("PNAEN_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(COPIES);
+    let subjects = subjects();
+    // Of documents that Draco packed hardly a changed copy is one still, so that they are counted apart.
+    let (mut meshes, mut packed, mut others, mut slowest) = (0, 0, 0, Duration::ZERO);
+    for copy in 0..copies {
+        let subject = &subjects[copy % subjects.len()];
+        let is_packed = subject.name.starts_with("a packed");
+        others += usize::from(!is_packed);
+        let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (copy as u64 + 1));
+        (0..8).for_each(|_| _ = random.next());
+        let mut bytes = subject.bytes.clone();
+        mutate(&mut bytes, &mut random);
+        let start = time();
+        let reading = || read(bytes.clone(), &subject.folder, "mutated", &Limits::default(), &Progress::new());
+        let result = catch_unwind(AssertUnwindSafe(reading));
+        let took = time() - start;
+        slowest = slowest.max(took);
+        let about = || format!("copy {copy}, of {}", subject.name);
+        let result = result.unwrap_or_else(|_| panic!("{} panics", about()));
+        assert!(
+            took < Duration::from_secs(1) || cfg!(debug_assertions) && bytes.len() > 1 << 20,
+            "{}: {took:?}",
+            about()
+        );
+        match result {
+            Ok(mesh) => {
+                *(if is_packed { &mut packed } else { &mut meshes }) += 1;
+                let (corners, is_sound) =
+                    (mesh.corners.len() as u32, |t: &[u32; 3]| t.iter().all(|&c| c < mesh.corners.len() as u32));
+                assert!(corners > 0 && mesh.triangles.iter().all(is_sound), "{}", about());
+            }
+            Err(problem) => assert!(!problem.to_string().contains('\n'), "{}: {problem}", about()),
+        }
+    }
+    println!(
+        "{copies} copies of {} documents: {meshes} meshes and {packed} packed ones, the slowest {slowest:?}",
+        subjects.len()
+    );
+    assert!(meshes > others / 20 && meshes < others, "{meshes} of {others}");
+    assert!(packed < copies - others, "{packed} of {}", copies - others);
+}
+
+#[test]
+fn the_rich_draft_is_read() {
+    assert_eq!(rich().read().unwrap().triangles.len(), 1);
+}

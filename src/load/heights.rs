@@ -1,0 +1,184 @@
+//! Height images, for displacement: read from a file, or made of the materials' base colour images.
+
+mod reading;
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use image::ColorType;
+
+use super::memory_budget::Budget;
+use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, angle_bytes};
+use crate::mesh::{Mesh, Texture};
+use crate::names::shown_path;
+use crate::progress::{Cancelled, Progress};
+
+use reading::{map_of_px, read_map};
+
+/// The largest width and height of an image that is read, in px.
+const MAX_SIZE: u32 = 16384;
+
+/// Why an image is no height map.
+#[derive(Debug, thiserror::Error)]
+pub enum HeightError {
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    #[error("{} can't be read as a height image: {reason}", shown_path(path))]
+    Image { path: PathBuf, reason: String },
+    #[error(
+        "{} is {} x {} px large, and at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
+        shown_path(path), size[0], size[1]
+    )]
+    TooLarge { path: PathBuf, size: [u32; 2] },
+    #[error(
+        "{} is {} x {} px large and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
+         interlaced",
+        shown_path(path), size[0], size[1]
+    )]
+    TooMuch { path: PathBuf, size: [u32; 2], reason: String },
+    #[error(
+        "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"
+    )]
+    NoImage { name: String, why: String },
+    #[error("{name} has {count} images to displace by, and at most {MAX_MAPS} are taken; name one height image")]
+    TooMany { name: String, count: usize },
+    #[error("heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
+    TooMuchOfMaterials { name: String, count: usize, reason: String },
+}
+
+/// Where height images come from. As text: `material`, or a path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HeightSource {
+    /// The brightness of each material's base colour image.
+    Materials,
+    /// One image over all materials.
+    File(PathBuf),
+}
+
+impl HeightSource {
+    /// Reads heights for a mesh, within what a load may take; `progress` goes from 0 to 1 meanwhile.
+    ///
+    /// # Errors
+    /// [`HeightError`].
+    pub fn load(&self, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
+        progress.set(0.0);
+        let heights = match self {
+            Self::Materials => from_materials(mesh, budget, progress)?,
+            Self::File(path) => from_file(path, mesh, budget, progress)?,
+        };
+        progress.set(1.0);
+        Ok(heights)
+    }
+
+    /// A name for the window: the file's without its folder.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Materials => "Material".to_owned(),
+            Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+        }
+    }
+}
+
+impl From<OsString> for HeightSource {
+    fn from(text: OsString) -> Self {
+        if text == "material" { Self::Materials } else { Self::File(text.into()) }
+    }
+}
+
+/// Reads a PNG or JPEG image and lays it over all materials.
+fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
+    let map = read_map(path, mesh.corners.len(), budget, &progress.part(0.0, 0.8))?;
+    Ok(Heights::all_over(mesh, map, &progress.part(0.8, 1.0))?)
+}
+
+/// The brightness of every material's base colour image, each image once.
+///
+/// # Errors
+/// [`HeightError::NoImage`], [`HeightError::TooMany`] and [`HeightError::TooMuchOfMaterials`].
+fn from_materials(mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
+    let mut known: Vec<&Texture> = Vec::new();
+    let of_material = mesh.materials.iter().map(|material| {
+        let texture = material.texture.as_deref()?;
+        let index = known.iter().position(|&known| std::ptr::eq(known, texture)).unwrap_or_else(|| {
+            known.push(texture);
+            known.len() - 1
+        });
+        Some(index as u32)
+    });
+    let of_material = of_material.collect();
+    let count = known.len();
+    if count == 0 {
+        let left_out = mesh.warnings.iter().find(|warning| warning.starts_with("the texture of "));
+        let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
+        return Err(HeightError::NoImage { name: mesh.name.clone(), why });
+    }
+    if count > MAX_MAPS {
+        return Err(HeightError::TooMany { name: mesh.name.clone(), count });
+    }
+    let kept = known.iter().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
+    let too_much = |refused: MemoryRefused| {
+        let reason = refused.to_string();
+        HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason }
+    };
+    budget.hold(angle_bytes(mesh.corners.len())).and_then(|()| budget.hold(kept)).map_err(too_much)?;
+    let part = |index: usize| 0.7 * index as f32 / count as f32;
+    let of = |(index, texture): (usize, &&Texture)| {
+        let progress = progress.part(part(index), part(index + 1));
+        map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)
+    };
+    let maps = known.iter().enumerate().map(of).collect::<Result<_, _>>()?;
+    Ok(Heights::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?)
+}
+
+/// A warning about triangles whose corners all have one texture coordinate: heights move each of them as a whole.
+pub fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
+    let mut count = 0;
+    for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
+        let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
+        let is_point = |triangle: &&[u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize].uv);
+            a == b && b == c
+        };
+        count += triangles.iter().filter(is_point).count();
+    }
+    (count > 0).then(|| format!("triangles without texture coordinates, which heights move as a whole: {count}."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Shape;
+
+    #[test]
+    fn materials_that_share_an_image_share_a_map() {
+        let mut mesh = Shape::Torus.build();
+        assert!(matches!(
+            from_materials(&mesh, &Budget::unlimited(), &Progress::new()),
+            Err(HeightError::NoImage { .. })
+        ));
+        let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
+        let textured = crate::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
+        mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
+        let heights = from_materials(&mesh, &Budget::unlimited(), &Progress::new()).expect("an image");
+        assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
+    }
+
+    #[test]
+    fn triangles_without_texture_coordinates_are_counted() {
+        let map = || HeightMap::new([1, 1], vec![0.5]);
+        let [with, without] = [Shape::Torus, Shape::Icosphere].map(Shape::build);
+        assert_eq!(untextured_warning(&Heights::everywhere(&with, map()), &with), None);
+        let warning = untextured_warning(&Heights::everywhere(&without, map()), &without).expect("80 triangles");
+        assert!(warning.ends_with("as a whole: 80."), "{warning}");
+    }
+
+    #[test]
+    fn a_file_that_is_no_image_is_a_sentence() {
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
+        let error = from_file(path, &Mesh::default(), &Budget::unlimited(), &Progress::new())
+            .expect_err("no image")
+            .to_string();
+        assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
+    }
+}

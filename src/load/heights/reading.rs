@@ -1,0 +1,295 @@
+//! A height image from its file: how large it is before memory is taken for it, then its px, row by row.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use png::{BitDepth, DecodingError};
+
+use super::{HeightError, MAX_SIZE};
+use crate::files::{file_reason, open_file};
+use crate::load::images::metadata_limits;
+use crate::load::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
+use crate::load::memory_budget::Budget;
+use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+use crate::mesh::heights::{HeightMap, angle_bytes};
+use crate::progress::{Cancelled, Progress};
+
+/// What comes before a PNG image's width and height, of 4 bytes each.
+const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+
+/// Reads a PNG or JPEG image: PNG row by row, so that a large one takes no more than what is kept of it; a JPEG, and a PNG
+/// that is interlaced, whole. The file's size is added to the budget, and `corners` are those of the mesh.
+///
+/// # Errors
+/// It is no such image, or a larger one than is read; or `progress` was cancelled.
+pub fn read_map(path: &Path, corners: usize, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
+    progress.check()?;
+    let image = ImageFile { path, corners, budget, progress };
+    let unread = |error: io::Error| image.fail(file_reason(&error));
+    let no_file = || image.fail("it is not a file; choose a PNG or JPEG image".to_owned());
+    let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
+    let size = png_size(&mut file).map_err(unread)?;
+    image.check(size.unwrap_or_default())?;
+    let length = about.len();
+    // Row by row, rows tell how far it is, and not what was read of the file besides.
+    let told = size.is_none().then(|| progress.part(0.0, 0.6));
+    let mut reader = BufReader::new(Watched { file, length, read: 0, progress, told });
+    if size.is_some() && !is_interlaced(&mut reader).map_err(unread)? {
+        return image.read_rows(reader, length);
+    }
+    image.read_whole(reader, length)
+}
+
+/// The brightness of px as they are stored, 8 or 16 bits a channel: the weights of Rec. 709, and no transfer function,
+/// since heights are no light. Gray images give their gray, in all its bits.
+///
+/// # Errors
+/// [`Cancelled`] when `progress` says so.
+pub fn map_of_px(size: [u32; 2], color: ColorType, bytes: &[u8], progress: &Progress) -> Result<HeightMap, Cancelled> {
+    let line = usize::from(color.bytes_per_pixel()) * size[0] as usize;
+    if line == 0 || size[1] == 0 || bytes.len() != line * size[1] as usize {
+        return Ok(HeightMap::new([0, 0], Vec::new()));
+    }
+    let mut lines = bytes.chunks_exact(line);
+    let [channels, depth] = [color.channel_count(), color.bytes_per_pixel() / color.channel_count()];
+    HeightMap::build(size, progress, |out| {
+        let line = lines.next().unwrap_or_default();
+        brighten(line, channels.into(), depth == 2, u16::from_ne_bytes, out);
+        Ok(())
+    })
+}
+
+/// The brightness of each px of a line, of so many channels of 8 or 16 bits.
+fn brighten(line: &[u8], channels: usize, is_wide: bool, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
+    let channel = |px: &[u8], index: usize| match is_wide {
+        true => f32::from(of_bytes([px[2 * index], px[2 * index + 1]])) / 65535.0,
+        false => f32::from(px[index]) / 255.0,
+    };
+    for (height, px) in out.iter_mut().zip(line.chunks_exact(if is_wide { 2 * channels } else { channels })) {
+        *height = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
+    }
+}
+
+fn brightness([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// Where an image is read from, and who is told how far that is.
+struct ImageFile<'a> {
+    path: &'a Path,
+    corners: usize,
+    budget: &'a Budget,
+    progress: &'a Progress,
+}
+
+impl ImageFile<'_> {
+    fn fail(&self, reason: String) -> HeightError {
+        HeightError::Image { path: self.path.to_owned(), reason }
+    }
+
+    fn check(&self, size: [u32; 2]) -> Result<[u32; 2], HeightError> {
+        match size.iter().any(|&side| side > MAX_SIZE) {
+            true => Err(HeightError::TooLarge { path: self.path.to_owned(), size }),
+            false => Ok(size),
+        }
+    }
+
+    /// Reading stops with an error where the job was told to stop: that is what is said then, else `error` is.
+    fn stopped_or(&self, error: HeightError) -> HeightError {
+        self.progress.check().map_or_else(HeightError::from, |()| error)
+    }
+
+    /// A PNG image that isn't interlaced.
+    fn read_rows(&self, reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
+        let undecoded = |error: DecodingError| self.stopped_or(self.fail(error.to_string()));
+        let mut decoder = png::Decoder::new(reader);
+        decoder.set_ignore_iccp_chunk(true);
+        decoder.set_ignore_text_chunk(true);
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().map_err(undecoded)?;
+        let size = self.check(reader.info().size().into())?;
+        self.budget.allow(length);
+        self.afford(size, length, 0, 0)?;
+        let (color, depth) = reader.output_color_type();
+        let line = reader.output_line_size(size[0]).ok_or_else(|| self.fail("its rows are too long".to_owned()))?;
+        let mut line = vec![0; line];
+        HeightMap::build(size, self.progress, |out| {
+            reader.read_row(&mut line).map_err(undecoded)?;
+            brighten(&line, color.samples(), depth == BitDepth::Sixteen, u16::from_be_bytes, out);
+            Ok(())
+        })
+    }
+
+    /// Any image, all of whose px are in memory at once.
+    fn read_whole(&self, mut reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
+        let undecoded = |error: ImageError| match error {
+            ImageError::Unsupported(_) => self.fail("choose a PNG or JPEG image".to_owned()),
+            error => self.stopped_or(self.fail(error.to_string())),
+        };
+        let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
+        let known = coefficient_bytes(&mut reader).map_err(unread)?;
+        let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
+        self.budget.allow(length);
+        let borrowed = self.budget.borrowed();
+        if reader.format() == Some(ImageFormat::Png) {
+            reader.limits(metadata_limits(self.budget));
+        }
+        let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
+        let decoder = reader.into_decoder().map_err(undecoded)?;
+        let size = self.check(decoder.dimensions().into())?;
+        let (color, count) = (decoder.color_type(), decoder.total_bytes());
+        let coefficients = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { 0 };
+        // They are gone before a map is made of the px; a JPEG decoder has the file's own bytes, too.
+        self.afford(size, length, count, coefficients)?;
+        let mut bytes = vec![0; count as usize];
+        decoder.read_image(&mut bytes).map_err(undecoded)?;
+        self.budget.give_back_to(borrowed);
+        Ok(map_of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)
+    }
+
+    /// Whether an image of this size takes no more than a load may: `px` bytes at once, and `decoding` before a map is made of
+    /// them, which is held.
+    fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
+        let kept = HeightMap::bytes_to_build(size).saturating_add(angle_bytes(self.corners));
+        let too_much = |refused: MemoryRefused| HeightError::TooMuch {
+            path: self.path.to_owned(),
+            size,
+            reason: refused.to_string(),
+        };
+        // A decoder has the file's bytes too.
+        let all = px.saturating_add(kept.max(decoding)).saturating_add(length);
+        let borrowed = self.budget.borrowed();
+        self.budget.borrow(all).map_err(too_much)?;
+        self.budget.give_back_to(borrowed);
+        self.budget.hold(kept).map_err(too_much)
+    }
+}
+
+/// What a PNG image says of its size first of all; none of another file. The file is at its start again.
+fn png_size(file: &mut File) -> io::Result<Option<[u32; 2]>> {
+    let mut start = Vec::new();
+    file.by_ref().take(24).read_to_end(&mut start)?;
+    file.seek(SeekFrom::Start(0))?;
+    let numbers = start.strip_prefix(PNG_START).and_then(|rest| rest.as_chunks::<4>().0.first_chunk::<2>());
+    Ok(numbers.map(|numbers| numbers.map(u32::from_be_bytes)))
+}
+
+/// What a PNG image says of the order of its px, behind its size, its depth and its colours. The file is at its start again.
+fn is_interlaced(file: &mut (impl Read + Seek)) -> io::Result<bool> {
+    let mut start = Vec::new();
+    file.by_ref().take(29).read_to_end(&mut start)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(start.get(28).is_some_and(|&order| order != 0))
+}
+
+/// A file that knows how much of it was read, which it may tell, and reads no further once the job was told to stop.
+struct Watched<'a> {
+    file: File,
+    length: u64,
+    read: u64,
+    progress: &'a Progress,
+    told: Option<Progress>,
+}
+
+impl Read for Watched<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.progress.check().map_err(io::Error::other)?;
+        let count = self.file.read(buffer)?;
+        self.read += count as u64;
+        if let Some(told) = &self.told {
+            told.set(self.read as f32 / self.length.max(1) as f32);
+        }
+        Ok(count)
+    }
+}
+
+impl Seek for Watched<'_> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.read = self.file.seek(to)?;
+        Ok(self.read)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, Instant};
+
+    use image::{DynamicImage, ImageBuffer, Luma, Rgb, RgbImage};
+
+    use super::*;
+
+    /// A file in the temporary folder, gone with its test.
+    struct Temporary(std::path::PathBuf);
+
+    impl Temporary {
+        fn new(name: &str, bytes: &[u8]) -> Self {
+            let path = std::env::temp_dir().join(format!("pnaen-{}-{name}", std::process::id()));
+            std::fs::write(&path, bytes).expect("a writable temporary folder");
+            Self(path)
+        }
+    }
+
+    impl Drop for Temporary {
+        fn drop(&mut self) {
+            let _ = std::fs::remove_file(&self.0);
+        }
+    }
+
+    fn of(image: &DynamicImage) -> HeightMap {
+        let size = [image.width(), image.height()];
+        map_of_px(size, image.color(), image.as_bytes(), &Progress::new()).expect("nobody cancels")
+    }
+
+    fn png(image: &DynamicImage) -> Vec<u8> {
+        let mut bytes = io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).expect("an image in memory");
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn gray_images_keep_sixteen_bits_and_colours_become_brightness() {
+        let gray: ImageBuffer<Luma<u16>, _> = ImageBuffer::from_raw(2, 1, vec![1_u16, 65535]).expect("two px");
+        let map = of(&gray.into());
+        assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0]);
+        let green = RgbImage::from_pixel(1, 1, Rgb([0, 255, 0])).into();
+        assert_eq!(of(&green).heights, [0.7152]);
+        let wide = ImageBuffer::<Rgb<u16>, _>::from_pixel(1, 1, Rgb([0, 0, 65535])).into();
+        assert_eq!(of(&wide).heights, [0.0722]);
+    }
+
+    #[test]
+    fn a_file_gives_the_px_that_it_has() {
+        let image: DynamicImage = RgbImage::from_fn(9, 5, |x, y| Rgb([(20 * x) as u8, (40 * y) as u8, 7])).into();
+        let file = Temporary::new("px.png", &png(&image));
+        let progress = Progress::new();
+        assert_eq!(read_map(&file.0, 0, &Budget::unlimited(), &progress).expect("an image"), of(&image));
+        assert!(progress.fraction() > 0.8, "{}", progress.fraction());
+        progress.cancel();
+        assert!(matches!(
+            read_map(&file.0, 0, &Budget::unlimited(), &progress),
+            Err(HeightError::Cancelled(Cancelled))
+        ));
+    }
+
+    #[test]
+    fn what_is_too_large_is_refused_at_once_by_name_size_and_limit() {
+        // Its header alone: 8 bits gray, 20000 x 20000; nothing follows, so that nothing else can have refused it.
+        let mut header = PNG_START.to_vec();
+        header.extend([20_000_u32, 20_000].map(u32::to_be_bytes).as_flattened());
+        header.extend([8, 0, 0, 0, 0]);
+        let start = Instant::now();
+        let file = Temporary::new("large.png", &header);
+        let error = read_map(&file.0, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        assert!(start.elapsed() < Duration::from_millis(100), "{:?}", start.elapsed());
+        let expected =
+            "is 20000 x 20000 px large, and at most 16384 px a side are read; scale it to 4096 px a side or less";
+        assert!(error.ends_with(expected) && error.contains("large.png"), "{error}");
+        // One px more than is read, with a decoder that would take it.
+        let wide = DynamicImage::new_luma8(MAX_SIZE + 1, 1);
+        let file = Temporary::new("wide.png", &png(&wide));
+        let error = read_map(&file.0, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        assert!(error.contains("is 16385 x 1 px large"), "{error}");
+    }
+}

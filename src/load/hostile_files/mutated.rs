@@ -1,0 +1,83 @@
+//! Copies of good files with bits, ends and numbers changed: a mesh or a sentence, never a panic, never long.
+//!
+//! `PNAEN_MUTATIONS` and `PNAEN_MUTATE` as for documents: see `load/gltf/tests/mutations.rs`.
+
+use std::time::Duration;
+
+use super::Format::{Obj, Ply, Stl};
+use super::{Format, Random, read, time};
+use crate::load::{self, obj, ply, stl};
+
+/// What takes the place of a number.
+const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
+
+pub fn originals() -> Vec<(Format, Vec<u8>)> {
+    let mut originals = vec![
+        (Obj, obj::tests::cube().into_bytes()),
+        (Obj, obj::tests::everything().into_bytes()),
+        (Stl, stl::tests::text().into_bytes()),
+        (Stl, stl::tests::binary(b"solid cube")),
+        (Ply, ply::tests::strip("0 1 2 -1 3 4 5").into_bytes()),
+    ];
+    originals.extend((0..3).map(|encoding| (Ply, ply::tests::cube(encoding, 6, 4))));
+    originals
+}
+
+/// The files that `PNAEN_MUTATE` names, of these formats.
+fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
+    crate::load::hostile_files::named_files().into_iter().filter_map(|path| {
+        let format = match load::Format::of(&path).ok()? {
+            load::Format::Obj => Obj,
+            load::Format::Stl => Stl,
+            load::Format::Ply => Ply,
+            load::Format::Gltf => return None,
+        };
+        Some((format, std::fs::read(path).expect("a file that can be read")))
+    })
+}
+
+fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+    for _ in 0..=random.below(4) {
+        let at = random.below(bytes.len());
+        match random.below(8) {
+            0 => bytes.truncate(at),
+            1 | 2 => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << random.below(8)),
+            3 => {
+                let number = [0, u32::MAX, 1 << 30, f32::NAN.to_bits(), f32::MAX.to_bits()][random.below(5)];
+                bytes.iter_mut().skip(at).zip(number.to_le_bytes()).for_each(|(byte, new)| *byte = new);
+            }
+            _ => replace_number(bytes, at, NUMBERS[random.below(NUMBERS.len())]),
+        }
+    }
+}
+
+/// Replaces the first run of digits from there on.
+fn replace_number(bytes: &mut Vec<u8>, from: usize, by: &str) {
+    let Some(start) = bytes.iter().skip(from).position(u8::is_ascii_digit).map(|i| i + from) else { return };
+    let length = bytes[start..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+    bytes.splice(start..start + length, by.bytes());
+}
+
+#[test]
+fn mutated_copies_are_read_or_refused() {
+    let copies = std::env::var("PNAEN_MUTATIONS").ok().and_then(|copies| copies.parse().ok()).unwrap_or(300);
+    let originals: Vec<_> = originals().into_iter().chain(files()).collect();
+    for (format, bytes) in &originals {
+        assert!(read(*format, bytes).is_ok(), "{format:?}");
+    }
+    let (mut random, mut refused, mut slowest) = (Random(0x9e37_79b9_7f4a_7c15), 0, Duration::ZERO);
+    for i in 0..copies {
+        let (format, mut bytes) = originals[i % originals.len()].clone();
+        mutate(&mut bytes, &mut random);
+        let start = time();
+        let result = read(format, &bytes);
+        slowest = slowest.max(time() - start);
+        if let Err(fault) = result {
+            let message = fault.to_string();
+            assert!(message.len() < 300 && !message.contains(char::is_control), "{message}");
+            refused += 1;
+        }
+    }
+    println!("{copies} copies of {} files: {refused} refused, the slowest {slowest:?}", originals.len());
+    assert!(refused > copies / 10 && refused < copies, "{refused} of {copies} were refused");
+}

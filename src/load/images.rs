@@ -1,0 +1,61 @@
+//! Images that files bring as textures, decoded within the memory that a load may take.
+
+use std::io::Cursor;
+
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+
+use super::jpeg_memory::{coefficient_bytes, most_coefficient_bytes};
+use super::memory_budget::Budget;
+use crate::mesh::Texture;
+use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
+
+/// The largest width and height of a texture, in px: what common GPUs take.
+const MAX_SIZE: u32 = 16384;
+
+/// The most that an image's colour profile and text may take, in bytes.
+const MAX_METADATA: u64 = 16 << 20;
+
+/// Limits for what a PNG image holds beside its px, which is borrowed: its colour profile isn't used here, and may unpack to a
+/// thousand times its size.
+pub fn metadata_limits(budget: &Budget) -> Limits {
+    let mut limits = Limits::default();
+    let bytes = (budget.left() / 8).min(MAX_METADATA);
+    // While a buffer grows, the old and the new one are both in memory.
+    limits.max_alloc = Some(if budget.borrow(bytes).is_ok() { bytes / 2 } else { 0 });
+    limits
+}
+
+/// Decodes a PNG or JPEG image (its first bytes tell which) to RGBA, unless its header says that it is too large.
+///
+/// # Errors
+/// A clause that says what is wrong.
+pub fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
+    let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
+    let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
+    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;
+    if reader.format() == Some(ImageFormat::Png) {
+        reader.limits(metadata_limits(budget));
+    }
+    let is_jpeg = reader.format() == Some(ImageFormat::Jpeg);
+    let mut decoder = reader.into_decoder().map_err(undecoded)?;
+    let (width, height) = decoder.dimensions();
+    if width.max(height) > MAX_SIZE {
+        let advice = "scale it to 4096 px a side or less";
+        return Err(format!("its image is {width} x {height} px large, and {MAX_SIZE} px a side are read; {advice}"));
+    }
+    let px = u64::from(width) * u64::from(height);
+    let too_large = |refused: MemoryRefused| format!("its image of {width} x {height} px {refused}; scale it down");
+    budget.borrow(decoder.total_bytes()).map_err(too_large)?;
+    if is_jpeg {
+        // Gone before the px are turned into RGBA.
+        let coefficients = known.unwrap_or_else(|| most_coefficient_bytes([width, height]));
+        budget.hold(coefficients).map_err(too_large)?;
+        budget.release(coefficients);
+    }
+    budget.hold(px * 4).map_err(too_large)?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(budget.left().max(1 << 20).saturating_add(decoder.total_bytes()));
+    decoder.set_limits(limits).map_err(undecoded)?;
+    let pixels = DynamicImage::from_decoder(decoder).map_err(undecoded)?.into_rgba8();
+    Ok(Texture { size: pixels.dimensions().into(), rgba: pixels.into_raw() })
+}

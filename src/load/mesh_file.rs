@@ -1,0 +1,253 @@
+//! From a path to a mesh: picks the reader by the file's extension.
+
+use std::path::{Path, PathBuf};
+
+use super::gltf::{self, Problem};
+use super::heights::HeightError;
+use super::read_error::ReadError;
+use super::{obj, ply, stl};
+use crate::files::{FileError, Limits, Stamp, read_file};
+use crate::mesh::Mesh;
+use crate::names::shown_path;
+use crate::progress::{Cancelled, Progress};
+
+/// Ends of names of files that can be read, for messages.
+const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
+
+/// Why a file became no mesh.
+#[derive(Debug, thiserror::Error)]
+pub enum LoadError {
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    #[error("{} can't be read because its name ends in {extension}; choose a {KNOWN} file", shown_path(path))]
+    UnknownFormat { path: PathBuf, extension: String },
+    #[error("{} is not a file; choose a {KNOWN} file", shown_path(path))]
+    NoFile { path: PathBuf },
+    #[error(transparent)]
+    File(FileError),
+    #[error("{} is empty: export the model again", shown_path(path))]
+    NoBytes { path: PathBuf },
+    #[error(
+        "{} begins as {is} does, which isn't what its name says: rename it, or export the model again",
+        shown_path(path)
+    )]
+    Misnamed { path: PathBuf, is: &'static str },
+    #[error("{} is no glTF: it begins neither with \"glTF\" nor with a {{; export the model again", shown_path(path))]
+    NoGltf { path: PathBuf },
+    #[error("{}: {problem}", shown_path(path))]
+    Gltf { path: PathBuf, problem: Box<Problem> },
+    #[error("{}: {fault}", shown_path(path))]
+    Broken { path: PathBuf, fault: Box<ReadError> },
+    #[error(transparent)]
+    Heights(HeightError),
+    #[error("{}: {what} {reason}; split the model into several files", shown_path(path))]
+    TooMuch { path: PathBuf, what: &'static str, reason: String },
+    #[error("{} has no triangles to show: {holds}", shown_path(path))]
+    Empty { path: PathBuf, holds: String },
+}
+
+impl From<FileError> for LoadError {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Cancelled(cancelled) => cancelled.into(),
+            FileError::NoFile { path } => Self::NoFile { path },
+            error => Self::File(error),
+        }
+    }
+}
+
+impl From<HeightError> for LoadError {
+    fn from(error: HeightError) -> Self {
+        match error {
+            HeightError::Cancelled(cancelled) => cancelled.into(),
+            error => Self::Heights(error),
+        }
+    }
+}
+
+/// Reads a file: glTF 2.0, as `.gltf` or `.glb`; `.obj`, `.stl` or `.ply` (all in either case).
+///
+/// `progress` goes from 0 to 1 meanwhile. Buffers and textures in files of their own are looked for in the model's
+/// folder and below it. Neither it nor they may be larger than `limits` says.
+///
+/// # Errors
+/// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture is none: it
+/// becomes one of the mesh's warnings.
+pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<Mesh, LoadError> {
+    progress.set(0.0);
+    // Reading a folder, a device or a pipe would fail later, or never end.
+    let file = std::fs::metadata(path).map_err(|source| FileError::Io { path: path.to_owned(), source })?;
+    if !file.is_file() {
+        return Err(LoadError::NoFile { path: path.to_owned() });
+    }
+    let format = Format::of(path)?;
+    let before = Stamp::of(&file);
+    let mesh =
+        read(format, read_file(path, limits, |start| format.fits(start, path), progress)?, path, limits, progress)?;
+    before.check(path)?;
+    progress.set(1.0);
+    Ok(mesh)
+}
+
+/// What a file is read as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// `.gltf` and `.glb`: the first bytes tell them apart.
+    Gltf,
+    Obj,
+    Stl,
+    Ply,
+}
+
+impl Format {
+    /// By the end of a file's name.
+    ///
+    /// # Errors
+    /// [`LoadError::UnknownFormat`].
+    pub fn of(path: &Path) -> Result<Self, LoadError> {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("gltf" | "glb") => Ok(Self::Gltf),
+            Some("obj") => Ok(Self::Obj),
+            Some("stl") => Ok(Self::Stl),
+            Some("ply") => Ok(Self::Ply),
+            other => {
+                let extension = other.map_or("no extension".to_owned(), |extension| format!(".{extension}"));
+                Err(LoadError::UnknownFormat { path: path.to_owned(), extension })
+            }
+        }
+    }
+}
+
+impl Format {
+    /// Whether a file may be of this format, by how it starts: what is something else needn't be read whole.
+    ///
+    /// # Errors
+    /// [`LoadError::NoBytes`], [`LoadError::Misnamed`] and [`LoadError::NoGltf`].
+    fn fits(self, start: &[u8], path: &Path) -> Result<(), LoadError> {
+        let path = || path.to_owned();
+        let is_glb = start.starts_with(b"glTF");
+        if start.is_empty() {
+            return Err(LoadError::NoBytes { path: path() });
+        }
+        if self != Self::Gltf && is_glb {
+            return Err(LoadError::Misnamed { path: path(), is: "a .glb file" });
+        }
+        if self != Self::Ply && (start.starts_with(b"ply\n") || start.starts_with(b"ply\r")) {
+            return Err(LoadError::Misnamed { path: path(), is: "a .ply file" });
+        }
+        let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
+        // A list isn't either, which the parser says with its depth.
+        if self == Self::Gltf && !is_glb && !matches!(text.first(), None | Some(b'{' | b'[')) {
+            return Err(LoadError::NoGltf { path: path() });
+        }
+        Ok(())
+    }
+}
+
+/// Makes a mesh of a file's bytes, as [`load`] does. `path` says where they came from: what they name is looked for there.
+///
+/// # Errors
+/// As [`load`].
+pub fn read(
+    format: Format,
+    bytes: Vec<u8>,
+    path: &Path,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<Mesh, LoadError> {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    match format {
+        Format::Gltf => gltf::read(bytes, folder, &name, limits, progress).map_err(|problem| of_problem(problem, path)),
+        Format::Obj => obj::read(bytes, folder, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Stl => stl::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
+        Format::Ply => ply::read(bytes, &name, limits, progress).map_err(|fault| of_fault(fault, path)),
+    }
+}
+
+fn of_problem(problem: Problem, path: &Path) -> LoadError {
+    match problem {
+        Problem::Cancelled(cancelled) => cancelled.into(),
+        Problem::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+        problem => LoadError::Gltf { path: path.to_owned(), problem: Box::new(problem) },
+    }
+}
+
+fn of_fault(fault: ReadError, path: &Path) -> LoadError {
+    match fault {
+        ReadError::Cancelled(cancelled) => cancelled.into(),
+        ReadError::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+        fault => LoadError::Broken { path: path.to_owned(), fault: Box::new(fault) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs::File;
+
+    use super::*;
+
+    fn message(path: &str) -> String {
+        load(Path::new(path), &Limits::default(), &Progress::new()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn unknown_formats_name_the_known_ones() {
+        let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+        let expected = "can't be read because its name ends in .toml; choose a .gltf, .glb, .obj, .stl or .ply file";
+        assert_eq!(message(manifest), format!("{manifest} {expected}"));
+        assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
+    }
+
+    #[test]
+    fn a_folder_is_no_file() {
+        assert!(message(env!("CARGO_MANIFEST_DIR")).contains("is not a file"));
+    }
+
+    #[test]
+    fn large_files_are_refused_with_both_numbers() {
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"));
+        let bytes = std::fs::metadata(path).unwrap().len();
+        let load = |file| load(path, &Limits { file, ..Limits::default() }, &Progress::new());
+        assert!(load(bytes).is_ok());
+        let message = load(bytes - 1).unwrap_err().to_string();
+        let expected = format!("has {bytes} bytes, and {} are read at most", bytes - 1);
+        assert!(message.contains(&expected) && message.contains("--max-size"), "{message}");
+    }
+
+    #[test]
+    fn what_is_something_else_is_known_by_its_start() {
+        let said = |name: &str, bytes: &[u8]| {
+            let path = std::env::temp_dir().join(format!("pnaen-start-{}-{name}", std::process::id()));
+            std::fs::write(&path, bytes).unwrap();
+            // So large that nobody waits for the whole of it.
+            File::options()
+                .write(true)
+                .open(&path)
+                .and_then(|file| file.set_len(bytes.len() as u64 + (1 << 30)))
+                .unwrap();
+            let said = message(path.to_str().expect("it is of letters"));
+            std::fs::remove_file(&path).unwrap();
+            said
+        };
+        for name in ["a.obj", "a.stl", "a.ply"] {
+            assert!(said(name, b"glTF\x02\0\0\0").contains("begins as a .glb file does"), "{name}");
+        }
+        for name in ["a.obj", "a.stl", "a.gltf", "a.glb"] {
+            assert!(said(name, b"ply\nformat").contains("begins as a .ply file does"), "{name}");
+        }
+        assert!(said("a.glb", b"\0\0\0\0").contains("is no glTF: it begins neither with \"glTF\" nor with a {;"));
+        assert!(said("a.gltf", b"\xff\xfe{\0").contains("is no glTF"));
+        let empty = std::env::temp_dir().join(format!("pnaen-start-{}.gltf", std::process::id()));
+        std::fs::write(&empty, b"").unwrap();
+        assert!(message(empty.to_str().expect("it is of letters")).ends_with("is empty: export the model again"));
+        std::fs::remove_file(&empty).unwrap();
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        assert!(message("nowhere/a.glb").starts_with("nowhere/a.glb can't be read: "));
+        assert!(message("nowhere/A.GLTF").starts_with("nowhere/A.GLTF can't be read: "));
+    }
+}

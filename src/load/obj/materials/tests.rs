@@ -1,0 +1,100 @@
+//! Material files and textures in a model's folder, and what isn't there.
+
+use std::path::PathBuf;
+
+use crate::files::Limits;
+use crate::load::load;
+use crate::mesh::Mesh;
+use crate::progress::Progress;
+
+/// A folder of this test's own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(path.join("maps")).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.0.join(name), bytes).unwrap();
+    }
+
+    /// A triangle for each material, in a file that begins so.
+    fn read(&self, start: &str, materials: &[&str]) -> Mesh {
+        let faces: String = materials.iter().map(|name| format!("usemtl {name}\nf 1/1/1 2/1/1 3/1/1\n")).collect();
+        let text = format!("{start}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n{faces}");
+        self.write("model.OBJ", text.as_bytes());
+        load(&self.0.join("model.OBJ"), &Limits::default(), &Progress::new()).unwrap()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn png() -> Vec<u8> {
+    let pixels = image::RgbaImage::from_raw(2, 1, vec![255, 0, 0, 255, 0, 0, 255, 128]).unwrap();
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    pixels.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn colours_and_textures_come_from_files_in_the_folder() {
+    let folder = Folder::new("obj-materials");
+    folder
+        .write("my colours.mtl", b"newmtl red\nKd 1 0 0\nnewmtl skin\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 maps\\100%.png\n");
+    folder.write("more.mtl", b"newmtl red\nKd 0 1 0\nnewmtl twin\nmap_Kd maps\\100%.png\n");
+    folder.write("maps/100%.png", &png());
+    let mesh = folder.read("mtllib my colours.mtl more.mtl", &["skin", "red", "twin", "skin", "absent"]);
+    let names: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.base_color, m.triangles.len())).collect();
+    let expected = [
+        ("skin", [0.5, 0.5, 0.5, 1.0], 2),
+        ("red", [1.0, 0.0, 0.0, 1.0], 1),
+        ("twin", [1.0; 4], 1),
+        ("absent", [1.0; 4], 1),
+    ];
+    assert_eq!(names, expected);
+    let textures = [0, 2].map(|i| mesh.materials[i].texture.clone().expect("a texture"));
+    assert_eq!(textures[0].size, [2, 1]);
+    assert!(std::sync::Arc::ptr_eq(&textures[0], &textures[1]), "one image, read once");
+    assert_eq!(mesh.warnings, ["materials that no material file describes, shown white: 1."]);
+}
+
+#[test]
+fn what_is_missing_broken_or_elsewhere_is_a_warning() {
+    let folder = Folder::new("obj-missing");
+    folder.write("m.mtl", b"newmtl a\nKd x\nmap_Kd ../up.png\nnewmtl b\nmap_Kd maps/b.png\nnewmtl c\nmap_Kd c.png\n");
+    folder.write("c.png", b"no image");
+    let libraries = "mtllib m.mtl\nmtllib /etc/passwd\nmtllib ../m.mtl\nmtllib gone.mtl\nmtllib C:\\m.mtl\nmtllib maps";
+    let mesh = folder.read(libraries, &["a", "b", "c"]);
+    assert!(mesh.materials.iter().all(|material| material.texture.is_none()));
+    let expected = [
+        ("the material file \"/etc/passwd\" is left out: ", "an absolute path"),
+        ("the material file \"../m.mtl\" is left out: ", "with .."),
+        ("the material file \"gone.mtl\" is left out: ", "gone.mtl"),
+        ("the material file \"C:\\\\m.mtl\" is left out: ", "another place"),
+        ("the material file \"maps\" is left out: ", "is not a file"),
+        ("the texture \"../up.png\" of material \"a\" is left out: ", "with .."),
+        ("the texture \"maps/b.png\" of material \"b\" is left out: ", "b.png"),
+        ("the texture \"c.png\" of material \"c\" is left out: ", "can't be decoded"),
+        ("colours in material files that can't be read, left out: 1.", ""),
+    ];
+    assert_eq!(mesh.warnings.len(), expected.len(), "{:?}", mesh.warnings);
+    for (warning, (start, word)) in mesh.warnings.iter().zip(expected) {
+        assert!(warning.starts_with(start) && warning.contains(word), "{warning}");
+    }
+}
+
+#[test]
+fn a_flood_of_material_files_ends() {
+    let folder = Folder::new("obj-flood");
+    let libraries: String = (0..1000).map(|i| format!("mtllib {}.mtl\n", i % 100)).collect();
+    let warnings = folder.read(&libraries, &["a"]).warnings;
+    assert_eq!(warnings.len(), 64 + 2);
+    assert!(warnings[64].starts_with("material files beyond the first 64, left out: "), "{}", warnings[64]);
+}

@@ -1,0 +1,116 @@
+//! Files as programs and people write them.
+
+use super::*;
+use crate::load::faces::tests::{POINTS, SIDES, assert_cube};
+
+fn read(text: &str) -> Mesh {
+    super::read(text.as_bytes().to_vec(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
+}
+
+/// A cube of quadrilaterals without normals.
+pub fn cube() -> String {
+    let vertices: String = POINTS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
+    let face = |side: &[usize; 4]| format!("f {} {} {} {}\n", side[0] + 1, side[1] + 1, side[2] + 1, side[3] + 1);
+    format!("# made by a test\no cube\n{vertices}g sides\ns off\n{}", SIDES.iter().map(face).collect::<String>())
+}
+
+/// Something of everything.
+pub fn everything() -> String {
+    "mtllib nowhere.mtl\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 0.25 0\nv 0 1 0\nvt 0 0\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\ng a b\n\
+     usemtl red\nf 1/1/1 2/2/2 \\\n 3//1 4 5/-1\ns 1\np 1 2\nl 1/1 2/2\nusemtl blue\nf -5 -4 -3\nf 1 3 5 # the last\n"
+        .to_owned()
+}
+
+const WITHOUT_NORMALS: &str =
+    "faces without normals, or with some missing, which got ones that are smooth within 60 degrees";
+
+#[test]
+fn a_cube_of_quadrilaterals_is_a_cube() {
+    let mesh = read(&cube());
+    assert_cube(&mesh);
+    assert_eq!((mesh.name.as_str(), mesh.materials[0].name.as_str()), ("cube", "default"));
+    assert_eq!(mesh.warnings, [format!("{WITHOUT_NORMALS}: 6.")]);
+}
+
+#[test]
+fn text_is_forgiven_its_spaces_its_comments_and_its_ends_of_lines() {
+    let cube = cube();
+    let (vertices, faces) = cube.split_at(cube.find("g sides").unwrap());
+    for text in [
+        cube.replace('\n', "\r\n"),
+        cube.replace('\n', "\r"),
+        cube.replace(' ', "\t "),
+        cube.replace('\n', " # c:\\\n\n"),
+        cube.replace("f ", "  f \\\n").replace("v ", "v\\\r\n\\\n"),
+        format!("\u{feff}{cube}"),
+        format!("{faces}{vertices}"),
+        cube.replace("# made by a test", "# ends with a folder \\"),
+        cube.replace("\nf ", "\nfo "),
+        vertices.replace('\n', " 1 0.5 0.5\n") + faces,
+    ] {
+        assert_cube(&read(&text));
+    }
+}
+
+#[test]
+fn corners_are_given_in_four_ways_and_from_either_end() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0.25 0.25\nvt 1\nvn 0 0 1\nvn 0 1 0\n";
+    for (face, uv, normal) in [
+        ("f 1 2 3", Vec2::ZERO, Vec3::Z),
+        ("f 1/1 2/1 3/1", Vec2::new(0.25, 0.75), Vec3::Z),
+        ("f 1//2 2//2 3//2", Vec2::ZERO, Vec3::Y),
+        ("f 1/2/2 2/2/2 3/2/2", Vec2::ONE, Vec3::Y),
+        ("f -3/-2/-1 -2/-2/-1 -1/-2/-1", Vec2::new(0.25, 0.75), Vec3::Y),
+        ("f 1/1/ 2/1/ 3/1/", Vec2::new(0.25, 0.75), Vec3::Z),
+    ] {
+        let mesh = read(&format!("{vertices}{face}\nv 9 9 9\nvn 1 0 0\n"));
+        assert_eq!(**mesh.triangles, [[0, 1, 2]], "{face}");
+        assert!(mesh.corners.iter().all(|corner| (corner.uv, corner.normal) == (uv, normal)), "{face}");
+    }
+}
+
+#[test]
+fn only_missing_normals_are_made() {
+    let mesh = read("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 1 0\nf 1//1 2 3\nf 1//1 2//1 3//1\n");
+    let normals = |t: usize| mesh.triangles[t].map(|corner| mesh.corners[corner as usize].normal);
+    assert_eq!((normals(0), normals(1)), ([Vec3::Y, Vec3::Z, Vec3::Z], [Vec3::Y; 3]));
+    assert_eq!(mesh.repairs.normals_made, 2);
+    assert_eq!(mesh.warnings, [format!("{WITHOUT_NORMALS}: 1.")]);
+}
+
+#[test]
+fn concave_polygons_are_cut_inside() {
+    // An L, from a corner where a fan would reach outside.
+    let mesh = read("v 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nf 1 2 3 4 5 6\n");
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|corner| mesh.corners[corner as usize].position);
+        (b - a).cross(c - a).z / 2.0
+    };
+    let areas: Vec<f32> = mesh.triangles.iter().map(area).collect();
+    assert!(areas.len() == 4 && areas.iter().all(|area| *area > 0.0), "{areas:?}");
+    assert_eq!(areas.iter().sum::<f32>(), 3.0);
+}
+
+#[test]
+fn what_is_no_face_is_left_out_and_counted() {
+    let mesh =
+        read("v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2\np 3\nl 1 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2 3\nfrob 1\nf 1 2 3\n");
+    let expected = [
+        &format!("{WITHOUT_NORMALS}: 1."),
+        "points (p), left out: 3.",
+        "lines (l), left out: 1.",
+        "free-form curves and surfaces (curv, curv2, surf), which aren't read: 2.",
+        "statements that OBJ doesn't have, left out: 1.",
+    ];
+    assert_eq!(mesh.warnings, expected);
+}
+
+#[test]
+fn a_cancel_is_heard() {
+    let progress = Progress::new();
+    progress.cancel();
+    assert!(matches!(
+        super::read(b"v 0 0 0\n".to_vec(), Path::new(""), "", &Limits::default(), &progress),
+        Err(ReadError::Cancelled(_))
+    ));
+}

@@ -1,0 +1,171 @@
+//! Files as programs write them, in all three encodings.
+
+use header::{Encoding, Scalar};
+
+use super::*;
+use crate::load::faces::tests::{POINTS, SIDES, assert_cube};
+
+fn read(bytes: &[u8]) -> Mesh {
+    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
+}
+
+/// Numbers in one of the encodings.
+struct Writer {
+    encoding: Encoding,
+    bytes: Vec<u8>,
+}
+
+impl Writer {
+    fn put(&mut self, scalar: Scalar, x: f64) {
+        let little = match scalar {
+            Scalar::I8 => (x as i8).to_le_bytes().to_vec(),
+            Scalar::U8 => (x as u8).to_le_bytes().to_vec(),
+            Scalar::I16 => (x as i16).to_le_bytes().to_vec(),
+            Scalar::U16 => (x as u16).to_le_bytes().to_vec(),
+            Scalar::I32 => (x as i32).to_le_bytes().to_vec(),
+            Scalar::U32 => (x as u32).to_le_bytes().to_vec(),
+            Scalar::F32 => (x as f32).to_le_bytes().to_vec(),
+            Scalar::F64 => x.to_le_bytes().to_vec(),
+        };
+        match self.encoding {
+            Encoding::Text => self.bytes.extend(format!("{x} ").bytes()),
+            Encoding::LittleEndian => self.bytes.extend(little),
+            Encoding::BigEndian => self.bytes.extend(little.iter().rev()),
+        }
+    }
+
+    fn end(&mut self) {
+        if self.encoding == Encoding::Text {
+            self.bytes.extend(b"\n");
+        }
+    }
+}
+
+const ENCODINGS: [(Encoding, &str); 3] = [
+    (Encoding::Text, "ascii"),
+    (Encoding::LittleEndian, "binary_little_endian"),
+    (Encoding::BigEndian, "binary_big_endian"),
+];
+
+const SCALARS: [(Scalar, &str); 8] = [
+    (Scalar::I8, "char"),
+    (Scalar::U8, "uint8"),
+    (Scalar::I16, "short"),
+    (Scalar::U16, "uint16"),
+    (Scalar::I32, "int"),
+    (Scalar::U32, "uint32"),
+    (Scalar::F32, "float"),
+    (Scalar::F64, "float64"),
+];
+
+/// A cube of quadrilaterals, with whatever else a file may have.
+pub fn cube(encoding: usize, position: usize, index: usize) -> Vec<u8> {
+    let ((encoding, format), (position, of_position), (index, of_index)) =
+        (ENCODINGS[encoding], SCALARS[position], SCALARS[index]);
+    let header = format!(
+        "ply\nformat {format} 1.0\ncomment made by a test\nobj_info none\nelement range 1\nproperty list uchar int what\n\
+         element vertex 8\nproperty uchar red\nproperty {of_position} x\nproperty {of_position} y\nproperty {of_position} z\n\
+         property list uchar short more\nelement nothing 4611686018427387904\nelement face 6\nproperty float quality\n\
+         property list {of_index} {of_index} vertex_indices\nend_header\n"
+    );
+    let mut writer = Writer { encoding, bytes: header.into_bytes() };
+    [2.0, 8.0, 9.0].iter().zip([Scalar::U8, Scalar::I32, Scalar::I32]).for_each(|(x, scalar)| writer.put(scalar, *x));
+    writer.end();
+    for point in POINTS {
+        writer.put(Scalar::U8, 255.0);
+        point.iter().for_each(|x| writer.put(position, f64::from(*x)));
+        [1.0, 5.0].iter().zip([Scalar::U8, Scalar::I16]).for_each(|(x, scalar)| writer.put(scalar, *x));
+        writer.end();
+    }
+    for side in SIDES {
+        writer.put(Scalar::F32, 0.5);
+        writer.put(index, 4.0);
+        side.iter().for_each(|&point| writer.put(index, point as f64));
+        writer.end();
+    }
+    writer.bytes
+}
+
+#[test]
+fn every_encoding_and_every_type_is_the_same_cube() {
+    for encoding in 0..3 {
+        for (position, index) in [(0, 0), (2, 1), (4, 2), (6, 3), (7, 4), (6, 5)] {
+            let mesh = read(&cube(encoding, position, index));
+            assert_cube(&mesh);
+            let expected = "vertices without normals, which got ones that are smooth within 60 degrees: 8.";
+            assert_eq!(mesh.warnings, [expected]);
+        }
+    }
+}
+
+#[test]
+fn text_is_forgiven_its_ends_of_lines() {
+    let text = String::from_utf8(cube(0, 6, 4)).unwrap();
+    for text in [text.replace('\n', "\r\n"), text.replace('\n', "\r"), text.replace(" \n", "\n\n")] {
+        assert_cube(&read(text.as_bytes()));
+    }
+    let crlf = cube(1, 6, 4);
+    let end = crlf.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+    let header = String::from_utf8_lossy(&crlf[..end]).replace('\n', "\r\n").into_bytes();
+    assert_cube(&read(&[&header, &crlf[end..]].concat()));
+}
+
+const TRIANGLE: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+     property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\nelement face 1\n\
+     property list uchar int vertex_index\nend_header\n0 0 0 0 0 2 0 0\n1 0 0 0 0 2 1 0\n0 1 0 0 0 2 0 1\n3 0 1 2\n";
+
+#[test]
+fn normals_and_texture_coordinates_of_every_name_are_read() {
+    for (u, v) in [("s", "t"), ("u", "v"), ("texture_u", "texture_v")] {
+        let text = TRIANGLE.replace("float s\n", &format!("float {u}\n")).replace("float t\n", &format!("float {v}\n"));
+        let mesh = read(text.as_bytes());
+        let uvs: Vec<_> = mesh.corners.iter().map(|corner| corner.uv).collect();
+        assert_eq!(uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO], "v upwards in the file");
+        assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
+        assert_eq!(mesh.warnings, ["normals whose length isn't 1, brought to it: 3."]);
+    }
+    // Two coordinates make no normal.
+    let mesh = read(TRIANGLE.replace("float nz", "float confidence").as_bytes());
+    assert_eq!(mesh.repairs.normals_made, 3);
+}
+
+#[test]
+fn faces_may_come_before_their_vertices() {
+    let (head, body) = TRIANGLE.split_once("end_header\n").unwrap();
+    let (vertices, face) = head.split_once("element face").unwrap();
+    let (format, vertices) = vertices.split_once("element vertex").unwrap();
+    let (rows, last) = body.split_at(body.rfind("3 0 1 2").unwrap());
+    let text = format!("{format}element face{face}element vertex{vertices}end_header\n{last}{rows}");
+    assert_eq!(**read(text.as_bytes()).triangles, [[0, 1, 2]]);
+}
+
+/// Six vertices in two rows, and strips of them.
+pub fn strip(indices: &str) -> String {
+    let count = indices.split(' ').count();
+    format!(
+        "ply\nformat ascii 1.0\nelement vertex 6\nproperty int x\nproperty int y\nproperty int z\nelement tristrips 1\n\
+         property list int int vertex_indices\nend_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 0\n{count} {indices}\n"
+    )
+}
+
+#[test]
+fn strips_alternate_begin_anew_and_are_stitched() {
+    let triangles = |indices: &str| {
+        let mesh = read(strip(indices).as_bytes());
+        let vertex = |corner: u32| {
+            let place = mesh.corners[corner as usize].position;
+            (2.0 * place.x + place.y) as u32
+        };
+        mesh.triangles.iter().map(|triangle| triangle.map(vertex)).collect::<Vec<_>>()
+    };
+    assert_eq!(triangles("0 1 2 3 4"), [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+    assert_eq!(triangles("0 1 2 -1 3 4 5"), [[0, 1, 2], [3, 4, 5]]);
+    assert_eq!(triangles("0 1 2 2 3 3 4 5"), [[0, 1, 2], [4, 3, 5]]);
+}
+
+#[test]
+fn a_cancel_is_heard() {
+    let progress = Progress::new();
+    progress.cancel();
+    assert!(matches!(super::read(cube(1, 6, 4), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));
+}

@@ -1,0 +1,156 @@
+//! Where a mesh comes from: a shape made in code, or a file.
+
+use std::ffi::OsString;
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use super::mesh_file::{LoadError, load};
+use crate::files::Limits;
+use crate::mesh::Mesh;
+use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
+use crate::progress::Progress;
+
+/// What comes before a shape's name.
+const SHAPE: &str = "shape:";
+
+/// A shape or a file. As text: `shape:torus`, `shape:torus@2`, or a path.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Source {
+    Shape(Shape),
+    /// A shape that has levels, at one of 1 to [`MAX_LEVEL`]; at level 0 it is a `Shape`.
+    FineShape(Shape, u32),
+    File(PathBuf),
+}
+
+impl Default for Source {
+    fn default() -> Self {
+        Self::Shape(Shape::default())
+    }
+}
+
+impl Source {
+    /// Builds the shape or reads the file, if it isn't larger than `limits` says.
+    ///
+    /// # Errors
+    /// Those of [`load`]; a shape has none.
+    pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<Mesh, LoadError> {
+        match self {
+            Self::Shape(shape) => Ok(shape.build()),
+            Self::FineShape(shape, level) => Ok(shape.build_at(*level)),
+            Self::File(path) => load(path, limits, progress),
+        }
+    }
+
+    /// A shape at a level that was written behind its name.
+    fn at_level(shape: Shape, level: &str) -> Result<Self, ShapeError> {
+        if !shape.has_levels() {
+            return Err(ShapeError::NoLevels { shape });
+        }
+        match level.parse() {
+            Ok(0) => Ok(Self::Shape(shape)),
+            Ok(level) if level <= MAX_LEVEL => Ok(Self::FineShape(shape, level)),
+            _ => Err(ShapeError::Level { text: level.to_owned() }),
+        }
+    }
+
+    /// The shape that it is or samples.
+    pub fn shape(&self) -> Option<Shape> {
+        match self {
+            Self::Shape(shape) | Self::FineShape(shape, _) => Some(*shape),
+            Self::File(_) => None,
+        }
+    }
+
+    /// A name for a window's title: the shape's, or the file's without its folder.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Shape(shape) => shape.title().to_owned(),
+            Self::FineShape(shape, level) => shape.title_at(*level),
+            Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+        }
+    }
+}
+
+impl TryFrom<OsString> for Source {
+    type Error = ShapeError;
+
+    /// As from text, but a path may be in any encoding.
+    fn try_from(text: OsString) -> Result<Self, ShapeError> {
+        match text.to_str() {
+            Some(text) => text.parse(),
+            None => Ok(Self::File(text.into())),
+        }
+    }
+}
+
+impl FromStr for Source {
+    type Err = ShapeError;
+
+    fn from_str(text: &str) -> Result<Self, ShapeError> {
+        match text.strip_prefix(SHAPE) {
+            Some(shape) => match shape.split_once('@') {
+                Some((name, level)) => Self::at_level(name.parse()?, level),
+                None => shape.parse().map(Self::Shape),
+            },
+            None => Ok(Self::File(text.into())),
+        }
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape(shape) => write!(f, "{SHAPE}{shape}"),
+            Self::FineShape(shape, level) => write!(f, "{SHAPE}{shape}@{level}"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_names_a_shape_or_a_file() {
+        assert_eq!("shape:torus".parse(), Ok(Source::Shape(Shape::Torus)));
+        assert_eq!("torus".parse(), Ok(Source::File("torus".into())));
+        assert!("shape:nothing".parse::<Source>().is_err());
+        assert_eq!(Source::Shape(Shape::Torus).to_string(), "shape:torus");
+    }
+
+    #[test]
+    fn a_level_stands_behind_the_name() {
+        assert_eq!("shape:torus@3".parse(), Ok(Source::FineShape(Shape::Torus, 3)));
+        assert_eq!(Source::FineShape(Shape::Torus, 3).to_string(), "shape:torus@3");
+        assert_eq!("shape:torus@0".parse(), Ok(Source::Shape(Shape::Torus)));
+        assert_eq!(Source::FineShape(Shape::Cone, 2).title(), "Cone, level 2");
+        for text in ["7", "", "-1", "two", "1.5"] {
+            let error = format!("shape:torus@{text}").parse::<Source>().unwrap_err();
+            assert_eq!(error, ShapeError::Level { text: text.to_owned() });
+            assert!(error.to_string().contains("0 to 6"), "{error}");
+        }
+        for shape in Shape::ALL {
+            let parsed = format!("shape:{shape}@1").parse::<Source>();
+            assert_eq!(parsed.is_ok(), shape.has_levels(), "{shape}");
+            let said = parsed.err().map_or(String::new(), |error| error.to_string());
+            assert!(
+                shape.has_levels() || said.contains("no exact surface") && said.contains("icosphere, ellipsoid"),
+                "{said}"
+            );
+        }
+    }
+
+    #[test]
+    fn titles_are_short() {
+        assert_eq!(Source::File("models/fox.glb".into()).title(), "fox.glb");
+        assert_eq!(Source::Shape(Shape::Moebius).title(), "Moebius strip");
+    }
+
+    #[test]
+    fn shapes_load() {
+        let mesh = Source::Shape(Shape::Icosphere).load(&Limits::default(), &Progress::new()).unwrap();
+        assert_eq!(mesh.triangles.len(), 80);
+    }
+}

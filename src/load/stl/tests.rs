@@ -1,0 +1,82 @@
+//! Files as programs write them, and what tells text from binary.
+
+use super::*;
+use crate::load::faces::tests::{POINTS, assert_cube, triangles};
+
+fn read(bytes: &[u8]) -> Mesh {
+    super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
+}
+
+/// A cube of which every normal is nonsense.
+pub fn text() -> String {
+    let vertex = |point: usize| format!("vertex {} {} {}\n", POINTS[point][0], POINTS[point][1], POINTS[point][2]);
+    let facet = |t: &[usize; 3]| {
+        let vertices: String = t.iter().map(|&point| vertex(point)).collect();
+        format!("facet normal nan 0 1\nouter loop\n{vertices}endloop\nendfacet\n")
+    };
+    let facets: Vec<String> = triangles().iter().map(facet).collect();
+    format!("solid one\n{}endsolid one\nsolid two\n{}endsolid two\n", facets[..5].concat(), facets[5..].concat())
+}
+
+pub fn binary(header: &[u8]) -> Vec<u8> {
+    let mut bytes = header.to_vec();
+    bytes.resize(80, b' ');
+    bytes.extend(12_u32.to_le_bytes());
+    for triangle in triangles() {
+        bytes.extend([f32::NAN; 3].iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(triangle.iter().flat_map(|&p| POINTS[p]).flat_map(|x| f32::from(x).to_le_bytes()));
+        bytes.extend([7, 7]);
+    }
+    bytes
+}
+
+#[test]
+fn both_kinds_are_a_cube_with_made_normals() {
+    for bytes in [text().into_bytes(), binary(b"made by a test")] {
+        let mesh = read(&bytes);
+        assert_cube(&mesh);
+        assert_eq!((mesh.name.as_str(), mesh.repairs.normals_made), ("cube", 36));
+        assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
+    }
+}
+
+#[test]
+fn text_is_forgiven_its_case_its_spaces_and_its_ends_of_lines() {
+    let text = text();
+    let bom = format!("\u{feff}{text}");
+    let mac = text.replace('\n', "\r");
+    for text in
+        [text.to_uppercase().replace("NAN", "NaN"), text.replace(' ', "\t  "), text.replace('\n', "\r\n\r\n"), bom, mac]
+    {
+        assert_cube(&read(text.as_bytes()));
+    }
+}
+
+#[test]
+fn a_binary_file_may_begin_with_solid() {
+    for header in [&b"solid cube"[..], b"solid\0cube", b"SOLID"] {
+        assert_cube(&read(&binary(header)));
+    }
+    // Its size no longer gives it away, but its zeros do.
+    let longer = [binary(b"solid cube"), b"made by a test".to_vec()].concat();
+    let mesh = read(&longer);
+    assert_cube(&mesh);
+    assert_eq!(mesh.warnings, ["bytes after the last triangle, left out: 14."]);
+}
+
+#[test]
+fn text_without_an_end_is_read_with_a_warning() {
+    let text = text();
+    let mesh = read(text.trim_end().trim_end_matches("endsolid two").as_bytes());
+    assert_cube(&mesh);
+    assert_eq!(mesh.warnings, ["solids without an end: the file may have been cut short: 1."]);
+}
+
+#[test]
+fn a_cancel_is_heard() {
+    let progress = Progress::new();
+    progress.cancel();
+    for bytes in [text().into_bytes(), binary(b"")] {
+        assert!(matches!(super::read(bytes.to_vec(), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));
+    }
+}

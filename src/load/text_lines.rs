@@ -1,0 +1,166 @@
+//! Text by lines and words: OBJ, MTL, and what is text of STL and PLY.
+
+use memchr::memchr;
+
+use super::read_error::{Place, ReadError};
+
+/// The longest line, in bytes: a polygon of half a million corners.
+const MAX_LINE: usize = 1 << 22;
+
+/// The lines of a text, one after another.
+#[derive(Clone)]
+pub struct Lines<'a> {
+    rest: &'a [u8],
+    /// What a line ends with.
+    end: u8,
+    /// Of lines that have been read.
+    count: usize,
+}
+
+/// A line without its end.
+#[derive(Clone, Copy)]
+pub struct Line<'a> {
+    pub text: &'a [u8],
+    /// From 1.
+    pub number: usize,
+}
+
+impl<'a> Lines<'a> {
+    /// Ends of lines are those of Unix or Windows; or of old Macs, where there are no others.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        let end = if memchr(b'\n', bytes).is_some() { b'\n' } else { b'\r' };
+        Self::ending(bytes, end)
+    }
+
+    /// Lines that end with one byte or another. A byte order mark isn't part of the first.
+    pub fn ending(bytes: &'a [u8], end: u8) -> Self {
+        Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0 }
+    }
+
+    /// The next line, if there is one.
+    ///
+    /// # Errors
+    /// [`ReadError::Broken`] for one that is out of all proportion.
+    pub fn next(&mut self) -> Result<Option<Line<'a>>, ReadError> {
+        if self.rest.is_empty() {
+            return Ok(None);
+        }
+        self.count += 1;
+        let length = memchr(self.end, self.rest).unwrap_or(self.rest.len());
+        self.check(length)?;
+        let text = &self.rest[..length];
+        self.rest = self.rest.get(length + 1..).unwrap_or_default();
+        Ok(Some(Line { text: text.strip_suffix(b"\r").unwrap_or(text), number: self.count }))
+    }
+
+    /// Whether a line, the one that was read last, may be so long.
+    ///
+    /// # Errors
+    /// As [`next`](Self::next).
+    pub fn check(&self, length: usize) -> Result<(), ReadError> {
+        if length <= MAX_LINE {
+            return Ok(());
+        }
+        let reason = format!("the line has {length} bytes, and at most {MAX_LINE} are read");
+        Err(Place::Line(self.count).fault(reason))
+    }
+
+    /// What hasn't been read.
+    pub fn rest(&self) -> &'a [u8] {
+        self.rest
+    }
+
+    /// How many lines have been read.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+}
+
+impl<'a> Line<'a> {
+    pub fn place(&self) -> Place {
+        Place::Line(self.number)
+    }
+
+    pub fn words(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+        words(self.text)
+    }
+}
+
+/// What stands between white space.
+pub fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+/// The first word, and what follows it; both without white space around them.
+pub fn first_word(text: &[u8]) -> (&[u8], &[u8]) {
+    let text = text.trim_ascii();
+    let length = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
+    (&text[..length], text[length..].trim_ascii_start())
+}
+
+/// A number, or the reason why it is none.
+pub fn number(word: &[u8]) -> Result<f32, String> {
+    let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
+    number.ok_or_else(|| format!("{} is no number", shown(word)))
+}
+
+/// The first N words as numbers, of a statement of that name; more are left alone.
+pub fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N], String> {
+    let mut found = [0.0; N];
+    let mut words = words(text);
+    for (i, slot) in found.iter_mut().enumerate() {
+        let word = words.next().ok_or_else(|| format!("{name} needs {N} numbers, and there are {i}"))?;
+        *slot = number(word)?;
+    }
+    Ok(found)
+}
+
+/// A word fit for a message, in quotes.
+pub fn shown(word: &[u8]) -> String {
+    let start = String::from_utf8_lossy(&word[..word.len().min(160)]);
+    let short: String = start.chars().take(40).collect();
+    let cut = if short.len() < start.len() || word.len() > 160 { "..." } else { "" };
+    format!("{:?}", short + cut)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(text: &[u8]) -> Vec<(usize, Vec<u8>)> {
+        let mut lines = Lines::new(text);
+        let mut all = Vec::new();
+        while let Some(line) = lines.next().unwrap() {
+            all.push((line.number, line.text.to_vec()));
+        }
+        all
+    }
+
+    #[test]
+    fn lines_of_every_system() {
+        let expected = [(1, b"a".to_vec()), (2, b"".to_vec()), (3, b"b c".to_vec())];
+        for text in ["a\n\nb c", "a\r\n\r\nb c\r\n", "a\r\rb c", "\u{feff}a\n\nb c\n"] {
+            assert_eq!(all(text.as_bytes()), expected, "{text:?}");
+        }
+        assert!(all(b"").is_empty());
+    }
+
+    #[test]
+    fn a_line_has_a_longest_length() {
+        let text = [b"a\n", &vec![b'x'; MAX_LINE][..], b"\n", &vec![b'x'; MAX_LINE + 1]].concat();
+        let mut lines = Lines::new(&text);
+        assert!(lines.next().is_ok() && lines.next().is_ok());
+        let message = lines.next().err().unwrap().to_string();
+        assert_eq!(message, "line 3: the line has 4194305 bytes, and at most 4194304 are read; export the model again");
+    }
+
+    #[test]
+    fn words_and_numbers() {
+        assert_eq!(first_word(b"\t usemtl  old  wood \r"), (&b"usemtl"[..], &b"old  wood"[..]));
+        assert_eq!(first_word(b"  "), (&b""[..], &b""[..]));
+        assert_eq!(numbers("v", b" 1\t-2.5e1 +.5 7"), Ok([1.0, -25.0, 0.5]));
+        assert_eq!(numbers::<3>("v", b"1 2"), Err("v needs 3 numbers, and there are 2".to_owned()));
+        assert_eq!(numbers::<1>("v", b"1,5"), Err("\"1,5\" is no number".to_owned()));
+        assert_eq!(shown(&[0xff; 500]), format!("\"{}...\"", "\u{fffd}".repeat(40)));
+    }
+}

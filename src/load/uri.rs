@@ -1,0 +1,279 @@
+//! URIs of buffers and images: data in the document itself, or files next to it.
+
+use std::cell::RefCell;
+use std::collections::HashSet;
+use std::io::ErrorKind;
+use std::path::{Component, Path, PathBuf};
+
+use super::memory_budget::Budget;
+use crate::files::{FileError, Limits, read_file};
+use crate::mesh::MemoryAccount;
+use crate::names::{on_one_line, shown_path};
+use crate::progress::Progress;
+
+/// The largest data URI, in bytes that it stands for.
+const MAX_DATA: usize = 512 << 20;
+
+/// The files that a document may name.
+pub struct Files<'a> {
+    /// Where the document lies.
+    folder: &'a Path,
+    limits: &'a Limits,
+    budget: &'a Budget,
+    progress: &'a Progress,
+    /// Those that have brought their allowance.
+    counted: RefCell<HashSet<PathBuf>>,
+}
+
+impl<'a> Files<'a> {
+    pub fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget, progress: &'a Progress) -> Self {
+        Self { folder, limits, budget, progress, counted: RefCell::default() }
+    }
+
+    /// The bytes that a URI stands for, kept until the end or not.
+    ///
+    /// Files must lie in the document's folder or below it, also after links are followed: a model can't make the program
+    /// read anything else.
+    ///
+    /// # Errors
+    /// A clause that says what is wrong, and what to do.
+    pub fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
+        let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
+        if let Some(data) = strip_scheme(uri, "data:") {
+            take(data.len() as u64)?;
+            return read_data(data, MAX_DATA);
+        }
+        let path = self.found(&relative_path(uri)?)?;
+        // What is too large is refused by its name and size, whatever memory there is.
+        let bytes = path.metadata().map_or(0, |about| about.len()).min(self.limits.file);
+        // A file that is named a thousand times brings what it allows once.
+        if self.counted.borrow_mut().insert(path.clone()) {
+            self.budget.allow(bytes);
+        }
+        take(bytes)?;
+        read_file(&path, self.limits, |_| Ok(()), self.progress).map_err(|error: FileError| error.to_string())
+    }
+
+    /// Those that were read, in order of their names.
+    pub fn named(&self) -> Vec<PathBuf> {
+        let mut named: Vec<_> = self.counted.borrow().iter().cloned().collect();
+        named.sort();
+        named
+    }
+
+    /// The file itself, wherever links lead.
+    fn found(&self, relative: &Path) -> Result<PathBuf, String> {
+        let missing = |path: &Path, error: std::io::Error| {
+            let reason = match error.kind() {
+                ErrorKind::NotFound => "it is not there".to_owned(),
+                _ => error.to_string(),
+            };
+            format!("{}: {reason}; put the file where the document says, or export as .glb", shown_path(path))
+        };
+        let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
+        let path = folder.join(relative);
+        let real = path.canonicalize().map_err(|error| missing(&path, error))?;
+        let root = folder.canonicalize().map_err(|error| missing(folder, error))?;
+        if !real.starts_with(&root) {
+            return Err(format!(
+                "{} is a link out of the document's folder, and only files below that are read; put the file itself there",
+                shown_path(&path)
+            ));
+        }
+        // A pipe or a device could block for ever.
+        if !real.metadata().map_err(|error| missing(&path, error))?.is_file() {
+            return Err(format!("{} is not a file; name one, or export as .glb", shown_path(&path)));
+        }
+        Ok(real)
+    }
+}
+
+/// A URI fit for a message: data URIs are long.
+pub fn shown(uri: &str) -> String {
+    let (start, rest) = uri.split_at(uri.char_indices().nth(60).map_or(uri.len(), |(i, _)| i));
+    // On one line, whatever it is.
+    let start = on_one_line(start);
+    if rest.is_empty() { start } else { format!("{start}...") }
+}
+
+/// What follows a scheme, which may be written in either case.
+fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
+    let (start, rest) = uri.split_at_checked(scheme.len())?;
+    start.eq_ignore_ascii_case(scheme).then_some(rest)
+}
+
+fn read_data(data: &str, limit: usize) -> Result<Vec<u8>, String> {
+    let (header, body) = data.split_once(',').ok_or("the data URI has no comma; export the model again")?;
+    let is_base64 = header.ends_with(";base64");
+    let size = if is_base64 { body.len() / 4 * 3 } else { body.len() };
+    if size > limit {
+        return Err(format!("the data URI holds {size} bytes, and {limit} are read at most; export as .glb"));
+    }
+    if is_base64 { base64(body) } else { Ok(percent_decoded(body)) }
+}
+
+/// A path without anything in it that could lead elsewhere, on any system.
+fn relative_path(uri: &str) -> Result<PathBuf, String> {
+    let refused = |reason: &str| Err(format!("{reason}; only files in the document's folder and below are read"));
+    let Ok(decoded) = String::from_utf8(percent_decoded(uri)) else {
+        return Err("its name is not UTF-8 once its % signs are decoded; rename the file".to_owned());
+    };
+    let mut parts = decoded.split('/');
+    // A scheme ends at a colon before any slash, a drive of Windows does, and so does a file that hides behind another.
+    match parts.next() {
+        Some(first) if first.contains(':') => {
+            return refused(&format!("it names another place, with {}:", shown(first.split(':').next().unwrap_or(""))));
+        }
+        Some("") if !decoded.is_empty() => return refused("it is an absolute path"),
+        _ => {}
+    }
+    if decoded.is_empty() {
+        return Err("its name is empty; export the model again".to_owned());
+    }
+    if decoded.contains('\\') {
+        return refused("it has a backslash, where a URI has /");
+    }
+    if decoded.contains(char::is_control) {
+        return refused("it has a control character");
+    }
+    if decoded.contains(':') {
+        return refused("it has a colon");
+    }
+    if parts.any(|part| part == "..") || decoded.starts_with("../") || decoded == ".." {
+        return refused("it leads out of a folder, with ..");
+    }
+    let path = PathBuf::from(decoded);
+    let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
+    if path.components().all(inside) { Ok(path) } else { refused("it leads elsewhere") }
+}
+
+/// %XX as the byte it stands for; a % that no two hexadecimal digits follow stays.
+fn percent_decoded(text: &str) -> Vec<u8> {
+    let digit = |byte: &u8| char::from(*byte).to_digit(16);
+    let mut decoded = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, tail)) = rest.split_first() {
+        rest = tail;
+        let byte = match (first, tail) {
+            (b'%', [high, low, ..]) => digit(high).zip(digit(low)).map(|(high, low)| (16 * high + low) as u8),
+            _ => None,
+        };
+        if byte.is_some() {
+            rest = &tail[2..];
+        }
+        decoded.push(byte.unwrap_or(first));
+    }
+    decoded
+}
+
+/// RFC 4648, section 4; line breaks and missing padding are forgiven.
+fn base64(text: &str) -> Result<Vec<u8>, String> {
+    let mut decoded = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut held) = (0_u32, 0);
+    let digits = text.bytes().filter(|byte| !byte.is_ascii_whitespace());
+    for byte in digits.take_while(|&byte| byte != b'=') {
+        let digit = match byte {
+            b'A'..=b'Z' => byte - b'A',
+            b'a'..=b'z' => byte - b'a' + 26,
+            b'0'..=b'9' => byte - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => {
+                return Err(format!(
+                    "the data URI has a character that isn't base64, {:?}; export the model again",
+                    char::from(byte)
+                ));
+            }
+        };
+        // Six bits in, eight out whenever there are enough; what was given out is shifted out of sight.
+        bits = (bits << 6) | u32::from(digit);
+        held += 6;
+        if held >= 8 {
+            held -= 8;
+            decoded.push((bits >> held) as u8);
+        }
+    }
+    Ok(decoded)
+}
+
+/// Base64 of some bytes, for documents made in tests.
+#[cfg(test)]
+pub fn to_base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in bytes.chunks(3) {
+        let bits = chunk.iter().fold(0_u32, |bits, &byte| (bits << 8) | u32::from(byte)) << (8 * (3 - chunk.len()));
+        for k in 0..4 {
+            let digit = char::from(DIGITS[(bits >> (18 - 6 * k)) as usize & 63]);
+            text.push(if k <= chunk.len() { digit } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn known_base64() {
+        for (text, bytes) in [("", ""), ("Zg==", "f"), ("Zm8=", "fo"), ("Zm9v", "foo"), ("Zm9v\nYmFy", "foobar")] {
+            assert_eq!(base64(text), Ok(bytes.into()));
+        }
+        assert!(base64("Zm9*").is_err());
+    }
+
+    #[test]
+    fn percent_signs() {
+        assert_eq!(relative_path("a%20b/c.bin"), Ok("a b/c.bin".into()));
+        assert_eq!(percent_decoded("100%_%4"), b"100%_%4");
+    }
+
+    #[test]
+    fn only_files_below_the_folder() {
+        let outside = [
+            ("../a", "with .."),
+            ("a/%2e%2e/b", "with .."),
+            ("%2E%2e%2fa", "with .."),
+            ("a/..", "with .."),
+            ("/elsewhere/a", "an absolute path"),
+            ("%2felsewhere/a", "an absolute path"),
+            ("//host/a", "an absolute path"),
+            ("file:///elsewhere/a", "with file:"),
+            ("FILE:a", "with FILE:"),
+            ("https://example.org/a.bin", "with https:"),
+            ("C:/a.bin", "with C:"),
+            ("c%3A%5Ca.bin", "with c:"),
+            ("a%5C..%5Cb", "backslash"),
+            ("a\\b", "backslash"),
+            ("a/b.bin:c", "colon"),
+            ("a%00b", "control character"),
+        ];
+        for (uri, reason) in outside {
+            let said = relative_path(uri).unwrap_err();
+            assert!(said.contains(reason) && said.ends_with("folder and below are read"), "{uri}: {said}");
+        }
+        assert!(relative_path("").unwrap_err().contains("empty"));
+        assert!(relative_path("a/%c3%28").unwrap_err().contains("not UTF-8"));
+        for uri in ["./textures/a.png", "a..b/c...d", "..a"] {
+            assert!(relative_path(uri).is_ok(), "{uri}");
+        }
+    }
+
+    #[test]
+    fn data_has_a_limit() {
+        assert_eq!(read_data("application/octet-stream;base64,Zm9v", 3), Ok(b"foo".to_vec()));
+        let said = read_data(";base64,Zm9vZm9v", 5).unwrap_err();
+        assert!(said.contains("holds 6 bytes, and 5 are read at most"), "{said}");
+        assert_eq!(read_data(",a%20b", 5), Ok(b"a b".to_vec()));
+        assert!(read_data(";base64Zm9v", 5).unwrap_err().contains("no comma"));
+    }
+
+    proptest! {
+        #[test]
+        fn base64_there_and_back(bytes in prop::collection::vec(any::<u8>(), 0..50)) {
+            prop_assert_eq!(base64(&to_base64(&bytes)), Ok(bytes));
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Numbers for things by what they are, where the things themselves lie in a list.
+
+use std::hash::{BuildHasher, Hash};
+
+use foldhash::fast::RandomState;
+use hashbrown::HashTable;
+
+/// Numbers from 0 on. The table holds nothing else: 5 to 12 bytes a thing.
+#[derive(Default)]
+pub struct Interner {
+    table: HashTable<u32>,
+    hasher: RandomState,
+}
+
+impl Interner {
+    /// With room for so many.
+    pub fn with_capacity(count: usize) -> Self {
+        Self { table: HashTable::with_capacity(count), ..Self::default() }
+    }
+
+    /// The number of the thing with this key, and whether it is a new one, the next. `key_of` is the key of what has a number
+    /// already.
+    pub fn number<K: Hash + Eq>(&mut self, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
+        let hash = self.hasher.hash_one(&key);
+        if let Some(&id) = self.table.find(hash, |&id| key_of(id) == key) {
+            return (id, false);
+        }
+        let id = self.table.len() as u32;
+        if self.table.len() == self.table.capacity() {
+            self.reserve(self.table.len().max(8), &key_of);
+        }
+        self.table.insert_unique(hash, id, |&id| self.hasher.hash_one(key_of(id)));
+        (id, true)
+    }
+
+    /// Makes room for so many more. The old table is gone before there is a new one.
+    pub fn reserve<K: Hash>(&mut self, more: usize, key_of: impl Fn(u32) -> K) {
+        let count = self.table.len();
+        if self.table.capacity() - count >= more {
+            return;
+        }
+        self.table = HashTable::new();
+        self.table = HashTable::with_capacity(count + more);
+        let hash = |&id: &u32| self.hasher.hash_one(key_of(id));
+        for id in 0..count as u32 {
+            self.table.insert_unique(hash(&id), id, hash);
+        }
+    }
+
+    /// How many more there is room for.
+    pub fn room(&self) -> usize {
+        self.table.capacity() - self.table.len()
+    }
+
+    /// What it takes, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.table.allocation_size() as u64
+    }
+
+    /// What it would take at most with room for so many, in bytes: a power of two of which an eighth stays free.
+    pub fn bytes_for(count: usize) -> u64 {
+        let places = (count as u64 * 8).div_ceil(7).max(16).next_power_of_two();
+        places * 5 + 64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_keys_have_equal_numbers_however_it_grows() {
+        let (mut ids, mut things) = (Interner::with_capacity(3), Vec::new());
+        for i in 0..10_000_u64 {
+            let key = i * i % 4096;
+            let (id, is_new) = ids.number(key, |id| things[id as usize]);
+            assert_eq!(is_new, !things.contains(&key));
+            if is_new {
+                things.push(key);
+            }
+            assert_eq!(things[id as usize], key);
+            assert!(ids.bytes() <= Interner::bytes_for(ids.table.capacity()));
+        }
+        ids.reserve(100_000, |id| things[id as usize]);
+        assert!(ids.room() >= 100_000 && ids.bytes() <= Interner::bytes_for(things.len() + 100_000));
+        assert_eq!(ids.number(things[7], |id| things[id as usize]), (7, false));
+    }
+}
