@@ -24,6 +24,8 @@ pub mod numbers;
 pub mod plot;
 pub mod progress;
 pub mod render;
+#[cfg(test)]
+mod rooms;
 pub mod settings;
 pub mod stability;
 pub mod tessellate;

@@ -1,7 +1,7 @@
 //! A rim along creases, under PN triangles: nothing is left to tear.
 
 use pnaen::engine::{Preparation, load};
-use pnaen::load::{Budget, Source};
+use pnaen::load::Source;
 use pnaen::measure::Measured;
 use pnaen::mesh::{Shape, Topology, with_rim};
 use pnaen::progress::Progress;
@@ -58,7 +58,7 @@ fn with_a_rim_pn_is_whole_on_whatever_breaks_tessellators() {
     let cases = CASES.iter().map(|case| (case.name, (case.mesh)(), case.weld));
     for (name, mesh, weld) in cases.chain((0..8).map(|seed| ("soup", soup(seed), 0.0))) {
         let welded = Topology::build_within(&mesh, weld, &progress).expect("nobody cancels");
-        let (mesh, ..) = with_rim(&mesh, &welded, 0.01, &Budget::endless(), &progress).expect("nobody cancels");
+        let (mesh, ..) = with_rim(&mesh, &welded, 0.01, &Unlimited, &progress).expect("nobody cancels");
         let mut scene = scene_of(mesh, 0.0);
         let camera = camera(&scene);
         for edges in [Edges::PerEdge, Edges::AsPublished] {
