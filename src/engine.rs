@@ -2,6 +2,7 @@
 
 mod measured;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,7 +11,7 @@ use crate::gpu::{
     AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of,
     wait,
 };
-use crate::load::{Budget, HeightSource, LoadError, Source, untextured_warning};
+use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, rim_warnings, untextured_warning};
 use crate::measure::AskedFactors;
 use crate::mesh::{BuildError, Mesh, Moment, Rim, Topology, with_rim};
 use crate::progress::{Progress, Stage};
@@ -28,6 +29,10 @@ pub struct Loaded {
     /// As it was read: `mesh` itself unless that has a rim.
     pub read: Arc<Mesh>,
     pub mesh: Arc<Mesh>,
+    /// What was left out or repaired, one sentence each.
+    pub warnings: Vec<String>,
+    /// Files that the mesh's own file names and that were read, with links resolved.
+    pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
     pub load_ms: f64,
     pub topology_ms: f64,
@@ -63,30 +68,31 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let mut read = source.load(&preparation.limits, &of_mesh)?;
+    let LoadedMesh { mesh: mut read, mut warnings, files, file_bytes } = source.load(&preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
-    let budget = Budget::of_mesh(&read, &preparation.limits);
+    let budget = Budget::of_mesh(&read, file_bytes, &preparation.limits);
     let too_large = |what| move |error| unfinished(source, what, error);
     let mut topology =
         Topology::build_afforded(&read, preparation.weld, &budget, progress).map_err(too_large("its edges"))?;
     let (mut cut, mut rim) = (None, Rim::default());
     if preparation.rim > 0.0 {
         let made = with_rim(&read, &topology, preparation.rim, &budget, progress).map_err(too_large("its rim"))?;
-        let mesh = cut.insert(made.0);
+        cut = Some(made.0);
         (topology, rim) = (made.1, made.2);
+        warnings.extend(rim_warnings(&rim));
         if read.rig.is_some() {
-            mesh.warnings.push("its animations are left out, as a rim hangs on nothing that they move.".to_owned());
+            warnings.push("its animations are left out, as a rim hangs on nothing that they move.".to_owned());
         }
     }
     let mesh = cut.as_mut().unwrap_or(&mut read);
     if let Some(heights) = &preparation.heights {
         progress.enter(Stage::Heights);
-        let heights = heights.load(mesh, &budget, &progress.part(0.4, 1.0))?;
-        mesh.warnings.extend(untextured_warning(&heights, mesh));
+        let heights = heights.load(mesh, &warnings, &budget, &progress.part(0.4, 1.0))?;
+        warnings.extend(untextured_warning(&heights, mesh));
         mesh.heights = Some(Arc::new(heights));
     }
     if topology.patches.is_empty() {
-        mesh.warnings.push("there is nothing to show: every triangle has two corners on one point.".to_owned());
+        warnings.push("there is nothing to show: every triangle has two corners on one point.".to_owned());
     }
     let read = Arc::new(read);
     Ok(Loaded {
@@ -95,6 +101,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         rim,
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
+        warnings,
+        files,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,

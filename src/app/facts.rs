@@ -169,7 +169,7 @@ impl App {
                 "Welding points and finding edges.",
             );
         });
-        for warning in &mesh.warnings {
+        for warning in &document.loaded.warnings {
             ui.add(egui::Label::new(RichText::new(warning).color(ui.visuals().warn_fg_color)).wrap());
         }
     }

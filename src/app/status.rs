@@ -54,7 +54,7 @@ impl App {
             );
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
-            let warnings = &document.loaded.mesh.warnings;
+            let warnings = &document.loaded.warnings;
             if !warnings.is_empty() {
                 let text =
                     RichText::new(format!("{} warning{}", warnings.len(), if warnings.len() == 1 { "" } else { "s" }))

@@ -1,10 +1,11 @@
 //! `pnaen info`: what a file holds.
 
+use super::mesh_report::Info;
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
 use crate::engine;
 use crate::load::{LoadError, Source};
-use crate::mesh::{Info, joins};
+use crate::mesh::joins;
 use crate::progress::Progress;
 
 #[derive(Debug, clap::Args)]
@@ -29,7 +30,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
     let loaded = engine::load(source, &options.preparation(), &progress)?;
-    let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &progress)?;
+    let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
     if loaded.rim.width == 0.0 {
         return Ok(info);
     }

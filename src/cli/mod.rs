@@ -10,6 +10,7 @@ mod factors;
 mod gallery;
 mod given;
 mod info;
+mod mesh_report;
 mod options;
 mod reference;
 mod render;
@@ -280,14 +281,14 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
 /// Loads a mesh for a command, saying on standard error what was left out or repaired.
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = crate::engine::load(source, preparation, &Progress::default())?;
-    warn(&loaded.mesh.warnings);
+    warn(&loaded.warnings);
     Ok(loaded)
 }
 
 /// The same, where what is to be written is none of the files that the mesh's own names.
 fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Path>]) -> Result<Loaded, CliError> {
     let loaded = load(source, preparation)?;
-    keep_apart(loaded.read.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;
+    keep_apart(loaded.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;
     Ok(loaded)
 }
 

@@ -111,13 +111,13 @@ impl<'a> Gallery<'a> {
         Ok((sheet(&parts, columns, TEXT)?, all))
     }
 
-    /// What a mesh of one's own has to be said of: see [`crate::mesh::Mesh::warnings`].
+    /// What a mesh of one's own has to be said of: see [`crate::load::LoadedMesh::warnings`].
     ///
     /// # Errors
     /// It can't be loaded.
     pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
         match self.look.source.clone() {
-            Some(source) => Ok(self.load(source, 0.0)?.mesh.warnings.clone()),
+            Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),
             None => Ok(Vec::new()),
         }
     }

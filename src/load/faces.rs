@@ -2,13 +2,15 @@
 
 use glam::{Vec2, Vec3};
 
+use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{Place, ReadError};
+use super::warnings::repair_warnings;
+use crate::mesh::Material;
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::mesh_builder::{LooseCorner, MeshBuilder};
 use crate::mesh::polygon::{self, Cut, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
-use crate::mesh::{Material, Mesh};
 use crate::progress::Progress;
 
 /// A file of more materials than this is refused: each takes memory, and a draw.
@@ -126,7 +128,7 @@ impl<'a> Faces<'a> {
         holds: String,
         mut warnings: Vec<String>,
         progress: &Progress,
-    ) -> Result<Mesh, ReadError> {
+    ) -> Result<LoadedMesh, ReadError> {
         if self.builder.is_empty() {
             let small = match self.too_small {
                 0 => String::new(),
@@ -143,10 +145,9 @@ impl<'a> Faces<'a> {
                 "polygons without area, or whose sides cross, or too large, cut into triangles that may overlap",
             ),
         ]));
-        let (mut mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        mesh.file_bytes = self.memory.files();
-        mesh.warnings.splice(0..0, warnings);
-        Ok(mesh)
+        let (mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
+        warnings.extend(repair_warnings(&mesh.repairs));
+        Ok(LoadedMesh { mesh, warnings, files: Vec::new(), file_bytes: self.memory.files() })
     }
 }
 

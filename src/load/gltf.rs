@@ -35,10 +35,13 @@ use std::sync::Arc;
 use ::gltf::{Document, Node};
 use glam::DMat4;
 
+use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
+use super::uri::Files;
+use super::warnings::repair_warnings;
 use crate::files::Limits;
+use crate::mesh::MemoryAccount;
 use crate::mesh::mesh_builder::MeshBuilder;
-use crate::mesh::{MemoryAccount, Mesh};
 use crate::progress::Progress;
 
 use accessor::Accessors;
@@ -47,7 +50,6 @@ use materials::Materials;
 use nodes::Placed;
 use primitive::Primitives;
 
-use super::uri::Files;
 pub use problem::Problem;
 
 /// Sentences that are said of a document at most.
@@ -59,7 +61,13 @@ const MAX_WARNINGS: usize = 100;
 ///
 /// # Errors
 /// [`Problem`].
-pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, Problem> {
+pub fn read(
+    bytes: Vec<u8>,
+    folder: &Path,
+    name: &str,
+    limits: &Limits,
+    progress: &Progress,
+) -> Result<LoadedMesh, Problem> {
     let budget = Budget::new(bytes.len(), limits);
     let document::Parsed { document, blob, extensions, animations, mut warnings } =
         document::parse(bytes, &budget, progress)?;
@@ -112,11 +120,8 @@ pub fn read(bytes: Vec<u8>, folder: &Path, name: &str, limits: &Limits, progress
         warnings.truncate(MAX_WARNINGS);
         warnings.push(format!("{more} more such sentences are left out."));
     }
-    warnings.extend(mesh.repairs.warnings());
-    mesh.warnings = warnings;
-    mesh.files = files.named();
-    mesh.file_bytes = budget.files();
-    Ok(mesh)
+    warnings.extend(repair_warnings(&mesh.repairs));
+    Ok(LoadedMesh { mesh, warnings, files: files.named(), file_bytes: budget.files() })
 }
 
 /// What is needed to turn nodes into triangles, and the triangles so far.

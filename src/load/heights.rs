@@ -57,14 +57,21 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// Reads heights for a mesh, within what a load may take; `progress` goes from 0 to 1 meanwhile.
+    /// Reads heights for a mesh, within what a load may take; `progress` goes from 0 to 1 meanwhile. `warnings` are those of
+    /// reading the mesh: where it has no image because a texture was left out, the error says why.
     ///
     /// # Errors
     /// [`HeightError`].
-    pub fn load(&self, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
+    pub fn load(
+        &self,
+        mesh: &Mesh,
+        warnings: &[String],
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<Heights, HeightError> {
         progress.set(0.0);
         let heights = match self {
-            Self::Materials => from_materials(mesh, budget, progress)?,
+            Self::Materials => from_materials(mesh, warnings, budget, progress)?,
             Self::File(path) => from_file(path, mesh, budget, progress)?,
         };
         progress.set(1.0);
@@ -96,7 +103,12 @@ fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> 
 ///
 /// # Errors
 /// [`HeightError::NoImage`], [`HeightError::TooMany`] and [`HeightError::TooMuchOfMaterials`].
-fn from_materials(mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
+fn from_materials(
+    mesh: &Mesh,
+    warnings: &[String],
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Heights, HeightError> {
     let mut known: Vec<&Texture> = Vec::new();
     let of_material = mesh.materials.iter().map(|material| {
         let texture = material.texture.as_deref()?;
@@ -109,7 +121,7 @@ fn from_materials(mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<H
     let of_material = of_material.collect();
     let count = known.len();
     if count == 0 {
-        let left_out = mesh.warnings.iter().find(|warning| warning.starts_with("the texture of "));
+        let left_out = warnings.iter().find(|warning| warning.starts_with("the texture of "));
         let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
@@ -131,20 +143,6 @@ fn from_materials(mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<H
     Ok(Heights::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?)
 }
 
-/// A warning about triangles whose corners all have one texture coordinate: heights move each of them as a whole.
-pub fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
-    let mut count = 0;
-    for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
-        let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
-        let is_point = |triangle: &&[u32; 3]| {
-            let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize].uv);
-            a == b && b == c
-        };
-        count += triangles.iter().filter(is_point).count();
-    }
-    (count > 0).then(|| format!("triangles without texture coordinates, which heights move as a whole: {count}."))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -154,23 +152,14 @@ mod tests {
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
         assert!(matches!(
-            from_materials(&mesh, &Budget::unlimited(), &Progress::new()),
+            from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()),
             Err(HeightError::NoImage { .. })
         ));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = crate::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
-        let heights = from_materials(&mesh, &Budget::unlimited(), &Progress::new()).expect("an image");
+        let heights = from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
-    }
-
-    #[test]
-    fn triangles_without_texture_coordinates_are_counted() {
-        let map = || HeightMap::new([1, 1], vec![0.5]);
-        let [with, without] = [Shape::Torus, Shape::Icosphere].map(Shape::build);
-        assert_eq!(untextured_warning(&Heights::everywhere(&with, map()), &with), None);
-        let warning = untextured_warning(&Heights::everywhere(&without, map()), &without).expect("80 triangles");
-        assert!(warning.ends_with("as a whole: 80."), "{warning}");
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::{ReadError, obj, ply, stl};
 use crate::files::Limits;
-use crate::mesh::Mesh;
+use crate::load::LoadedMesh;
 use crate::progress::Progress;
 
 /// Xorshift, 64 bits, from a seed that isn't 0 (Marsaglia 2003).
@@ -55,15 +55,15 @@ enum Format {
     Ply,
 }
 
-fn read(format: Format, bytes: &[u8]) -> Result<Mesh, ReadError> {
+fn read(format: Format, bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
     let start = time();
     let progress = Progress::new();
-    let mesh = match format {
+    let loaded = match format {
         Format::Obj => obj::read(bytes.to_vec(), Path::new("nowhere"), "broken", &Limits::default(), &progress),
         Format::Stl => stl::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
         Format::Ply => ply::read(bytes.to_vec(), "broken", &Limits::default(), &progress),
     };
     let (took, length) = (time() - start, bytes.len());
     assert!(took < LIMIT, "{format:?} of {length} bytes took {took:?}");
-    mesh
+    loaded
 }

@@ -41,9 +41,9 @@ impl Budget {
         Self { free: limits.memory, files: Cell::new(file), held: Cell::new(file), passing: Cell::new(0) }
     }
 
-    /// For what is made of a mesh, which is held.
-    pub fn of_mesh(mesh: &Mesh, limits: &Limits) -> Self {
-        let (files, held) = (Cell::new(mesh.file_bytes), Cell::new(bytes_of(mesh)));
+    /// For what is made of a mesh, which is held. `file_bytes` are those of all files that it was read from.
+    pub fn of_mesh(mesh: &Mesh, file_bytes: u64, limits: &Limits) -> Self {
+        let (files, held) = (Cell::new(file_bytes), Cell::new(bytes_of(mesh)));
         Self { free: limits.memory, files, held, passing: Cell::new(0) }
     }
 

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::gltf::{self, Problem};
 use super::heights::HeightError;
+use super::loaded_mesh::LoadedMesh;
 use super::read_error::ReadError;
 use super::{obj, ply, stl};
 use crate::files::{FileError, Limits, Stamp, read_file};
-use crate::mesh::Mesh;
 use crate::names::shown_path;
 use crate::progress::{Cancelled, Progress};
 
@@ -72,8 +72,8 @@ impl From<HeightError> for LoadError {
 ///
 /// # Errors
 /// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture is none: it
-/// becomes one of the mesh's warnings.
-pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<Mesh, LoadError> {
+/// becomes one of the warnings.
+pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
     progress.set(0.0);
     // Reading a folder, a device or a pipe would fail later, or never end.
     let file = std::fs::metadata(path).map_err(|source| FileError::Io { path: path.to_owned(), source })?;
@@ -155,7 +155,7 @@ pub fn read(
     path: &Path,
     limits: &Limits,
     progress: &Progress,
-) -> Result<Mesh, LoadError> {
+) -> Result<LoadedMesh, LoadError> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
     match format {

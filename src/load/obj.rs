@@ -17,14 +17,15 @@ use std::path::Path;
 use glam::{Vec2, Vec3};
 
 use super::faces::{Faces, MAX_CORNERS, counted};
+use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
 use super::text_lines::{Line, Lines, first_word, numbers, shown, words};
 use super::uri::Files;
 use crate::files::Limits;
+use crate::mesh::MemoryAccount;
 use crate::mesh::chunked_vec::ChunkedVec;
 use crate::mesh::mesh_builder::LooseCorner;
-use crate::mesh::{MemoryAccount, Mesh};
 use crate::progress::Progress;
 
 use materials::Materials;
@@ -69,7 +70,7 @@ pub fn read(
     name: &str,
     limits: &Limits,
     progress: &Progress,
-) -> Result<Mesh, ReadError> {
+) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let files = Files::new(folder, limits, &budget, progress);
     let mut vertices = Vertices::default();
@@ -89,8 +90,8 @@ pub fn read(
     let (length, faces) = (bytes.len() as u64, reader.faces);
     budget.release(length + vertices.bytes());
     drop((bytes, vertices));
-    let mesh = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
-    Ok(Mesh { files: files.named(), ..mesh })
+    let loaded = faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))?;
+    Ok(LoadedMesh { files: files.named(), ..loaded })
 }
 
 /// Goes through all statements: lines without comments, those joined that continue.

@@ -11,12 +11,13 @@ mod values;
 use glam::{Vec2, Vec3};
 
 use super::faces::{Faces, MAX_CORNERS, counted};
+use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{Place, ReadError};
 use super::text_lines::shown;
 use crate::files::Limits;
 use crate::mesh::mesh_builder::LooseCorner;
-use crate::mesh::{Material, MemoryAccount, Mesh};
+use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
 use header::{Element, Kind, Property};
@@ -42,7 +43,7 @@ const ATTRIBUTES: [(&[u8], usize); 12] = [
 ///
 /// # Errors
 /// [`ReadError`].
-pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, ReadError> {
+pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let (faces, holds, warnings) = gather(&bytes, &budget, progress)?;
     budget.release(bytes.len() as u64);

@@ -5,9 +5,9 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use super::loaded_mesh::LoadedMesh;
 use super::mesh_file::{LoadError, load};
 use crate::files::Limits;
-use crate::mesh::Mesh;
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use crate::progress::Progress;
 
@@ -34,10 +34,10 @@ impl Source {
     ///
     /// # Errors
     /// Those of [`load`]; a shape has none.
-    pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<Mesh, LoadError> {
+    pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
         match self {
-            Self::Shape(shape) => Ok(shape.build()),
-            Self::FineShape(shape, level) => Ok(shape.build_at(*level)),
+            Self::Shape(shape) => Ok(LoadedMesh { mesh: shape.build(), ..LoadedMesh::default() }),
+            Self::FineShape(shape, level) => Ok(LoadedMesh { mesh: shape.build_at(*level), ..LoadedMesh::default() }),
             Self::File(path) => load(path, limits, progress),
         }
     }
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn shapes_load() {
-        let mesh = Source::Shape(Shape::Icosphere).load(&Limits::default(), &Progress::new()).unwrap();
-        assert_eq!(mesh.triangles.len(), 80);
+        let loaded = Source::Shape(Shape::Icosphere).load(&Limits::default(), &Progress::new()).unwrap();
+        assert_eq!((loaded.mesh.triangles.len(), loaded.file_bytes), (80, 0));
     }
 }

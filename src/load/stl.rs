@@ -11,12 +11,13 @@
 use glam::{Vec2, Vec3};
 
 use super::faces::{Faces, counted};
+use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::{Place, ReadError};
 use super::text_lines::{Line, Lines, first_word, number, shown, words};
 use crate::files::Limits;
 use crate::mesh::mesh_builder::LooseCorner;
-use crate::mesh::{Material, MemoryAccount, Mesh};
+use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
 /// A binary file's header and its count of triangles, in bytes.
@@ -29,7 +30,7 @@ const TRIANGLE: usize = 50;
 ///
 /// # Errors
 /// [`ReadError`].
-pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<Mesh, ReadError> {
+pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let mut faces = Faces::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;

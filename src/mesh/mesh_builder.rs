@@ -175,7 +175,7 @@ impl MeshBuilder {
     /// merged, in the order of first use; materials without triangles left out. Normals that are missing or have no
     /// direction are made (see [`super::normals::fan_normals`]), others brought to unit length (see [`Given`]); coordinates of
     /// positions nearer to 0 than f32's least normal number become 0, since devices may take them for it. All that is
-    /// counted in the mesh's `repairs`, and said in its `warnings`. Linear in triangles.
+    /// counted in the mesh's `repairs`. Linear in triangles.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
@@ -215,11 +215,7 @@ impl MeshBuilder {
             corners.shrink_to_fit();
         }
         let repairs = self.repairs;
-        let warnings = repairs.warnings();
-        Ok((
-            Mesh { name, corners, triangles: triangles.into(), materials, repairs, warnings, ..Mesh::default() },
-            bindings,
-        ))
+        Ok((Mesh { name, corners, triangles: triangles.into(), materials, repairs, ..Mesh::default() }, bindings))
     }
 
     /// All triangles in one list, and the materials that own some.

@@ -1,4 +1,4 @@
-//! What a file becomes: triangles with corners ([`Mesh`]), then welded points, edges and their sides ([`Topology`]).
+//! Geometry: triangles with corners ([`Mesh`]), then welded points, edges and their sides ([`Topology`]).
 
 pub mod adjacency;
 pub mod bounds;
@@ -9,7 +9,6 @@ mod dominance;
 pub mod generate_normals;
 mod grid;
 pub mod heights;
-pub mod info;
 pub mod interner;
 pub mod joins;
 pub mod mesh_builder;
@@ -27,7 +26,6 @@ mod union_find;
 pub mod weld;
 
 use std::ops::Range;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
@@ -37,7 +35,6 @@ pub use build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount, MemoryRefused, 
 pub use curves::{Curve, Curves, Sharing};
 pub use dominance::Dominance;
 pub use heights::{HeightMap, Heights, MAX_LEVELS, MAX_MAPS};
-pub use info::Info;
 pub use joins::{Joins, joins};
 pub use normal_faults::NormalFaults;
 pub use repairs::Repairs;
@@ -69,16 +66,10 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// What it can be displaced by.
     pub heights: Option<Arc<Heights>>,
-    /// What had to be mended, in numbers.
+    /// How many corners had to be repaired.
     pub repairs: Repairs,
-    /// What was left out or repaired, one sentence each.
-    pub warnings: Vec<String>,
     /// How it moves, if it does.
     pub rig: Option<Arc<rig::Rig>>,
-    /// Files that its own names and that were read, wherever links led.
-    pub files: Vec<PathBuf>,
-    /// Bytes of those and of the mesh's own; 0 if it was made in code.
-    pub file_bytes: u64,
 }
 
 /// What a patch looks like.

@@ -45,20 +45,6 @@ pub struct Rim {
     pub narrowed: u32,
 }
 
-impl Rim {
-    /// What people should know of, one sentence each.
-    fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
-        if self.creases == 0 {
-            warnings.push("no edge has split normals, so there is no crease for a rim.".to_owned());
-        }
-        if self.narrowed > 0 {
-            warnings.push(format!("edges and triangles too small for all of the rim's width: {}.", self.narrowed));
-        }
-        warnings
-    }
-}
-
 /// The mesh with a rim of a width relative to its bounding diagonal along every creased edge of `topology`, in the
 /// triangles' order. The rim is narrower where there is no room: an edge is cut at no more than a third of its length
 /// from an end, and a triangle at no more than half-way from its corner to the middle of its incircle, so that nothing
@@ -89,8 +75,7 @@ pub fn with_rim(
     let mut cutter = Cutter::new(mesh, topology, &fans, &cuts, units);
     let cut = rebuilt(mesh, topology, budget, progress, |patch, add| cutter.pieces(patch, add))?;
     let rim = Rim { width, creases: cuts.creases(), narrowed: cuts.narrowed + cutter.narrowed };
-    let (mut made, topology) = agreed(cut, budget, progress)?;
-    made.warnings.extend(rim.warnings());
+    let (made, topology) = agreed(cut, budget, progress)?;
     Ok((made, topology, rim))
 }
 
@@ -140,7 +125,7 @@ fn rebuilt(
         }
     }
     let (made, _) = builder.finish_bound(mesh.name.clone(), budget, progress)?;
-    Ok(Mesh { repairs: mesh.repairs, warnings: mesh.warnings.clone(), file_bytes: mesh.file_bytes, ..made })
+    Ok(Mesh { repairs: mesh.repairs, ..made })
 }
 
 /// A corner of the mesh, on its point.

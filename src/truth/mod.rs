@@ -60,7 +60,7 @@ impl Truth {
     pub fn load(source: &Source, limits: &Limits, progress: &Progress) -> Result<Option<Self>, LoadError> {
         match source.shape().and_then(Self::of_shape) {
             Some(exact) => Ok(Some(exact)),
-            None => Ok(Self::of_mesh(&source.load(limits, progress)?)),
+            None => Ok(Self::of_mesh(&source.load(limits, progress)?.mesh)),
         }
     }
 

@@ -63,6 +63,8 @@ fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
             preparation: Preparation::default(),
             rim: Rim::default(),
             mesh,
+            warnings: Vec::new(),
+            files: Vec::new(),
             topology,
             load_ms: 0.0,
             topology_ms: 0.0,
@@ -322,8 +324,9 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
         ..mesh.materials[0].clone()
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
-    mesh.heights =
-        Some(Arc::new(HeightSource::Materials.load(&mesh, &Budget::unlimited(), &Progress::new()).expect("images")));
+    mesh.heights = Some(Arc::new(
+        HeightSource::Materials.load(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("images"),
+    ));
     on_device(Shape::Torus, mesh)
 }
 

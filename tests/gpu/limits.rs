@@ -73,7 +73,7 @@ fn heights_need_no_more_either() {
     let texture = pnaen::mesh::Texture { size: [64, 64], rgba: image.into_raw() };
     let own = Arc::make_mut(&mut mesh.mesh);
     own.materials.iter_mut().for_each(|material| material.texture = Some(Arc::new(texture.clone())));
-    let heights = HeightSource::Materials.load(own, &Budget::unlimited(), &Progress::new()).expect("images");
+    let heights = HeightSource::Materials.load(own, &[], &Budget::unlimited(), &Progress::new()).expect("images");
     own.heights = Some(Arc::new(heights));
     let settings = Settings { displacement: Displacement::On, lod: Lod::Error, ..Settings::default() };
     let [expected, found] = [engine(), &small].map(|engine| {

@@ -295,6 +295,8 @@ pub fn sheet(columns: u32, rows: u32) -> Loaded {
         rim,
         read,
         mesh,
+        warnings: Vec::new(),
+        files: Vec::new(),
         topology,
         load_ms: 0.0,
         topology_ms: 0.0,

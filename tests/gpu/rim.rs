@@ -3,7 +3,7 @@
 use pnaen::engine::{Preparation, load};
 use pnaen::load::Source;
 use pnaen::measure::Measured;
-use pnaen::mesh::{Shape, Topology, with_rim};
+use pnaen::mesh::{Shape, Topology, Unlimited, with_rim};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::{ARENA_BYTES, Settings};

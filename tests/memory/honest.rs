@@ -28,7 +28,7 @@ fn assert_within(name: &str, times: usize, make: impl Fn(usize) -> Vec<u8>) {
         let bytes = make(triangles);
         let size = bytes.len();
         let (mesh, took) = taken(name, bytes);
-        let mesh = mesh.expect("a file without a fault");
+        let mesh = mesh.expect("a file without a fault").mesh;
         let count = mesh.triangles.len();
         let (topology, more) = peak_of(|| Topology::build(&mesh, &Progress::new()));
         let [file, load, topology_too] = [size, took, more].map(|bytes| bytes / count);
@@ -75,7 +75,7 @@ fn edges_and_what_welding_would_do() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for triangles in sizes() {
         let (mesh, _) = taken("edges.glb", indexed(Grid::of(triangles, 0.0), false));
-        let mesh = mesh.expect("a file without a fault");
+        let mesh = mesh.expect("a file without a fault").mesh;
         let count = mesh.triangles.len();
         let (topology, edges) = peak_of(|| Topology::build(&mesh, &Progress::new()));
         let topology = topology.expect("nobody cancels");

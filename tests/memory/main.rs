@@ -16,8 +16,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use pnaen::files::Limits;
-use pnaen::load::{LoadError, load};
-use pnaen::mesh::Mesh;
+use pnaen::load::{LoadError, LoadedMesh, load};
 use pnaen::progress::Progress;
 use serde_json::{Value, json};
 
@@ -44,13 +43,13 @@ impl Drop for Temporary {
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// Loads a `.glb`, and holds what that took against what its size allows. What it took, in MiB.
-fn measured(name: &str, bytes: Vec<u8>) -> (Result<Mesh, LoadError>, usize) {
+fn measured(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
     let (result, took) = taken(&format!("{name}.glb"), bytes);
     (result, took >> 20)
 }
 
 /// The same of any file, whose bytes are gone before. What it took, in bytes.
-fn taken(name: &str, bytes: Vec<u8>) -> (Result<Mesh, LoadError>, usize) {
+fn taken(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
     let (file, size) = (Temporary::new(name, &bytes), bytes.len());
     drop(bytes);
     let (result, took) = peak_of(|| load(&file.0, &Limits::default(), &Progress::new()));
@@ -173,17 +172,17 @@ fn loads_take_no_more_than_their_size_allows() {
     assert!(result.is_ok() && took <= 4 * size + 8, "{took} MiB for {size}");
     // 720,000 triangles of 2,000 vertices' data.
     let (result, took) = measured("repeated", grid(31, 400));
-    assert!(result.is_ok_and(|mesh| mesh.triangles.len() == 720_000) && took > 20);
+    assert!(result.is_ok_and(|loaded| loaded.mesh.triangles.len() == 720_000) && took > 20);
     // Ten times that is refused, before any of it is read.
     let (result, took) = measured("repeated-more", grid(31, 4000));
     assert!(result.is_err_and(|error| error.to_string().contains("of 7200000 triangles would take")) && took < 20);
     let (result, took) = measured("image", textured(5000));
-    assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_some()) && took > 150);
+    assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_some()) && took > 150);
     let (result, took) = measured("larger-image", textured(8000));
-    assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_none()) && took < 20);
+    assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_none()) && took < 20);
     // A progressive one keeps twice as much of every px until its last scan, whatever its size as a file.
     let (result, took) = measured("progressive-image", with_image(&heights::jpeg(6000, 0xc2)));
-    assert!(result.is_ok_and(|mesh| mesh.materials[0].texture.is_none()) && took < 20);
+    assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_none()) && took < 20);
     assert!(measured("nodes", chain(200_000)).0.is_err_and(|error| error.to_string().contains("no meshes")));
     let many = format!(r#"{{"asset":{{"version":"2.0"}},"extras":[{}0]}}"#, "0,".repeat(4_000_000));
     assert!(measured("numbers", many.into_bytes()).0.is_err());

@@ -92,7 +92,7 @@ fn what_programs_pack_fits() {
                 size / grid.triangle_count(),
                 took / grid.triangle_count()
             );
-            assert_eq!(mesh.expect("a file without a fault").triangles.len(), grid.triangle_count());
+            assert_eq!(mesh.expect("a file without a fault").mesh.triangles.len(), grid.triangle_count());
         }
     }
 }

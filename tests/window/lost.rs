@@ -153,7 +153,7 @@ fn lost_again_it_offers_to_save_and_tries_again_only_when_told_to() {
     harness.get_by_label("Quit");
     save_as(&mut harness, &path);
     harness.get_by_label_contains("is written.");
-    let saved = load(&path, &Limits::default(), &Progress::new()).expect("an OBJ file");
+    let saved = load(&path, &Limits::default(), &Progress::new()).expect("an OBJ file").mesh;
     assert_eq!(Some(saved.triangles.len() as u64), totals.map(|(_, triangles)| triangles), "computed on the CPU");
     click(&mut harness, "Save mesh");
     said(&mut harness, "is there already: choose another name");

@@ -1,6 +1,7 @@
 //! Faces one by one, and the cube that every format must be able to say.
 
 use super::*;
+use crate::mesh::Mesh;
 use crate::mesh::shapes::Shape;
 use crate::mesh::topology::Topology;
 
@@ -36,7 +37,7 @@ fn corners(places: &[[f32; 2]]) -> Vec<LooseCorner> {
     places.iter().map(corner).collect()
 }
 
-fn added(places: &[&[[f32; 2]]]) -> Result<Mesh, ReadError> {
+fn added(places: &[&[[f32; 2]]]) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::unlimited();
     let mut faces = Faces::new(0, &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;

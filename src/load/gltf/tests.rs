@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 
 use super::*;
 use crate::load::uri;
-use crate::mesh::Repairs;
 use crate::mesh::topology::Topology;
+use crate::mesh::{Mesh, Repairs};
 
 /// A document under construction: one buffer, a view and an accessor for each list.
 struct Draft {
@@ -88,7 +88,7 @@ impl Draft {
         root
     }
 
-    fn read(&self) -> Result<Mesh, Problem> {
+    fn read(&self) -> Result<LoadedMesh, Problem> {
         read_bytes(self.document().to_string().as_bytes())
     }
 
@@ -108,7 +108,7 @@ impl Draft {
 }
 
 /// Reads a document that names no files.
-fn read_bytes(bytes: &[u8]) -> Result<Mesh, Problem> {
+fn read_bytes(bytes: &[u8]) -> Result<LoadedMesh, Problem> {
     read(bytes.to_vec(), Path::new("nowhere"), "draft", &Limits::default(), &Progress::new())
 }
 

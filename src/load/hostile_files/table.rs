@@ -50,12 +50,12 @@ fn wrong((format, bytes, gets): Case) -> Option<String> {
     let result = read(format, &bytes);
     let is_right = match (&result, &gets) {
         (Err(fault), Refused(expected)) => fault.to_string() == *expected,
-        (Ok(mesh), Mended(triangles, warning)) => {
-            mesh.triangles.len() == *triangles && mesh.warnings.iter().any(|said| said.contains(warning))
+        (Ok(loaded), Mended(triangles, warning)) => {
+            loaded.mesh.triangles.len() == *triangles && loaded.warnings.iter().any(|said| said.contains(warning))
         }
         _ => false,
     };
-    let got = result.map(|mesh| (mesh.triangles.len(), mesh.warnings)).map_err(|fault| fault.to_string());
+    let got = result.map(|loaded| (loaded.mesh.triangles.len(), loaded.warnings)).map_err(|fault| fault.to_string());
     let (Refused(expected) | Mended(_, expected)) = gets;
     let start = String::from_utf8_lossy(&bytes[..bytes.len().min(60)]);
     (!is_right).then(|| format!("{format:?} {start:?}\n  got {got:?}\n  in place of {expected:?}"))

@@ -3,7 +3,7 @@
 use super::*;
 use crate::load::faces::tests::{POINTS, SIDES, assert_cube};
 
-fn read(text: &str) -> Mesh {
+fn read(text: &str) -> LoadedMesh {
     super::read(text.as_bytes().to_vec(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 

@@ -5,7 +5,7 @@ use header::{Encoding, Scalar};
 use super::*;
 use crate::load::faces::tests::{POINTS, SIDES, assert_cube};
 
-fn read(bytes: &[u8]) -> Mesh {
+fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::load::faces::tests::{POINTS, assert_cube, triangles};
 
-fn read(bytes: &[u8]) -> Mesh {
+fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 

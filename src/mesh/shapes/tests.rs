@@ -1,4 +1,5 @@
 use super::*;
+use crate::mesh::Repairs;
 use crate::mesh::topology::{EdgeCounts, EdgeKind, Topology};
 
 fn topology(shape: Shape) -> (Mesh, Topology) {
@@ -52,7 +53,7 @@ fn closed_shapes_are_closed_and_face_outwards() {
 fn normals_agree_with_the_faces() {
     for shape in Shape::ALL {
         let (mesh, topology) = topology(shape);
-        assert_eq!((topology.degenerate, mesh.warnings.len()), (0, 0));
+        assert_eq!((topology.degenerate, mesh.repairs), (0, Repairs::default()));
         for triangle in mesh.triangles.iter() {
             let c = triangle.map(|corner| mesh.corners[corner as usize]);
             let face = (c[1].position - c[0].position).cross(c[2].position - c[0].position).normalize();

@@ -117,7 +117,7 @@ fn compressed_rotations_turn() {
     }]);
     finish(&mut draft);
     let mesh = draft.read().unwrap();
-    let rig = mesh.rig.expect("it turns");
+    let rig = mesh.mesh.rig.expect("it turns");
     let turned = rig.clips[0].channels[0].keys.rotation(1.0);
     assert!(turned.angle_between(glam::DQuat::from_rotation_z(std::f64::consts::FRAC_PI_2)) < 1e-3, "{turned}");
 }

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use crate::files::Limits;
-use crate::load::load;
-use crate::mesh::Mesh;
+use crate::load::{LoadedMesh, load};
 use crate::progress::Progress;
 
 /// A folder of this test's own, removed at the end.
@@ -22,7 +21,7 @@ impl Folder {
     }
 
     /// A triangle for each material, in a file that begins so.
-    fn read(&self, start: &str, materials: &[&str]) -> Mesh {
+    fn read(&self, start: &str, materials: &[&str]) -> LoadedMesh {
         let faces: String = materials.iter().map(|name| format!("usemtl {name}\nf 1/1/1 2/1/1 3/1/1\n")).collect();
         let text = format!("{start}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n{faces}");
         self.write("model.OBJ", text.as_bytes());

@@ -1,14 +1,12 @@
-//! The numbers that `pnaen info` prints.
+//! The numbers that `pnaen info` prints, as text and as JSON.
 
 use std::fmt;
 
 use serde::Serialize;
 
-use super::joins::{Joins, joins};
-use super::rig::{Clip, Moved, Rig};
-use super::t_junctions::{TJunction, t_junctions};
-use super::topology::{EdgeCounts, Topology};
-use super::{Mesh, NormalFaults, Repairs, Rim};
+use crate::mesh::rig::{Clip, Moved, Rig};
+use crate::mesh::rim::Rim;
+use crate::mesh::{EdgeCounts, Joins, Material, Mesh, NormalFaults, Repairs, TJunction, Topology, joins, t_junctions};
 use crate::names::{on_one_line, shown};
 use crate::numbers::exact;
 use crate::progress::{Cancelled, Progress};
@@ -90,11 +88,17 @@ pub struct BoundsInfo {
 
 impl Info {
     /// Gathers the numbers of a mesh without a rim and of the topology built from it; `weld` is the tolerance of
-    /// [`Topology::build_within`].
+    /// [`Topology::build_within`], and `warnings` are those of loading.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn of(mesh: &Mesh, topology: &Topology, weld: f32, progress: &Progress) -> Result<Self, Cancelled> {
+    pub fn of(
+        mesh: &Mesh,
+        topology: &Topology,
+        weld: f32,
+        warnings: &[String],
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
         let edges = topology.edge_counts();
         let bounds = mesh.bounds();
         let t_junctions = t_junctions(topology, progress)?;
@@ -117,7 +121,7 @@ impl Info {
             bounds: BoundsInfo { min: bounds.min.into(), max: bounds.max.into(), diagonal: bounds.diagonal() },
             euler_characteristic: euler_characteristic(topology),
             closed: edges.total() > 0 && edges.boundary == 0 && edges.non_manifold == 0,
-            warnings: mesh.warnings.clone(),
+            warnings: warnings.to_vec(),
         })
     }
 }
@@ -211,7 +215,7 @@ fn t_junction(topology: &Topology, junction: &TJunction) -> TJunctionInfo {
     TJunctionInfo { edge: topology.edge_points(&topology.edges[edge as usize]).map(at), point: at(point), t, distance }
 }
 
-fn material(material: &super::Material) -> MaterialInfo {
+fn material(material: &Material) -> MaterialInfo {
     MaterialInfo {
         name: material.name.clone(),
         triangles: material.triangles.len() as u32,
@@ -248,7 +252,7 @@ mod tests {
     fn info(mesh: &Mesh, weld: f32) -> Info {
         let progress = Progress::new();
         let topology = Topology::build_within(mesh, weld, &progress).unwrap();
-        Info::of(mesh, &topology, weld, &progress).unwrap()
+        Info::of(mesh, &topology, weld, &[], &progress).unwrap()
     }
 
     #[test]
