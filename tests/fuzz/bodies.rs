@@ -44,7 +44,7 @@ pub fn ply(data: &[u8]) {
 fn mesh(format: Format, data: &[u8]) {
     let progress = Progress::new();
     match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), &Limits::default(), &progress) {
-        Ok(mesh) => assert_sound(&mesh, &progress),
+        Ok(loaded) => assert_sound(&loaded.mesh, &progress),
         Err(error) => {
             let said = error.to_string();
             assert!(said.len() < 1000 && !said.contains(char::is_control), "{said:?}");
