@@ -349,12 +349,21 @@ mod tests {
         for case in CASES {
             assert!(page.contains(case.about), "`pnaen stability -o docs/stability` after a change of {}", case.name);
         }
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/stability");
-        let files = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        let manual = text("docs/manual/measuring.md");
+        let linked = |case: &Case| manual.contains(&format!("| [{0}](../stability/stability.md#{0}) |", case.name));
+        assert_eq!(CASES.iter().find(|case| !linked(case)).map(|case| case.name), None, "not in the manual's table");
+    }
+
+    #[test]
+    fn every_case_has_a_picture_and_every_picture_a_case() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        // A package made by cargo keeps the original manifest, and has no room for these pictures.
+        if root.join("Cargo.toml.orig").exists() {
+            return;
+        }
+        let files = std::fs::read_dir(root.join("docs/stability")).expect("a folder");
+        let files = files.map(|entry| entry.expect("an entry").file_name());
         let pictures: BTreeSet<_> = CASES.iter().map(|case| format!("{}.png", case.name).into()).collect();
         assert_eq!(files.filter(|name| *name != PAGE).collect::<BTreeSet<_>>(), pictures);
-        let readme = text("README.md");
-        let linked = |case: &Case| readme.contains(&format!("| [{0}](docs/stability/stability.md#{0}) |", case.name));
-        assert_eq!(CASES.iter().find(|case| !linked(case)).map(|case| case.name), None, "not in README's table");
     }
 }

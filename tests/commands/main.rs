@@ -11,6 +11,7 @@ mod formats;
 mod gallery;
 mod info;
 mod lod;
+mod manual;
 #[path = "../documents/moving.rs"]
 mod moving;
 mod render;

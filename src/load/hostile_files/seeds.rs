@@ -1,4 +1,4 @@
-//! What fuzzers start from: small files of every format, kept beside the targets. `PNAEN_UPDATE_SEEDS=1` writes them again.
+//! What fuzzers start from: small files of every format, kept beside the test that runs them. `PNAEN_UPDATE_SEEDS=1` writes them again.
 
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn made() -> Vec<(&'static str, String, Vec<u8>)> {
 
 #[test]
 fn seeds_are_what_the_tests_make() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/seeds");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzzed/seeds");
     for (target, name, bytes) in made() {
         let path = folder.join(target).join(name);
         if std::env::var_os("PNAEN_UPDATE_SEEDS").is_some() {

@@ -1,6 +1,5 @@
 //! The fuzz targets without a fuzzer: every seed, and copies of seeds with bytes changed, cut off or brought in from others.
 
-#[path = "fuzz/bodies.rs"]
 mod bodies;
 
 use std::path::Path;
@@ -13,7 +12,7 @@ type Change = (Index, u8, u32, Index);
 
 /// The files in a target's folder of seeds, by name.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/seeds").join(target);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzzed/seeds").join(target);
     let mut paths: Vec<_> =
         std::fs::read_dir(folder).expect("seeds").map(|entry| entry.expect("a seed").path()).collect();
     paths.sort();
