@@ -17,7 +17,10 @@ struct Page {
 
 impl Page {
     fn read(name: &str) -> Self {
-        let path = root().join(name);
+        Self::read_from(name, root().join(name))
+    }
+
+    fn read_from(name: &str, path: PathBuf) -> Self {
         let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
         Self { name: name.to_owned(), path, text }
     }

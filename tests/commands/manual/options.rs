@@ -7,9 +7,8 @@ use crate::output;
 
 type Options = BTreeSet<String>;
 
-const COMMANDS: [&str; 10] = [
-    "render", "tessellate", "factors", "adjacency", "domain", "info", "stability", "gallery", "chart", "adapters",
-];
+const COMMANDS: [&str; 10] =
+    ["render", "tessellate", "factors", "adjacency", "domain", "info", "stability", "gallery", "chart", "adapters"];
 
 /// The options that a command prints with `--help`; an empty name is the window's.
 fn options_in_help(command: &str) -> Options {
@@ -82,7 +81,8 @@ fn pages_name_only_options_that_there_are() {
             let command = rest.split_whitespace().next().unwrap_or_default();
             let Some(options) = by_command.get(command) else { continue };
             commands += 1;
-            let unknown: Vec<_> = options_in(rest.split('#').next().unwrap_or(rest)).difference(options).cloned().collect();
+            let unknown: Vec<_> =
+                options_in(rest.split('#').next().unwrap_or(rest)).difference(options).cloned().collect();
             assert_eq!(unknown, Vec::<String>::new(), "{} has {line:?}", page.name);
         }
     }

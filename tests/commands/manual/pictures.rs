@@ -60,7 +60,9 @@ impl Picture {
         let own = self.arguments.iter().map(|word| word.replace("{}", value));
         let mut arguments: Vec<_> = own.chain(["-o", output].map(str::to_owned)).collect();
         match reference {
-            Some(reference) => arguments.extend(["--reference", reference, "--threshold", THRESHOLD].map(str::to_owned)),
+            Some(reference) => {
+                arguments.extend(["--reference", reference, "--threshold", THRESHOLD].map(str::to_owned))
+            }
             None => arguments.extend(["--adapter", "software"].map(str::to_owned)),
         }
         let words: Vec<_> = arguments.iter().map(String::as_str).collect();
