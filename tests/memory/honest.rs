@@ -69,7 +69,7 @@ fn gltf() {
     assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
 }
 
-/// What comes after a load, so that a mesh can be looked at: as README says, in bytes a triangle.
+/// What comes after a load, so that a mesh can be looked at: as docs/manual/files.md says, in bytes a triangle.
 #[test]
 fn edges_and_what_welding_would_do() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);

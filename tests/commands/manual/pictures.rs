@@ -166,7 +166,8 @@ fn moving_pictures_are_what_their_commands_draw() {
 
 #[test]
 fn every_page_of_the_manual_has_a_picture_and_every_picture_a_command() {
-    for page in user_pages() {
+    // A page that a test writes has none.
+    for page in user_pages().into_iter().filter(|page| page.name != "docs/manual/keys.md") {
         assert!(!Picture::of(&page).is_empty(), "{} has no picture with a command", page.name);
     }
     let made: BTreeSet<_> = all().iter().map(|picture| picture.image.file_name().map(ToOwned::to_owned)).collect();
