@@ -10,7 +10,7 @@ const DISPLACEMENT_PER_PATCH: u32 = 3u;
 const HEIGHTS_ACROSS: u32 = 4096u;
 
 @group(0) @binding(20) var heights: texture_2d<f32>;
-@group(0) @binding(21) var<uniform> maps: array<HeightMap, 256>;
+@group(0) @binding(21) var<uniform> maps: array<HeightMap, MAX_MAPS>;
 
 fn wrapped(x: f32) -> f32 {
     return x - floor(x);

@@ -3,8 +3,6 @@
 
 // Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
 @group(0) @binding(0) var<storage, read> frame: Frame;
-// The same as a uniform, for what no branch depends on: the quickest memory there is for what is the same everywhere.
-@group(0) @binding(6) var<uniform> plain_frame: Frame;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
@@ -183,26 +181,33 @@ fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     return out;
 }
 
-// As the window's legend has it: src/render/layout.rs.
+// Colours that legends show too, in linear light. src/render/layout.rs has them in sRGB.
 const FOLD_COLOR: vec3<f32> = vec3<f32>(0.515, 0.061, 1.0);
-
-// The same.
 const BACK_FACE_COLOR: vec3<f32> = vec3<f32>(0.753, 0.013, 0.156);
-
-// The same.
 const WASTE_COLOR: vec3<f32> = vec3<f32>(0.665, 0.112, 0.0);
+const SMOOTH_EDGE_COLOR: vec3<f32> = vec3<f32>(0.40, 0.43, 0.47);
+const SPLIT_EDGE_COLOR: vec3<f32> = vec3<f32>(0.791, 0.347, 0.0);
+const SEAM_EDGE_COLOR: vec3<f32> = vec3<f32>(0.0, 0.342, 0.171);
+const BOUNDARY_EDGE_COLOR: vec3<f32> = vec3<f32>(0.093, 0.456, 0.815);
+const NON_MANIFOLD_EDGE_COLOR: vec3<f32> = vec3<f32>(0.604, 0.191, 0.386);
 
-// Colours of edge kinds, as the window's legend has them: src/render/layout.rs.
+// Kinds of edges, as a patch's factors have them.
+const EDGE_SMOOTH: u32 = 0u;
+const EDGE_SPLIT: u32 = 1u;
+const EDGE_SEAM: u32 = 2u;
+const EDGE_BOUNDARY: u32 = 3u;
+const EDGE_NON_MANIFOLD: u32 = 4u;
+
 fn edge_color(kind: u32) -> vec3<f32> {
-    var color = vec3<f32>(0.40, 0.43, 0.47);
-    if kind == 1u {
-        color = vec3<f32>(0.791, 0.347, 0.0);
-    } else if kind == 2u {
-        color = vec3<f32>(0.0, 0.342, 0.171);
-    } else if kind == 3u {
-        color = vec3<f32>(0.093, 0.456, 0.815);
-    } else if kind == 4u {
-        color = vec3<f32>(0.604, 0.191, 0.386);
+    var color = SMOOTH_EDGE_COLOR;
+    if kind == EDGE_SPLIT {
+        color = SPLIT_EDGE_COLOR;
+    } else if kind == EDGE_SEAM {
+        color = SEAM_EDGE_COLOR;
+    } else if kind == EDGE_BOUNDARY {
+        color = BOUNDARY_EDGE_COLOR;
+    } else if kind == EDGE_NON_MANIFOLD {
+        color = NON_MANIFOLD_EDGE_COLOR;
     }
     return color;
 }
@@ -219,29 +224,6 @@ fn line_coverage(distance: f32, half_width: f32) -> f32 {
     return 1.0 - smoothstep(half_width - 0.5, half_width + 0.5, distance);
 }
 
-struct Lights {
-    key: vec3<f32>,
-    fill: vec3<f32>,
-    // Unit direction.
-    to_eye: vec3<f32>,
-}
-
-// The unit direction towards the eye from what is seen at a place of the picture, in px. All of that ray has one x / w and
-// one y / w: it lies in two planes, whose normals are these rows. So vertices need not hand on where they are.
-fn toward_eye(clip_from_object: mat4x4<f32>, viewport: vec2<f32>, px: vec2<f32>) -> vec3<f32> {
-    let at = vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0);
-    let rows = transpose(clip_from_object);
-    return normalize(cross(rows[0].xyz - at.x * rows[3].xyz, rows[1].xyz - at.y * rows[3].xyz));
-}
-
-fn shade(lights: Lights, base: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
-    let key = max(dot(normal, lights.key), 0.0);
-    let fill = 0.5 + 0.5 * dot(normal, lights.fill);
-    let half_way = normalize(lights.key + lights.to_eye);
-    let gloss = pow(max(dot(normal, half_way), 0.0), 48.0) * 0.08;
-    return base * (0.62 * key + 0.22 * fill + 0.04) + vec3<f32>(gloss);
-}
-
 // Barely lit, so that colours can be read against a legend: as they are where the surface faces the eye.
 fn shade_flat(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     return base * (0.7 + 0.3 * abs(dot(normal, to_eye)));
@@ -254,8 +236,8 @@ fn from_srgb(color: vec3<f32>) -> vec3<f32> {
 // As in src/render/scale.rs, in linear light.
 fn scale_color(number: f32) -> vec3<f32> {
     let place = log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least);
-    let at = clamp(place, 0.0, 1.0) * 6.0;
-    let below = min(u32(at), 5u);
+    let at = clamp(place, 0.0, 1.0) * f32(SCALE_STOPS - 1u);
+    let below = min(u32(at), SCALE_STOPS - 2u);
     return from_srgb(mix(frame.scale[below].rgb, frame.scale[below + 1u].rgb, at - f32(below)));
 }
 
@@ -371,51 +353,7 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
             kind = in.edge_kinds.y;
         }
         // Smooth edges are most of a mesh and least of its news.
-        color = mix(color, edge_color(kind), line_coverage(nearest_edge, select(1.75, 0.75, kind == 0u)));
+        color = mix(color, edge_color(kind), line_coverage(nearest_edge, select(1.75, 0.75, kind == EDGE_SMOOTH)));
     }
     return vec4<f32>(color, 1.0);
-}
-
-// The surface without anything on it, which is what most pictures are of: as little from vertex to fragment as that takes,
-// which is what drawing many small triangles costs.
-struct PlainVaryings {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-}
-
-@vertex
-fn plain_vertex(@location(0) position: vec3<f32>, @location(1) normal: u32) -> PlainVaryings {
-    return PlainVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), unpack_normal(normal));
-}
-
-fn plain_color(base: vec3<f32>, px: vec2<f32>, normal: vec3<f32>, front: bool) -> vec4<f32> {
-    let to_eye = toward_eye(plain_frame.clip_from_object, plain_frame.viewport, px);
-    let lights = Lights(plain_frame.key_light.xyz, plain_frame.fill_light.xyz, to_eye);
-    return vec4<f32>(shade(lights, base, normalize(select(-normal, normal, front))), 1.0);
-}
-
-@fragment
-fn plain_fragment(in: PlainVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return plain_color(material.base_color.rgb, in.clip.xy, in.normal, front);
-}
-
-struct TexturedVaryings {
-    @builtin(position) clip: vec4<f32>,
-    @location(0) normal: vec3<f32>,
-    @location(1) uv: vec2<f32>,
-}
-
-@vertex
-fn textured_vertex(
-    @location(0) position: vec3<f32>,
-    @location(1) normal: u32,
-    @location(3) uv: vec2<f32>,
-) -> TexturedVaryings {
-    return TexturedVaryings(plain_frame.clip_from_object * vec4<f32>(position, 1.0), unpack_normal(normal), uv);
-}
-
-@fragment
-fn textured_fragment(in: TexturedVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let base = material.base_color.rgb * textureSample(base_texture, base_sampler, in.uv).rgb;
-    return plain_color(base, in.clip.xy, in.normal, front);
 }

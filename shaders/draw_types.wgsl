@@ -1,5 +1,9 @@
 // What the draws share. Twin: src/render/layout.rs.
 
+// Colours that a scale runs through.
+const SCALE_STOPS: u32 = 7u;
+
+// What all draws of one picture read.
 struct Frame {
     clip_from_object: mat4x4<f32>,
     // Unit directions in object space, towards the lights that travel with the camera.
@@ -20,8 +24,8 @@ struct Frame {
     scale_most: f32,
     // How many px a unit takes where w is 1, if distances are counted in px; else 0.
     px_per_unit: f32,
-    // sRGB, 0 to 1.
-    scale: array<vec4<f32>, 7>,
+    // The scale's colours in sRGB, 0 to 1; the fourth component is unused.
+    scale: array<vec4<f32>, SCALE_STOPS>,
 }
 
 struct Material {

@@ -21,10 +21,11 @@ struct Sieve {
     first_draw: u32,
 }
 
-// Triangles that follow each other and that one workgroup takes, and the words of their marks.
+// Each workgroup looks at one tile: this many consecutive triangles, with one bit each in this many words of marks.
 const TILE: u32 = 2048u;
-const TILE_WORDS: u32 = 64u;
-const ROUNDS: u32 = 8u;
+const TILE_WORDS: u32 = TILE / 32u;
+// Triangles that each invocation looks at.
+const ROUNDS: u32 = TILE / WORKGROUP;
 
 // An invocation's marks, a bit a round.
 var<workgroup> kept_in_rounds: array<u32, 256>;

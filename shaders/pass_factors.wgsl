@@ -12,7 +12,7 @@
 @group(0) @binding(6) var<storage, read> shares: array<Share>;
 @group(0) @binding(7) var<storage, read> patches: array<Patch>;
 // How far level l of each height image is from its level 0 at most, four levels an element.
-@group(0) @binding(22) var<uniform> details: array<array<vec4<f32>, 4>, 256>;
+@group(0) @binding(22) var<uniform> details: array<array<vec4<f32>, 4>, MAX_MAPS>;
 
 // In place of one image.
 const ALL_MAPS: u32 = 0xffffffffu;

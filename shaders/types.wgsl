@@ -87,8 +87,11 @@ struct Share {
     next: u32,
 }
 
-// Levels that a height image has at most.
+// The most mip levels that a height image has.
 const MAX_LEVELS: u32 = 13u;
+
+// The most height images that a mesh has.
+const MAX_MAPS: u32 = 256u;
 
 // One of the height images: width and height of level 0 in px, and where it starts among all heights.
 struct HeightMap {
@@ -181,14 +184,17 @@ fn emit_items(count: u32) -> u32 {
     return select(2048u, 4096u, count >= 0x700000u);
 }
 
+// The workgroups along the first dimension of a grid. WebGPU allows 65,535 in each.
+const GRID_WIDTH: u32 = 32768u;
+
 // Work of any size as a grid within 65,535 workgroups a dimension; the index of an invocation in such a grid.
 fn grid(items: u32) -> array<u32, 3> {
     return workgroup_grid((items + WORKGROUP - 1u) / WORKGROUP);
 }
 
 fn workgroup_grid(workgroups: u32) -> array<u32, 3> {
-    let x = min(workgroups, 32768u);
-    return array<u32, 3>(x, (workgroups + 32767u) / 32768u, 1u);
+    let x = min(workgroups, GRID_WIDTH);
+    return array<u32, 3>(x, (workgroups + GRID_WIDTH - 1u) / GRID_WIDTH, 1u);
 }
 
 fn grid_index(workgroup: vec3<u32>, workgroups: vec3<u32>, local: u32) -> u32 {

@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use crate::files::Limits;
 use crate::gpu::{
-    AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, take_times, vertices_of,
-    wait,
+    AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers, take_times,
+    vertices_of,
 };
 use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, rim_warnings, untextured_warning};
 use crate::measure::AskedFactors;
@@ -132,7 +132,7 @@ impl Default for Runs {
     }
 }
 
-/// A device with every pipeline compiled. Cheap to clone; clones share everything.
+/// A device and the pipelines on it, each of which is made when it is first needed. Cheap to clone; clones share everything.
 #[derive(Clone)]
 pub struct Engine {
     pub gpu: Gpu,
@@ -144,10 +144,9 @@ pub struct Engine {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        let pipelines = Arc::new(ComputePipelines::new(&gpu));
+        let pipelines = Arc::new(ComputePipelines::new());
         let renderer = Arc::new(Renderer::new(&gpu));
-        let picker = Arc::new(Picker::new(&gpu));
-        let leaks = Arc::new(LeakCounter::new(&gpu));
+        let (picker, leaks) = (Arc::new(Picker::new()), Arc::new(LeakCounter::new()));
         Self { gpu, pipelines, renderer, picker, leaks }
     }
 
@@ -180,7 +179,18 @@ impl Engine {
     /// # Errors
     /// The mesh is larger than the adapter binds.
     pub fn scene_of(&self, mesh: Arc<Mesh>, topology: Arc<Topology>, arena_bytes: u64) -> Result<Scene, GpuError> {
-        Scene::new(&self.gpu, &self.renderer, self.pipelines.clone(), mesh, topology, arena_bytes)
+        Scene::new(&self.gpu, self.renderer.materials(), self.pipelines.clone(), mesh, topology, arena_bytes)
+    }
+
+    /// Makes the pipelines that a picture of the scene with these settings needs, as far as they can be told before the scene is
+    /// counted. Beside a window, the thread that makes the scene does this, so that the window doesn't wait for the driver's
+    /// compiler; without a window there is no need to.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
+        scene.tessellator.prepare(settings.normals, settings.displacement)?;
+        self.renderer.prepare(scene, settings)
     }
 
     /// Gives a scene another surface left of its split, with output of its own.
@@ -200,7 +210,7 @@ impl Engine {
         scene.tessellator.set(inputs)?;
         if scene.tessellator.needs_count() {
             let mut recorder = Recorder::new(&self.gpu, timing);
-            scene.tessellator.count(&mut recorder);
+            scene.tessellator.count(&mut recorder)?;
             recorder.submit();
         }
         scene.tessellator.read_counts()
@@ -225,7 +235,7 @@ impl Engine {
             }
         }
         let mut recorder = Recorder::new(&self.gpu, timing);
-        self.renderer.draw(&mut recorder, scene, target, camera, settings);
+        self.renderer.draw(&mut recorder, scene, target, camera, settings)?;
         recorder.submit();
         Ok(())
     }
@@ -244,16 +254,14 @@ impl Engine {
         for index in 0..scene.tessellator.chunk_count() {
             let mut timing = Timing::Off;
             let mut recorder = Recorder::new(&self.gpu, &mut timing);
-            scene.tessellator.emit(&mut recorder, index);
+            scene.tessellator.emit(&mut recorder, index)?;
             recorder.submit();
             let chunk = scene.tessellator.chunk(index);
-            let mut halves = Vec::new();
-            for (buffer, bytes) in chunk.vertices() {
-                halves.extend(read_buffer(&self.gpu, buffer, bytes.start, bytes.end - bytes.start)?);
-            }
+            let [first, second] = chunk.vertices();
             let triangle_bytes = if triangles { u64::from(chunk.chunk.triangle_count) * 12 } else { 0 };
-            let indices = read_buffer(&self.gpu, chunk.indices, 0, triangle_bytes)?;
-            take(chunk.chunk.first_patch, &vertices_of(&halves), &cast(&indices));
+            let bytes = read_buffers(&self.gpu, [first, second, (chunk.indices, 0..triangle_bytes)])?;
+            let (halves, indices) = bytes.split_at(bytes.len() - triangle_bytes as usize);
+            take(chunk.chunk.first_patch, &vertices_of(halves), &cast(indices));
         }
         Ok(())
     }
@@ -263,12 +271,9 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn patch_factors(&self, scene: &Scene) -> Result<Vec<PatchFactors>, GpuError> {
-        let mut factors = Vec::new();
-        for (buffer, count) in scene.tessellator.patch_factors() {
-            let bytes = read_buffer(&self.gpu, buffer, 0, u64::from(count) * size_of::<PatchFactors>() as u64)?;
-            factors.extend(cast::<PatchFactors>(&bytes));
-        }
-        Ok(factors)
+        let item = size_of::<PatchFactors>() as u64;
+        let parts = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
+        Ok(cast(&read_buffers(&self.gpu, parts)?))
     }
 
     /// The factors that LOD gave, or a file, before the tessellator clamped and rounded them.
@@ -325,7 +330,7 @@ impl Engine {
             }
             scene.tessellator.forget();
             self.draw(scene, target, camera, settings, &mut timing)?;
-            wait(&self.gpu);
+            self.gpu.wait();
             let times = take_times(&self.gpu, &mut timing);
             if run > 0 {
                 all.push(times);

@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel, sync_channel};
 
 use super::beside::{Stopped, caught, spawn};
 use super::measuring::{Copying, Part, PartKind, Trouble, WAITING, copy_chunk, copy_on};
-use crate::gpu::{Gpu, mapped_bytes, vertices_of};
+use crate::gpu::{Gpu, GpuError, vertices_of};
 use crate::measure::{Field, Place, Yardstick};
 use crate::progress::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
@@ -116,8 +116,8 @@ impl Deviating {
         yardstick: impl FnOnce() -> Yardstick,
     ) -> Result<(), Trouble> {
         if self.of != Some(of) {
-            self.start(gpu, scene, yardstick());
             self.of = Some(of);
+            self.start(gpu, scene, yardstick())?;
             return Ok(());
         }
         copy_on(&mut self.copying, gpu, scene)?;
@@ -147,7 +147,7 @@ impl Deviating {
         self.generation += 1;
     }
 
-    fn start(&mut self, gpu: &Gpu, scene: &mut Scene, yardstick: Yardstick) {
+    fn start(&mut self, gpu: &Gpu, scene: &mut Scene, yardstick: Yardstick) -> Result<(), GpuError> {
         self.comparing = None;
         let (parts, received) = sync_channel(WAITING);
         let (sender, found) = channel();
@@ -162,8 +162,9 @@ impl Deviating {
             }
         });
         // Without a sender the thread knows of the end.
-        self.copying = (chunks > 0).then(|| copy_chunk(gpu, scene, 0, parts));
+        self.copying = if chunks > 0 { Some(copy_chunk(gpu, scene, 0, parts)?) } else { None };
         self.comparing = Some(Comparing { found, wanted });
+        Ok(())
     }
 }
 
@@ -178,9 +179,9 @@ fn field(
     let (mesh, topology) = posed.deformed();
     let mut field = Field::new(triangles);
     yardstick.with(&mesh, &topology, |against| {
-        for Part(part, staging) in parts {
+        for Part(part, readback) in parts {
             let PartKind::Chunk { vertex_bytes, .. } = part else { continue };
-            let bytes = mapped_bytes(&staging).ok()?;
+            let bytes = readback.bytes().ok()?;
             let (vertices, indices) = bytes.split_at(vertex_bytes);
             let vertices = vertices_of(vertices);
             let indices = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);

@@ -12,7 +12,7 @@ use crate::load::{LoadError, Source};
 use crate::mesh::{EdgeCounts, Moment};
 use crate::progress::Progress;
 use crate::render::Scene;
-use crate::settings::{ARENA_BYTES, Half};
+use crate::settings::{ARENA_BYTES, Half, Settings};
 use crate::tessellate::Deformed;
 use crate::truth::Truth;
 
@@ -94,12 +94,13 @@ impl NotLoaded {
 }
 
 impl Load {
-    /// Loads on a thread of its own.
+    /// Loads on a thread of its own, and makes the pipelines there that a picture with these settings needs.
     pub fn start(
         engine: &Engine,
         context: &egui::Context,
         source: Source,
         preparation: Preparation,
+        settings: Settings,
         keep_view: bool,
     ) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
@@ -107,7 +108,7 @@ impl Load {
         let progress = Progress::default();
         let (engine, own_context) = (engine.clone(), context.clone());
         let (wanted, prepared, own_progress) = (source.clone(), preparation.clone(), progress.clone());
-        let load = move || load(&engine, &own_context, &wanted, &prepared, &own_progress, generation);
+        let load = move || load(&engine, &own_context, &wanted, &prepared, &settings, &own_progress, generation);
         Self { job: Beside::start(context, load), source, preparation, keep_view, progress, remark: None }
     }
 
@@ -129,6 +130,7 @@ fn load(
     context: &egui::Context,
     source: &Source,
     preparation: &Preparation,
+    settings: &Settings,
     progress: &Progress,
     generation: u64,
 ) -> Result<Document, Option<NotLoaded>> {
@@ -143,6 +145,8 @@ fn load(
     };
     let no_room = |error: GpuError| Some(NotLoaded::because(format!("{}: {error}", source.title())));
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
+    // What is compiled here, beside the window, the first picture doesn't wait for.
+    engine.prepare(&scene, settings).map_err(no_room)?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
     let diagonal = scene.bounds.diagonal();

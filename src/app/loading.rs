@@ -18,7 +18,7 @@ impl App {
         let preparation = same.map(|document| document.loaded.preparation.clone());
         let keep_view = preparation.is_some();
         let preparation = preparation.unwrap_or_else(|| self.plain());
-        self.load = Some(Load::start(&self.engine, context, source, preparation, keep_view));
+        self.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, keep_view));
     }
 
     /// Loads the same mesh again with something else made of it: `change` changes what is, or is on its way.
@@ -26,7 +26,7 @@ impl App {
         let Some(Loaded { source, .. }) = self.document.as_ref().map(|document| &document.loaded) else { return };
         let mut preparation = self.preparation();
         change(&mut preparation);
-        self.load = Some(Load::start(&self.engine, context, source.clone(), preparation, true));
+        self.load = Some(Load::start(&self.engine, context, source.clone(), preparation, self.settings, true));
     }
 
     /// What is made of the mesh, or will be once it is loaded again.

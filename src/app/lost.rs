@@ -134,7 +134,7 @@ impl App {
     fn go_on_in(&mut self, context: &egui::Context) {
         if let Some(load) = self.load.take() {
             let (source, preparation) = (load.source.clone(), load.preparation.clone());
-            self.load = Some(Load::start(&self.engine, context, source, preparation, load.keep_view));
+            self.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, load.keep_view));
         }
         if let Some(load) = &mut self.truth_load {
             load.wake(context);

@@ -1,13 +1,12 @@
 //! What is shown, measured beside the window: chunk after chunk is copied back without waiting, and looked at on a
 //! thread of its own.
 
-use std::ops::Range;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
 use thiserror::Error;
 
 use super::beside::{Stopped, caught, spawn};
-use crate::gpu::{Gpu, GpuError, Recorder, Timing, mapped_bytes, staging_buffer, vertices_of};
+use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
 use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
 use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
@@ -55,10 +54,8 @@ impl Drop for Comparing {
 
 /// A readback under way. Its parts go to the comparing thread in order.
 pub(super) struct Copying {
-    staging: wgpu::Buffer,
+    readback: Readback,
     part: PartKind,
-    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
-    is_mapped: bool,
     next_chunk: usize,
     parts: SyncSender<Part>,
 }
@@ -75,8 +72,8 @@ pub(super) enum PartKind {
     Chunk { first_patch: u32, vertex_bytes: usize },
 }
 
-/// A copy that the comparing thread can read.
-pub(super) struct Part(pub PartKind, pub wgpu::Buffer);
+/// Bytes that are on the host, but not copied out yet: the comparing thread does that.
+pub(super) struct Part(pub PartKind, pub Readback);
 
 impl Measuring {
     /// What is shown, once measured.
@@ -189,29 +186,23 @@ impl Measuring {
 /// Sends on what has been copied, and copies the next chunk.
 pub(super) fn copy_on(under_way: &mut Option<Copying>, gpu: &Gpu, scene: &mut Scene) -> Result<(), GpuError> {
     let Some(copying) = under_way else { return Ok(()) };
-    if !copying.is_mapped {
-        match copying.mapped.try_recv() {
-            Err(TryRecvError::Empty) => return Ok(()),
+    match copying.readback.poll() {
+        Ok(true) => {}
+        Ok(false) => return Ok(()),
+        Err(error) => {
             // Without a sender the comparing thread ends as well: it isn't tried again by itself.
-            Err(TryRecvError::Disconnected) => return failed(under_way, "a copy was dropped"),
-            Ok(Err(error)) => return failed(under_way, &error.to_string()),
-            Ok(Ok(())) => copying.is_mapped = true,
+            *under_way = None;
+            return Err(error);
         }
     }
-    if let Err(TrySendError::Full(_)) = copying.parts.try_send(Part(copying.part, copying.staging.clone())) {
-        return Ok(());
-    }
     // The comparing thread ends early only when the measurement was replaced; without a sender it knows of the end.
-    let Some(copying) = under_way.take() else { return Ok(()) };
-    if copying.next_chunk < scene.tessellator.chunk_count() {
-        *under_way = Some(copy_chunk(gpu, scene, copying.next_chunk, copying.parts));
+    let Some(Copying { readback, part, next_chunk, parts }) = under_way.take() else { return Ok(()) };
+    if let Err(TrySendError::Full(Part(part, readback))) = parts.try_send(Part(part, readback)) {
+        *under_way = Some(Copying { readback, part, next_chunk, parts });
+    } else if next_chunk < scene.tessellator.chunk_count() {
+        *under_way = Some(copy_chunk(gpu, scene, next_chunk, parts)?);
     }
     Ok(())
-}
-
-fn failed(under_way: &mut Option<Copying>, why: &str) -> Result<(), GpuError> {
-    *under_way = None;
-    Err(GpuError::Readback(why.to_owned()))
 }
 
 fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
@@ -220,48 +211,29 @@ fn copy_factors(gpu: &Gpu, scene: &Scene, parts: SyncSender<Part>) -> Copying {
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
     let (asked, edges) = scene.tessellator.edge_factors();
     let asked_bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
-    let staging = copy(gpu, buffers.chain([(asked, 0..asked_bytes)]));
+    let readback = Readback::start(gpu, buffers.chain([(asked, 0..asked_bytes)]));
     let convention = scene.tessellator.convention();
     let part = PartKind::Factors { patch_bytes: patch_bytes as usize, edges, convention };
-    Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: 0, parts }
+    Copying { readback, part, next_chunk: 0, parts }
 }
 
-pub(super) fn copy_chunk(gpu: &Gpu, scene: &mut Scene, index: usize, parts: SyncSender<Part>) -> Copying {
+pub(super) fn copy_chunk(
+    gpu: &Gpu,
+    scene: &mut Scene,
+    index: usize,
+    parts: SyncSender<Part>,
+) -> Result<Copying, GpuError> {
     let mut timing = Timing::Off;
     let mut recorder = Recorder::new(gpu, &mut timing);
-    scene.tessellator.emit(&mut recorder, index);
+    scene.tessellator.emit(&mut recorder, index)?;
     recorder.submit();
     let chunk = scene.tessellator.chunk(index);
     let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
     let index_bytes = u64::from(chunk.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
     let [first, second] = chunk.vertices();
-    let staging = copy(gpu, [first, second, (chunk.indices, 0..index_bytes)].into_iter());
+    let readback = Readback::start(gpu, [first, second, (chunk.indices, 0..index_bytes)]);
     let part = PartKind::Chunk { first_patch: chunk.chunk.first_patch, vertex_bytes: vertex_bytes as usize };
-    Copying { mapped: map(&staging), is_mapped: false, staging, part, next_chunk: index + 1, parts }
-}
-
-/// Copies bytes of buffers, one after another, where the host can read them.
-fn copy<'a>(gpu: &Gpu, buffers: impl Iterator<Item = (&'a wgpu::Buffer, Range<u64>)> + Clone) -> wgpu::Buffer {
-    let mut timing = Timing::Off;
-    let mut recorder = Recorder::new(gpu, &mut timing);
-    let total: u64 = buffers.clone().map(|(_, bytes)| bytes.end - bytes.start).sum();
-    let staging = staging_buffer(gpu, total.max(4));
-    let mut offset = 0;
-    for (buffer, bytes) in buffers {
-        let length = bytes.end - bytes.start;
-        recorder.encoder().copy_buffer_to_buffer(buffer, bytes.start, &staging, offset, length);
-        offset += length;
-    }
-    recorder.submit();
-    staging
-}
-
-fn map(staging: &wgpu::Buffer) -> Receiver<Result<(), wgpu::BufferAsyncError>> {
-    let (sender, mapped) = channel();
-    staging.map_async(wgpu::MapMode::Read, .., move |result| {
-        let _ = sender.send(result);
-    });
-    mapped
+    Ok(Copying { readback, part, next_chunk: index + 1, parts })
 }
 
 /// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted, or the device was lost.
@@ -272,16 +244,16 @@ fn survey(
     view: ScreenView,
     wanted: &Progress,
 ) -> Option<(Measured, Sizes)> {
-    let Ok(Part(PartKind::Factors { patch_bytes, edges, convention }, staging)) = parts.recv() else { return None };
-    let bytes = mapped_bytes(&staging).ok()?;
+    let Ok(Part(PartKind::Factors { patch_bytes, edges, convention }, readback)) = parts.recv() else { return None };
+    let bytes = readback.bytes().ok()?;
     let (factors, asked) = bytes.split_at(patch_bytes);
     let asked = AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(asked));
     let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(mesh, topology, bytemuck::pod_collect_to_vec(factors), asked);
-    for Part(part, staging) in parts {
+    for Part(part, readback) in parts {
         wanted.check().ok()?;
         let PartKind::Chunk { first_patch, vertex_bytes } = part else { continue };
-        let bytes = mapped_bytes(&staging).ok()?;
+        let bytes = readback.bytes().ok()?;
         let (vertices, indices) = bytes.split_at(vertex_bytes);
         let vertices = vertices_of(vertices);
         let triangles = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);

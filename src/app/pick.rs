@@ -116,11 +116,11 @@ impl App {
             // What takes many steps to draw would take as long to pick: then it is done without emitted triangles.
             let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
             let pixel = Pixel { split, ..pixel };
-            let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel);
+            let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
             let emitted = (half == Half::Right).then(|| scene.tessellator.generation());
             self.selection.picking = Some((emitted, picking));
         }
-        let Some((emitted, picking)) = self.selection.picking.take() else { return Ok(false) };
+        let Some((emitted, mut picking)) = self.selection.picking.take() else { return Ok(false) };
         let Some(found) = picking.poll()? else {
             self.selection.picking = Some((emitted, picking));
             return Ok(false);

@@ -226,7 +226,7 @@ impl Viewport {
         let next = drawing.given..drawing.given + 1;
         drawing.given = next.end;
         let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
-        engine.renderer.draw_steps(&mut recorder, scene, target, &wanted.camera, &wanted.settings, next);
+        engine.renderer.draw_steps(&mut recorder, scene, target, &wanted.camera, &wanted.settings, next)?;
         let done = Arc::new(AtomicBool::new(false));
         self.in_flight = Some(done.clone());
         recorder.submit();
@@ -247,7 +247,7 @@ impl Viewport {
             }
             if tessellator.needs_count() {
                 let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
-                tessellator.count(&mut recorder);
+                tessellator.count(&mut recorder)?;
                 recorder.submit();
                 tessellator.request_counts();
                 self.counting = Some(*wanted);

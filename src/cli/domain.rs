@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         Device::Cpu => sets.iter().try_for_each(|set| write(&on_cpu(args.partitioning, set)))?,
         Device::Gpu => {
             let gpu = Gpu::chosen(&args.adapter.choice())?;
-            let pass = DomainPass::new(&gpu);
+            let pass = DomainPass::new();
             for batch in sets.chunks(BATCH) {
                 pass.run(&gpu, args.partitioning, batch)?.iter().try_for_each(&mut write)?;
             }

@@ -1,16 +1,16 @@
-//! Room for output: of fixed size, whatever the factors. What does not fit goes through it in chunks.
+//! Memory for the tessellator's output. Its size is fixed, whatever the factors are: output that does not fit is made and used
+//! in chunks, one after another.
 
 use bytemuck::Zeroable;
 
-use super::buffers::empty;
+use super::buffer::empty;
 use super::layout::Vertex;
 use super::{Gpu, GpuError};
 use crate::tessellate::{Partitioning, point_count, process, triangle_count};
 
-/// Room for one chunk's output.
+/// Memory for the vertices and triangles of one chunk.
 pub struct Arena {
-    /// The first half of every vertex that there is room for, then the second of every one: see `Vertex` in
-    /// `shaders/types.wgsl`.
+    /// The first halves of all vertices that there is room for, then the second halves: see `Vertex` in `shaders/types.wgsl`.
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
     pub vertex_capacity: u32,
@@ -18,10 +18,11 @@ pub struct Arena {
 }
 
 impl Arena {
-    /// At most `arena_bytes`, and no more than a mesh of so many patches can fill.
+    /// Takes about `arena_bytes` bytes, half of them for vertices; less if so many patches can't fill it, and more if a single
+    /// patch could not.
     ///
     /// # Errors
-    /// More than the adapter binds.
+    /// A buffer would be larger than the adapter binds.
     pub fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
         let (patch_vertices, patch_triangles) = largest_patch();
         let limits = gpu.device.limits();
@@ -40,8 +41,8 @@ impl Arena {
         })
     }
 
-    /// More chunks than any tessellation of so many patches takes: every chunk but the last is full but for less than
-    /// one patch, in vertices or in triangles.
+    /// A bound on the number of chunks that any tessellation of so many patches takes. It follows from this: every chunk but the
+    /// last has no room left for the vertices, or for the triangles, of one more patch.
     pub fn chunk_capacity(&self, patch_count: u32) -> u32 {
         let (patch_vertices, patch_triangles) = largest_patch();
         let full = |capacity: u32, patch: u32| {
@@ -52,10 +53,10 @@ impl Arena {
     }
 }
 
-/// Bytes of half a vertex: position and normal, or key and texture coordinates.
+/// Bytes of half a vertex: its position and normal, or its key and texture coordinates.
 pub const VERTEX_HALF: u64 = 16;
 
-/// Vertices from the first halves of all of them and, behind those, the second.
+/// Puts vertices together: `halves` holds the first halves of all of them, then the second halves.
 pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
     let (first, second) = halves.split_at(halves.len() / 2);
     let half = VERTEX_HALF as usize;
@@ -69,7 +70,7 @@ pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
     first.chunks_exact(half).zip(second.chunks_exact(half)).map(whole).collect()
 }
 
-/// Vertices and triangles of a patch at the largest factors.
+/// The number of vertices and of triangles of a patch at the largest factors.
 fn largest_patch() -> (u32, u32) {
     let factors = process(Partitioning::Integer, [64.0; 3], 64.0);
     (point_count(factors), triangle_count(factors))

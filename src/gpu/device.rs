@@ -6,26 +6,23 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use super::GpuError;
 use super::adapters::{AdapterChoice, adapters, best_adapter};
 
-/// A device that tessellates and draws.
+/// A device, and what is known of its adapter. Cheap to clone; clones are the same device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
+    adapter: wgpu::Adapter,
     /// Name, driver and kind of the adapter.
     pub info: wgpu::AdapterInfo,
     reported: Reported,
-    /// Samples a px that the viewport is drawn with: 4 where the adapter has it, else 1.
-    pub samples: u32,
-    /// The rasteriser rounds corners to a grid of one px by 2 to the power of this.
+    /// Samples a pixel that render targets have at most: see [`Self::samples`].
+    pub most_samples: u32,
+    /// The rasteriser rounds corners to a grid whose spacing is 1 px divided by 2 to the power of this.
     pub subpixel_bits: u32,
 }
 
-/// How the viewport's texture is drawn into and resolved to: sRGB-encoded 8-bit RGBA.
-pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-
-/// What is asked of a device: WebGPU's defaults, larger buffers and timestamps where the adapter has them. Software
-/// drivers' timestamps are wrong for compute, so they are not asked for theirs.
+/// What a device is asked for: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
+/// timestamps if the adapter has them. The timestamps of software drivers are wrong for compute passes, so they aren't used.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let has = adapter.limits();
     let mut limits = wgpu::Limits::default();
@@ -43,13 +40,13 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
-/// How finely an adapter rasterises, in bits of a px.
+/// The number of fractional bits, in px, of the positions that an adapter rasterises.
 fn subpixel_bits(adapter: &wgpu::Adapter) -> u32 {
-    // Vulkan has none that is coarser (Vulkan specification, required limits).
+    // Every Vulkan adapter has at least this many (Vulkan specification, required limits).
     const LEAST: u32 = 4;
     let info = adapter.get_info();
     match info.backend {
-        // lavapipe says 8, and covers samples that slivers miss by 1/100 px.
+        // lavapipe claims 8, but it covers samples that thin triangles miss by 1/100 px.
         _ if info.device_type == wgpu::DeviceType::Cpu => LEAST,
         // Direct3D 11.3 functional specification, 3.4.4.1.
         wgpu::Backend::Dx12 => 8,
@@ -59,8 +56,8 @@ fn subpixel_bits(adapter: &wgpu::Adapter) -> u32 {
 
 #[cfg(any(windows, target_os = "linux"))]
 fn vulkan_subpixel_bits(adapter: &wgpu::Adapter) -> Option<u32> {
-    // SAFETY: wgpu has this limit nowhere else. Nothing is made or destroyed: a property of the physical device, which lives
-    // as long as the instance and so as long as what is borrowed here, is read.
+    // SAFETY: wgpu offers this limit nowhere else. Nothing is made or destroyed: this reads a property of the physical device,
+    // which lives as long as the instance, and the borrowed adapter keeps that alive.
     unsafe {
         let adapter = adapter.as_hal::<wgpu::hal::api::Vulkan>()?;
         let instance = adapter.shared_instance().raw_instance();
@@ -73,16 +70,16 @@ fn vulkan_subpixel_bits(_: &wgpu::Adapter) -> Option<u32> {
     None
 }
 
-/// What a device has reported.
+/// What a device has reported outside any error scope.
 #[derive(Clone, Debug, Default)]
 struct Reported {
-    /// The first problem that nobody has asked for yet.
+    /// The first error since [`Gpu::check`] was last called.
     problem: Arc<Mutex<Option<GpuError>>>,
-    /// Why it was lost, for good.
+    /// Why the device was lost, if it was; a lost device stays lost.
     lost: Arc<OnceLock<String>>,
 }
 
-/// Keeps what the device reports, in place of wgpu's own panic.
+/// Installs handlers that keep what the device reports. wgpu's own handler panics.
 fn watch(device: &wgpu::Device) -> Reported {
     let reported = Reported::default();
     let problem = reported.problem.clone();
@@ -92,7 +89,7 @@ fn watch(device: &wgpu::Device) -> Reported {
     let lost = reported.lost.clone();
     device.set_device_lost_callback(move |reason, message| {
         let destroyed = reason == wgpu::DeviceLostReason::Destroyed;
-        // Nobody hears of one that the program has let go of; wgpu has no words for one that it destroys.
+        // A device that the program itself destroys comes with no message.
         let _ = lost.set(if destroyed { "it was destroyed".into() } else { message.replace('\n', " ") });
     });
     reported
@@ -106,7 +103,7 @@ fn in_words(error: wgpu::Error) -> GpuError {
 }
 
 impl Gpu {
-    /// The machine's best adapter, without a window.
+    /// A device on the machine's best adapter, without a window.
     ///
     /// # Errors
     /// No adapter, or one that gives no device.
@@ -114,7 +111,7 @@ impl Gpu {
         Self::on(&best_adapter()?)
     }
 
-    /// The adapter that was asked for, without a window.
+    /// A device on the adapter that was asked for, without a window.
     ///
     /// # Errors
     /// There is none such, or it gives no device.
@@ -125,7 +122,7 @@ impl Gpu {
         }
     }
 
-    /// A device of its own on an adapter, beside others there: what waits for one doesn't make another wait.
+    /// A new device on an adapter, which may have others: waiting for one of them doesn't wait for another.
     ///
     /// # Errors
     /// The adapter gives none.
@@ -135,18 +132,31 @@ impl Gpu {
         Ok(Self::new(adapter, device, queue))
     }
 
-    /// Takes over a device that a window already has.
+    /// Takes over a device that exists already, such as a window's, and installs handlers for its errors.
     pub fn new(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let flags = |format: wgpu::TextureFormat| adapter.get_texture_format_features(format).flags;
-        let four = wgpu::TextureFormatFeatureFlags::MULTISAMPLE_X4;
-        let multisampled = flags(COLOR_FORMAT).contains(four) && flags(DEPTH_FORMAT).contains(four);
         let reported = watch(&device);
-        let samples = if multisampled { 4 } else { 1 };
-        Self { device, queue, info: adapter.get_info(), reported, samples, subpixel_bits: subpixel_bits(adapter) }
+        Self {
+            device,
+            queue,
+            info: adapter.get_info(),
+            adapter: adapter.clone(),
+            reported,
+            most_samples: 4,
+            subpixel_bits: subpixel_bits(adapter),
+        }
     }
 
-    /// What the device has reported since the last call, if anything: commands don't fail where they are given. A lost device
-    /// is so for good.
+    /// Samples a pixel of render targets in these formats: 4 where the adapter has that for all of them and
+    /// [`Self::most_samples`] allows it, else 1.
+    pub fn samples(&self, formats: &[wgpu::TextureFormat]) -> u32 {
+        let four = wgpu::TextureFormatFeatureFlags::MULTISAMPLE_X4;
+        let has_four =
+            |format: &wgpu::TextureFormat| self.adapter.get_texture_format_features(*format).flags.contains(four);
+        if self.most_samples >= 4 && formats.iter().all(has_four) { 4 } else { 1 }
+    }
+
+    /// What the device has reported since the last call, if anything. Commands don't fail where they are given, but later. Once
+    /// the device is lost, every call says so.
     ///
     /// # Errors
     /// Out of memory, a refused command, or a lost device.
@@ -154,17 +164,23 @@ impl Gpu {
         if let Some(why) = self.lost() {
             return Err(GpuError::Lost(why.to_owned()));
         }
-        // A thread that panicked while it held the lock leaves text that is still whole.
+        // What is behind the lock is whole even if a thread panicked while it held it.
         match self.reported.problem.lock().unwrap_or_else(PoisonError::into_inner).take() {
             Some(problem) => Err(problem),
             None => Ok(()),
         }
     }
 
-    /// Lets what the device has finished be known. wgpu panics where a driver says that the device is lost right then; that
-    /// is known from [`Self::lost`] by that time.
+    /// Runs the callbacks of what the device has finished. wgpu panics if the driver says right then that the device is lost;
+    /// that panic is caught, since [`Self::lost`] knows of it by then.
     pub fn poll(&self, how: wgpu::PollType) {
         let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
+    }
+
+    /// Waits until the device has done all that was submitted. If it is lost meanwhile, this returns, and [`Self::check`] says
+    /// so.
+    pub fn wait(&self) {
+        self.poll(wgpu::PollType::wait_indefinitely());
     }
 
     /// Why the device was lost, if it was.
@@ -172,7 +188,8 @@ impl Gpu {
         self.reported.lost.get().map(String::as_str)
     }
 
-    /// What `make` makes on this thread; what the device refuses of it is its own error, and reported nowhere else.
+    /// Runs `make` on this thread, and returns what it made unless the device has refused one of its commands. Such an error is
+    /// returned here and reported nowhere else.
     ///
     /// # Errors
     /// Out of memory, a refused command, or a lost device.
@@ -181,7 +198,7 @@ impl Gpu {
         let scopes = filters.map(|filter| self.device.push_error_scope(filter));
         let made = make();
         let mut refused = None;
-        // The last one pushed goes first.
+        // Scopes are popped in the reverse of the order in which they were pushed.
         for scope in scopes.into_iter().rev() {
             refused = refused.or(pollster::block_on(scope.pop()));
         }

@@ -1,11 +1,15 @@
-//! The bare tessellator on the device: sets of factors in, domain points and triangles out.
+//! The tessellator alone on the device, without a mesh: sets of factors in, domain points and triangles out.
+
+use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 
-use super::buffers::empty;
-use super::pipelines::{bind_group, compute_pipeline, shader_module};
-use super::recorder::read_buffer;
+use super::bound_pass::BoundPass;
+use super::buffer::empty;
+use super::pipelines::{ComputePipeline, ShaderModule, WORKGROUP};
+use super::readback::read_buffers;
+use super::wgsl::{CONNECTIVITY, DOMAIN, FACTORS, WgslFile, wgsl};
 use super::{Gpu, GpuError};
 use crate::tessellate::Partitioning;
 
@@ -17,9 +21,12 @@ pub struct DomainParams {
     pub set_count: u32,
 }
 
-/// Room for one set's output; `DOMAIN_POINTS` and `DOMAIN_TRIANGLES` of the shader.
-const POINTS: usize = 3169;
-const TRIANGLES: usize = 6144;
+pub(super) static PASS_DOMAIN: WgslFile = wgsl!("pass_domain", CONNECTIVITY, DOMAIN, FACTORS);
+
+/// The most points that a set of factors gives, at factor 64; `DOMAIN_POINTS` in the shader.
+pub(crate) const DOMAIN_POINTS: usize = 3169;
+/// The most triangles likewise; `DOMAIN_TRIANGLES` in the shader.
+pub(crate) const DOMAIN_TRIANGLES: usize = 6144;
 
 /// What the tessellator makes of one set of factors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,17 +37,23 @@ pub struct DomainPattern {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The compiled pass.
+/// The pass that runs the tessellator. Its pipeline is made when it first runs.
 pub struct DomainPass {
-    pipeline: wgpu::ComputePipeline,
+    pipeline: ComputePipeline,
+}
+
+impl Default for DomainPass {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl DomainPass {
-    pub fn new(gpu: &Gpu) -> Self {
-        Self { pipeline: compute_pipeline(gpu, &shader_module(gpu, "domain"), "domain_main") }
+    pub fn new() -> Self {
+        Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new(&PASS_DOMAIN)), "domain_main") }
     }
 
-    /// Tessellates each set [U==0, V==0, W==0 edges, inside]; at most a thousand at once.
+    /// Tessellates each set of four factors: of the edges where U, V and W is 0, and inside. At most a thousand sets at once.
     ///
     /// # Errors
     /// More sets than the adapter binds memory for, or a lost device.
@@ -57,23 +70,21 @@ impl DomainPass {
         let params = init("domain.params", bytemuck::bytes_of(&params), wgpu::BufferUsages::UNIFORM);
         let factors = init("domain.factors", bytemuck::cast_slice(sets), wgpu::BufferUsages::STORAGE);
         let counts = empty::<[u32; 2]>(gpu, "domain counts", sets.len())?;
-        let points = empty::<[u32; 2]>(gpu, "domain points", sets.len() * POINTS)?;
-        let triangles = empty::<[u32; 3]>(gpu, "domain triangles", sets.len() * TRIANGLES)?;
+        let points = empty::<[u32; 2]>(gpu, "domain points", sets.len() * DOMAIN_POINTS)?;
+        let triangles = empty::<[u32; 3]>(gpu, "domain triangles", sets.len() * DOMAIN_TRIANGLES)?;
         let buffers = [(0, &params), (1, &factors), (2, &counts), (3, &points), (4, &triangles)];
-        let group = bind_group(gpu, "domain", &self.pipeline.get_bind_group_layout(0), &buffers);
+        let bound = BoundPass::new(gpu, &self.pipeline, &buffers)?;
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(TRIANGLES.div_ceil(256) as u32, sets.len() as u32, 1);
-        }
+        let workgroups = [DOMAIN_TRIANGLES.div_ceil(WORKGROUP as usize) as u32, sets.len() as u32, 1];
+        bound.dispatch(&mut encoder.begin_compute_pass(&Default::default()), workgroups);
         gpu.queue.submit([encoder.finish()]);
-        let read = |buffer: &wgpu::Buffer| read_buffer(gpu, buffer, 0, buffer.size());
-        let counts: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&read(&counts)?);
-        let points: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(&read(&points)?);
-        let triangles: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(&read(&triangles)?);
-        let slots = points.chunks(POINTS).zip(triangles.chunks(TRIANGLES));
+        let bytes = read_buffers(gpu, [&counts, &points, &triangles].map(|buffer| (buffer, 0..buffer.size())))?;
+        let (counts, bytes) = bytes.split_at(counts.size() as usize);
+        let (points, triangles) = bytes.split_at(points.size() as usize);
+        let counts: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(counts);
+        let points: Vec<[u32; 2]> = bytemuck::pod_collect_to_vec(points);
+        let triangles: Vec<[u32; 3]> = bytemuck::pod_collect_to_vec(triangles);
+        let slots = points.chunks(DOMAIN_POINTS).zip(triangles.chunks(DOMAIN_TRIANGLES));
         let pattern = |([point_count, triangle_count], (points, triangles)): ([u32; 2], (&[_], &[_]))| DomainPattern {
             points: points[..point_count as usize].to_vec(),
             triangles: triangles[..triangle_count as usize].to_vec(),

@@ -1,41 +1,33 @@
-//! What the hull shader writes for every patch, read back: the counts pass uses it up at once.
+//! Hull factors, computed once more and read back: the counts pass uses them without keeping them.
 
-use super::buffers::empty;
-use super::pipelines::{bind_group, compute_pipeline, shader_module};
-use super::pipelines::{dispatch, grid};
-use super::recorder::read_buffer;
-use super::{Gpu, GpuError, MeshBuffers};
+use super::GpuError;
+use super::bound_pass::{BoundPass, PassInputs};
+use super::buffer::empty;
+use super::pipelines::grid;
+use super::readback::read_buffer;
 use crate::tessellate::HullFactors;
 
-/// One for each patch, from the buffers that the counts pass had.
+/// What a hull shader would write for each patch, from what the counts pass last ran with.
 ///
 /// # Errors
 /// More patches than the adapter binds memory for, or a lost device.
-pub fn read(
-    gpu: &Gpu,
-    b: &MeshBuffers,
-    params: &wgpu::Buffer,
-    given: &wgpu::Buffer,
-) -> Result<Vec<HullFactors>, GpuError> {
-    let pipeline = compute_pipeline(gpu, &shader_module(gpu, "counts"), "hull_factors_main");
-    let written = empty::<HullFactors>(gpu, "hull factors", b.patch_count as usize)?;
+pub fn read(on: &PassInputs) -> Result<Vec<HullFactors>, GpuError> {
+    let (gpu, mesh) = (on.gpu, on.mesh);
+    let written = empty::<HullFactors>(gpu, "hull factors", mesh.patch_count as usize)?;
     let buffers = [
-        (0, params),
-        (2, &b.points),
-        (3, &b.patches),
-        (4, &b.curve_nets),
-        (5, &b.edge_factors),
-        (8, given),
+        (0, on.params),
+        (2, &mesh.points),
+        (3, &mesh.patches),
+        (4, &mesh.curve_nets),
+        (5, &mesh.edge_factors),
+        (8, on.given),
         (9, &written),
     ];
-    let group = bind_group(gpu, "hull factors", &pipeline.get_bind_group_layout(0), &buffers);
+    let bound = BoundPass::new(gpu, &on.pipelines.hull_factors, &buffers)?;
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        dispatch(&mut pass, &pipeline, &group, grid(b.patch_count));
-    }
+    bound.dispatch(&mut encoder.begin_compute_pass(&Default::default()), grid(mesh.patch_count));
     gpu.queue.submit([encoder.finish()]);
     let mut factors = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &written, 0, written.size())?);
-    factors.truncate(b.patch_count as usize);
+    factors.truncate(mesh.patch_count as usize);
     Ok(factors)
 }

@@ -1,12 +1,12 @@
-//! What a tessellation's inputs are to the passes.
+//! The parameters that passes read, from a tessellation's inputs.
 
 use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
 use crate::mesh::Mesh;
 use crate::tessellate::{self, Clip, Inputs, Lod};
 
-/// What the device is told. Parameters that don't matter under these inputs are zero, so that a change of theirs recomputes
-/// nothing. `is_given`: factors are, in place of LOD's. `culls_back`: patches that face away are left out.
+/// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
+/// `is_given`: factors were given in place of LOD's. `culls_back`: patches that face away are left out.
 pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: bool, culls_back: bool) -> Params {
     let lod = if is_given { None } else { Some(inputs.lod) };
     let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));

@@ -1,155 +1,180 @@
-//! Shader modules put together from their rooms, and the compute pipelines made of them.
+//! Shader modules and compute pipelines, each made when it is first needed, and what binds buffers to them.
+
+use std::sync::Arc;
 
 use wgpu::util::DeviceExt;
 
-use super::Gpu;
+use super::lazy::Lazy;
+use super::wgsl::{
+    CONVENTION, DISPLACE, DOMAIN, ERROR, FACTORS, LOAD_NET, LOADS, LOD, NORMAL, PATTERNS, RELIEF, SURFACE, TYPES,
+    WORKGROUP_SCAN, WgslFile, wgsl,
+};
+use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, patterns};
 
-/// Rooms of the tessellator itself, part of every module that tessellates.
-const DOMAIN: [&str; 3] = [
-    include_str!("../../shaders/factors.wgsl"),
-    include_str!("../../shaders/domain.wgsl"),
-    include_str!("../../shaders/subtriangulation.wgsl"),
-];
-const SURFACE: &str = include_str!("../../shaders/surface.wgsl");
-const CONTROL_POINTS: &str = include_str!("../../shaders/control_points.wgsl");
-const NORMAL: &str = include_str!("../../shaders/normal.wgsl");
-const LOD: &str = include_str!("../../shaders/lod.wgsl");
-const ERROR: &str = include_str!("../../shaders/error.wgsl");
-const CULL: &str = include_str!("../../shaders/cull.wgsl");
-const CONVENTION: &str = include_str!("../../shaders/convention.wgsl");
-const TYPES: &str = include_str!("../../shaders/types.wgsl");
-const CONNECTIVITY: &str = include_str!("../../shaders/connectivity.wgsl");
-const PATTERNS: &str = include_str!("../../shaders/patterns.wgsl");
-const LOADS: &str = include_str!("../../shaders/loads.wgsl");
-const LOAD_NET: &str = include_str!("../../shaders/load_net.wgsl");
-const DISPLACE: &str = include_str!("../../shaders/displace.wgsl");
-const RELIEF: &str = include_str!("../../shaders/relief.wgsl");
-const WORKGROUP_SCAN: &str = include_str!("../../shaders/workgroup_scan.wgsl");
+static CONTROL_POINTS: WgslFile = wgsl!("control_points", SURFACE);
+static CULL: WgslFile = wgsl!("cull", LOD, SURFACE);
+static DEFORM: WgslFile = wgsl!("deform", NORMAL);
 
-/// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
-/// another; names are unique across rooms.
-const ROOMS: [&str; 11] =
-    [DOMAIN[0], DOMAIN[1], DOMAIN[2], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
+// A module for each of these, in the order in which the passes run.
+pub(super) static PASS_DEFORM: WgslFile = wgsl!("pass_deform", DEFORM, NORMAL, TYPES);
+pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_NET, LOADS, SURFACE, TYPES);
+pub(super) static PASS_FACTORS: WgslFile = wgsl!("pass_factors", ERROR, FACTORS, LOD, SURFACE, TYPES);
+pub(super) static PASS_LEVELS: WgslFile = wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, RELIEF, TYPES);
+pub(super) static PASS_COUNTS: WgslFile =
+    wgsl!("pass_counts", CONVENTION, CULL, ERROR, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
+pub(super) static PASS_SCAN: WgslFile = wgsl!("pass_scan", TYPES, WORKGROUP_SCAN);
+pub(super) static PASS_CHUNKS: WgslFile = wgsl!("pass_chunks", TYPES);
+pub(super) static PASS_EMIT: WgslFile =
+    wgsl!("pass_emit", CONVENTION, DOMAIN, FACTORS, LOAD_NET, NORMAL, PATTERNS, SURFACE, TYPES);
+pub(super) static PASS_DISPLACE: WgslFile =
+    wgsl!("pass_displace", DISPLACE, FACTORS, LOAD_NET, LOADS, NORMAL, RELIEF, SURFACE, TYPES);
 
-/// Every shader module by name, with the rooms that only it has. A test validates each.
-pub const SHADERS: [(&str, &[&str]); 15] = [
-    ("deform", &[include_str!("../../shaders/deform.wgsl"), include_str!("../../shaders/pass_deform.wgsl")]),
-    ("nets", &[LOADS, LOAD_NET, include_str!("../../shaders/pass_nets.wgsl")]),
-    ("factors", &[include_str!("../../shaders/pass_factors.wgsl")]),
-    ("counts", &[LOADS, LOAD_NET, WORKGROUP_SCAN, include_str!("../../shaders/pass_counts.wgsl")]),
-    ("scan", &[WORKGROUP_SCAN, include_str!("../../shaders/pass_scan.wgsl")]),
-    ("chunks", &[include_str!("../../shaders/pass_chunks.wgsl")]),
-    ("emit", &[LOAD_NET, include_str!("../../shaders/pass_emit.wgsl")]),
-    ("levels", &[DISPLACE, RELIEF, include_str!("../../shaders/pass_levels.wgsl")]),
-    ("displace", &[LOADS, LOAD_NET, DISPLACE, RELIEF, include_str!("../../shaders/pass_displace.wgsl")]),
-    ("domain", &[include_str!("../../shaders/pass_domain.wgsl")]),
-    (
-        "coverage",
-        &[
-            WORKGROUP_SCAN,
-            include_str!("../../shaders/coverage.wgsl"),
-            include_str!("../../shaders/pass_coverage.wgsl"),
-        ],
-    ),
-    ("draw", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_surface.wgsl")]),
-    ("leaks", &[include_str!("../../shaders/draw_leaks.wgsl")]),
-    ("pick", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_pick.wgsl")]),
-    ("lines", &[include_str!("../../shaders/draw_types.wgsl"), include_str!("../../shaders/draw_lines.wgsl")]),
-];
-
-/// The whole text of the module `name`, which is one of [`SHADERS`]; any other name gives the shared rooms alone.
-pub fn shader_source(name: &str) -> String {
-    let own = SHADERS.iter().find(|(shader, _)| *shader == name).map_or(&[][..], |(_, rooms)| rooms);
-    let connectivity = if name == "emit" { PATTERNS } else { CONNECTIVITY };
-    ROOMS.iter().chain([&connectivity]).chain(own).copied().collect::<Vec<_>>().join("\n")
+/// A shader module, made when it is first needed.
+pub struct ShaderModule {
+    file: &'static WgslFile,
+    made: Lazy<wgpu::ShaderModule>,
 }
 
-/// Compiles the module `name`.
-pub fn shader_module(gpu: &Gpu, name: &str) -> wgpu::ShaderModule {
-    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(name),
-        source: wgpu::ShaderSource::Wgsl(shader_source(name).into()),
-    })
-}
+impl ShaderModule {
+    /// The module whose entry points are in `file`.
+    pub fn new(file: &'static WgslFile) -> Self {
+        Self { file, made: Lazy::default() }
+    }
 
-/// One pipeline an entry point of the passes.
-pub struct ComputePipelines {
-    pub deform_corners: wgpu::ComputePipeline,
-    pub deform_points: wgpu::ComputePipeline,
-    pub curve_nets: wgpu::ComputePipeline,
-    pub centers: wgpu::ComputePipeline,
-    pub edge_factors: wgpu::ComputePipeline,
-    pub heights_inside: wgpu::ComputePipeline,
-    pub counts: wgpu::ComputePipeline,
-    pub scan: wgpu::ComputePipeline,
-    pub chunks: wgpu::ComputePipeline,
-    /// One for each of [`Normals`].
-    pub emit_vertices: [wgpu::ComputePipeline; 3],
-    pub emit_triangles: wgpu::ComputePipeline,
-    /// Which points triangles join, looked up by `emit_triangles`: see `shaders/patterns.wgsl`.
-    pub patterns: wgpu::Buffer,
-    pub directions: wgpu::ComputePipeline,
-    pub frames: wgpu::ComputePipeline,
-    pub factor_levels: wgpu::ComputePipeline,
-    pub point_levels: wgpu::ComputePipeline,
-    pub displace: wgpu::ComputePipeline,
-}
-
-impl ComputePipelines {
-    pub fn new(gpu: &Gpu) -> Self {
-        let (nets, emit) = (shader_module(gpu, "nets"), shader_module(gpu, "emit"));
-        let (factors, levels) = (shader_module(gpu, "factors"), shader_module(gpu, "levels"));
-        let deform = shader_module(gpu, "deform");
-        Self {
-            deform_corners: compute_pipeline(gpu, &deform, "deform_corners_main"),
-            deform_points: compute_pipeline(gpu, &deform, "deform_points_main"),
-            curve_nets: compute_pipeline(gpu, &nets, "curve_nets_main"),
-            centers: compute_pipeline(gpu, &nets, "centers_main"),
-            edge_factors: compute_pipeline(gpu, &factors, "edge_factors_main"),
-            heights_inside: compute_pipeline(gpu, &factors, "heights_inside_main"),
-            counts: compute_pipeline(gpu, &shader_module(gpu, "counts"), "counts_main"),
-            scan: compute_pipeline(gpu, &shader_module(gpu, "scan"), "scan_main"),
-            chunks: compute_pipeline(gpu, &shader_module(gpu, "chunks"), "chunks_main"),
-            emit_vertices: [Normals::Linear, Normals::Quadratic, Normals::Surface].map(|normals| {
-                let constants = [("EMIT_NORMALS", f64::from(normals as u32))];
-                specialised_pipeline(gpu, &emit, "emit_vertices_main", &constants)
-            }),
-            emit_triangles: compute_pipeline(gpu, &emit, "emit_triangles_main"),
-            patterns: gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("patterns"),
-                contents: bytemuck::cast_slice(&patterns::PATTERNS),
-                usage: wgpu::BufferUsages::STORAGE,
-            }),
-            directions: compute_pipeline(gpu, &levels, "directions_main"),
-            frames: compute_pipeline(gpu, &levels, "frames_main"),
-            factor_levels: compute_pipeline(gpu, &levels, "factor_levels_main"),
-            point_levels: compute_pipeline(gpu, &levels, "point_levels_main"),
-            displace: compute_pipeline(gpu, &shader_module(gpu, "displace"), "displace_main"),
-        }
+    /// The module on the device, which is the same at every call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ShaderModule, GpuError> {
+        self.made.get_or_make(gpu, || {
+            gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(self.file.name),
+                source: wgpu::ShaderSource::Wgsl(self.file.module_text().into()),
+            })
+        })
     }
 }
 
-/// A pipeline whose layout is what the entry point uses.
-pub fn compute_pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, entry_point: &str) -> wgpu::ComputePipeline {
-    specialised_pipeline(gpu, module, entry_point, &[])
+/// A compute pipeline whose bind group layouts are what its entry point uses, made when it is first needed.
+pub struct ComputePipeline {
+    module: Arc<ShaderModule>,
+    entry_point: &'static str,
+    /// Values of the module's `override` constants, by name.
+    constants: Vec<(&'static str, f64)>,
+    made: Lazy<wgpu::ComputePipeline>,
 }
 
-/// The same with values for what the module lets a pipeline override.
-fn specialised_pipeline(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
-    entry_point: &str,
-    constants: &[(&str, f64)],
-) -> wgpu::ComputePipeline {
-    gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(entry_point),
-        layout: None,
-        module,
-        entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions { constants, ..Default::default() },
-        cache: None,
-    })
+impl ComputePipeline {
+    pub fn new(module: &Arc<ShaderModule>, entry_point: &'static str) -> Self {
+        Self { module: module.clone(), entry_point, constants: Vec::new(), made: Lazy::default() }
+    }
+
+    /// The same with a value for one of the module's `override` constants.
+    fn with(mut self, constant: &'static str, value: u32) -> Self {
+        self.constants.push((constant, value.into()));
+        self
+    }
+
+    pub fn entry_point(&self) -> &'static str {
+        self.entry_point
+    }
+
+    /// The pipeline on the device, which is the same at every call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ComputePipeline, GpuError> {
+        let module = self.module.get(gpu)?;
+        self.made.get_or_make(gpu, || {
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(self.entry_point),
+                layout: None,
+                module,
+                entry_point: Some(self.entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &self.constants,
+                    ..Default::default()
+                },
+                cache: None,
+            })
+        })
+    }
+}
+
+/// The pipelines of the passes, one an entry point, and what they share. They belong to the device on which they are first
+/// asked for.
+pub struct ComputePipelines {
+    pub deform_corners: ComputePipeline,
+    pub deform_points: ComputePipeline,
+    pub curve_nets: ComputePipeline,
+    pub centers: ComputePipeline,
+    pub directions: ComputePipeline,
+    pub frames: ComputePipeline,
+    pub edge_factors: ComputePipeline,
+    pub heights_inside: ComputePipeline,
+    pub factor_levels: ComputePipeline,
+    pub point_levels: ComputePipeline,
+    pub counts: ComputePipeline,
+    /// For reading hull factors back: no other pass needs them all.
+    pub hull_factors: ComputePipeline,
+    pub scan: ComputePipeline,
+    pub chunks: ComputePipeline,
+    /// One for each of [`Normals`].
+    pub emit_vertices: [ComputePipeline; 3],
+    pub emit_triangles: ComputePipeline,
+    pub displace: ComputePipeline,
+    patterns: Lazy<wgpu::Buffer>,
+}
+
+impl Default for ComputePipelines {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ComputePipelines {
+    /// Compiles nothing yet.
+    pub fn new() -> Self {
+        let module = |file| Arc::new(ShaderModule::new(file));
+        let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
+        let (factors, counts, emit) = (module(&PASS_FACTORS), module(&PASS_COUNTS), module(&PASS_EMIT));
+        Self {
+            deform_corners: ComputePipeline::new(&deform, "deform_corners_main"),
+            deform_points: ComputePipeline::new(&deform, "deform_points_main"),
+            curve_nets: ComputePipeline::new(&nets, "curve_nets_main"),
+            centers: ComputePipeline::new(&nets, "centers_main"),
+            directions: ComputePipeline::new(&levels, "directions_main"),
+            frames: ComputePipeline::new(&levels, "frames_main"),
+            edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
+            heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
+            factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
+            point_levels: ComputePipeline::new(&levels, "point_levels_main"),
+            counts: ComputePipeline::new(&counts, "counts_main"),
+            hull_factors: ComputePipeline::new(&counts, "hull_factors_main"),
+            scan: ComputePipeline::new(&module(&PASS_SCAN), "scan_main"),
+            chunks: ComputePipeline::new(&module(&PASS_CHUNKS), "chunks_main"),
+            emit_vertices: [Normals::Linear, Normals::Quadratic, Normals::Surface]
+                .map(|normals| ComputePipeline::new(&emit, "emit_vertices_main").with("EMIT_NORMALS", normals as u32)),
+            emit_triangles: ComputePipeline::new(&emit, "emit_triangles_main"),
+            displace: ComputePipeline::new(&module(&PASS_DISPLACE), "displace_main"),
+            patterns: Lazy::default(),
+        }
+    }
+
+    /// The table in which `emit_triangles` looks up which points triangles join: see `shaders/patterns.wgsl`.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn patterns(&self, gpu: &Gpu) -> Result<&wgpu::Buffer, GpuError> {
+        self.patterns.get_or_make(gpu, || {
+            gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("patterns"),
+                contents: bytemuck::cast_slice(&patterns::PATTERNS),
+                usage: wgpu::BufferUsages::STORAGE,
+            })
+        })
+    }
 }
 
 /// A bind group of whole buffers, each at its binding number.
@@ -166,20 +191,14 @@ pub fn bind_group(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
 }
 
-/// Twin of `grid` in `shaders/types.wgsl`.
+/// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
+pub const WORKGROUP: u32 = 256;
+
+/// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
 pub fn grid(items: u32) -> [u32; 3] {
-    let workgroups = items.div_ceil(256);
-    [workgroups.min(32768), workgroups.div_ceil(32768), 1]
+    let workgroups = items.div_ceil(WORKGROUP);
+    [workgroups.min(GRID_WIDTH), workgroups.div_ceil(GRID_WIDTH), 1]
 }
 
-/// Runs one entry point over a grid.
-pub fn dispatch(
-    pass: &mut wgpu::ComputePass,
-    pipeline: &wgpu::ComputePipeline,
-    group: &wgpu::BindGroup,
-    [x, y, z]: [u32; 3],
-) {
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
-    pass.dispatch_workgroups(x, y, z);
-}
+/// `GRID_WIDTH` in `shaders/types.wgsl`: workgroups along a grid's first dimension. WebGPU allows 65,535.
+pub const GRID_WIDTH: u32 = 32768;

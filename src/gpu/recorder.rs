@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
-use super::{Gpu, GpuError};
+use super::Gpu;
 
 /// How long one pass took.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,17 +13,18 @@ pub struct PassTime {
     pub ms: f64,
 }
 
-/// How passes are timed. Names of passes are the labels given to [`Recorder::compute`] and [`Recorder::render`].
+/// How passes are timed. A pass is named by the label given to [`Recorder::compute`] or [`Recorder::render`].
 pub enum Timing {
     Off,
-    /// Every pass is a submission of its own and is waited for: for drivers whose timestamps are wrong (software ones).
+    /// By the clock of the host: every pass is submitted alone and waited for. For drivers without usable timestamps, such as
+    /// those in software.
     Submissions(Vec<PassTime>),
     /// The GPU's own timestamps.
     Timestamps(Box<GpuProfiler>),
 }
 
 impl Timing {
-    /// The best way that this device has.
+    /// The most precise way that this device has.
     pub fn on(gpu: &Gpu) -> Self {
         let profiler = || GpuProfiler::new(&gpu.device, GpuProfilerSettings::default());
         match gpu.has_timestamps().then(profiler) {
@@ -33,7 +34,7 @@ impl Timing {
     }
 }
 
-/// An encoder under way.
+/// Records passes into a command encoder, which [`Recorder::submit`] submits.
 pub struct Recorder<'a> {
     gpu: &'a Gpu,
     encoder: wgpu::CommandEncoder,
@@ -60,7 +61,7 @@ impl<'a> Recorder<'a> {
         });
     }
 
-    /// Records one render pass named `pass` into `attachments`.
+    /// Records one render pass named `pass`, with a colour and a depth attachment.
     pub fn render(
         &mut self,
         pass: &'static str,
@@ -89,12 +90,12 @@ impl<'a> Recorder<'a> {
             Timing::Submissions(times) => {
                 let before = std::mem::replace(&mut self.encoder, new_encoder(self.gpu));
                 self.gpu.queue.submit([before.finish()]);
-                wait(self.gpu);
+                self.gpu.wait();
                 record(&mut self.encoder, None);
                 let encoder = std::mem::replace(&mut self.encoder, new_encoder(self.gpu));
                 let start = Instant::now();
                 self.gpu.queue.submit([encoder.finish()]);
-                wait(self.gpu);
+                self.gpu.wait();
                 times.push(PassTime { pass, ms: start.elapsed().as_secs_f64() * 1e3 });
             }
             Timing::Timestamps(profiler) => {
@@ -105,14 +106,14 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Submits what is left.
+    /// Submits what was recorded (when passes are timed by submission, what was recorded since the last one).
     pub fn submit(mut self) -> wgpu::SubmissionIndex {
         if let Timing::Timestamps(profiler) = self.timing {
             profiler.resolve_queries(&mut self.encoder);
         }
         let index = self.gpu.queue.submit([self.encoder.finish()]);
         if let Timing::Timestamps(profiler) = self.timing {
-            // Fails only while a query is open, and every query above is closed where it was opened.
+            // This fails only while a query is open, and `timed` ends every query that it begins.
             let ended = profiler.end_frame();
             debug_assert!(ended.is_ok());
         }
@@ -120,8 +121,8 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// How long each pass took when it last ran, of those that ran since the last call; runs of one pass in one submission
-/// (or, without timestamps, since the last call) are added up. With timestamps, only what the GPU has finished.
+/// How long each pass took that ran since the last call. A pass that ran several times in the last submission that had it (or,
+/// without timestamps, since the last call) has the sum. With timestamps, only what the GPU has finished is known.
 pub fn take_times(gpu: &Gpu, timing: &mut Timing) -> Vec<PassTime> {
     let mut last: Vec<PassTime> = Vec::new();
     match timing {
@@ -149,7 +150,7 @@ fn summed(times: impl Iterator<Item = PassTime>) -> Vec<PassTime> {
     sums
 }
 
-/// The names that passes have; a profiler's results give them back as owned text.
+/// The names of all passes that are timed, in the order in which they run.
 pub const PASSES: [&str; 12] = [
     "deform",
     "nets",
@@ -165,9 +166,10 @@ pub const PASSES: [&str; 12] = [
     "draw",
 ];
 
-/// Those of them that make a picture of what was emitted.
+/// Those of [`PASSES`] that draw what was emitted; the others emit it.
 pub const DRAWING: [&str; 2] = ["coverage", "draw"];
 
+/// The profiler returns labels as owned text; this finds the static name again.
 fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {
     let pass = PASSES.into_iter().find(|pass| *pass == result.label)?;
     let time = result.time.as_ref()?;
@@ -176,62 +178,4 @@ fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {
 
 fn new_encoder(gpu: &Gpu) -> wgpu::CommandEncoder {
     gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("pnaen") })
-}
-
-/// Waits until the device has done all that was submitted. A lost device is found out by whoever reads next.
-pub fn wait(gpu: &Gpu) {
-    gpu.poll(wgpu::PollType::wait_indefinitely());
-}
-
-/// Reads `bytes` bytes of `buffer` from `offset` on, waiting for them. Sizes and offsets are multiples of 4.
-///
-/// # Errors
-/// The device was lost.
-pub fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer, offset: u64, bytes: u64) -> Result<Vec<u8>, GpuError> {
-    if bytes == 0 {
-        return Ok(Vec::new());
-    }
-    let staging = staging_buffer(gpu, bytes);
-    let mut encoder = new_encoder(gpu);
-    encoder.copy_buffer_to_buffer(buffer, offset, &staging, 0, bytes);
-    gpu.queue.submit([encoder.finish()]);
-    read_staging(gpu, &staging)
-}
-
-/// A buffer that copies land in and the host maps.
-pub fn staging_buffer(gpu: &Gpu, bytes: u64) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("pnaen.staging"),
-        size: bytes,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    })
-}
-
-/// Maps a staging buffer, waiting for it, and copies its bytes out.
-///
-/// # Errors
-/// The device was lost.
-pub fn read_staging(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
-    let (sender, receiver) = std::sync::mpsc::channel();
-    staging.map_async(wgpu::MapMode::Read, .., move |result| {
-        let _ = sender.send(result);
-    });
-    wait(gpu);
-    // What went wrong on the way explains more than what it led to.
-    gpu.check()?;
-    match receiver.recv() {
-        Ok(Ok(())) => mapped_bytes(staging),
-        Ok(Err(error)) => Err(GpuError::Readback(error.to_string())),
-        Err(error) => Err(GpuError::Readback(error.to_string())),
-    }
-}
-
-/// The bytes of a buffer that has been mapped.
-///
-/// # Errors
-/// The buffer isn't mapped.
-pub fn mapped_bytes(staging: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
-    let view = staging.get_mapped_range(..).map_err(|error| GpuError::Readback(error.to_string()))?;
-    Ok(view.to_vec())
 }

@@ -1,12 +1,12 @@
-//! What a mesh is deformed from, in device memory.
+//! What deforms a mesh, in device memory: joints, morph targets, and a pose of them.
 
-use super::buffers::filled;
-use super::pipelines::bind_group;
-use super::pipelines::{dispatch, grid};
-use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
+use super::bound_pass::{BoundPass, PassInputs};
+use super::buffer::filled;
+use super::pipelines::grid;
+use super::{Gpu, GpuError};
 use crate::mesh::{Pose, Rig, Topology};
 
-/// A rig, and room for a pose of it.
+/// A rig, and one pose of it.
 pub struct RigBuffers {
     bindings: wgpu::Buffer,
     deltas: wgpu::Buffer,
@@ -18,7 +18,7 @@ pub struct RigBuffers {
 }
 
 impl RigBuffers {
-    /// Uploads a rig in a pose.
+    /// Uploads a rig and a pose.
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
@@ -34,7 +34,7 @@ impl RigBuffers {
         })
     }
 
-    /// Takes another pose of the same rig.
+    /// Replaces the pose by another of the same rig.
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
@@ -44,16 +44,19 @@ impl RigBuffers {
         Ok(())
     }
 
-    /// Records what deforms the mesh: its corners' normals and its points.
-    pub fn record(&self, gpu: &Gpu, pipelines: &ComputePipelines, mesh: &MeshBuffers, pass: &mut wgpu::ComputePass) {
+    /// The passes that deform the mesh, in the order in which they run: its corners' normals, and its points. Each comes with
+    /// the grid that it runs over.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub fn passes(&self, on: &PassInputs) -> Result<[(BoundPass, [u32; 3]); 2], GpuError> {
         let inputs = [(0, &self.bindings), (1, &self.deltas), (2, &self.palette), (3, &self.morph_weights)];
-        let corners = [&inputs[..], &[(5, &mesh.corners)]].concat();
-        let points = [&inputs[..], &[(4, &self.point_corners), (6, &mesh.points)]].concat();
-        let layout = |pipeline: &wgpu::ComputePipeline| pipeline.get_bind_group_layout(0);
-        let corners = bind_group(gpu, "deform.corners", &layout(&pipelines.deform_corners), &corners);
-        let points = bind_group(gpu, "deform.points", &layout(&pipelines.deform_points), &points);
-        dispatch(pass, &pipelines.deform_corners, &corners, grid(self.corner_count));
-        dispatch(pass, &pipelines.deform_points, &points, grid(self.point_count));
+        let corners = [&inputs[..], &[(5, &on.mesh.corners)]].concat();
+        let points = [&inputs[..], &[(4, &self.point_corners), (6, &on.mesh.points)]].concat();
+        Ok([
+            (BoundPass::new(on.gpu, &on.pipelines.deform_corners, &corners)?, grid(self.corner_count)),
+            (BoundPass::new(on.gpu, &on.pipelines.deform_points, &points)?, grid(self.point_count)),
+        ])
     }
 
     pub fn bytes(&self) -> u64 {

@@ -1,41 +1,50 @@
-//! The run of patches that one scan covers: its counts, chunks and arguments, and the passes' bind groups.
+//! A slab: the run of patches that one scan covers. Its counts, chunks and indirect arguments, and the passes over it.
 
-use wgpu::util::DeviceExt;
+use std::num::NonZeroU64;
+use std::sync::OnceLock;
 
 use super::arena::Arena;
-use super::buffers::empty;
+use super::bound_pass::{BoundPass, PassInputs};
+use super::buffer::{empty, uniform_buffer};
 use super::layout::{Chunk, DrawArgs, EmitArgs, PatchFactors, Slab};
-use super::pipelines::bind_group;
-use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
+use super::lazy::get_or_try;
+use super::mesh_buffers::MeshBuffers;
+use super::pipelines::WORKGROUP;
+use super::relief_buffers::HeightImages;
+use super::{Gpu, GpuError};
+use crate::tessellate::Normals;
 
-/// Patches whose counts a workgroup adds up.
-pub const SCAN_BLOCK: u32 = 256;
+/// Patches whose counts a workgroup adds up: as many as it has invocations.
+pub const SCAN_BLOCK: u32 = WORKGROUP;
 /// Offsets of uniform bindings are multiples of this: WebGPU's default limit.
-pub const UNIFORM_STRIDE: u64 = 256;
+const UNIFORM_STRIDE: u64 = 256;
 
-/// One slab's buffers and bind groups.
+/// One slab's buffers, and its passes bound to them.
 pub struct SlabPasses {
     pub slab: Slab,
     pub slab_buffer: wgpu::Buffer,
     pub patch_factors: wgpu::Buffer,
-    /// One a patch and one past the last; behind those, the sums of blocks of patches.
+    /// For each patch, and for the end of the last, how many vertices and triangles come before it. Behind those, the sums of
+    /// blocks of [`SCAN_BLOCK`] patches.
     pub offsets: wgpu::Buffer,
     pub chunks: wgpu::Buffer,
     pub emit_args: wgpu::Buffer,
     pub draw_args: wgpu::Buffer,
-    pub chunk_indices: wgpu::Buffer,
-    pub groups: Option<SlabGroups>,
+    /// The number of each chunk, [`UNIFORM_STRIDE`] bytes apart, since a pass learns its chunk's from a uniform.
+    chunk_numbers: wgpu::Buffer,
+    bound: Bound,
 }
 
-pub struct SlabGroups {
-    pub edge_factors: wgpu::BindGroup,
-    pub heights_inside: wgpu::BindGroup,
-    pub counts: wgpu::BindGroup,
-    pub scan: wgpu::BindGroup,
-    pub chunks: wgpu::BindGroup,
-    /// One for each pipeline.
-    pub emit_vertices: [wgpu::BindGroup; 3],
-    pub emit_triangles: wgpu::BindGroup,
+/// The passes, each bound when it first runs.
+#[derive(Default)]
+struct Bound {
+    counts: OnceLock<BoundPass>,
+    scan: OnceLock<BoundPass>,
+    chunks: OnceLock<BoundPass>,
+    /// One for each of [`Normals`].
+    emit_vertices: [OnceLock<BoundPass>; 3],
+    emit_triangles: OnceLock<BoundPass>,
+    displace: OnceLock<BoundPass>,
 }
 
 impl SlabPasses {
@@ -59,9 +68,9 @@ impl SlabPasses {
             _pad: [0; 2],
         };
         let (patches, chunks) = (patch_count as usize, chunk_capacity as usize);
-        let mut chunk_indices = vec![0u8; chunks * UNIFORM_STRIDE as usize];
-        for (index, bytes) in chunk_indices.chunks_exact_mut(UNIFORM_STRIDE as usize).enumerate() {
-            bytes[..4].copy_from_slice(&(index as u32).to_ne_bytes());
+        let mut chunk_numbers = vec![0u8; chunks * UNIFORM_STRIDE as usize];
+        for (number, bytes) in chunk_numbers.chunks_exact_mut(UNIFORM_STRIDE as usize).enumerate() {
+            bytes[..4].copy_from_slice(&(number as u32).to_ne_bytes());
         }
         Ok(Self {
             slab,
@@ -71,8 +80,8 @@ impl SlabPasses {
             chunks: empty::<Chunk>(gpu, "chunks", chunks)?,
             emit_args: empty::<EmitArgs>(gpu, "emit arguments", chunks)?,
             draw_args: empty::<DrawArgs>(gpu, "draw arguments", chunks * buffers.material_count as usize)?,
-            chunk_indices: uniform_buffer(gpu, "chunk indices", &chunk_indices),
-            groups: None,
+            chunk_numbers: uniform_buffer(gpu, "chunk numbers", &chunk_numbers),
+            bound: Bound::default(),
         })
     }
 
@@ -84,81 +93,110 @@ impl SlabPasses {
             .sum()
     }
 
-    /// The bind groups of all passes over this slab.
-    pub fn bind(
-        &self,
-        gpu: &Gpu,
-        pipelines: &ComputePipelines,
-        b: &MeshBuffers,
-        params: &wgpu::Buffer,
-        given: &wgpu::Buffer,
-        arena: &Arena,
-    ) -> SlabGroups {
-        let group = |label: &str, pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
-            bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers)
-        };
-        let slab = &self.slab_buffer;
-        let emit = [(1, slab), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)];
-        let nets = [(0, params), (5, &b.points), (6, &b.patches), (7, &b.curve_nets), (8, &b.corners)];
-        let factors = [
-            (0, params),
-            (1, &b.points),
-            (2, &b.curves),
-            (3, &b.curve_nets),
-            (4, &b.factor_curves),
-            (5, &b.edge_factors),
-            (6, &b.shares),
-            (22, &b.details),
-        ];
-        let heights_inside = [&factors[..], &[(7, &b.patches)]].concat();
-        SlabGroups {
-            edge_factors: group("factors", &pipelines.edge_factors, &factors),
-            heights_inside: group("factors.inside", &pipelines.heights_inside, &heights_inside),
-            counts: group(
-                "counts",
-                &pipelines.counts,
-                &[
-                    (0, params),
-                    (1, slab),
-                    (2, &b.points),
-                    (3, &b.patches),
-                    (4, &b.curve_nets),
-                    (5, &b.edge_factors),
-                    (6, &self.patch_factors),
-                    (7, &self.offsets),
-                    (8, given),
-                ],
-            ),
-            scan: group("scan", &pipelines.scan, &[(0, slab), (1, &self.offsets)]),
-            chunks: group(
-                "chunks",
-                &pipelines.chunks,
-                &[
-                    (0, slab),
-                    (1, &self.offsets),
-                    (2, &b.material_patches),
-                    (3, &self.chunks),
-                    (4, &self.emit_args),
-                    (5, &self.draw_args),
-                ],
-            ),
-            emit_vertices: pipelines.emit_vertices.each_ref().map(|pipeline| {
-                group("emit.vertices", pipeline, &[&emit[..], &nets[..], &[(9, &arena.vertices)]].concat())
-            }),
-            emit_triangles: group(
-                "emit.triangles",
-                &pipelines.emit_triangles,
-                &[&emit[..], &[(10, &arena.indices), (11, &pipelines.patterns)]].concat(),
-            ),
-        }
+    /// Lets go of what passes are bound to, since some of those buffers were replaced.
+    pub fn unbind(&mut self) {
+        self.bound = Bound::default();
     }
-}
 
-/// A uniform, or the like in storage, that can be written again.
-pub fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
-    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(label),
-        contents,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-    })
+    /// Factors and counts of every patch, added up within blocks of [`SCAN_BLOCK`].
+    pub fn counts(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+        let buffers = [
+            (0, on.params),
+            (1, &self.slab_buffer),
+            (2, &on.mesh.points),
+            (3, &on.mesh.patches),
+            (4, &on.mesh.curve_nets),
+            (5, &on.mesh.edge_factors),
+            (6, &self.patch_factors),
+            (7, &self.offsets),
+            (8, on.given),
+        ];
+        BoundPass::once(&self.bound.counts, on.gpu, &on.pipelines.counts, &buffers)
+    }
+
+    /// Sums within blocks to offsets within the slab.
+    pub fn scan(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+        let buffers = [(0, &self.slab_buffer), (1, &self.offsets)];
+        BoundPass::once(&self.bound.scan, on.gpu, &on.pipelines.scan, &buffers)
+    }
+
+    /// Chunks that fit the arena, and their indirect arguments.
+    pub fn chunks(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+        let buffers = [
+            (0, &self.slab_buffer),
+            (1, &self.offsets),
+            (2, &on.mesh.material_patches),
+            (3, &self.chunks),
+            (4, &self.emit_args),
+            (5, &self.draw_args),
+        ];
+        BoundPass::once(&self.bound.chunks, on.gpu, &on.pipelines.chunks, &buffers)
+    }
+
+    /// The vertices of a chunk. Its pipeline depends on how normals are made: a number of [`Normals`].
+    pub fn emit_vertices(&self, on: &PassInputs, normals: usize) -> Result<&BoundPass, GpuError> {
+        let normals = normals.min(Normals::Surface as usize);
+        let buffers = [
+            &self.emit_buffers()[..],
+            &[(0, on.params), (5, &on.mesh.points), (6, &on.mesh.patches), (7, &on.mesh.curve_nets)],
+            &[(8, &on.mesh.corners), (9, &on.arena.vertices)],
+        ];
+        let (cell, pipeline) = (&self.bound.emit_vertices[normals], &on.pipelines.emit_vertices[normals]);
+        BoundPass::once(cell, on.gpu, pipeline, &buffers.concat())
+    }
+
+    /// The triangles of a chunk.
+    pub fn emit_triangles(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+        let patterns = on.pipelines.patterns(on.gpu)?;
+        let buffers = [&self.emit_buffers()[..], &[(10, &on.arena.indices), (11, patterns)]].concat();
+        BoundPass::once(&self.bound.emit_triangles, on.gpu, &on.pipelines.emit_triangles, &buffers)
+    }
+
+    fn emit_buffers(&self) -> [(u32, &wgpu::Buffer); 4] {
+        [(1, &self.slab_buffer), (2, &self.chunks), (3, &self.offsets), (4, &self.patch_factors)]
+    }
+
+    /// The displacement of a chunk's vertices.
+    pub fn displace(&self, on: &PassInputs, images: &HeightImages) -> Result<&BoundPass, GpuError> {
+        get_or_try(&self.bound.displace, || {
+            let pipeline = on.pipelines.displace.get(on.gpu)?.clone();
+            let buffers = [
+                (0, on.params),
+                (1, &self.slab_buffer),
+                (2, &self.chunks),
+                (4, &self.patch_factors),
+                (5, &on.mesh.points),
+                (6, &on.mesh.patches),
+                (7, &on.mesh.curve_nets),
+                (8, &on.mesh.corners),
+                (9, &on.arena.vertices),
+                (11, &on.mesh.shares),
+                (21, &images.maps),
+            ];
+            let buffers =
+                buffers.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+            let view = wgpu::BindingResource::TextureView(&images.view);
+            let entries = [&buffers[..], &[wgpu::BindGroupEntry { binding: 20, resource: view }]].concat();
+            let group = on.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("displace"),
+                layout: &pipeline.get_bind_group_layout(0),
+                entries: &entries,
+            });
+            Ok(BoundPass { pipeline, group })
+        })
+    }
+
+    /// Bind group 1 of the passes over a chunk: the chunk's number in this slab.
+    pub fn chunk_number(&self, gpu: &Gpu, pipeline: &wgpu::ComputePipeline, chunk: u32) -> wgpu::BindGroup {
+        let binding = wgpu::BufferBinding {
+            buffer: &self.chunk_numbers,
+            offset: u64::from(chunk) * UNIFORM_STRIDE,
+            size: NonZeroU64::new(4),
+        };
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("chunk number"),
+            layout: &pipeline.get_bind_group_layout(1),
+            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(binding) }],
+        })
+    }
 }

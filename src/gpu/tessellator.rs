@@ -8,14 +8,14 @@ use std::sync::Arc;
 use glam::Mat4;
 
 use super::arena::Arena;
-use super::buffers::filled;
-use super::counts::PendingCounts;
+use super::buffer::{filled, uniform_buffer};
 use super::layout::{Chunk, Params};
+use super::mesh_passes::MeshPasses;
 use super::params::params_of;
-use super::recorder::wait;
-use super::relief::{HeightImages, ReliefPasses};
+use super::readback::Readback;
+use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
-use super::slab::{SlabPasses, uniform_buffer};
+use super::slab::SlabPasses;
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
 use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Posed, Solid, sharing};
@@ -46,16 +46,18 @@ pub struct Tessellator {
     given_buffer: wgpu::Buffer,
     arena: Arena,
     slabs: Vec<SlabPasses>,
-    nets: Option<(wgpu::BindGroup, wgpu::BindGroup)>,
-    /// Of a mesh that can be displaced.
+    mesh_passes: MeshPasses,
+    /// None if the mesh has no heights.
     images: Option<HeightImages>,
-    relief: Option<ReliefPasses>,
-    /// For which surface, and how strong it is.
+    /// The surface that the nets were made for, and how strong it is ([`Params::surface`] and [`Params::alpha`]).
     nets_done: Option<(u32, f32)>,
     counts_done: bool,
-    pending: Option<PendingCounts>,
+    /// The chunk tables of all slabs, on their way to the host.
+    pending: Option<Readback>,
     generation: u64,
+    /// The chunks that emit something: the slab's index, the chunk's number in the slab, and its table entry.
     chunks: Vec<(usize, u32, Chunk)>,
+    /// The chunk that the arena holds: the slab's index, and the chunk's number in the slab.
     emitted: Option<(usize, u32)>,
 }
 
@@ -120,9 +122,8 @@ impl Tessellator {
             given_buffer: filled::<HullFactors>(gpu, "given factors", &[])?,
             arena,
             slabs,
-            nets: None,
+            mesh_passes: MeshPasses::default(),
             images,
-            relief: None,
             nets_done: None,
             counts_done: false,
             pending: None,
@@ -190,10 +191,8 @@ impl Tessellator {
     fn upload(&mut self, sharing: Sharing) -> Result<(), GpuError> {
         self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
         self.is_deformed = false;
-        self.nets = None;
-        self.relief = None;
         self.nets_done = None;
-        self.slabs.iter_mut().for_each(|slab| slab.groups = None);
+        self.unbind();
         Ok(())
     }
 
@@ -205,10 +204,15 @@ impl Tessellator {
     pub fn give(&mut self, given: Option<Vec<HullFactors>>) -> Result<(), GpuError> {
         self.given_buffer = filled(&self.gpu, "given factors", given.as_deref().unwrap_or_default())?;
         self.given = given;
-        self.relief = None;
-        self.slabs.iter_mut().for_each(|slab| slab.groups = None);
+        self.unbind();
         self.forget();
         Ok(())
+    }
+
+    /// Lets go of what passes are bound to, since some of those buffers were replaced.
+    fn unbind(&mut self) {
+        self.mesh_passes = MeshPasses::default();
+        self.slabs.iter_mut().for_each(SlabPasses::unbind);
     }
 
     /// Forgets all that was computed, so that every pass runs again: for timing.
@@ -236,9 +240,9 @@ impl Tessellator {
         self.given.is_none() && self.posed.pose().is_none() && self.solid.is_some_and(|solid| solid.hides_backs(inputs))
     }
 
-    /// Whether vertices are moved after they were emitted.
-    fn is_displaced(&self) -> bool {
-        self.params.displacement != Displacement::Off as u32
+    /// The height images, if vertices are displaced by them.
+    fn displacing_images(&self) -> Option<&HeightImages> {
+        self.images.as_ref().filter(|_| self.params.displacement != Displacement::Off as u32)
     }
 
     /// Counts the changes of what is emitted: views that don't matter under the inputs are none.
@@ -268,9 +272,12 @@ impl Tessellator {
     /// # Errors
     /// The device was lost.
     pub fn poll_counts(&mut self) -> Result<bool, GpuError> {
-        if let Some(table) = self.pending.as_ref().map(PendingCounts::poll).transpose()?.flatten() {
+        if let Some(pending) = &mut self.pending
+            && pending.poll()?
+        {
+            let tables = pending.bytes()?;
             self.pending = None;
-            self.take_chunks(&table);
+            self.take_chunks(&tables);
         }
         Ok(self.counts_done)
     }
@@ -280,13 +287,10 @@ impl Tessellator {
     /// # Errors
     /// The device was lost.
     pub fn read_counts(&mut self) -> Result<(), GpuError> {
-        self.request_counts();
-        wait(&self.gpu);
-        self.gpu.check()?;
-        if let Some(table) = self.pending.as_ref().map(PendingCounts::wait).transpose()?.flatten() {
-            self.pending = None;
-            self.take_chunks(&table);
-        }
+        let Some(pending) = &mut self.pending else { return self.gpu.check() };
+        let tables = pending.wait(&self.gpu)?;
+        self.pending = None;
+        self.take_chunks(&tables);
         Ok(())
     }
 
@@ -311,7 +315,7 @@ impl Tessellator {
     /// # Errors
     /// More patches than the adapter binds memory for, or a lost device.
     pub fn hull_factors(&self) -> Result<Vec<HullFactors>, GpuError> {
-        hull::read(&self.gpu, &self.buffers, &self.params_buffer, &self.given_buffer)
+        hull::read(&self.inputs_of_passes())
     }
 
     pub fn buffers(&self) -> &MeshBuffers {

@@ -1,60 +1,68 @@
-//! Leaves out of a chunk, before it is drawn, the triangles that cover no sample of the picture. Where triangles are smaller
-//! than pixels those are most, and a rasteriser takes as long for each as for one that is seen. The picture is the same.
+//! Removes from a chunk, before it is drawn, the triangles that cover no sample of the picture. Where triangles are smaller than
+//! pixels, most triangles cover none, and each takes the rasteriser as long as one that is seen. The picture stays the same.
+
+use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::layout::DrawArgs;
+use crate::gpu::wgsl::{TYPES, WORKGROUP_SCAN, WgslFile, wgsl};
 use crate::gpu::{
-    ChunkBuffers, Gpu, GpuError, Recorder, bind_group, compute_pipeline, dispatch, empty, grid, read_buffer,
-    shader_module, uniform_buffer,
+    BoundPass, ChunkBuffers, ComputePipeline, Gpu, GpuError, Recorder, ShaderModule, WORKGROUP, empty, grid,
+    read_buffer, uniform_buffer,
 };
 use crate::tessellate::CoverageView;
 
-/// Triangles that a workgroup takes; see `shaders/pass_coverage.wgsl`.
-const TILE: u32 = 2048;
+static COVERAGE: WgslFile = wgsl!("coverage");
+pub static PASS_COVERAGE: WgslFile = wgsl!("pass_coverage", COVERAGE, TYPES, WORKGROUP_SCAN);
 
-/// One chunk's.
+/// How many triangles each workgroup looks at; `TILE` in `shaders/pass_coverage.wgsl`.
+pub const TILE: u32 = 2048;
+
+/// What the passes over one chunk read as `sieve`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Sieve {
     pub view: CoverageView,
     pub triangle_count: u32,
     pub material_count: u32,
-    /// Which of the slab's arguments are the chunk's first.
+    /// Index of the chunk's first draw arguments among those of its slab.
     pub first_draw: u32,
     pub _pad: u32,
 }
 
+/// The pipelines of these passes, each made when it is first needed.
 pub struct CoveragePipelines {
-    marks: wgpu::ComputePipeline,
-    starts: wgpu::ComputePipeline,
-    keep: wgpu::ComputePipeline,
+    marks: ComputePipeline,
+    starts: ComputePipeline,
+    keep: ComputePipeline,
 }
 
 impl CoveragePipelines {
-    pub fn new(gpu: &Gpu) -> Self {
-        let module = shader_module(gpu, "coverage");
+    /// Compiles nothing yet.
+    pub fn new() -> Self {
+        let module = Arc::new(ShaderModule::new(&PASS_COVERAGE));
         Self {
-            marks: compute_pipeline(gpu, &module, "coverage_marks_main"),
-            starts: compute_pipeline(gpu, &module, "coverage_starts_main"),
-            keep: compute_pipeline(gpu, &module, "coverage_keep_main"),
+            marks: ComputePipeline::new(&module, "coverage_marks_main"),
+            starts: ComputePipeline::new(&module, "coverage_starts_main"),
+            keep: ComputePipeline::new(&module, "coverage_keep_main"),
         }
     }
 }
 
-/// Room for what is kept of a chunk.
+/// Buffers for the triangles that are kept of a chunk.
 pub struct Coverage {
     marks: wgpu::Buffer,
     tile_starts: wgpu::Buffer,
-    /// Three a triangle, in the order that they were emitted in.
+    /// Three for each kept triangle, in the order in which the triangles were emitted.
     pub indices: wgpu::Buffer,
-    /// One [`DrawArgs`] a material.
+    /// A [`DrawArgs`] for each material.
     pub draw_args: wgpu::Buffer,
     capacity: u32,
 }
 
 impl Coverage {
-    /// Room for as many triangles as a chunk has, or up to twice as many if there could be.
+    /// Buffers for as many triangles as this chunk has, or for up to twice as many if later chunks may have more.
     ///
     /// # Errors
     /// More than the adapter binds.
@@ -79,7 +87,7 @@ impl Coverage {
         [&self.marks, &self.tile_starts, &self.indices, &self.draw_args].iter().map(|buffer| buffer.size()).sum()
     }
 
-    /// How many triangles were kept when it was last used, waiting for it.
+    /// How many triangles were kept last time, waiting for that number.
     ///
     /// # Errors
     /// The device was lost.
@@ -89,7 +97,10 @@ impl Coverage {
         Ok(draws.iter().map(|draw| u64::from(draw.index_count) / 3).sum())
     }
 
-    /// Records the passes that keep what may be seen of a chunk, for which there is room.
+    /// Records the passes that keep what may be seen of a chunk, which must fit: see [`Self::has_room`].
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
     pub fn keep(
         &self,
         recorder: &mut Recorder,
@@ -97,7 +108,7 @@ impl Coverage {
         gpu: &Gpu,
         chunk: &ChunkBuffers,
         view: CoverageView,
-    ) {
+    ) -> Result<(), GpuError> {
         let row = size_of::<DrawArgs>() as u64;
         let sieve = Sieve {
             view,
@@ -107,24 +118,20 @@ impl Coverage {
             _pad: 0,
         };
         let sieve = uniform_buffer(gpu, "coverage", bytemuck::bytes_of(&sieve));
-        let group = |pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
-            bind_group(gpu, "coverage", &pipeline.get_bind_group_layout(0), buffers)
-        };
         let [(vertices, _), _] = chunk.vertices();
-        let marks = [(0, &sieve), (3, &self.marks), (4, &self.tile_starts)];
+        let shared = [(0, &sieve), (3, &self.marks), (4, &self.tile_starts)];
         let taken = [(1, vertices), (2, chunk.indices)];
         let draws = [(5, chunk.draw_args), (6, &self.draw_args)];
-        let kept = [marks[1], marks[2], taken[1], (7, &self.indices)];
-        let groups = [
-            group(&pipelines.marks, &[&marks[..], &taken].concat()),
-            group(&pipelines.starts, &[&marks[..], &draws].concat()),
-            group(&pipelines.keep, &[&marks[..1], &kept].concat()),
-        ];
-        let tiles = grid(chunk.chunk.triangle_count.div_ceil(TILE) * 256);
+        let kept = [shared[1], shared[2], taken[1], (7, &self.indices)];
+        let marks = BoundPass::new(gpu, &pipelines.marks, &[&shared[..], &taken].concat())?;
+        let starts = BoundPass::new(gpu, &pipelines.starts, &[&shared[..], &draws].concat())?;
+        let keep = BoundPass::new(gpu, &pipelines.keep, &[&shared[..1], &kept].concat())?;
+        let tiles = grid(chunk.chunk.triangle_count.div_ceil(TILE) * WORKGROUP);
         recorder.compute("coverage", |pass| {
-            dispatch(pass, &pipelines.marks, &groups[0], tiles);
-            dispatch(pass, &pipelines.starts, &groups[1], [1, 1, 1]);
-            dispatch(pass, &pipelines.keep, &groups[2], tiles);
+            marks.dispatch(pass, tiles);
+            starts.dispatch(pass, [1, 1, 1]);
+            keep.dispatch(pass, tiles);
         });
+        Ok(())
     }
 }

@@ -1,68 +1,51 @@
-//! Leaks: pixels through which one looks into a closed mesh.
+//! Leaks: pixels at which a crack lets the inside of a closed mesh show through.
 
 use glam::Mat4;
 use wgpu::util::DeviceExt;
 
 use super::Scene;
-use crate::gpu::{Gpu, GpuError, Recorder, Timing, VERTEX_HALF, read_staging, shader_module, staging_buffer};
+use crate::gpu::wgsl::wgsl;
+use crate::gpu::{
+    Gpu, GpuError, Lazy, Recorder, ShaderModule, Timing, VERTEX_HALF, WgslFile, bind_group, read_texture,
+};
 
-/// Counts of either sign, exact far beyond what any pixel sees, and blendable on every adapter.
+pub static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
+
+/// The count of each pixel, which may be negative. This format holds every whole number up to 2048, and every adapter can blend
+/// it.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
-const TEXEL_BYTES: u32 = 2;
 
-/// Counts leaks. Long-lived: the pipeline that adds and takes away.
+/// Counts leaks.
 ///
-/// What is closed covers every pixel with as many front faces as back faces: whatever enters it leaves it. Where a
-/// front and a back face meet at a silhouette, the rasteriser gives each pixel to both or to neither, by the same rule.
-/// So all triangles are drawn without a depth test, front faces adding 1 and back faces taking 1 away, and a pixel
-/// that is not 0 at the end looks in through a crack, or out through one. (Where a line of sight passes through one
-/// crack in front and another behind, the two cancel; the pixels around it still count.)
+/// A closed surface covers every pixel with as many front faces as back faces, since a line of sight that enters it also leaves
+/// it. Where a front and a back face meet at a silhouette, the rasteriser gives each pixel to both or to neither, by the same
+/// rule. So all triangles are drawn without a depth test; front faces add 1 and back faces subtract 1. A pixel that isn't 0 at
+/// the end sees the inside through a crack, or the outside from within. (If a line of sight passes through one crack in front
+/// and another behind, the two cancel; the pixels around it still count.)
 pub struct LeakCounter {
-    pipeline: wgpu::RenderPipeline,
+    module: ShaderModule,
+    pipeline: Lazy<wgpu::RenderPipeline>,
+}
+
+impl Default for LeakCounter {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl LeakCounter {
-    pub fn new(gpu: &Gpu) -> Self {
-        let module = shader_module(gpu, "leaks");
-        let add = wgpu::BlendComponent {
-            src_factor: wgpu::BlendFactor::One,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        };
-        let vertex = wgpu::VertexBufferLayout {
-            array_stride: VERTEX_HALF,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-        };
-        let pipeline = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("leaks"),
-            layout: None,
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("leak_vertex"),
-                compilation_options: Default::default(),
-                buffers: &[Some(vertex)],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("leak_fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: FORMAT,
-                    blend: Some(wgpu::BlendState { color: add, alpha: add }),
-                    write_mask: wgpu::ColorWrites::RED,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
-        Self { pipeline }
+    /// Compiles nothing yet.
+    pub fn new() -> Self {
+        Self { module: ShaderModule::new(&DRAW_LEAKS), pipeline: Lazy::default() }
     }
 
-    /// How many of `size` px are leaks. The scene's counts must be known, its mesh closed and beyond the near plane.
+    fn pipeline(&self, gpu: &Gpu) -> Result<&wgpu::RenderPipeline, GpuError> {
+        let module = self.module.get(gpu)?;
+        self.pipeline.get_or_make(gpu, || pipeline(gpu, module))
+    }
+
+    /// How many pixels of a picture of `size` (width and height in px) are leaks. The scene's counts must be known, its mesh must
+    /// be closed, and all of it must lie beyond the near plane.
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
@@ -72,10 +55,9 @@ impl LeakCounter {
         if width > limit || height > limit {
             return Err(GpuError::PictureTooLarge { width, height, limit });
         }
-        let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("leaks"),
-            size: extent,
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -83,34 +65,27 @@ impl LeakCounter {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
             view_formats: &[],
         });
-        self.draw(gpu, scene, &texture, clip);
-        let row = (width * TEXEL_BYTES).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let staging = staging_buffer(gpu, u64::from(row) * u64::from(height));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-        let to = wgpu::TexelCopyBufferInfo { buffer: &staging, layout };
-        encoder.copy_texture_to_buffer(texture.as_image_copy(), to, extent);
-        gpu.queue.submit([encoder.finish()]);
-        let bytes = read_staging(gpu, &staging)?;
-        let pixels = bytes.chunks_exact(row as usize).flat_map(|line| line[..(width * TEXEL_BYTES) as usize].chunks(2));
-        // Either zero is a zero.
-        Ok(pixels.filter(|half| half[0] != 0 || half[1] & 0x7f != 0).count() as u64)
+        self.draw(gpu, scene, &texture, clip)?;
+        // Two bytes a texel. Both zeros, +0 and -0, are 0.
+        let bytes = read_texture(gpu, &texture)?;
+        Ok(bytes.chunks_exact(2).filter(|half| half[0] != 0 || half[1] & 0x7f != 0).count() as u64)
     }
 
-    fn draw(&self, gpu: &Gpu, scene: &mut Scene, texture: &wgpu::Texture, clip: Mat4) {
+    fn draw(&self, gpu: &Gpu, scene: &mut Scene, texture: &wgpu::Texture, clip: Mat4) -> Result<(), GpuError> {
+        let pipeline = self.pipeline(gpu)?;
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("leaks"),
             contents: bytemuck::bytes_of(&clip.to_cols_array_2d()),
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let group = crate::gpu::bind_group(gpu, "leaks", &self.pipeline.get_bind_group_layout(0), &[(0, &uniform)]);
+        let group = bind_group(gpu, "leaks", &pipeline.get_bind_group_layout(0), &[(0, &uniform)]);
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
         let chunks = scene.tessellator.chunk_count();
         for index in 0..chunks.max(1) {
             if index < chunks {
-                scene.tessellator.emit(&mut recorder, index);
+                scene.tessellator.emit(&mut recorder, index)?;
             }
             let load = if index == 0 { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
             let mut pass = recorder.encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -125,7 +100,7 @@ impl LeakCounter {
             });
             if index < chunks {
                 let chunk = scene.tessellator.chunk(index);
-                pass.set_pipeline(&self.pipeline);
+                pass.set_pipeline(pipeline);
                 pass.set_bind_group(0, &group, &[]);
                 let [(places, bytes), _] = chunk.vertices();
                 pass.set_vertex_buffer(0, places.slice(bytes));
@@ -134,5 +109,44 @@ impl LeakCounter {
             }
         }
         recorder.submit();
+        Ok(())
     }
+}
+
+fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
+    let add = wgpu::BlendComponent {
+        src_factor: wgpu::BlendFactor::One,
+        dst_factor: wgpu::BlendFactor::One,
+        operation: wgpu::BlendOperation::Add,
+    };
+    let vertex = wgpu::VertexBufferLayout {
+        array_stride: VERTEX_HALF,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![0 => Float32x3],
+    };
+    gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("leaks"),
+        layout: None,
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("leak_vertex"),
+            compilation_options: Default::default(),
+            buffers: &[Some(vertex)],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some("leak_fragment"),
+            compilation_options: Default::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: FORMAT,
+                blend: Some(wgpu::BlendState { color: add, alpha: add }),
+                write_mask: wgpu::ColorWrites::RED,
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }

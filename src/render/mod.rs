@@ -8,21 +8,35 @@ mod framing;
 pub mod layout;
 mod leaks;
 mod marks;
+mod materials;
 mod pick;
 mod pipelines;
 mod renderer;
 mod scale;
 mod scene;
+#[cfg(test)]
+mod shader_tests;
 mod steps;
 mod target;
 
 pub use camera::{Camera, Standpoint, project};
-pub use coverage::Sieve;
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use leaks::LeakCounter;
 pub use marks::{patch_lines, t_junction_lines, worst_lines};
+pub use materials::Materials;
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::Renderer;
 pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
 pub use scene::{LineSegment, Scene};
-pub use target::Target;
+pub use target::{Target, samples};
+
+/// The files with the entry points of what draws and picks: one shader module each.
+#[cfg(test)]
+static MODULES: [&crate::gpu::WgslFile; 6] = [
+    &coverage::PASS_COVERAGE,
+    &leaks::DRAW_LEAKS,
+    &pick::DRAW_PICK,
+    &pipelines::DRAW_LINES,
+    &pipelines::DRAW_PLAIN,
+    &pipelines::DRAW_SURFACE,
+];

@@ -1,19 +1,22 @@
 //! Picking: what a picture shows at one of its pixels.
 
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::Arc;
 
 use glam::{DMat4, DVec4, Mat4, dvec2};
 use wgpu::util::DeviceExt;
 
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
+use super::pipelines::DRAW_TYPES;
 use super::steps::halves;
+use super::target::DEPTH_FORMAT;
 use crate::gpu::layout::Vertex;
-use crate::gpu::{
-    DEPTH_FORMAT, Gpu, GpuError, Recorder, Timing, compute_pipeline, mapped_bytes, shader_module, staging_buffer, wait,
-};
+use crate::gpu::wgsl::{FACTORS, SURFACE, TYPES, WgslFile, wgsl};
+use crate::gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing};
 
-/// A number and a weight, see `pick_fragment`; four of them are what every adapter draws into.
+pub static DRAW_PICK: WgslFile = wgsl!("draw_pick", DRAW_TYPES, FACTORS, SURFACE, TYPES);
+
+/// Two numbers are drawn, see `pick_fragment`. Every adapter can draw into four of 32 bits.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 /// A pixel of a picture, and how the mesh is seen in that picture.
@@ -55,70 +58,79 @@ pub struct PickedTriangle {
     pub vertices: [Vertex; 3],
 }
 
-/// Finds what is drawn at a pixel. Long-lived: the pipelines.
+/// Finds what is drawn at a pixel.
 ///
-/// Everything is drawn into a target of that one pixel, which writes numbers in place of colours. A chunk's triangles are
+/// Everything is drawn into a target that is that one pixel, with numbers in place of colours. The triangles of a chunk are
 /// looked up while the arena holds them, so what comes back is what was emitted.
 pub struct Picker {
-    emitted: Half,
-    source: Half,
+    emitted: Search,
+    source: Search,
 }
 
-/// A draw into the pixel, and what takes its result.
-struct Half {
-    draw: wgpu::RenderPipeline,
+/// A draw into the pixel, and the pass that takes its result; their pipelines are made when they are first needed.
+struct Search {
+    module: Arc<ShaderModule>,
+    vertex: &'static str,
+    draw: Lazy<wgpu::RenderPipeline>,
     draw_bindings: &'static [u32],
-    take: wgpu::ComputePipeline,
+    take: ComputePipeline,
     take_bindings: &'static [u32],
 }
 
 /// A result on its way to the host.
-pub struct Picking {
-    staging: wgpu::Buffer,
-    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+pub struct Picking(Readback);
+
+impl Default for Picker {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Picker {
-    pub fn new(gpu: &Gpu) -> Self {
-        let module = shader_module(gpu, "pick");
+    /// Compiles nothing yet.
+    pub fn new() -> Self {
+        let module = Arc::new(ShaderModule::new(&DRAW_PICK));
         Self {
-            emitted: Half {
-                draw: pipeline(gpu, &module, "pick_emitted_vertex"),
+            emitted: Search {
+                module: module.clone(),
+                vertex: "pick_emitted_vertex",
+                draw: Lazy::default(),
                 draw_bindings: &[0, 3, 4],
-                take: compute_pipeline(gpu, &module, "pick_emitted_main"),
+                take: ComputePipeline::new(&module, "pick_emitted_main"),
                 take_bindings: &[3, 4, 5, 6],
             },
-            source: Half {
-                draw: pipeline(gpu, &module, "pick_source_vertex"),
+            source: Search {
+                vertex: "pick_source_vertex",
+                draw: Lazy::default(),
                 draw_bindings: &[0, 1, 2],
-                take: compute_pipeline(gpu, &module, "pick_source_main"),
+                take: ComputePipeline::new(&module, "pick_source_main"),
                 take_bindings: &[5, 6],
+                module,
             },
         }
     }
 
     /// Asks what is drawn at a pixel of a picture of the scene, whose counts must be known.
-    pub fn start(&self, gpu: &Gpu, scene: &mut Scene, pixel: &Pixel) -> Picking {
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub fn start(&self, gpu: &Gpu, scene: &mut Scene, pixel: &Pixel) -> Result<Picking, GpuError> {
         let run = Run::new(gpu, pixel);
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
         if pixel.is_left() {
-            run.record(&mut recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true);
+            run.record(&mut recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true)?;
         } else {
             for index in 0..scene.tessellator.chunk_count() {
-                scene.tessellator.emit(&mut recorder, index);
+                scene.tessellator.emit(&mut recorder, index)?;
                 let triangles = scene.tessellator.chunk(index).chunk.triangle_count;
-                run.record(&mut recorder, scene, &self.emitted, 3 * triangles, index == 0);
+                run.record(&mut recorder, scene, &self.emitted, 3 * triangles, index == 0)?;
             }
         }
-        let staging = staging_buffer(gpu, run.pick.size());
-        recorder.encoder().copy_buffer_to_buffer(&run.pick, 0, &staging, 0, run.pick.size());
+        let mut readback = Readback::of_buffers(gpu, recorder.encoder(), [(&run.pick, 0..run.pick.size())]);
         recorder.submit();
-        let (sender, mapped) = channel();
-        staging.map_async(wgpu::MapMode::Read, .., move |result| {
-            let _ = sender.send(result);
-        });
-        Picking { staging, mapped }
+        readback.request();
+        Ok(Picking(readback))
     }
 }
 
@@ -127,37 +139,25 @@ impl Picking {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn poll(&self) -> Result<Option<Option<Picked>>, GpuError> {
-        match self.mapped.try_recv() {
-            Err(TryRecvError::Empty) => Ok(None),
-            Err(error @ TryRecvError::Disconnected) => Err(GpuError::Readback(error.to_string())),
-            Ok(Err(error)) => Err(GpuError::Readback(error.to_string())),
-            Ok(Ok(())) => self.take().map(Some),
-        }
+    pub fn poll(&mut self) -> Result<Option<Option<Picked>>, GpuError> {
+        if self.0.poll()? { Ok(Some(found(&self.0.bytes()?))) } else { Ok(None) }
     }
 
     /// Waits for it.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn wait(&self, gpu: &Gpu) -> Result<Option<Picked>, GpuError> {
-        wait(gpu);
-        gpu.check()?;
-        // Another thread that polls may still be running the callback.
-        match self.mapped.recv() {
-            Ok(Ok(())) => self.take(),
-            Ok(Err(error)) => Err(GpuError::Readback(error.to_string())),
-            Err(error) => Err(GpuError::Readback(error.to_string())),
-        }
+    pub fn wait(&mut self, gpu: &Gpu) -> Result<Option<Picked>, GpuError> {
+        self.0.wait(gpu).map(|bytes| found(&bytes))
     }
+}
 
-    fn take(&self) -> Result<Option<Picked>, GpuError> {
-        let bytes = mapped_bytes(&self.staging)?;
-        let Pick { vertices, found, patch_index: patch, triangle: number, weight, .. } =
-            bytemuck::pod_read_unaligned(&bytes);
-        let triangle = (found == FOUND_EMITTED).then_some(PickedTriangle { number, vertices });
-        Ok((found != 0).then_some(Picked { patch, weight, triangle }))
-    }
+/// What the bytes of a [`Pick`] say.
+fn found(bytes: &[u8]) -> Option<Picked> {
+    let Pick { vertices, found, patch_index: patch, triangle: number, weight, .. } =
+        bytemuck::pod_read_unaligned(bytes);
+    let triangle = (found == FOUND_EMITTED).then_some(PickedTriangle { number, vertices });
+    (found != 0).then_some(Picked { patch, weight, triangle })
 }
 
 /// What one search needs on the device.
@@ -198,8 +198,18 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Draws so many corners, and takes what is in front of all that was drawn before.
-    fn record(&self, recorder: &mut Recorder, scene: &Scene, half: &Half, corners: u32, first: bool) {
+    /// Draws so many corners, and takes the result if it is in front of all that was drawn before.
+    fn record(
+        &self,
+        recorder: &mut Recorder,
+        scene: &Scene,
+        search: &Search,
+        corners: u32,
+        first: bool,
+    ) -> Result<(), GpuError> {
+        let module = search.module.get(self.gpu)?;
+        let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
+        let take = search.take.get(self.gpu)?;
         let depth = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
         let color = wgpu::RenderPassColorAttachment {
             view: &self.drawn,
@@ -212,24 +222,25 @@ impl<'a> Run<'a> {
             depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
             stencil_ops: None,
         };
-        let group = self.group(scene, &half.draw.get_bind_group_layout(0), half.draw_bindings);
+        let group = self.group(scene, &draw.get_bind_group_layout(0), search.draw_bindings);
         recorder.render("pick", color, depth, |pass| {
-            pass.set_pipeline(&half.draw);
+            pass.set_pipeline(draw);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..corners, 0..1);
         });
-        let group = self.group(scene, &half.take.get_bind_group_layout(0), half.take_bindings);
+        let group = self.group(scene, &take.get_bind_group_layout(0), search.take_bindings);
         recorder.compute("pick", |pass| {
-            pass.set_pipeline(&half.take);
+            pass.set_pipeline(take);
             pass.set_bind_group(0, &group, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         });
+        Ok(())
     }
 
     fn group(&self, scene: &Scene, layout: &wgpu::BindGroupLayout, bindings: &[u32]) -> wgpu::BindGroup {
         let buffers = scene.tessellator.buffers();
         let (vertices, indices) = scene.tessellator.arena();
-        // By their numbers in the shader.
+        // In the order of their binding numbers in the shader.
         let all = [
             self.pixel_from_object.as_entire_binding(),
             buffers.points.as_entire_binding(),
@@ -246,7 +257,8 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Object units to a clip space that is the pixel alone. In f64: the pixel is a thousandth of what it is cut out of.
+/// From object space to a clip space that holds the pixel alone. Computed in f64, since the pixel is about a thousandth of the
+/// picture that it is cut out of.
 fn pixel_from_object(pixel: &Pixel) -> Mat4 {
     let size = dvec2(pixel.size[0].into(), pixel.size[1].into());
     let at = dvec2(pixel.at[0].into(), pixel.at[1].into());

@@ -1,9 +1,203 @@
-//! What draws are made of: bind group layouts, and pipelines by what they draw and what hides it.
+//! The pipelines that draw a scene, each made when it is first needed, and their bind group layouts.
 
-use crate::gpu::{COLOR_FORMAT, DEPTH_FORMAT, Gpu};
+use super::scene::LineSegment;
+use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
+use crate::gpu::wgsl::{CONVENTION, FACTORS, NORMAL, SURFACE, TYPES, WgslFile, wgsl};
+use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 
-/// The frame, points, corners, patches, the arena's vertices and indices, and the frame again as a uniform.
-pub fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+pub static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
+static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
+pub static DRAW_PLAIN: WgslFile = wgsl!("draw_plain", DRAW_LIGHT, DRAW_TYPES, NORMAL);
+pub static DRAW_SURFACE: WgslFile =
+    wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_TYPES, FACTORS, NORMAL, SURFACE, TYPES);
+pub static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, NORMAL, TYPES);
+
+/// What a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draw {
+    /// Emitted triangles with the material's colour alone.
+    Plain(Faces),
+    /// Emitted triangles with the material's colour and texture.
+    Textured(Faces),
+    /// Emitted triangles with overlays that don't look at whole triangles.
+    Indexed(Faces),
+    /// Emitted triangles with any overlays. Each corner is pulled from the vertex buffer by the shader, so that a triangle knows
+    /// its own barycentric coordinates.
+    Pulled(Faces),
+    /// The input triangles, with any overlays.
+    Source,
+    /// Lines over the mesh.
+    Lines(Occluded),
+    /// A line along the normal of every emitted vertex.
+    Normals(Occluded),
+}
+
+/// Which faces are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Faces {
+    Both,
+    /// Those that face the eye.
+    Fronts,
+}
+
+/// Which part of a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Occluded {
+    /// All of it, faintly, whatever is in front of it.
+    Through,
+    /// What nothing is in front of.
+    InSight,
+}
+
+impl Draw {
+    /// Every pipeline that there is.
+    pub const ALL: [Self; 13] = [
+        Self::Plain(Faces::Both),
+        Self::Plain(Faces::Fronts),
+        Self::Textured(Faces::Both),
+        Self::Textured(Faces::Fronts),
+        Self::Indexed(Faces::Both),
+        Self::Indexed(Faces::Fronts),
+        Self::Pulled(Faces::Both),
+        Self::Pulled(Faces::Fronts),
+        Self::Source,
+        Self::Lines(Occluded::Through),
+        Self::Lines(Occluded::InSight),
+        Self::Normals(Occluded::Through),
+        Self::Normals(Occluded::InSight),
+    ];
+
+    /// Names of the vertex and the fragment shader.
+    fn entry_points(self) -> (&'static str, &'static str) {
+        let line = |part| match part {
+            Occluded::Through => "hidden_line_fragment",
+            Occluded::InSight => "line_fragment",
+        };
+        match self {
+            Self::Plain(_) => ("plain_vertex", "plain_fragment"),
+            Self::Textured(_) => ("textured_vertex", "textured_fragment"),
+            Self::Indexed(_) => ("indexed_vertex", "surface_fragment"),
+            Self::Pulled(_) => ("pulled_vertex", "surface_fragment"),
+            Self::Source => ("source_vertex", "surface_fragment"),
+            Self::Lines(part) => ("line_vertex", line(part)),
+            Self::Normals(part) => ("normal_vertex", line(part)),
+        }
+    }
+
+    /// The vertex buffers that it reads.
+    fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
+        match self {
+            Self::Plain(_) => vertex_halves(wgpu::VertexStepMode::Vertex)[..1].to_vec(),
+            Self::Textured(_) | Self::Indexed(_) => vertex_halves(wgpu::VertexStepMode::Vertex).to_vec(),
+            Self::Pulled(_) | Self::Source => Vec::new(),
+            Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
+                array_stride: size_of::<LineSegment>() as u64,
+                step_mode: wgpu::VertexStepMode::Instance,
+                attributes: &SEGMENT,
+            })],
+            Self::Normals(_) => vertex_halves(wgpu::VertexStepMode::Instance).to_vec(),
+        }
+    }
+
+    /// Depth is reversed, so that what is nearer has the greater depth.
+    fn depth_compare(self) -> wgpu::CompareFunction {
+        match self {
+            Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
+            _ => wgpu::CompareFunction::Greater,
+        }
+    }
+
+    /// Surfaces are opaque and write depth; lines are blended over them.
+    fn is_opaque(self) -> bool {
+        !matches!(self, Self::Lines(_) | Self::Normals(_))
+    }
+
+    fn cull_mode(self) -> Option<wgpu::Face> {
+        use Draw::{Indexed, Plain, Pulled, Textured};
+        let fronts = matches!(
+            self,
+            Plain(Faces::Fronts) | Textured(Faces::Fronts) | Indexed(Faces::Fronts) | Pulled(Faces::Fronts)
+        );
+        fronts.then_some(wgpu::Face::Back)
+    }
+}
+
+/// The attributes of an emitted vertex's first half: position and normal.
+const PLACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
+/// The attributes of its second half: key and texture coordinates.
+const DETAIL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![2 => Uint32x2, 3 => Float32x2];
+/// The attributes of a [`LineSegment`]: start, end, colour and half its width.
+const SEGMENT: [wgpu::VertexAttribute; 4] =
+    wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32];
+
+/// The two halves of emitted vertices, as vertex buffers.
+fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
+    let half = |attributes| wgpu::VertexBufferLayout { array_stride: VERTEX_HALF, step_mode, attributes };
+    [Some(half(&PLACE)), Some(half(&DETAIL))]
+}
+
+/// The pipelines, by [`Draw`], and the layouts of what they are bound to.
+pub struct DrawPipelines {
+    /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, and the frame once more as a uniform.
+    pub scene_layout: wgpu::BindGroupLayout,
+    /// Group 1: a material's constants, texture and sampler.
+    pub material_layout: wgpu::BindGroupLayout,
+    /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
+    pub chunk_layout: wgpu::BindGroupLayout,
+    /// Group 3: how far a chunk's triangles are from the true surface.
+    pub deviation_layout: wgpu::BindGroupLayout,
+    plain: ShaderModule,
+    surface: ShaderModule,
+    lines: ShaderModule,
+    pipelines: [Lazy<wgpu::RenderPipeline>; Draw::ALL.len()],
+}
+
+impl DrawPipelines {
+    /// Makes the layouts. Compiles nothing yet.
+    pub fn new(gpu: &Gpu, material_layout: wgpu::BindGroupLayout) -> Self {
+        Self {
+            scene_layout: scene_layout(gpu),
+            material_layout,
+            chunk_layout: chunk_layout(gpu),
+            deviation_layout: deviation_layout(gpu),
+            plain: ShaderModule::new(&DRAW_PLAIN),
+            surface: ShaderModule::new(&DRAW_SURFACE),
+            lines: ShaderModule::new(&DRAW_LINES),
+            pipelines: Default::default(),
+        }
+    }
+
+    /// The pipeline on the device, which is the same at every call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn get(&self, gpu: &Gpu, draw: Draw) -> Result<&wgpu::RenderPipeline, GpuError> {
+        let module = match draw {
+            Draw::Plain(_) | Draw::Textured(_) => &self.plain,
+            Draw::Indexed(_) | Draw::Pulled(_) | Draw::Source => &self.surface,
+            Draw::Lines(_) | Draw::Normals(_) => &self.lines,
+        };
+        let module = module.get(gpu)?;
+        // `ALL` has every pipeline.
+        let place = Draw::ALL.iter().position(|known| *known == draw).unwrap_or_default();
+        self.pipelines[place].get_or_make(gpu, || pipeline(gpu, &self.layouts(draw), module, draw))
+    }
+
+    /// The layouts of the groups that a pipeline binds.
+    fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
+        let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
+        let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.deviation_layout));
+        match draw {
+            Draw::Plain(_) | Draw::Textured(_) => vec![scene, material],
+            Draw::Indexed(_) | Draw::Pulled(_) => vec![scene, material, chunk, deviation],
+            Draw::Source => vec![scene, material, None, deviation],
+            Draw::Lines(_) => vec![scene],
+            Draw::Normals(_) => vec![scene, None, chunk],
+        }
+    }
+}
+
+fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let both = wgpu::ShaderStages::VERTEX_FRAGMENT;
     let mut entries = vec![buffer_entry(0, READ, both)];
     entries.extend((1..6).map(|binding| buffer_entry(binding, READ, wgpu::ShaderStages::VERTEX)));
@@ -11,15 +205,13 @@ pub fn scene_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scene"), entries: &entries })
 }
 
-/// The slab that a chunk is of, and its patches' factors.
-pub fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entries = [(0, wgpu::BufferBindingType::Uniform), (1, READ)]
         .map(|(binding, ty)| buffer_entry(binding, ty, wgpu::ShaderStages::VERTEX));
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
 }
 
-/// How far a chunk's triangles are from the truth.
-pub fn deviation_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+fn deviation_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entries = [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT)];
     gpu.device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("deviation"), entries: &entries })
@@ -36,57 +228,18 @@ fn buffer_entry(
     wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None }
 }
 
-pub fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entry =
-        |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::FRAGMENT, ty, count: None };
-    let uniform = wgpu::BufferBindingType::Uniform;
-    let texture = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: true },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("material"),
-        entries: &[
-            entry(0, wgpu::BindingType::Buffer { ty: uniform, has_dynamic_offset: false, min_binding_size: None }),
-            entry(1, texture),
-            entry(2, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-        ],
-    })
-}
-
-/// What a pipeline draws, and what hides it.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Layer {
-    /// Opaque, in depth.
-    Surface,
-    /// The same without what faces away.
-    Fronts,
-    /// Blended, whatever is in front.
-    Everywhere,
-    /// Blended, where nothing is in front.
-    InSight,
-}
-
-pub fn pipeline(
+fn pipeline(
     gpu: &Gpu,
     layouts: &[Option<&wgpu::BindGroupLayout>],
     module: &wgpu::ShaderModule,
-    (vertex, fragment): (&str, &str),
-    buffers: &[Option<wgpu::VertexBufferLayout>],
-    layer: Layer,
+    draw: Draw,
 ) -> wgpu::RenderPipeline {
+    let (vertex, fragment) = draw.entry_points();
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(vertex),
         bind_group_layouts: layouts,
         ..Default::default()
     });
-    let compare = match layer {
-        Layer::Surface | Layer::Fronts | Layer::InSight => wgpu::CompareFunction::Greater,
-        Layer::Everywhere => wgpu::CompareFunction::Always,
-    };
-    let opaque = matches!(layer, Layer::Surface | Layer::Fronts);
-    let cull_mode = (layer == Layer::Fronts).then_some(wgpu::Face::Back);
     gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(vertex),
         layout: Some(&layout),
@@ -94,24 +247,24 @@ pub fn pipeline(
             module,
             entry_point: Some(vertex),
             compilation_options: Default::default(),
-            buffers,
+            buffers: &draw.vertex_buffers(),
         },
-        primitive: wgpu::PrimitiveState { cull_mode, ..Default::default() },
+        primitive: wgpu::PrimitiveState { cull_mode: draw.cull_mode(), ..Default::default() },
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH_FORMAT,
-            depth_write_enabled: Some(opaque),
-            depth_compare: Some(compare),
+            depth_write_enabled: Some(draw.is_opaque()),
+            depth_compare: Some(draw.depth_compare()),
             stencil: wgpu::StencilState::default(),
             bias: wgpu::DepthBiasState::default(),
         }),
-        multisample: wgpu::MultisampleState { count: gpu.samples, ..Default::default() },
+        multisample: wgpu::MultisampleState { count: samples(gpu), ..Default::default() },
         fragment: Some(wgpu::FragmentState {
             module,
             entry_point: Some(fragment),
             compilation_options: Default::default(),
             targets: &[Some(wgpu::ColorTargetState {
                 format: COLOR_FORMAT,
-                blend: (!opaque).then_some(wgpu::BlendState::ALPHA_BLENDING),
+                blend: (!draw.is_opaque()).then_some(wgpu::BlendState::ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
         }),

@@ -4,17 +4,16 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
-use image::imageops::FilterType;
 use wgpu::util::DeviceExt;
 
-use super::Renderer;
 use super::Scale;
 use super::coverage::Coverage;
 use super::deviation::Deviations;
-use super::layout::{Material, linear};
+use super::layout::linear;
+use super::materials::Materials;
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::{Field, ulp, ulp_at};
-use crate::mesh::{Bounds, Mesh, Moment, Texture, Topology};
+use crate::mesh::{Bounds, Mesh, Moment, Topology};
 use crate::settings::{Half, Settings};
 use crate::tessellate::bounds_through;
 
@@ -62,28 +61,14 @@ impl Scene {
     /// The mesh is larger than the adapter binds.
     pub fn new(
         gpu: &Gpu,
-        renderer: &Renderer,
+        materials: &Materials,
         pipelines: Arc<ComputePipelines>,
         mesh: Arc<Mesh>,
         topology: Arc<Topology>,
         arena_bytes: u64,
     ) -> Result<Self, GpuError> {
         let tessellator = Tessellator::new(gpu, pipelines, mesh.clone(), topology, arena_bytes)?;
-        let mut uploaded: Vec<(*const Texture, wgpu::TextureView)> = Vec::new();
-        let mut view = |texture: &Arc<Texture>| {
-            let key = Arc::as_ptr(texture);
-            if let Some((_, view)) = uploaded.iter().find(|(known, _)| *known == key) {
-                return view.clone();
-            }
-            let view = upload(gpu, texture);
-            uploaded.push((key, view.clone()));
-            view
-        };
-        let materials = mesh.materials.iter().map(|material| {
-            let view = material.texture.as_ref().map_or_else(|| renderer.white.clone(), &mut view);
-            material_group(gpu, renderer, material.base_color, &view)
-        });
-        let materials = materials.collect();
+        let materials = materials.groups(gpu, &mesh.materials);
         let ulp = ulp(tessellator.topology()) as f32;
         Ok(Self::at_rest(tessellator, mesh.bounds(), ulp, materials))
     }
@@ -209,54 +194,4 @@ impl Scene {
             (buffer, segments.len() as u32)
         });
     }
-}
-
-fn material_group(gpu: &Gpu, renderer: &Renderer, base_color: [f32; 4], view: &wgpu::TextureView) -> wgpu::BindGroup {
-    let constants = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some("material"),
-        contents: bytemuck::bytes_of(&Material { base_color }),
-        usage: wgpu::BufferUsages::UNIFORM,
-    });
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("material"),
-        layout: &renderer.material_layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: constants.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(view) },
-            wgpu::BindGroupEntry { binding: 2, resource: wgpu::BindingResource::Sampler(&renderer.sampler) },
-        ],
-    })
-}
-
-/// Uploads an image with all its mip levels, made smaller first where the adapter's textures end before it does.
-pub(super) fn upload(gpu: &Gpu, texture: &Texture) -> wgpu::TextureView {
-    let limit = gpu.device.limits().max_texture_dimension_2d;
-    let [width, height] = texture.size;
-    let Some(mut level) = image::RgbaImage::from_raw(width, height, texture.rgba.clone()) else {
-        return upload(gpu, &Texture { size: [1, 1], rgba: vec![255; 4] });
-    };
-    if width > limit || height > limit {
-        let fitted = image::DynamicImage::ImageRgba8(level).resize(limit, limit, FilterType::Triangle);
-        level = fitted.to_rgba8();
-    }
-    let (mut bytes, size) = (level.as_raw().clone(), level.dimensions());
-    let mip_level_count = size.0.max(size.1).ilog2() + 1;
-    for _ in 1..mip_level_count {
-        let (width, height) = ((level.width() / 2).max(1), (level.height() / 2).max(1));
-        level = image::imageops::resize(&level, width, height, FilterType::Triangle);
-        bytes.extend_from_slice(level.as_raw());
-    }
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("base color"),
-        size: wgpu::Extent3d { width: size.0, height: size.1, depth_or_array_layers: 1 },
-        mip_level_count,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba8UnormSrgb,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, &bytes);
-    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

@@ -1,6 +1,15 @@
 //! The texture that a picture is drawn into.
 
-use crate::gpu::{COLOR_FORMAT, DEPTH_FORMAT, Gpu, GpuError, read_staging, staging_buffer};
+use crate::gpu::{Gpu, GpuError, read_texture};
+
+/// How a picture's texture is drawn into and resolved: sRGB-encoded 8-bit RGBA.
+pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// Samples a pixel that pictures are drawn with: 4 where the adapter has them, else 1.
+pub fn samples(gpu: &Gpu) -> u32 {
+    gpu.samples(&[COLOR_FORMAT, DEPTH_FORMAT])
+}
 
 /// Colour and depth of one size. Drawn through an sRGB view, shown and read back through a plain one, so that the bytes
 /// are those of a PNG.
@@ -14,8 +23,6 @@ pub struct Target {
 
 /// What egui shows and a PNG holds: sRGB-encoded bytes, not decoded when sampled.
 const SHOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-/// Rows of a texture copied to a buffer start at multiples of this many bytes.
-const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
 impl Target {
     /// # Errors
@@ -44,9 +51,10 @@ impl Target {
         let resolved_srgb =
             resolved.create_view(&wgpu::TextureViewDescriptor { format: Some(COLOR_FORMAT), ..Default::default() });
         let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let samples = samples(gpu);
         let multisampled =
-            (gpu.samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, gpu.samples, drawn, &[])));
-        let depth = view(texture("target.depth", DEPTH_FORMAT, gpu.samples, drawn, &[]));
+            (samples > 1).then(|| view(texture("target.multisampled", COLOR_FORMAT, samples, drawn, &[])));
+        let depth = view(texture("target.depth", DEPTH_FORMAT, samples, drawn, &[]));
         Ok(Self { size: [width, height], resolved, resolved_srgb, multisampled, depth })
     }
 
@@ -98,20 +106,7 @@ impl Target {
     /// The device was lost.
     pub fn read(&self, gpu: &Gpu) -> Result<image::RgbaImage, GpuError> {
         let [width, height] = self.size;
-        let row = (width * 4).next_multiple_of(ROW_ALIGNMENT);
-        let staging = staging_buffer(gpu, u64::from(row) * u64::from(height));
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_texture_to_buffer(
-            self.resolved.as_image_copy(),
-            wgpu::TexelCopyBufferInfo {
-                buffer: &staging,
-                layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
-            },
-            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        );
-        gpu.queue.submit([encoder.finish()]);
-        let bytes = read_staging(gpu, &staging)?;
-        let pixels = bytes.chunks_exact(row as usize).flat_map(|line| &line[..width as usize * 4]).copied().collect();
+        let pixels = read_texture(gpu, &self.resolved)?;
         image::RgbaImage::from_raw(width, height, pixels)
             .ok_or_else(|| GpuError::Readback("the picture came back short".into()))
     }

@@ -10,7 +10,7 @@ use super::Surface;
 
 /// Normals whose cross product's squared length is no more than this are parallel or opposite: the squared sine of 0.1
 /// degrees, within which rounding decides where their planes cut each other.
-const PARALLEL: f32 = 3.046e-6;
+pub(crate) const PARALLEL: f32 = 3.046e-6;
 
 /// The control point one third along from `a` to `b`, in the tangent plane at `a` (Vlachos et al. 2001, section 3.1:
 /// b210 = (2 P1 + P2 - w12 N1) / 3). `normal` is the unit normal at `a`.

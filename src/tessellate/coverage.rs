@@ -54,7 +54,7 @@ pub struct ScreenCorner {
 
 /// Samples lie in rows, one a pixel in each: how many rows a pixel has (1 or 4), and how far a row's samples are from their
 /// pixels' left. A row is half a row's height below its upper side. So have it Vulkan, Metal and Direct3D.
-const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
+pub(crate) const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
 
 pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     let clip = view.clip_from_object * position.extend(1.0);

@@ -22,15 +22,15 @@ pub const FACTOR_VALUE: u32 = 0x7f_ffff;
 pub const SUBTRIANGULATED: u32 = 0x4000_0000;
 
 /// `f32` bit patterns. Those of positive numbers are ordered as the numbers are; NaN and negatives lie above them all.
-const BITS_ONE: u32 = 0x3f80_0000;
-const BITS_TWO: u32 = 0x4000_0000;
-const BITS_63: u32 = 0x427c_0000;
-const BITS_64: u32 = 0x4280_0000;
-const BITS_INFINITY: u32 = 0x7f80_0000;
+pub(crate) const BITS_ONE: u32 = 0x3f80_0000;
+pub(crate) const BITS_TWO: u32 = 0x4000_0000;
+pub(crate) const BITS_63: u32 = 0x427c_0000;
+pub(crate) const BITS_64: u32 = 0x4280_0000;
+pub(crate) const BITS_INFINITY: u32 = 0x7f80_0000;
 /// 1 + 2^-17, the largest edge factor that rounds to 1 in fixed point.
-const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
+pub(crate) const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
 /// 1 + 2^-16, the next factor after 1 in fixed point.
-const BITS_ONE_AND_STEP: u32 = 0x3f80_0080;
+pub(crate) const BITS_ONE_AND_STEP: u32 = 0x3f80_0080;
 
 /// How a factor between two whole numbers becomes segments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -66,3 +66,22 @@ pub use relief::{displacing, height_units, reach};
 pub use solid::{Solid, is_beyond_near};
 pub use spans::{Span, is_mixed, map_number, spans};
 pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents, place};
+
+/// The constants of the mathematics that the shaders have too, for the test that compares them.
+#[cfg(test)]
+pub(crate) mod shared_constants {
+    pub(crate) use super::control_points::PARALLEL;
+    pub(crate) use super::coverage::ROW_SAMPLES;
+    pub(crate) use super::cull::{
+        FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, OUT_OF_VIEW, POLAR_INDICES, POLAR_WEIGHTS, SEEN,
+    };
+    pub(crate) use super::domain::FIXED_TWO_THIRDS;
+    pub(crate) use super::error::{DETAIL_SHARE, EDGE_SHARE, NESTING, SURFACE_SHARE, TURN_SHARE};
+    pub(crate) use super::factors::{
+        BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, FACTOR_ODD,
+        FACTOR_VALUE, FIXED_HALF, FIXED_ONE, SUBTRIANGULATED,
+    };
+    pub(crate) use super::normal::CANCELLED;
+    pub(crate) use super::patterns::{PATTERN_HALVES, PATTERN_STEPS};
+    pub(crate) use super::surface::UNIT;
+}

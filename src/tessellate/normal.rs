@@ -20,7 +20,7 @@ pub enum Normals {
 }
 
 /// Shorter sums of weighted unit normals than this are what rounding leaves of normals that cancel.
-const CANCELLED: f32 = 1e-6;
+pub(crate) const CANCELLED: f32 = 1e-6;
 
 /// A weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) where they cancel.
 pub fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {

@@ -8,9 +8,9 @@ use super::connectivity;
 use super::domain::TransitionStep;
 
 /// Numbers of segments that half a side may have: 0 to 32.
-const PATTERN_HALVES: u32 = 33;
+pub(crate) const PATTERN_HALVES: u32 = 33;
 /// Triangles before a side's middle, at most.
-const PATTERN_STEPS: u32 = 64;
+pub(crate) const PATTERN_STEPS: u32 = 64;
 /// Segments that a patch has inside, at most.
 const MOST_SEGMENTS: u32 = 64;
 

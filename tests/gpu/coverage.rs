@@ -73,7 +73,7 @@ fn as_many_triangles_are_kept_as_the_reference_keeps() {
         seen(&engine, &mut scene, &target, &camera, &settings);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts_only = scene.tessellator.shows_fronts_only(clip_from_object);
-        let (samples, bits) = (engine.gpu.samples, engine.gpu.subpixel_bits);
+        let (samples, bits) = (pnaen::render::samples(&engine.gpu), engine.gpu.subpixel_bits);
         let view = CoverageView::new(clip_from_object, target.viewport(), samples, fronts_only, bits);
         let output = engine.read_tessellated(&mut scene).expect("a readback");
         let corner = |index: u32| screen_corner(&view, output.vertices[index as usize].position.into());

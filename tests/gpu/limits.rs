@@ -25,7 +25,7 @@ fn small(samples: Option<u32>) -> Engine {
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).expect("WebGPU's defaults");
     let mut gpu = Gpu::new(&adapter, device, queue);
-    gpu.samples = samples.unwrap_or(gpu.samples);
+    gpu.most_samples = samples.unwrap_or(gpu.most_samples);
     Engine::new(gpu)
 }
 

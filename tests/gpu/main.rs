@@ -10,7 +10,6 @@ mod deviation;
 mod displacement;
 mod domain;
 mod error;
-mod layout;
 mod limits;
 #[path = "../documents/moving.rs"]
 mod moving;

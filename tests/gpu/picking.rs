@@ -32,7 +32,8 @@ fn count(loaded: &Loaded, scene: &mut Scene, settings: &Settings) {
 }
 
 fn pick(scene: &mut Scene, pixel: &Pixel) -> Option<Picked> {
-    engine().picker.start(&engine().gpu, scene, pixel).wait(&engine().gpu).expect("a readback")
+    let picking = engine().picker.start(&engine().gpu, scene, pixel);
+    picking.and_then(|mut picking| picking.wait(&engine().gpu)).expect("a readback")
 }
 
 /// The same pixels on every run, anywhere in the picture.

@@ -32,7 +32,9 @@ impl ChunkBuffers<'_> {
 }
 
 impl Tessellator {
-    pub(super) fn take_chunks(&mut self, table: &[Chunk]) {
+    /// Takes the chunk tables of all slabs, as the device wrote them.
+    pub(super) fn take_chunks(&mut self, tables: &[u8]) {
+        let table: Vec<Chunk> = bytemuck::pod_collect_to_vec(tables);
         self.counts_done = true;
         self.chunks.clear();
         let mut rows = table.iter();

@@ -1,135 +1,160 @@
-//! The passes, from top to bottom.
+//! The passes, in the order in which they run.
 
 use super::Tessellator;
-use crate::gpu::counts::PendingCounts;
+use crate::gpu::GpuError;
+use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
-use crate::gpu::pipelines::{bind_group, dispatch, grid};
-use crate::gpu::recorder::{Recorder, staging_buffer};
-use crate::gpu::relief::ReliefPasses;
-use crate::gpu::slab::{SCAN_BLOCK, SlabPasses, UNIFORM_STRIDE};
+use crate::gpu::pipelines::grid;
+use crate::gpu::readback::Readback;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
+use crate::tessellate::{Displacement, Normals};
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
     /// scan, chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
-    pub fn count(&mut self, recorder: &mut Recorder) {
-        self.bind();
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub fn count(&mut self, recorder: &mut Recorder) -> Result<(), GpuError> {
         if let Some(rig) = self.rig.as_ref().filter(|_| self.posed.pose().is_some() && !self.is_deformed) {
-            recorder.compute("deform", |pass| rig.record(&self.gpu, &self.pipelines, &self.buffers, pass));
+            let passes = rig.passes(&self.inputs_of_passes())?;
+            recorder.compute("deform", |pass| passes.iter().for_each(|(bound, grid)| bound.dispatch(pass, *grid)));
             self.is_deformed = true;
         }
         let shape = (self.params.surface, self.params.alpha);
         if self.nets_done != Some(shape) {
-            self.record_nets(recorder);
+            self.record_nets(recorder)?;
             self.nets_done = Some(shape);
         }
-        let staging = staging_buffer(&self.gpu, self.slabs.iter().map(|slab| slab.chunks.size()).sum());
-        let mut offset = 0;
+        self.record_factors(recorder)?;
         for slab in &self.slabs {
-            self.record_counts(recorder, slab);
-            recorder.encoder().copy_buffer_to_buffer(&slab.chunks, 0, &staging, offset, slab.chunks.size());
-            offset += slab.chunks.size();
+            self.record_counts(recorder, slab)?;
         }
-        self.pending = Some(PendingCounts::new(staging));
+        let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
+        self.pending = Some(Readback::of_buffers(&self.gpu, recorder.encoder(), tables));
+        Ok(())
     }
 
-    fn record_nets(&self, recorder: &mut Recorder) {
-        let Some((curve_nets, centers)) = &self.nets else { return };
+    /// Makes the pipelines of the passes under these settings, as far as that can be told before anything is counted, and binds
+    /// them. May run on any thread: passes that are recorded meanwhile wait for the pipelines that they need.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn prepare(&self, normals: Normals, displacement: Displacement) -> Result<(), GpuError> {
+        let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
+        passes.curve_nets(&on)?;
+        passes.centers(&on)?;
+        passes.edge_factors(&on)?;
+        if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
+            passes.directions(&on, relief)?;
+            passes.frames(&on, relief)?;
+            if displacement != Displacement::Off {
+                passes.factor_levels(&on, images)?;
+                passes.point_levels(&on, relief)?;
+                self.slabs.iter().try_for_each(|slab| slab.displace(&on, images).map(|_| ()))?;
+            }
+        }
+        for slab in &self.slabs {
+            slab.counts(&on)?;
+            slab.scan(&on)?;
+            slab.chunks(&on)?;
+            slab.emit_vertices(&on, normals as usize)?;
+            slab.emit_triangles(&on)?;
+        }
+        Ok(())
+    }
+
+    /// What passes over the mesh and its slabs are bound to.
+    pub(super) fn inputs_of_passes(&self) -> PassInputs<'_> {
+        PassInputs {
+            gpu: &self.gpu,
+            pipelines: &self.pipelines,
+            mesh: &self.buffers,
+            params: &self.params_buffer,
+            given: &self.given_buffer,
+            arena: &self.arena,
+        }
+    }
+
+    fn record_nets(&self, recorder: &mut Recorder) -> Result<(), GpuError> {
+        let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
+        let (curve_nets, centers) = (passes.curve_nets(&on)?, passes.centers(&on)?);
         recorder.compute("nets", |pass| {
-            dispatch(pass, &self.pipelines.curve_nets, curve_nets, grid(self.buffers.curve_count));
-            dispatch(pass, &self.pipelines.centers, centers, grid(self.buffers.patch_count));
+            curve_nets.dispatch(pass, grid(self.buffers.curve_count));
+            centers.dispatch(pass, grid(self.buffers.patch_count));
         });
-        if let Some(relief) = &self.relief {
-            relief.record_directions(recorder, &self.pipelines, &self.buffers);
+        if let Some(relief) = &self.buffers.relief {
+            let (directions, frames) = (passes.directions(&on, relief)?, passes.frames(&on, relief)?);
+            recorder.compute("directions", |pass| {
+                directions.dispatch(pass, grid(self.buffers.point_count));
+                frames.dispatch(pass, grid(relief.corner_count));
+            });
         }
+        Ok(())
     }
 
-    fn record_counts(&self, recorder: &mut Recorder, slab: &SlabPasses) {
-        let Some(groups) = &slab.groups else { return };
-        let pipelines = &self.pipelines;
-        let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
-        if slab.slab.first_patch == 0 && self.given.is_none() {
+    /// LOD's factors, and if vertices are displaced the levels at which heights are looked up.
+    fn record_factors(&self, recorder: &mut Recorder) -> Result<(), GpuError> {
+        let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
+        if self.given.is_none() {
+            let edge_factors = passes.edge_factors(&on)?;
+            let inside = if self.params.mixed == 1 { Some(passes.heights_inside(&on)?) } else { None };
             recorder.compute("factors", |pass| {
-                dispatch(pass, &pipelines.edge_factors, &groups.edge_factors, grid(self.buffers.factor_count));
-                if self.params.mixed == 1 {
-                    dispatch(pass, &pipelines.heights_inside, &groups.heights_inside, grid(self.buffers.patch_count));
+                edge_factors.dispatch(pass, grid(self.buffers.factor_count));
+                if let Some(inside) = inside {
+                    inside.dispatch(pass, grid(self.buffers.patch_count));
                 }
             });
         }
-        if slab.slab.first_patch == 0
-            && let Some(relief) = self.relief.as_ref().filter(|_| self.is_displaced())
-        {
-            relief.record_levels(recorder, pipelines, &self.buffers);
+        if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.displacing_images()) {
+            let (factor_levels, point_levels) = (passes.factor_levels(&on, images)?, passes.point_levels(&on, relief)?);
+            recorder.compute("levels", |pass| {
+                factor_levels.dispatch(pass, grid(self.buffers.factor_count));
+                point_levels.dispatch(pass, grid(self.buffers.point_count));
+            });
         }
-        recorder.compute("counts", |pass| {
-            dispatch(pass, &pipelines.counts, &groups.counts, blocks);
-        });
-        recorder.compute("scan", |pass| dispatch(pass, &pipelines.scan, &groups.scan, blocks));
-        recorder.compute("chunks", |pass| dispatch(pass, &pipelines.chunks, &groups.chunks, [1, 1, 1]));
+        Ok(())
     }
 
-    /// Records the emission of chunk `index` into the arena, unless it is what the arena already holds.
-    pub fn emit(&mut self, recorder: &mut Recorder, index: usize) {
+    fn record_counts(&self, recorder: &mut Recorder, slab: &SlabPasses) -> Result<(), GpuError> {
+        let on = self.inputs_of_passes();
+        let (counts, scan, chunks) = (slab.counts(&on)?, slab.scan(&on)?, slab.chunks(&on)?);
+        let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
+        recorder.compute("counts", |pass| counts.dispatch(pass, blocks));
+        recorder.compute("scan", |pass| scan.dispatch(pass, blocks));
+        recorder.compute("chunks", |pass| chunks.dispatch(pass, [1, 1, 1]));
+        Ok(())
+    }
+
+    /// Records the emission of chunk `index` into the arena, unless the arena already holds it.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub fn emit(&mut self, recorder: &mut Recorder, index: usize) -> Result<(), GpuError> {
         let (slab_index, chunk_index, _) = self.chunks[index];
         if self.emitted == Some((slab_index, chunk_index)) {
-            return;
+            return Ok(());
         }
-        let slab = &self.slabs[slab_index];
-        let Some(groups) = &slab.groups else { return };
+        let (on, slab) = (self.inputs_of_passes(), &self.slabs[slab_index]);
+        let vertices = slab.emit_vertices(&on, self.params.normals as usize)?;
+        let triangles = slab.emit_triangles(&on)?;
+        let displace = self.displacing_images().map(|images| slab.displace(&on, images)).transpose()?;
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
-        let normals = self.params.normals as usize;
-        let halves = [
-            (&self.pipelines.emit_vertices[normals], &groups.emit_vertices[normals], args),
-            (&self.pipelines.emit_triangles, &groups.emit_triangles, args + 12),
-        ];
-        let run = |pass: &mut wgpu::ComputePass, pipeline, group, args| {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.set_bind_group(1, &self.chunk_group(slab, pipeline, chunk_index), &[]);
-            pass.dispatch_workgroups_indirect(&slab.emit_args, args);
+        let run = |pass: &mut wgpu::ComputePass, bound: &BoundPass, field: usize| {
+            pass.set_pipeline(&bound.pipeline);
+            pass.set_bind_group(0, &bound.group, &[]);
+            pass.set_bind_group(1, &slab.chunk_number(&self.gpu, &bound.pipeline, chunk_index), &[]);
+            pass.dispatch_workgroups_indirect(&slab.emit_args, args + field as u64);
         };
         recorder.compute("emit", |pass| {
-            halves.into_iter().for_each(|(pipeline, group, args)| run(pass, pipeline, group, args));
+            run(pass, vertices, std::mem::offset_of!(EmitArgs, vertices));
+            run(pass, triangles, std::mem::offset_of!(EmitArgs, triangles));
         });
-        if let Some(relief) = self.relief.as_ref().filter(|_| self.is_displaced()) {
-            let group = relief.displace(slab_index);
-            recorder.compute("displace", |pass| run(pass, &self.pipelines.displace, group, args + 24));
+        if let Some(displace) = displace {
+            recorder.compute("displace", |pass| run(pass, displace, std::mem::offset_of!(EmitArgs, displaced)));
         }
         self.emitted = Some((slab_index, chunk_index));
-    }
-
-    fn chunk_group(&self, slab: &SlabPasses, pipeline: &wgpu::ComputePipeline, chunk: u32) -> wgpu::BindGroup {
-        let binding = wgpu::BufferBinding {
-            buffer: &slab.chunk_indices,
-            offset: u64::from(chunk) * UNIFORM_STRIDE,
-            size: std::num::NonZeroU64::new(4),
-        };
-        self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("chunk"),
-            layout: &pipeline.get_bind_group_layout(1),
-            entries: &[wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::Buffer(binding) }],
-        })
-    }
-
-    fn bind(&mut self) {
-        let (b, params, given) = (&self.buffers, &self.params_buffer, &self.given_buffer);
-        let nets = &self.pipelines;
-        self.nets.get_or_insert_with(|| {
-            let inputs = [(0, params), (1, &b.points), (6, &b.curve_nets)];
-            let curves = [&inputs[..], &[(2, &b.corners), (3, &b.curves), (4, &b.curve_sides)]].concat();
-            let centers = [&inputs[..], &[(5, &b.patches)]].concat();
-            (
-                bind_group(&self.gpu, "nets.curves", &nets.curve_nets.get_bind_group_layout(0), &curves),
-                bind_group(&self.gpu, "nets.centers", &nets.centers.get_bind_group_layout(0), &centers),
-            )
-        });
-        if let (None, Some(images)) = (&self.relief, &self.images) {
-            let buffers = [params, given, &self.arena.vertices];
-            self.relief = ReliefPasses::new(&self.gpu, &self.pipelines, b, images, buffers, &self.slabs);
-        }
-        for slab in &mut self.slabs {
-            if slab.groups.is_none() {
-                slab.groups = Some(slab.bind(&self.gpu, &self.pipelines, &self.buffers, params, given, &self.arena));
-            }
-        }
+        Ok(())
     }
 }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::Vec3;
 use pnaen::engine::Engine;
 use pnaen::gpu::layout::{CurveNet, Patch, Vertex};
-use pnaen::gpu::{DRAWING, GpuError, PassTime, Timing, read_buffer, take_times, wait};
+use pnaen::gpu::{DRAWING, GpuError, PassTime, Timing, read_buffer, take_times};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::Clip;
@@ -104,7 +104,7 @@ impl Subject {
         }
         let camera = Camera { azimuth: self.camera.azimuth + nudge, ..self.camera };
         engine.draw(&mut self.scene, &self.target, &camera, &self.settings, timing)?;
-        wait(&engine.gpu);
+        engine.gpu.wait();
         Ok(())
     }
 
@@ -147,7 +147,7 @@ impl Subject {
         let settings = Settings { clip: Clip::Frustum, ..self.settings };
         let runs = effort.repeat(|_| {
             engine.draw(&mut self.scene, &self.target, &camera, &settings, &mut timing)?;
-            wait(&engine.gpu);
+            engine.gpu.wait();
             Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
         })?;
         Ok(Spread::of(runs.iter().map(|run| run.sum(&["draw"])).filter(|ms| *ms > 0.0)))

@@ -70,7 +70,7 @@ impl Peer {
             | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
         Ok(Self {
             layout: Layout::new(&vulkan, stages)?,
-            target: Target::new(&vulkan, size, gpu.samples)?,
+            target: Target::new(&vulkan, size, pnaen::render::samples(gpu))?,
             nowhere: Pass::nowhere(&vulkan)?,
             vulkan,
         })

@@ -34,7 +34,7 @@ impl Report {
             "whole submissions on the host's clock, as this adapter has no timestamps that can be trusted"
         };
         let [width, height] = scale.size;
-        let (samples, runs) = (engine.gpu.samples, scale.effort.runs);
+        let (samples, runs) = (pnaen::render::samples(&engine.gpu), scale.effort.runs);
         println!("# Tessellation in compute passes against the driver's tessellation stages\n");
         println!("- adapter: {} ({:?}, {:?})", info.name, info.device_type, info.backend);
         println!("- driver: {} {}", info.driver, info.driver_info);

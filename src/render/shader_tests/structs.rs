@@ -1,38 +1,20 @@
-//! Every struct that host and shaders share: same size, same fields at the same offsets. And every shader is valid with
-//! no more capabilities than WebGPU has by default.
+//! Every struct that Rust and WGSL share has the same size and the same fields at the same offsets.
 
 use std::mem::{offset_of, size_of};
 
-use pnaen::gpu::layout::{
+use super::modules;
+use crate::gpu::DomainParams;
+use crate::gpu::layout::{
     Binding, Chunk, Corner, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView, Params, Patch,
     PatchFactors, Share, Slab, Vertex,
 };
-use pnaen::gpu::{DomainParams, SHADERS, shader_source};
-use pnaen::render::Sieve;
-use pnaen::render::layout::{Frame, Material, Pick};
-use pnaen::tessellate::CoverageView;
-
-fn parse(name: &str) -> naga::Module {
-    let source = shader_source(name);
-    naga::front::wgsl::parse_str(&source).unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(&source)))
-}
-
-#[test]
-fn every_shader_is_valid() {
-    for (name, _) in SHADERS {
-        let module = parse(name);
-        let flags = naga::valid::ValidationFlags::all();
-        let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::default());
-        if let Err(error) = validator.validate(&module) {
-            panic!("{name}: {}", error.emit_to_string(&shader_source(name)));
-        }
-    }
-}
+use crate::render::coverage::Sieve;
+use crate::render::layout::{Frame, Material, Pick};
+use crate::tessellate::CoverageView;
 
 /// Size and (name, offset) of a struct's members, as the shader has it.
 fn wgsl_struct(name: &str) -> (usize, Vec<(String, usize)>) {
-    let found = SHADERS.iter().find_map(|(shader, _)| {
-        let module = parse(shader);
+    let found = modules().iter().find_map(|(_, module)| {
         module.types.iter().find_map(|(_, ty)| match &ty.inner {
             naga::TypeInner::Struct { members, span } if ty.name.as_deref() == Some(name) => {
                 let member = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset as usize);
@@ -44,7 +26,7 @@ fn wgsl_struct(name: &str) -> (usize, Vec<(String, usize)>) {
     found.unwrap_or_else(|| panic!("no shader has a struct {name}"))
 }
 
-/// Holds a Rust struct against the WGSL struct of its name: every member of either, but for Rust's padding.
+/// Compares a Rust struct with the WGSL struct of its name: all members of both, except the padding that Rust spells out.
 macro_rules! same {
     ($name:ident { $($field:ident),* $(,)? }) => {
         let (size, members) = wgsl_struct(stringify!($name));

@@ -1,17 +1,16 @@
 //! A mesh in device memory.
 
-use bytemuck::Pod;
-use wgpu::util::DeviceExt;
-
+use super::buffer::{empty, filled};
 use super::layout::{Corner, Curve, CurveNet, Patch};
-use super::relief::{ReliefBuffers, details, patch_maps, shares};
+use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
 use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
 use crate::tessellate::{is_mixed, spans};
 
-/// What a mesh is on the device: its topology, and room for its control nets.
+/// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
-    /// Points, then room for every patch's centre, with its height map as w: 1 for the first, 0 for none.
+    /// The position of every point; then, for every patch, room for the control point at its centre, and as w the number of its
+    /// height image (1 for the first, 0 for none).
     pub points: wgpu::Buffer,
     pub corners: wgpu::Buffer,
     pub patches: wgpu::Buffer,
@@ -20,15 +19,15 @@ pub struct MeshBuffers {
     pub factor_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
-    /// Of a mesh that [`Self::is_mixed`] followed by what heights ask for inside every patch.
+    /// One factor for each edge. If [`Self::is_mixed`], then for each patch the factor that its heights need inside it.
     pub edge_factors: wgpu::Buffer,
-    /// What displacement shares, of points, then of factors, then of corners; empty without heights.
+    /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
     pub shares: wgpu::Buffer,
-    /// What each level of each height image loses.
+    /// How far each mip level of each height image is from its level 0.
     pub details: wgpu::Buffer,
-    /// Whether some edge's sides have different height images.
+    /// Whether the sides of some edge have different height images.
     pub is_mixed: bool,
-    /// Of a mesh with heights.
+    /// None without heights.
     pub relief: Option<ReliefBuffers>,
     pub sharing: Sharing,
     pub point_count: u32,
@@ -83,7 +82,7 @@ impl MeshBuffers {
         })
     }
 
-    /// Bytes of everything derived from the mesh: points, topology, nets and factors.
+    /// Bytes of points, topology, nets and factors.
     pub fn bytes(&self) -> u64 {
         [
             &self.points,
@@ -132,37 +131,4 @@ fn patches(topology: &Topology, grouped: &Curves) -> Vec<Patch> {
             factors: patch.sides.map(|s| grouped.factor(topology, s) << 3 | kind(s)),
         })
         .collect()
-}
-
-/// A read-only storage buffer. Nothing to bind is still bound: one zeroed element.
-pub fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu::Buffer, GpuError> {
-    check_size::<T>(gpu, what, items.len())?;
-    let zero = [T::zeroed()];
-    Ok(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-        label: Some(what),
-        contents: bytemuck::cast_slice(if items.is_empty() { &zero } else { items }),
-        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
-    }))
-}
-
-/// A storage buffer that passes write.
-pub fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buffer, GpuError> {
-    check_size::<T>(gpu, what, count)?;
-    Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(what),
-        size: (count.max(1) * size_of::<T>()) as u64,
-        usage: wgpu::BufferUsages::STORAGE
-            | wgpu::BufferUsages::COPY_SRC
-            | wgpu::BufferUsages::INDIRECT
-            | wgpu::BufferUsages::VERTEX
-            | wgpu::BufferUsages::INDEX,
-        mapped_at_creation: false,
-    }))
-}
-
-fn check_size<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<(), GpuError> {
-    let bytes = (count * size_of::<T>()) as u64;
-    let limits = gpu.device.limits();
-    let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-    if bytes > limit { Err(GpuError::TooLarge { what, bytes, limit }) } else { Ok(()) }
 }

@@ -1,28 +1,25 @@
-//! Displacement on the device: height images, what patches share where they meet, and the passes that use them.
+//! What displacement needs in device memory: height images, and what patches share where they meet.
 
-use super::buffers::filled;
+use super::buffer::{filled, uniform_buffer};
 use super::layout::{HeightMap, Share};
-use super::pipelines::bind_group;
-use super::pipelines::{dispatch, grid};
-use super::recorder::Recorder;
-use super::slab::{SlabPasses, uniform_buffer};
-use super::{ComputePipelines, Gpu, GpuError, MeshBuffers};
+use super::{Gpu, GpuError};
 use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
 use crate::tessellate::{Span, map_number};
 
-/// Twin of `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
-const HEIGHTS_ACROSS: u32 = 4096;
+/// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
+pub const HEIGHTS_ACROSS: u32 = 4096;
 
-/// A mesh's height images: uploaded once.
+/// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.
 pub struct HeightImages {
-    view: wgpu::TextureView,
-    maps: wgpu::Buffer,
-    /// That were uploaded for it.
+    pub view: wgpu::TextureView,
+    /// A [`HeightMap`] for each image.
+    pub maps: wgpu::Buffer,
+    /// Bytes that were uploaded for this value.
     bytes: u64,
 }
 
 impl HeightImages {
-    /// The same for another tessellation: nothing more is uploaded.
+    /// The same images for another tessellator; nothing is uploaded again.
     pub fn shared(&self) -> Self {
         Self { view: self.view.clone(), maps: self.maps.clone(), bytes: 0 }
     }
@@ -75,15 +72,19 @@ fn upload(gpu: &Gpu, heights: &[f32], rows: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// What patches share where they meet, of a mesh whose sides are grouped into curves in some way.
+/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves in some way. Lists of varying
+/// length lie one after another in one buffer; `starts` holds where each begins, and then where the last ends.
 pub struct ReliefBuffers {
-    part_starts: wgpu::Buffer,
-    parts: wgpu::Buffer,
-    factor_starts: wgpu::Buffer,
-    factors: wgpu::Buffer,
-    corner_starts: wgpu::Buffer,
-    corner_patches: wgpu::Buffer,
-    corner_count: u32,
+    pub part_starts: wgpu::Buffer,
+    /// For each point, its corners, each with the bits of its weight in the point's direction.
+    pub parts: wgpu::Buffer,
+    pub factor_starts: wgpu::Buffer,
+    /// For each point, the factors of its edges.
+    pub factors: wgpu::Buffer,
+    pub corner_starts: wgpu::Buffer,
+    /// For each corner, its patches.
+    pub corner_patches: wgpu::Buffer,
+    pub corner_count: u32,
 }
 
 impl ReliefBuffers {
@@ -110,7 +111,8 @@ impl ReliefBuffers {
     }
 }
 
-/// What points, then factors, then corners share, as far as it never changes; then the further spans of factors.
+/// The [`Share`] of every point, then of every factor, then two for every corner, then the further spans of factors; filled in
+/// as far as they depend on the mesh alone.
 pub fn shares(mesh: &Mesh, dominance: &Dominance, spans: &[Span]) -> Vec<Share> {
     let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
     let behind = (point_count + 2 * mesh.corners.len()) as u32;
@@ -126,7 +128,7 @@ pub fn shares(mesh: &Mesh, dominance: &Dominance, spans: &[Span]) -> Vec<Share> 
     points.chain(factors).chain(corners).chain(further).collect()
 }
 
-/// What each level of each height image loses, four levels an element; zeros without heights.
+/// How far each mip level of each height image is from its level 0, padded to 16 levels; zeros without heights.
 pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     let mut table = [[0.0_f32; 16]; MAX_MAPS];
     for (entry, detail) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.detail)) {
@@ -135,7 +137,7 @@ pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     uniform_buffer(gpu, "height details", bytemuck::cast_slice(&table))
 }
 
-/// Where each corner's run of patches starts, and where the last ends; and the patches.
+/// Where each corner's list of patches starts in the second vector, then where the last ends.
 fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; mesh.corners.len() + 1];
     let corners =
@@ -152,7 +154,7 @@ fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) 
     (starts, patches)
 }
 
-/// A patch's height map, as it stands behind its centre among the points: 1 for the first, 0 for none.
+/// The number of each patch's height image: 1 for the first, 0 for none.
 pub fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
     let mut maps = vec![0.0; topology.patches.len()];
     for patches in topology.material_patches.iter().filter(|patches| !patches.is_empty()) {
@@ -160,93 +162,4 @@ pub fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
         maps[patches.start as usize..patches.end as usize].fill(map as f32);
     }
     maps
-}
-
-/// The passes that displace a mesh, bound to its buffers.
-pub struct ReliefPasses {
-    directions: wgpu::BindGroup,
-    frames: wgpu::BindGroup,
-    corner_count: u32,
-    factor_levels: wgpu::BindGroup,
-    point_levels: wgpu::BindGroup,
-    displace: Vec<wgpu::BindGroup>,
-}
-
-impl ReliefPasses {
-    /// Of a mesh with heights; one bind group for every slab, in their order.
-    pub fn new(
-        gpu: &Gpu,
-        pipelines: &ComputePipelines,
-        b: &MeshBuffers,
-        images: &HeightImages,
-        [params, given, vertices]: [&wgpu::Buffer; 3],
-        slabs: &[SlabPasses],
-    ) -> Option<Self> {
-        let relief = b.relief.as_ref()?;
-        let own = [(0, params), (6, &b.shares)];
-        let directions = [&own[..], &[(2, &b.corners), (7, &relief.part_starts), (8, &relief.parts)]].concat();
-        let around = [(1, &b.points), (2, &b.corners), (3, &b.patches)];
-        let frames = [&own[..], &around, &[(7, &relief.corner_starts), (9, &relief.corner_patches)]].concat();
-        let mesh = [(1, &b.points), (2, &b.corners), (3, &b.patches), (4, &b.edge_factors), (5, given)];
-        let factor_levels = [&own[..], &mesh[..], &[(21, &images.maps)]].concat();
-        let point_levels = [&own[..], &[(7, &relief.factor_starts), (9, &relief.factors)]].concat();
-        let group = |label: &str, pipeline: &wgpu::ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]| {
-            bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers)
-        };
-        let displace = slabs.iter().map(|slab| {
-            let buffers = [
-                (0, params),
-                (1, &slab.slab_buffer),
-                (2, &slab.chunks),
-                (4, &slab.patch_factors),
-                (5, &b.points),
-                (6, &b.patches),
-                (7, &b.curve_nets),
-                (8, &b.corners),
-                (9, vertices),
-                (11, &b.shares),
-                (21, &images.maps),
-            ];
-            let mut entries: Vec<_> = buffers
-                .iter()
-                .map(|&(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-                .collect();
-            let view = wgpu::BindingResource::TextureView(&images.view);
-            entries.push(wgpu::BindGroupEntry { binding: 20, resource: view });
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("displace"),
-                layout: &pipelines.displace.get_bind_group_layout(0),
-                entries: &entries,
-            })
-        });
-        Some(Self {
-            directions: group("directions", &pipelines.directions, &directions),
-            frames: group("frames", &pipelines.frames, &frames),
-            corner_count: relief.corner_count,
-            factor_levels: group("levels.factors", &pipelines.factor_levels, &factor_levels),
-            point_levels: group("levels.points", &pipelines.point_levels, &point_levels),
-            displace: displace.collect(),
-        })
-    }
-
-    /// Once a mesh, as its nets are: the direction of every point, and the frame of every corner.
-    pub fn record_directions(&self, recorder: &mut Recorder, pipelines: &ComputePipelines, b: &MeshBuffers) {
-        recorder.compute("directions", |pass| {
-            dispatch(pass, &pipelines.directions, &self.directions, grid(b.point_count));
-            dispatch(pass, &pipelines.frames, &self.frames, grid(self.corner_count));
-        });
-    }
-
-    /// After the factors: the levels of edges and points.
-    pub fn record_levels(&self, recorder: &mut Recorder, pipelines: &ComputePipelines, b: &MeshBuffers) {
-        recorder.compute("levels", |pass| {
-            dispatch(pass, &pipelines.factor_levels, &self.factor_levels, grid(b.factor_count));
-            dispatch(pass, &pipelines.point_levels, &self.point_levels, grid(b.point_count));
-        });
-    }
-
-    /// What [`ComputePipelines::displace`] is bound to for a slab.
-    pub fn displace(&self, slab: usize) -> &wgpu::BindGroup {
-        &self.displace[slab]
-    }
 }

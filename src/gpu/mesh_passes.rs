@@ -1,0 +1,114 @@
+//! The passes that run over a whole mesh, each bound to the mesh's buffers when it first runs.
+
+use std::sync::OnceLock;
+
+use super::GpuError;
+use super::bound_pass::{BoundPass, PassInputs};
+use super::relief_buffers::{HeightImages, ReliefBuffers};
+
+/// These belong to one set of mesh buffers: when those are replaced, so must this be.
+#[derive(Default)]
+pub struct MeshPasses {
+    curve_nets: OnceLock<BoundPass>,
+    centers: OnceLock<BoundPass>,
+    directions: OnceLock<BoundPass>,
+    frames: OnceLock<BoundPass>,
+    edge_factors: OnceLock<BoundPass>,
+    heights_inside: OnceLock<BoundPass>,
+    factor_levels: OnceLock<BoundPass>,
+    point_levels: OnceLock<BoundPass>,
+}
+
+type Bound<'a> = Result<&'a BoundPass, GpuError>;
+
+impl MeshPasses {
+    /// The control points of every curve.
+    pub fn curve_nets(&self, on: &PassInputs) -> Bound<'_> {
+        let mesh = on.mesh;
+        let buffers = [
+            (0, on.params),
+            (1, &mesh.points),
+            (2, &mesh.corners),
+            (3, &mesh.curves),
+            (4, &mesh.curve_sides),
+            (6, &mesh.curve_nets),
+        ];
+        BoundPass::once(&self.curve_nets, on.gpu, &on.pipelines.curve_nets, &buffers)
+    }
+
+    /// The control point at the centre of every patch.
+    pub fn centers(&self, on: &PassInputs) -> Bound<'_> {
+        let mesh = on.mesh;
+        let buffers = [(0, on.params), (1, &mesh.points), (5, &mesh.patches), (6, &mesh.curve_nets)];
+        BoundPass::once(&self.centers, on.gpu, &on.pipelines.centers, &buffers)
+    }
+
+    /// The direction in which displacement moves every point.
+    pub fn directions(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
+        let buffers =
+            [(0, on.params), (2, &on.mesh.corners), (6, &on.mesh.shares), (7, &relief.part_starts), (8, &relief.parts)];
+        BoundPass::once(&self.directions, on.gpu, &on.pipelines.directions, &buffers)
+    }
+
+    /// How texture coordinates change at every corner.
+    pub fn frames(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
+        let mesh = on.mesh;
+        let buffers = [
+            (0, on.params),
+            (1, &mesh.points),
+            (2, &mesh.corners),
+            (3, &mesh.patches),
+            (6, &mesh.shares),
+            (7, &relief.corner_starts),
+            (9, &relief.corner_patches),
+        ];
+        BoundPass::once(&self.frames, on.gpu, &on.pipelines.frames, &buffers)
+    }
+
+    /// LOD's factor of every edge.
+    pub fn edge_factors(&self, on: &PassInputs) -> Bound<'_> {
+        BoundPass::once(&self.edge_factors, on.gpu, &on.pipelines.edge_factors, &factor_buffers(on))
+    }
+
+    /// The factor that the heights of every patch need inside it.
+    pub fn heights_inside(&self, on: &PassInputs) -> Bound<'_> {
+        let buffers = [&factor_buffers(on)[..], &[(7, &on.mesh.patches)]].concat();
+        BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
+    }
+
+    /// The level at which heights are looked up on every edge.
+    pub fn factor_levels(&self, on: &PassInputs, images: &HeightImages) -> Bound<'_> {
+        let mesh = on.mesh;
+        let buffers = [
+            (0, on.params),
+            (1, &mesh.points),
+            (2, &mesh.corners),
+            (3, &mesh.patches),
+            (4, &mesh.edge_factors),
+            (5, on.given),
+            (6, &mesh.shares),
+            (21, &images.maps),
+        ];
+        BoundPass::once(&self.factor_levels, on.gpu, &on.pipelines.factor_levels, &buffers)
+    }
+
+    /// The level at which heights are looked up at every point.
+    pub fn point_levels(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
+        let buffers = [(0, on.params), (6, &on.mesh.shares), (7, &relief.factor_starts), (9, &relief.factors)];
+        BoundPass::once(&self.point_levels, on.gpu, &on.pipelines.point_levels, &buffers)
+    }
+}
+
+fn factor_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 8] {
+    let mesh = on.mesh;
+    [
+        (0, on.params),
+        (1, &mesh.points),
+        (2, &mesh.curves),
+        (3, &mesh.curve_nets),
+        (4, &mesh.factor_curves),
+        (5, &mesh.edge_factors),
+        (6, &mesh.shares),
+        (22, &mesh.details),
+    ]
+}

@@ -1,0 +1,239 @@
+//! Every constant that stands in Rust and in WGSL has the same value in both.
+
+use std::collections::BTreeMap;
+
+use super::modules;
+use crate::gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
+use crate::gpu::layout::LOD_GIVEN;
+use crate::gpu::relief_buffers::HEIGHTS_ACROSS;
+use crate::gpu::{GRID_WIDTH, WORKGROUP};
+use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
+use crate::render::coverage::TILE;
+use crate::render::layout::{
+    BACK_FACE_COLOR, FOLD_COLOR, FOUND_EMITTED, NORMAL_COLOR, WASTE_COLOR, edge_color, linear, overlay_bits,
+};
+use crate::render::scale::Scale;
+use crate::settings::{Colors, Overlays};
+use crate::tessellate::shared_constants::{
+    BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, CANCELLED,
+    DETAIL_SHARE, EDGE_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD, FACTOR_VALUE, FIXED_HALF,
+    FIXED_ONE, FIXED_TWO_THIRDS, NESTING, OUT_OF_VIEW, PARALLEL, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES,
+    POLAR_WEIGHTS, ROW_SAMPLES, SEEN, SUBTRIANGULATED, SURFACE_SHARE, TURN_SHARE, UNIT,
+};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+
+/// Constants that WGSL alone has, and why.
+const WGSL_ALONE: &[(&[&str], &str)] = &[
+    (&["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED"], "in Rust, an enum without numbers"),
+    (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
+    (&["FOUND_SOURCE"], "Rust takes any other number than 0 and FOUND_EMITTED for it"),
+    (&["ALL_MAPS", "NO_PATCH"], "markers within one pass"),
+    (
+        &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
+        "how one pass divides its work; it is dispatched indirectly",
+    ),
+    (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
+    (&["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING"], "how lines look"),
+];
+
+/// The values of a constant, component by component, and by how much they may differ.
+struct Expected(Vec<f64>, f64);
+
+/// One number.
+fn number(value: impl Into<f64>) -> Expected {
+    Expected(vec![value.into()], 0.0)
+}
+
+fn numbers<T: Into<f64>>(values: impl IntoIterator<Item = T>) -> Expected {
+    Expected(values.into_iter().map(Into::into).collect(), 0.0)
+}
+
+/// An sRGB colour, which WGSL has in linear light with three decimals.
+fn color(srgb: [u8; 3]) -> Expected {
+    Expected(linear(srgb).map(f64::from).to_vec(), 0.0006)
+}
+
+fn overlay(overlays: Overlays) -> Expected {
+    number(overlay_bits(&overlays))
+}
+
+fn colors(colors: Colors) -> Expected {
+    overlay(Overlays { colors, ..Overlays::default() })
+}
+
+/// Every constant of both languages: its name in WGSL, and its value in Rust.
+fn table() -> Vec<(&'static str, Expected)> {
+    let none = Overlays::default();
+    let mut table = of_the_mathematics();
+    table.extend(of_enums());
+    table.extend([
+        ("LOD_GIVEN", number(LOD_GIVEN)),
+        ("MAX_LEVELS", number(MAX_LEVELS as u32)),
+        ("MAX_MAPS", number(MAX_MAPS as u32)),
+        ("WORKGROUP", number(WORKGROUP)),
+        ("GRID_WIDTH", number(GRID_WIDTH)),
+        ("HEIGHTS_ACROSS", number(HEIGHTS_ACROSS)),
+        ("DOMAIN_POINTS", number(DOMAIN_POINTS as u32)),
+        ("DOMAIN_TRIANGLES", number(DOMAIN_TRIANGLES as u32)),
+        ("TILE", number(TILE)),
+        ("SCALE_STOPS", number(Scale::STOPS as u32)),
+        ("FOUND_EMITTED", number(FOUND_EMITTED)),
+        ("OVERLAY_WIREFRAME", overlay(Overlays { wireframe: true, ..none })),
+        ("OVERLAY_PATCHES", overlay(Overlays { patches: true, ..none })),
+        ("OVERLAY_ADJACENCY", overlay(Overlays { adjacency: true, ..none })),
+        ("OVERLAY_FOLDS", overlay(Overlays { folds: true, ..none })),
+        ("OVERLAY_BACK_FACES", overlay(Overlays { back_faces: true, ..none })),
+        ("OVERLAY_BARYCENTRIC", colors(Colors::Barycentric)),
+        ("OVERLAY_FACTORS", colors(Colors::Factors)),
+        ("OVERLAY_TRIANGLE_SIZE", colors(Colors::TriangleSize)),
+        ("OVERLAY_LOW_FACTORS", colors(Colors::LowFactors)),
+        ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
+        ("FOLD_COLOR", color(FOLD_COLOR)),
+        ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
+        ("WASTE_COLOR", color(WASTE_COLOR)),
+        ("NORMAL_COLOR", color(NORMAL_COLOR)),
+        // This grey has two decimals.
+        ("SMOOTH_EDGE_COLOR", Expected(color(edge_color(EdgeKind::Smooth)).0, 0.005)),
+        ("SPLIT_EDGE_COLOR", color(edge_color(EdgeKind::Split))),
+        ("SEAM_EDGE_COLOR", color(edge_color(EdgeKind::Seam))),
+        ("BOUNDARY_EDGE_COLOR", color(edge_color(EdgeKind::Boundary))),
+        ("NON_MANIFOLD_EDGE_COLOR", color(edge_color(EdgeKind::NonManifold))),
+    ]);
+    table
+}
+
+fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
+    vec![
+        ("PARALLEL", number(PARALLEL)),
+        ("UNIT", number(UNIT)),
+        ("CANCELLED", number(CANCELLED)),
+        ("ROW_SAMPLES", numbers(ROW_SAMPLES)),
+        ("FACING_MARGIN", number(FACING_MARGIN)),
+        ("FACING_ROUNDING", number(FACING_ROUNDING)),
+        ("POLAR_INDICES", numbers(POLAR_INDICES.map(|index| index as u32))),
+        ("POLAR_WEIGHTS", numbers(POLAR_WEIGHTS)),
+        ("SEEN", number(SEEN)),
+        ("OUT_OF_VIEW", number(OUT_OF_VIEW)),
+        ("FACING_AWAY", number(FACING_AWAY)),
+        ("EDGE_SHARE", number(EDGE_SHARE)),
+        ("SURFACE_SHARE", number(SURFACE_SHARE)),
+        ("DETAIL_SHARE", number(DETAIL_SHARE)),
+        ("TURN_SHARE", number(TURN_SHARE)),
+        ("NESTING", numbers(NESTING.into_iter().flatten())),
+        ("FIXED_ONE", number(FIXED_ONE)),
+        ("FIXED_HALF", number(FIXED_HALF)),
+        ("FIXED_TWO_THIRDS", number(FIXED_TWO_THIRDS)),
+        ("FACTOR_ODD", number(FACTOR_ODD)),
+        ("FACTOR_VALUE", number(FACTOR_VALUE)),
+        ("SUBTRIANGULATED", number(SUBTRIANGULATED)),
+        ("BITS_ONE", number(BITS_ONE)),
+        ("BITS_TWO", number(BITS_TWO)),
+        ("BITS_63", number(BITS_63)),
+        ("BITS_64", number(BITS_64)),
+        ("BITS_INFINITY", number(BITS_INFINITY)),
+        ("BITS_ONE_AND_HALF_STEP", number(BITS_ONE_AND_HALF_STEP)),
+        ("BITS_ONE_AND_STEP", number(BITS_ONE_AND_STEP)),
+        ("PATTERN_HALVES", number(PATTERN_HALVES)),
+        ("PATTERN_STEPS", number(PATTERN_STEPS)),
+    ]
+}
+
+fn of_enums() -> Vec<(&'static str, Expected)> {
+    vec![
+        ("CONVENTION_D3D11", number(Convention::D3d11 as u32)),
+        ("CONVENTION_AMD_PN", number(Convention::AmdPn as u32)),
+        ("CONVENTION_EDGE_ORDER", number(Convention::EdgeOrder as u32)),
+        ("CONVENTION_ROTATED", number(Convention::Rotated as u32)),
+        ("CONVENTION_MIRRORED", number(Convention::Mirrored as u32)),
+        ("CLIP_OFF", number(Clip::Off as u32)),
+        ("CLIP_PAPER", number(Clip::Paper as u32)),
+        ("CLIP_FRUSTUM", number(Clip::Frustum as u32)),
+        ("DISPLACEMENT_OFF", number(Displacement::Off as u32)),
+        ("DISPLACEMENT_ON", number(Displacement::On as u32)),
+        ("DISPLACEMENT_AS_PUBLISHED", number(Displacement::AsPublished as u32)),
+        ("DISPLACEMENT_PER_PATCH", number(Displacement::PerPatch as u32)),
+        ("EDGES_PER_EDGE", number(Edges::PerEdge as u32)),
+        ("EDGES_AS_PUBLISHED", number(Edges::AsPublished as u32)),
+        ("EDGE_SMOOTH", number(EdgeKind::Smooth as u32)),
+        ("EDGE_SPLIT", number(EdgeKind::Split as u32)),
+        ("EDGE_SEAM", number(EdgeKind::Seam as u32)),
+        ("EDGE_BOUNDARY", number(EdgeKind::Boundary as u32)),
+        ("EDGE_NON_MANIFOLD", number(EdgeKind::NonManifold as u32)),
+        ("LOD_UNIFORM", number(Lod::Uniform as u32)),
+        ("LOD_PAPER", number(Lod::Paper as u32)),
+        ("LOD_EDGE_LENGTH", number(Lod::EdgeLength as u32)),
+        ("LOD_ERROR", number(Lod::Error as u32)),
+        ("LOD_DISTANCE", number(Lod::Distance as u32)),
+        ("NORMALS_LINEAR", number(Normals::Linear as u32)),
+        ("NORMALS_QUADRATIC", number(Normals::Quadratic as u32)),
+        ("NORMALS_SURFACE", number(Normals::Surface as u32)),
+        ("PARTITIONING_INTEGER", number(Partitioning::Integer as u32)),
+        ("PARTITIONING_POW2", number(Partitioning::Pow2 as u32)),
+        ("PARTITIONING_FRACTIONAL_ODD", number(Partitioning::FractionalOdd as u32)),
+        ("PARTITIONING_FRACTIONAL_EVEN", number(Partitioning::FractionalEven as u32)),
+        ("PARTITIONING_SUBTRIANGULATION", number(Partitioning::Subtriangulation as u32)),
+        ("SURFACE_FLAT", number(Surface::Flat as u32)),
+        ("SURFACE_PN", number(Surface::Pn as u32)),
+        ("SURFACE_PN_AEN", number(Surface::PnAen as u32)),
+        ("SURFACE_PN_CREASE", number(Surface::PnCrease as u32)),
+        ("SURFACE_PHONG", number(Surface::Phong as u32)),
+        ("SURFACE_PHONG_AEN", number(Surface::PhongAen as u32)),
+        ("SURFACE_NAGATA", number(Surface::Nagata as u32)),
+        ("SURFACE_NAGATA_AEN", number(Surface::NagataAen as u32)),
+    ]
+}
+
+/// The components of a constant expression, as naga has evaluated it.
+fn components(module: &naga::Module, value: naga::Handle<naga::Expression>, out: &mut Vec<f64>) {
+    match &module.global_expressions[value] {
+        naga::Expression::Literal(naga::Literal::F32(value)) => out.push((*value).into()),
+        naga::Expression::Literal(naga::Literal::U32(value)) => out.push((*value).into()),
+        naga::Expression::Literal(naga::Literal::I32(value)) => out.push((*value).into()),
+        naga::Expression::Compose { components: parts, .. } => {
+            parts.iter().for_each(|part| components(module, *part, out));
+        }
+        naga::Expression::Constant(constant) => components(module, module.constants[*constant].init, out),
+        other => panic!("a constant of a kind that this test doesn't know: {other:?}"),
+    }
+}
+
+/// Every constant of the shaders.
+fn wgsl_constants() -> BTreeMap<String, Vec<f64>> {
+    let mut all = BTreeMap::new();
+    for (file, module) in modules() {
+        for (_, constant) in module.constants.iter() {
+            let Some(name) = constant.name.clone() else { continue };
+            let mut values = Vec::new();
+            components(module, constant.init, &mut values);
+            let known = all.entry(name.clone()).or_insert_with(|| values.clone());
+            assert_eq!(*known, values, "{name} in {}", file.name);
+        }
+    }
+    all
+}
+
+#[test]
+fn constants_of_both_languages_are_equal() {
+    let wgsl = wgsl_constants();
+    for (name, Expected(rust, tolerance)) in table() {
+        let Some(found) = wgsl.get(name) else { panic!("no shader has {name}") };
+        assert_eq!(found.len(), rust.len(), "components of {name}");
+        let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= tolerance;
+        assert!(found.iter().zip(&rust).all(is_near), "{name} is {found:?} in WGSL and {rust:?} in Rust");
+    }
+}
+
+#[test]
+fn every_constant_of_the_shaders_is_compared_or_wgsls_alone() {
+    let (wgsl, table) = (wgsl_constants(), table());
+    let alone: Vec<_> = WGSL_ALONE.iter().flat_map(|(names, _)| names.iter().copied()).collect();
+    for name in wgsl.keys() {
+        let compared = table.iter().filter(|(known, _)| known == name).count();
+        let listed = alone.iter().filter(|known| *known == name).count();
+        assert_eq!(compared + listed, 1, "{name} must be in the table or listed as WGSL's alone, once");
+    }
+    for name in alone {
+        assert!(wgsl.contains_key(name), "no shader has {name}");
+    }
+    assert!(WGSL_ALONE.iter().all(|(_, why)| !why.is_empty()));
+}
