@@ -6,8 +6,9 @@ use super::Gpu;
 use crate::tessellate::{Normals, patterns};
 
 /// Rooms of the tessellator itself, part of every module that tessellates.
-const DOMAIN: [&str; 3] = [
+const DOMAIN: [&str; 4] = [
     include_str!("../../shaders/factors.wgsl"),
+    include_str!("../../shaders/rings.wgsl"),
     include_str!("../../shaders/domain.wgsl"),
     include_str!("../../shaders/subtriangulation.wgsl"),
 ];
@@ -29,8 +30,8 @@ const WORKGROUP_SCAN: &str = include_str!("../../shaders/workgroup_scan.wgsl");
 
 /// What every module starts with. Declarations in WGSL may stand in any order, so a module is its rooms, one after
 /// another; names are unique across rooms.
-const ROOMS: [&str; 11] =
-    [DOMAIN[0], DOMAIN[1], DOMAIN[2], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
+const ROOMS: [&str; 12] =
+    [DOMAIN[0], DOMAIN[1], DOMAIN[2], DOMAIN[3], CONTROL_POINTS, SURFACE, NORMAL, LOD, ERROR, CULL, CONVENTION, TYPES];
 
 /// Every shader module by name, with the rooms that only it has. A test validates each.
 pub const SHADERS: [(&str, &[&str]); 15] = [

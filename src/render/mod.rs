@@ -16,11 +16,11 @@ mod scene;
 mod steps;
 mod target;
 
-pub use camera::{Camera, Standpoint, project};
+pub use camera::{Camera, Standpoint};
 pub use coverage::Sieve;
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use leaks::LeakCounter;
-pub use marks::{patch_lines, t_junction_lines, worst_lines};
+pub use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::Renderer;
 pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};

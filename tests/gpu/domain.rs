@@ -122,6 +122,7 @@ fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
     let source = [
         include_str!("../../shaders/factors.wgsl"),
+        include_str!("../../shaders/rings.wgsl"),
         include_str!("../../shaders/domain.wgsl"),
         include_str!("../../shaders/connectivity.wgsl"),
         include_str!("../../shaders/subtriangulation.wgsl"),

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 use pnaen::gpu::Timing;
-use pnaen::measure::Deviation;
+use pnaen::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
@@ -21,9 +21,9 @@ fn is_capped(written: &[HullFactors]) -> bool {
 }
 
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
-    let mut deviation = Deviation::new(mesh, topology, inputs);
-    deviation.take(&out.vertices, &out.triangles, out.triangles.len() as u64);
-    deviation.worst().map_or(0.0, |worst| worst.px)
+    let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, out.triangles.len() as u64);
+    measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
+    measurement.worst().map_or(0.0, |worst| worst.px)
 }
 
 /// What rounding adds to a distance in px: emitted positions are off by a few units in the last place of coordinates
