@@ -130,6 +130,7 @@ impl Camera {
 mod tests {
     use super::*;
     use crate::view::project;
+    use glam::vec2;
 
     fn unit_bounds() -> Bounds {
         Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter())
