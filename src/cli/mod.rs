@@ -38,7 +38,9 @@ pub use given::GivenOption;
 
 pub use options::{LimitOption, SurfaceOptions, WeldOption};
 pub use picture_comparison::{CompareError, Comparison, compare};
+pub use render::run_with as render_with;
 pub use split::SplitOption;
+pub use tessellate::run_with as tessellate_with;
 pub use truth::TruthOption;
 pub use written::Shown;
 

@@ -17,6 +17,7 @@ mod moving;
 mod passes;
 mod picking;
 mod pictures;
+mod readbacks;
 mod rim;
 mod stability;
 
