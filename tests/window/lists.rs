@@ -6,6 +6,7 @@ use std::time::Instant;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::tessellate::Surface;
