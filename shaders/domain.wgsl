@@ -1,6 +1,6 @@
 // Domain points and triangles of a patch, each one in closed form from its number.
-// Twin of src/tessellate/domain.rs, which says what each function means. Goes with factors.wgsl and
-// subtriangulation.wgsl, and with connectivity.wgsl, or patterns.wgsl in its place.
+// Twin of src/tessellate/domain.rs, which says what each function means. Goes with factors.wgsl,
+// rings.wgsl and subtriangulation.wgsl, and with connectivity.wgsl, or patterns.wgsl in its place.
 
 const FIXED_TWO_THIRDS: u32 = 0xaaaau;
 
@@ -53,11 +53,6 @@ fn row_location(row: DomainRow, p: u32) -> u32 {
     let fine_part = fine * row.fine_step * row.fraction;
     let x = (coarse_part + fine_part + FIXED_HALF) >> 16u;
     return select(x, FIXED_ONE - x, mirrored);
-}
-
-fn rings_before(m: u32, area: u32) -> u32 {
-    let root = sqrt(f32(m * m - 4u * area));
-    return u32((f32(m) - root) * 0.5 + 0.0078125);
 }
 
 const PATTERN_RINGS: u32 = 0u;
@@ -123,10 +118,6 @@ fn inner_point(row: DomainRow, n: u32, i: u32) -> vec2<u32> {
     return select(beside, vec2<u32>(along, FIXED_ONE - along - across), side == 2u);
 }
 
-fn ring_point(start: u32, length: u32, p: u32) -> u32 {
-    return start + select(p, 0u, p == length);
-}
-
 fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     if plan.kind == PATTERN_MINIMAL {
         return vec3<u32>(0u, 1u, 2u);
@@ -139,13 +130,6 @@ fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
         return transition_triangle(plan, t);
     }
     return regular_triangle(plan.outer, plan.n, t - transition);
-}
-
-struct TransitionStep {
-    inner: u32,
-    outer: u32,
-    along_inner: bool,
-    inner_first: bool,
 }
 
 fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {

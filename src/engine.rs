@@ -1,9 +1,11 @@
-//! The engine as both faces use it: a device with its pipelines, and what one does with a scene without a window.
+//! The engine that the window and the commands share: a device with its pipelines, and everything that is done with a scene
+//! without a window.
 
-mod measured;
+mod measurements;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::files::Limits;
@@ -12,12 +14,14 @@ use crate::gpu::{
     vertices_of,
 };
 use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, rim_warnings, untextured_warning};
-use crate::measure::AskedFactors;
+use crate::measure::{AskedFactors, EmittedChunk, Visitor};
 use crate::mesh::{BuildError, Mesh, Moment, Rim, Topology, with_rim};
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Half, Settings};
-use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated, Vertex};
+use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated};
+
+pub use measurements::{MeasurementResults, Measurements};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -140,6 +144,8 @@ pub struct Engine {
     pub renderer: Arc<Renderer>,
     pub picker: Arc<Picker>,
     leaks: Arc<LeakCounter>,
+    /// See [`Self::chunks_read`].
+    chunks_read: Arc<AtomicU64>,
 }
 
 impl Engine {
@@ -147,7 +153,7 @@ impl Engine {
         let pipelines = Arc::new(ComputePipelines::new());
         let renderer = Arc::new(Renderer::new(&gpu));
         let (picker, leaks) = (Arc::new(Picker::new()), Arc::new(LeakCounter::new()));
-        Self { gpu, pipelines, renderer, picker, leaks }
+        Self { gpu, pipelines, renderer, picker, leaks, chunks_read: Arc::default() }
     }
 
     /// An engine on the machine's best adapter, without a window.
@@ -240,30 +246,36 @@ impl Engine {
         Ok(())
     }
 
-    /// Everything that is emitted, chunk by chunk: calls `take` with each chunk's first patch and its vertices, and its
-    /// triangles if `triangles` is set. The counts must be known.
+    /// Walks once over everything that is emitted: each chunk is emitted, read back once, and given to every visitor. Reads
+    /// nothing without visitors. The counts must be known.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn read_chunks(
-        &self,
-        scene: &mut Scene,
-        triangles: bool,
-        mut take: impl FnMut(u32, &[Vertex], &[[u32; 3]]),
-    ) -> Result<(), GpuError> {
+    pub fn visit(&self, scene: &mut Scene, visitors: &mut [&mut dyn Visitor]) -> Result<(), GpuError> {
+        if visitors.is_empty() {
+            return Ok(());
+        }
         for index in 0..scene.tessellator.chunk_count() {
             let mut timing = Timing::Off;
             let mut recorder = Recorder::new(&self.gpu, &mut timing);
             scene.tessellator.emit(&mut recorder, index)?;
             recorder.submit();
-            let chunk = scene.tessellator.chunk(index);
-            let [first, second] = chunk.vertices();
-            let triangle_bytes = if triangles { u64::from(chunk.chunk.triangle_count) * 12 } else { 0 };
-            let bytes = read_buffers(&self.gpu, [first, second, (chunk.indices, 0..triangle_bytes)])?;
+            let buffers = scene.tessellator.chunk(index);
+            let [first, second] = buffers.vertices();
+            let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
+            let bytes = read_buffers(&self.gpu, [first, second, (buffers.indices, 0..triangle_bytes)])?;
+            self.chunks_read.fetch_add(1, Ordering::Relaxed);
             let (halves, indices) = bytes.split_at(bytes.len() - triangle_bytes as usize);
-            take(chunk.chunk.first_patch, &vertices_of(halves), &cast(indices));
+            let (first_patch, vertices, triangles) = (buffers.chunk.first_patch, vertices_of(halves), cast(indices));
+            let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
+            visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
         }
         Ok(())
+    }
+
+    /// How many chunks of output this engine and its clones have read back so far.
+    pub fn chunks_read(&self) -> u64 {
+        self.chunks_read.load(Ordering::Relaxed)
     }
 
     /// The factors that every patch was emitted with.
@@ -301,11 +313,14 @@ impl Engine {
             edge_factors: self.asked_factors(scene)?.into_factors(),
             ..Tessellated::default()
         };
-        self.read_chunks(scene, true, |_, vertices, triangles| {
-            let base = out.vertices.len() as u32;
-            out.vertices.extend_from_slice(vertices);
-            out.triangles.extend(triangles.iter().map(|triangle| triangle.map(|i| base + i)));
-        })?;
+        self.visit(
+            scene,
+            &mut [&mut |chunk: &EmittedChunk| {
+                let base = out.vertices.len() as u32;
+                out.vertices.extend_from_slice(chunk.vertices);
+                out.triangles.extend(chunk.triangles.iter().map(|triangle| triangle.map(|i| base + i)));
+            }],
+        )?;
         Ok(out)
     }
 

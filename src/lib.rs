@@ -30,3 +30,4 @@ pub mod settings;
 pub mod stability;
 pub mod tessellate;
 pub mod truth;
+pub mod view;

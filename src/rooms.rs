@@ -13,17 +13,17 @@ use syn::{Item, UseTree};
 
 /// Every room. Those of one line are side by side and don't import each other; a room imports from lines above its own.
 const ORDER: &[&[&str]] = &[
-    &["names", "numbers", "markdown", "progress"],
+    &["names", "numbers", "markdown", "plot", "progress"],
     &["files"],
     &["mesh"],
     &["load", "tessellate"],
-    &["adjacency_file", "factors_file", "truth"],
+    &["adjacency_file", "factors_file", "truth", "view"],
     &["gpu"],
     &["settings"],
     &["measure"],
     &["render"],
     &["engine"],
-    &["export", "plot"],
+    &["export"],
     &["chart", "stability", "gallery"],
     &["cli"],
     &["app"],

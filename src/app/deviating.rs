@@ -3,9 +3,9 @@
 use std::sync::mpsc::{Receiver, TryRecvError, channel, sync_channel};
 
 use super::beside::{Stopped, caught, spawn};
-use super::measuring::{Copying, Part, PartKind, Trouble, WAITING, copy_chunk, copy_on};
-use crate::gpu::{Gpu, GpuError, vertices_of};
-use crate::measure::{Field, Place, Yardstick};
+use super::measuring::{Copying, Part, PartKind, Trouble, WAITING, copy_chunk, copy_on, visit};
+use crate::gpu::{Gpu, GpuError};
+use crate::measure::{DeviationField, DeviationMeasurement, DeviationTarget, WorstPoint};
 use crate::progress::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
 use crate::tessellate::{Posed, Surface};
@@ -39,7 +39,7 @@ pub struct Of {
 pub struct Found {
     of: Of,
     /// None if nothing was emitted.
-    pub worst: Option<Place>,
+    pub worst: Option<WorstPoint>,
     /// Object units.
     pub rms: f64,
     /// Triangles without a colour, because there were too many.
@@ -55,7 +55,7 @@ impl Found {
 
 /// The thread that compares; it gives up when this is dropped.
 struct Comparing {
-    found: Receiver<Result<Field, Stopped>>,
+    found: Receiver<Result<DeviationField, Stopped>>,
     wanted: Progress,
 }
 
@@ -113,11 +113,11 @@ impl Deviating {
         gpu: &Gpu,
         scene: &mut Scene,
         of: Of,
-        yardstick: impl FnOnce() -> Yardstick,
+        target: impl FnOnce() -> DeviationTarget,
     ) -> Result<(), Trouble> {
         if self.of != Some(of) {
             self.of = Some(of);
-            self.start(gpu, scene, yardstick())?;
+            self.start(gpu, scene, target())?;
             return Ok(());
         }
         copy_on(&mut self.copying, gpu, scene)?;
@@ -143,11 +143,11 @@ impl Deviating {
     /// It failed: what waits for distances is drawn without.
     fn do_without(&mut self, gpu: &Gpu, scene: &mut Scene) {
         self.comparing = None;
-        scene.set_deviation(gpu, Some((&Field::new(0), DEVIATION_PX_SCALE)));
+        scene.set_deviation(gpu, Some((&DeviationField::empty(), DEVIATION_PX_SCALE)));
         self.generation += 1;
     }
 
-    fn start(&mut self, gpu: &Gpu, scene: &mut Scene, yardstick: Yardstick) -> Result<(), GpuError> {
+    fn start(&mut self, gpu: &Gpu, scene: &mut Scene, target: DeviationTarget) -> Result<(), GpuError> {
         self.comparing = None;
         let (parts, received) = sync_channel(WAITING);
         let (sender, found) = channel();
@@ -155,8 +155,8 @@ impl Deviating {
         let (posed, still_wanted) = (scene.tessellator.posed().clone(), wanted.clone());
         let (triangles, chunks) = (scene.tessellator.totals().1, scene.tessellator.chunk_count());
         spawn(move || {
-            let measure = || field(&received, &posed, &yardstick, triangles, &still_wanted);
-            let whole = |field: &Field| field.chunks.len() == chunks;
+            let measure = || field(&received, &posed, &target, triangles, &still_wanted);
+            let whole = |field: &DeviationField| field.chunks.len() == chunks;
             if let Some(result) = caught(|| measure().filter(whole)).transpose() {
                 let _ = sender.send(result);
             }
@@ -172,22 +172,17 @@ impl Deviating {
 fn field(
     parts: &Receiver<Part>,
     posed: &Posed,
-    yardstick: &Yardstick,
+    target: &DeviationTarget,
     triangles: u64,
     wanted: &Progress,
-) -> Option<Field> {
+) -> Option<DeviationField> {
     let (mesh, topology) = posed.deformed();
-    let mut field = Field::new(triangles);
-    yardstick.with(&mesh, &topology, |against| {
-        for Part(part, readback) in parts {
-            let PartKind::Chunk { vertex_bytes, .. } = part else { continue };
-            let bytes = readback.bytes().ok()?;
-            let (vertices, indices) = bytes.split_at(vertex_bytes);
-            let vertices = vertices_of(vertices);
-            let indices = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
-            field.take(against, &vertices, &indices, wanted).ok()?;
-        }
-        wanted.check().ok()
-    })?;
-    Some(field)
+    let mut measurement = DeviationMeasurement::new(target, &mesh, &topology, triangles, wanted);
+    for Part(part, readback) in parts {
+        let PartKind::Chunk { first_patch, vertex_bytes } = part else { continue };
+        visit(first_patch, vertex_bytes, &readback, &mut [&mut measurement])?;
+        wanted.check().ok()?;
+    }
+    wanted.check().ok()?;
+    measurement.finish().ok()
 }

@@ -10,11 +10,12 @@ use super::legend::Distances;
 use super::measuring::Trouble;
 use super::text::{grouped, short, shortened};
 use super::widgets::{fact, heading, number, swatch};
-use crate::measure::{MOST_TRIANGLES, Yardstick};
+use crate::measure::{DeviationTarget, MOST_TRIANGLES};
 use crate::render::layout::WORST_COLOR;
-use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, project, worst_lines};
+use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, worst_lines};
 use crate::settings::{Colors, DeviationUnit, Half, Settings};
 use crate::tessellate::{Clip, Inputs, Lod};
+use crate::view::project;
 
 impl App {
     fn deviating(&self, half: Half) -> &Deviating {
@@ -68,12 +69,12 @@ impl App {
             let is_posed = document.moment == self.playback.moment();
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
-            let yardstick = || truth.map_or_else(|| Yardstick::Limit(Box::new(*inputs)), Yardstick::Truth);
+            let target = || truth.map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::Truth);
             let deviating = match half {
                 Half::Left => &mut self.left.deviating,
                 Half::Right => &mut self.deviating,
             };
-            deviating.go_on(&self.engine.gpu, scene, of, yardstick)?;
+            deviating.go_on(&self.engine.gpu, scene, of, target)?;
         }
         self.scale_deviation();
         Ok(())

@@ -5,9 +5,10 @@ use egui::RichText;
 use super::App;
 use super::text::{grouped, part, short};
 use super::widgets::{fact, heading, number, swatch};
-use crate::measure::{Cracks, Culled, ulp};
+use crate::measure::{Cracks, Culled};
 use crate::mesh::EdgeKind;
 use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
+use crate::view::ulp;
 
 /// Name and explanation of each kind of edge.
 pub(super) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [

@@ -7,11 +7,10 @@ use super::names::letter;
 use super::text::factor;
 use super::viewport::{note_text, paint_note};
 use super::widgets::rgb;
-use crate::measure::ScreenView;
 use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
-use crate::render::project;
 use crate::settings::Half;
 use crate::tessellate::{domain_side, factor_side, segments};
+use crate::view::{ScreenView, project};
 
 /// Points on screen that a patch must extend over to be labelled.
 const LEAST_EXTENT: f32 = 60.0;
@@ -77,9 +76,9 @@ impl App {
     /// Factor `i` of a patch as LOD gave it, and the segments that it became.
     fn factor_text(&self, patch: u32, i: u32) -> String {
         let (Some(document), Some(found)) = (&self.document, self.measuring.found()) else { return " = …".into() };
-        let Some(sides) = found.rims.patch(&document.loaded.topology, patch) else { return String::new() };
+        let Some(sides) = found.outlines.patch(&document.loaded.topology, patch) else { return String::new() };
         let asked = sides[factor_side(self.convention(), i) as usize].factor;
-        let cut = segments(found.rims.factors(patch).outside[i as usize]);
+        let cut = segments(found.outlines.factors(patch).outside[i as usize]);
         format!(" = {} -> {cut}", factor(f64::from(asked), 2))
     }
 }

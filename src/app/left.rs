@@ -10,9 +10,9 @@ use super::document::arena_bytes;
 use super::measuring::{Measuring, Trouble};
 use crate::engine::Engine;
 use crate::gpu::GpuError;
-use crate::measure::ScreenView;
 use crate::render::Scene;
 use crate::settings::Half;
+use crate::view::ScreenView;
 
 /// What takes longer to make than this is said to be made.
 const NOTICED: Duration = Duration::from_millis(300);

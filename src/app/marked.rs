@@ -4,7 +4,7 @@ use super::App;
 use super::document::Document;
 use super::pick::Outlined;
 use crate::mesh::{Moment, Topology};
-use crate::render::{LineSegment, t_junction_lines};
+use crate::render::{LineSegment, crack_lines, t_junction_lines};
 use crate::settings::Half;
 
 /// What the lines over the mesh are a function of.
@@ -70,7 +70,7 @@ impl App {
             lines.extend(t_junction_lines(topology, junctions));
         }
         if let Some(found) = self.measured(half).found().filter(|_| overlays.cracks) {
-            lines.extend(found.crack_lines(&document.loaded.topology));
+            lines.extend(crack_lines(found, &document.loaded.topology));
         }
         lines.extend(self.worst_mark(half));
         // Over all else.

@@ -7,11 +7,12 @@ use thiserror::Error;
 
 use super::beside::{Stopped, caught, spawn};
 use crate::gpu::{Gpu, GpuError, Readback, Recorder, Timing, vertices_of};
-use crate::measure::{AskedFactors, Cracks, Measured, ScreenView, Sizes, Survey};
+use crate::measure::{AskedFactors, Cracks, EmittedChunk, Measured, Sizes, Survey, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::progress::Progress;
 use crate::render::Scene;
 use crate::tessellate::{Convention, Edges, PatchFactors, Vertex};
+use crate::view::ScreenView;
 
 /// Why nothing more is learnt of what is shown.
 #[derive(Debug, Error)]
@@ -236,6 +237,21 @@ pub(super) fn copy_chunk(
     Ok(Copying { readback, part, next_chunk: index + 1, parts })
 }
 
+/// Gives a chunk that was copied back to every visitor. `None` if the device was lost.
+pub(super) fn visit(
+    first_patch: u32,
+    vertex_bytes: usize,
+    readback: &Readback,
+    visitors: &mut [&mut dyn Visitor],
+) -> Option<()> {
+    let bytes = readback.bytes().ok()?;
+    let (vertices, indices) = bytes.split_at(vertex_bytes);
+    let (vertices, triangles) = (vertices_of(vertices), bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices));
+    let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
+    visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+    Some(())
+}
+
 /// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted, or the device was lost.
 fn survey(
     parts: &Receiver<Part>,
@@ -253,12 +269,7 @@ fn survey(
     for Part(part, readback) in parts {
         wanted.check().ok()?;
         let PartKind::Chunk { first_patch, vertex_bytes } = part else { continue };
-        let bytes = readback.bytes().ok()?;
-        let (vertices, indices) = bytes.split_at(vertex_bytes);
-        let vertices = vertices_of(vertices);
-        let triangles = bytemuck::pod_collect_to_vec::<u8, [u32; 3]>(indices);
-        survey.take(first_patch, &vertices, &triangles);
-        sizes.take(&vertices, &triangles);
+        visit(first_patch, vertex_bytes, &readback, &mut [&mut survey, &mut sizes])?;
     }
     wanted.check().ok()?;
     Some((survey.finish(), sizes))

@@ -63,8 +63,8 @@ impl App {
                     convention: self.convention(),
                     lod: self.settings.used_lod(),
                     selected_edge: self.selected_edge,
-                    factors: found.map(|found| found.rims.factors(patch)),
-                    sides: found.and_then(|found| found.rims.patch(topology, patch)),
+                    factors: found.map(|found| found.outlines.factors(patch)),
+                    sides: found.and_then(|found| found.outlines.patch(topology, patch)),
                     hit: self.hit().copied(),
                     is_playing: self.is_playing(),
                 };

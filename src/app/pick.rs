@@ -152,7 +152,7 @@ impl App {
 
     /// See [`patch_edges`].
     pub(super) fn patch_edges(&self, topology: &Topology, patch: u32, half: Half) -> [Vec<Vec3>; 3] {
-        patch_edges(topology, patch, self.measured(half).found().map(|found| &found.rims), self.convention())
+        patch_edges(topology, patch, self.measured(half).found().map(|found| &found.outlines), self.convention())
     }
 
     /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.

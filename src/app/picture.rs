@@ -9,11 +9,12 @@ use glam::{Mat4, Vec2, vec2};
 use super::Document;
 use crate::engine::Engine;
 use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
-use crate::measure::{CrackedEdge, Cracks, ScreenView};
+use crate::measure::{CrackedEdge, Cracks};
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
 use crate::settings::{Colors, Half, Settings};
 use crate::tessellate::{Inputs, LodView};
+use crate::view::ScreenView;
 
 /// Everything that the picture is a function of.
 #[derive(Clone, Copy, PartialEq)]

@@ -11,10 +11,10 @@ use super::measuring::Trouble;
 use super::picture::Wanted;
 use super::text::grouped;
 use crate::gpu::GpuError;
-use crate::measure::ScreenView;
 use crate::progress::Stage;
 use crate::render::Scene;
 use crate::settings::{Colors, Half};
+use crate::view::ScreenView;
 
 /// Degrees that the camera turns for a point of dragging, and for a press of an arrow key.
 const DEGREES_PER_POINT: f32 = 0.4;

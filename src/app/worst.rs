@@ -6,11 +6,12 @@ use super::App;
 use super::facts::EDGE_KINDS;
 use super::text::{grouped, short};
 use super::widgets::{columns, fact, list, number, swatch};
-use crate::measure::{CrackedEdge, EdgeSide, ulp};
+use crate::measure::{CrackedEdge, EdgeSide};
 use crate::mesh::{EdgeKind, TJunction, Topology};
 use crate::render::LineSegment;
 use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
 use crate::settings::Half;
+use crate::view::ulp;
 use glam::Vec3;
 
 impl App {
@@ -70,7 +71,7 @@ impl App {
             });
         });
         ui.separator();
-        let sides = self.measuring.found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
+        let sides = self.measuring.found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "What the edge's sides have in common.");
             if let Some(crack) = self.crack_of(edge, Half::Right) {
@@ -146,7 +147,7 @@ impl App {
     /// one place both show; and where they are farthest apart. If its patches emit nothing, the straight line.
     pub(super) fn selection_lines(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
         let Some(edge) = self.selected_edge else { return Vec::new() };
-        let sides = self.measured(half).found().map(|found| found.rims.edge(topology, edge)).unwrap_or_default();
+        let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
         if polylines.iter().all(|points| points.len() < 2) {
             polylines = vec![

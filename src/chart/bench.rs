@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{Errors, Row, Setting, Time};
-use crate::engine::{Engine, Runs};
+use crate::engine::{Engine, MeasurementResults, Measurements, Runs};
 use crate::gpu::{GpuError, Timing};
 use crate::measure::AccuracyOptions;
 use crate::render::{Camera, Scene, Target};
@@ -85,18 +85,19 @@ impl Bench<'_> {
         let passes = engine.time(scene, target, camera, &settings, self.effort.runs)?;
         let time = Time::of(&passes);
         let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None };
-        match self.truth {
-            Some(truth) => {
-                let accuracy = engine.accuracy(scene, truth, &inputs.view, self.effort.accuracy)?;
-                probe.max_error_px = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
-                probe.errors = accuracy.map(|accuracy| {
-                    let distances = accuracy.relative(accuracy.both_ways());
-                    let normal_degrees = accuracy.normals.largest;
-                    Errors { largest: distances.largest, rms: distances.rms, normal_degrees }
-                });
-            }
-            None => probe.max_error_px = engine.deviation(scene, &inputs)?.map(|worst| worst.px),
-        }
+        let wanted = Measurements {
+            accuracy: self.truth.map(|truth| (truth, &inputs.view, self.effort.accuracy)),
+            screen_error: self.truth.is_none().then_some(&inputs),
+            ..Measurements::default()
+        };
+        let MeasurementResults { accuracy, screen_error, .. } = engine.measure_all(scene, &wanted)?;
+        let from_truth = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
+        probe.max_error_px = from_truth.or(screen_error.map(|worst| worst.px));
+        probe.errors = accuracy.map(|accuracy| {
+            let distances = accuracy.relative(accuracy.both_ways());
+            let normal_degrees = accuracy.normals.largest;
+            Errors { largest: distances.largest, rms: distances.rms, normal_degrees }
+        });
         Ok(Some(probe))
     }
 }

@@ -2,6 +2,7 @@
 
 mod axis;
 mod bench;
+mod cost;
 mod labels;
 mod legend;
 mod look;
@@ -15,10 +16,11 @@ mod words;
 
 pub use axis::{Axis, Tick, tick_text};
 pub use bench::{Bench, Effort, Probe, whole};
+pub use cost::Cost;
 pub use legend::looks;
 pub use look::{Fill, Look, Shape, dash};
 pub use pen::RADIUS;
-pub use picture::{Cost, bitmap, svg};
+pub use picture::{bitmap, svg};
 pub use race::{Race, Win, front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};

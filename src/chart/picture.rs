@@ -8,7 +8,7 @@ use super::axis::{Axis, Tick, tick_text};
 use super::labels::{Rect, Wanted, place};
 use super::legend::{Entry, draw_legend, legend, looks};
 use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, RIGHT};
-use super::{Method, Row, Subject};
+use super::{Cost, Method, Row, Subject};
 use crate::plot::{self, ChartError, DENSITY, INK};
 
 /// Px from left to right, as READMEs show pictures.
@@ -94,35 +94,6 @@ impl<'a> Layout<'a> {
 
 fn part_height(lines: &[String]) -> f64 {
     HEAD + PANEL_HEIGHT + FOOT + LINE * lines.len() as f64 + 14.0
-}
-
-/// What one pays.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Cost {
-    #[default]
-    Ms,
-    Triangles,
-}
-
-impl Cost {
-    pub fn of(self, row: &Row) -> f64 {
-        self.either(row.time.total(), row.triangles)
-    }
-
-    /// Of ms and triangles the one that it is.
-    pub fn either(self, ms: f64, triangles: u64) -> f64 {
-        match self {
-            Self::Ms => ms,
-            Self::Triangles => triangles as f64,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ms => "Tessellation and drawing, ms",
-            Self::Triangles => "Triangles",
-        }
-    }
 }
 
 fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[String], top: f64) -> Drawn<DB> {

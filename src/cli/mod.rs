@@ -12,6 +12,7 @@ mod given;
 mod info;
 mod mesh_report;
 mod options;
+mod picture_comparison;
 mod reference;
 mod render;
 mod split;
@@ -36,7 +37,10 @@ use apart::{file_of, file_of_heights, keep_apart};
 pub use given::GivenOption;
 
 pub use options::{LimitOption, SurfaceOptions, WeldOption};
+pub use picture_comparison::{CompareError, Comparison, compare};
+pub use render::run_with as render_with;
 pub use split::SplitOption;
+pub use tessellate::run_with as tessellate_with;
 pub use truth::TruthOption;
 pub use written::Shown;
 
@@ -46,7 +50,6 @@ use crate::files::Limits;
 use crate::files::file_reason;
 use crate::gpu::GpuError;
 use crate::load::{LoadError, Source};
-use crate::measure::CompareError;
 use crate::names::{on_one_line, shown_path};
 use crate::progress::Progress;
 

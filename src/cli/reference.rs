@@ -5,9 +5,8 @@ use std::path::Path;
 
 use image::{ImageError, ImageReader};
 
-use super::{CliError, file_error, write_picture};
+use super::{CliError, compare, file_error, write_picture};
 use crate::files::open_file;
-use crate::measure::compare;
 use crate::names::shown_path;
 
 /// Reads the reference before anything is drawn or written.

@@ -9,17 +9,18 @@ use super::{
     AdapterOption, CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, file_of,
     file_of_heights, keep_apart, load_apart, options, reference, to_json, write_picture, write_text,
 };
-use crate::engine::{Engine, Loaded, Runs};
-use crate::gpu::Timing;
+use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
+use crate::gpu::{GpuError, Timing};
 use crate::load::{LoadError, Source};
-use crate::measure::{AccuracyOptions, Field, Measured, ScreenView, patch_edges};
+use crate::measure::{AccuracyOptions, DeviationField, patch_edges};
 use crate::mesh::{Moment, t_junctions};
 use crate::progress::Progress;
 use crate::render::{
-    Camera, LineSegment, Scale, Scene, Target, deviation_scale, patch_lines, t_junction_lines, worst_lines,
+    Camera, LineSegment, Scale, Scene, Target, crack_lines, deviation_scale, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{Colors, Half, Overlay, Overlays, Settings};
 use crate::tessellate::{HullFactors, Inputs, Lod};
+use crate::view::ScreenView;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -106,6 +107,14 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    run_with(args, || Engine::chosen(&args.adapter.choice()))
+}
+
+/// The same with an engine that is made once the arguments are known to be good.
+///
+/// # Errors
+/// As the command's.
+pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check_with(args.split.split_surface)?;
     let overlays = args.overlays()?;
     args.keep_apart()?;
@@ -116,20 +125,15 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let held = args.truth.held(&loaded, &args.surface, overlays.colors == Colors::Deviation)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
-    let mut shot = Shot::new(args, loaded, overlays, given)?;
-    let is_measured = overlays.cracks || selected.is_some() || args.stats.is_some();
-    let measured = if is_measured { shot.measure()? } else { Default::default() };
-    shot.hold(held)?;
-    shot.mark(&measured, selected)?;
+    let mut shot = Shot::new(args, loaded, overlays, given, engine)?;
+    shot.measure(args, held, selected.is_some())?;
+    shot.mark(selected)?;
     shot.engine.draw(&mut shot.scene, &shot.target, &shot.camera, &shot.settings, &mut Timing::Off)?;
     let picture = shot.target.read(&shot.engine.gpu)?;
     write_picture(&args.output, &picture.clone().into())?;
-    let [left, right] = &measured;
-    if let Some((path, right)) = args.stats.as_deref().zip(right.as_ref()) {
-        let mut stats = shot.stats(args, right)?;
-        if let Some(left) = left {
-            stats.left = shot.left_stats(args, left)?;
-        }
+    if let Some(path) = args.stats.as_deref()
+        && let Some(mut stats) = shot.stats(args)?
+    {
         stats.factors_file = factors_file;
         write_text(path, &to_json(&stats)?)?;
     }
@@ -151,9 +155,9 @@ struct Shot {
     camera: Camera,
     settings: Settings,
     held: Option<Held>,
-    /// How far each half is from that, where the overlay shows it.
-    fields: ByHalf<Field>,
-    /// What those are read against.
+    /// What was measured of each half.
+    results: ByHalf<MeasurementResults>,
+    /// The colour scale of the deviation overlay.
     scale: Scale,
 }
 
@@ -166,9 +170,10 @@ impl Shot {
         at_rest: Loaded,
         overlays: Overlays,
         given: Option<Vec<HullFactors>>,
+        engine: impl FnOnce() -> Result<Engine, GpuError>,
     ) -> Result<Self, CliError> {
         let moment = args.surface.animation.moment(&at_rest)?;
-        let engine = Engine::chosen(&args.adapter.choice())?;
+        let engine = engine()?;
         let mut scene = engine.scene(&at_rest, args.surface.arena_bytes())?;
         scene.tessellator.give(given.clone())?;
         scene.frame_clip(moment.map(|moment| moment.clip));
@@ -194,8 +199,8 @@ impl Shot {
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
         }
         let (loaded, scale) = (at_rest.posed(moment), deviation_scale(0.0, scene.ulp()));
-        let (held, fields) = (None, Default::default());
-        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, held, fields, scale })
+        let (held, results) = (None, Default::default());
+        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, held, results, scale })
     }
 
     /// What a half is tessellated with, if there is one.
@@ -209,41 +214,56 @@ impl Shot {
         ScreenView { clip_from_object: self.camera.clip_from_object(viewport, &self.scene.bounds), viewport }
     }
 
-    fn measure(&mut self) -> Result<ByHalf<Measured>, CliError> {
-        let mut measured = ByHalf::default();
-        for half in Half::BOTH {
-            if let Some(scene) = self.scene.half_mut(half) {
-                measured[half as usize] = Some(self.engine.measure(scene)?);
-            }
-        }
-        Ok(measured)
-    }
-
-    /// Measures what the overlay shows: both halves against one thing, and on the scale of the one that is farther off.
-    fn hold(&mut self, held: Option<Held>) -> Result<(), CliError> {
+    /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
+    fn measure(&mut self, args: &Args, held: Option<Held>, is_selected: bool) -> Result<(), CliError> {
         self.held = held;
-        let held = self.held.as_ref().filter(|_| self.settings.overlays.colors == Colors::Deviation);
-        let Some((held, inputs)) = held.zip(self.inputs(Half::Right)) else { return Ok(()) };
-        let yardstick = held.yardstick(&inputs);
+        let (view, has_stats) = (self.view(), args.stats.is_some());
+        let is_shown = self.settings.overlays.colors == Colors::Deviation;
+        let held = self.held.as_ref();
+        // Both halves are held against one thing.
+        let target = held.filter(|_| is_shown).zip(self.inputs(Half::Right));
+        let target = target.map(|(held, inputs)| held.target(&inputs));
         for half in Half::BOTH {
-            let Some(scene) = self.scene.half_mut(half) else { continue };
-            self.fields[half as usize] = Some(self.engine.field(scene, &yardstick)?);
+            let inputs = self.inputs(half);
+            let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
+            let truth = held.and_then(Held::truth).filter(|_| has_stats);
+            let wanted = Measurements {
+                survey: self.settings.overlays.cracks || is_selected || has_stats,
+                screen_error: (has_stats && args.measure_error).then_some(inputs),
+                deviation: target.as_ref(),
+                accuracy: truth.map(|(_, truth)| (truth, &inputs.view, AccuracyOptions::default())),
+                sizes: (has_stats && half == Half::Right).then_some(view),
+            };
+            self.results[half as usize] = Some(self.engine.measure_all(scene, &wanted)?);
         }
-        let worst = self.fields.iter().flatten().filter_map(Field::worst);
-        let largest = worst.map(|worst| worst.value).fold(0.0, f64::max);
-        self.scale = deviation_scale(largest, self.scene.ulp());
-        for (half, field) in Half::BOTH.into_iter().zip(&self.fields) {
-            if let Some((scene, field)) = self.scene.half_mut(half).zip(field.as_ref()) {
-                scene.set_deviation(&self.engine.gpu, Some((field, self.scale)));
-            }
-        }
+        self.show_deviation();
         Ok(())
     }
 
+    /// Colours both halves by what was measured, on the scale of the one that is farther off.
+    fn show_deviation(&mut self) {
+        let fields = || self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
+        let largest = fields().filter_map(DeviationField::worst).map(|worst| worst.value).fold(0.0, f64::max);
+        if fields().next().is_none() {
+            return;
+        }
+        self.scale = deviation_scale(largest, self.scene.ulp());
+        for (half, results) in Half::BOTH.into_iter().zip(&self.results) {
+            let field = results.as_ref().and_then(|results| results.deviation.as_ref());
+            if let Some((scene, field)) = self.scene.half_mut(half).zip(field) {
+                scene.set_deviation(&self.engine.gpu, Some((field, self.scale)));
+            }
+        }
+    }
+
+    fn results(&self, half: Half) -> Option<&MeasurementResults> {
+        self.results[half as usize].as_ref()
+    }
+
     /// Puts lines over each half: the overlays that are lines, and the outline of the selected patch.
-    fn mark(&mut self, measured: &ByHalf<Measured>, selected: Option<u32>) -> Result<(), CliError> {
-        for (half, measured) in Half::BOTH.into_iter().zip(measured) {
-            let lines = self.lines(half, measured.as_ref(), selected)?;
+    fn mark(&mut self, selected: Option<u32>) -> Result<(), CliError> {
+        for half in Half::BOTH {
+            let lines = self.lines(half, selected)?;
             if let Some(scene) = self.scene.half_mut(half) {
                 scene.set_lines(&self.engine.gpu, &lines);
             }
@@ -251,59 +271,47 @@ impl Shot {
         Ok(())
     }
 
-    fn lines(
-        &self,
-        half: Half,
-        measured: Option<&Measured>,
-        selected: Option<u32>,
-    ) -> Result<Vec<LineSegment>, CliError> {
+    fn lines(&self, half: Half, selected: Option<u32>) -> Result<Vec<LineSegment>, CliError> {
         let topology = &self.loaded.topology;
+        let results = self.results(half);
+        let measured = results.and_then(|results| results.survey.as_ref());
         let mut lines = match measured {
-            Some(measured) if self.settings.overlays.cracks => measured.crack_lines(topology),
+            Some(measured) if self.settings.overlays.cracks => crack_lines(measured, topology),
             _ => Vec::new(),
         };
         if self.settings.overlays.t_junctions {
             let junctions = t_junctions(&self.at_rest.topology, &Progress::default()).map_err(LoadError::from)?;
             lines.extend(t_junction_lines(topology, &junctions));
         }
-        if let Some(worst) = self.fields[half as usize].as_ref().and_then(Field::worst) {
+        if let Some(worst) = results.and_then(|results| results.deviation.as_ref()).and_then(DeviationField::worst) {
             lines.extend(worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()));
         }
         if let Some(patch) = selected {
-            let rims = measured.map(|measured| &measured.rims);
-            lines.extend(patch_lines(&patch_edges(topology, patch, rims, self.settings.convention)));
+            let outlines = measured.map(|measured| &measured.outlines);
+            lines.extend(patch_lines(&patch_edges(topology, patch, outlines, self.settings.convention)));
         }
         Ok(lines)
     }
 
-    /// How far a half is from its own surface on screen, in px, and from the truth.
-    fn errors(
-        &mut self,
-        args: &Args,
-        half: Half,
-        measured: &Measured,
-    ) -> Result<(Option<f64>, Option<AccuracyStats>), CliError> {
-        let Some((inputs, scene)) = self.inputs(half).zip(self.scene.half_mut(half)) else { return Ok((None, None)) };
-        let error = if args.measure_error { self.engine.deviation(scene, &inputs)? } else { None };
-        let accuracy = match self.held.as_ref().and_then(Held::truth) {
-            Some((name, truth)) => {
-                let accuracy = self.engine.accuracy(scene, truth, &inputs.view, AccuracyOptions::default())?;
-                accuracy.map(|accuracy| AccuracyStats::new(name, &accuracy, measured.culled.total() == 0))
-            }
-            None => None,
-        };
-        Ok((error.map(|worst| worst.px), accuracy))
+    /// How far a half is from the truth, if that was measured.
+    fn accuracy(&self, half: Half) -> Option<AccuracyStats> {
+        let (name, _) = self.held.as_ref().and_then(Held::truth)?;
+        let results = self.results(half)?;
+        let is_whole = results.survey.as_ref()?.culled.total() == 0;
+        results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, accuracy, is_whole))
     }
 
     /// What the overlay shows of a half, if it is on.
     fn deviation(&self, half: Half) -> Option<DeviationStats> {
-        self.fields[half as usize].as_ref().map(|field| DeviationStats::new(field, self.scale))
+        self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
     }
 
-    fn stats(&mut self, args: &Args, measured: &Measured) -> Result<Stats, CliError> {
-        let (max_error_px, accuracy) = self.errors(args, Half::Right, measured)?;
-        let view = self.view();
-        let Self { engine, scene, target, camera, settings, .. } = self;
+    /// What is known of the picture; none if nothing was measured.
+    fn stats(&mut self, args: &Args) -> Result<Option<Stats>, CliError> {
+        let (view, accuracy) = (self.view(), self.accuracy(Half::Right));
+        let Self { engine, scene, target, camera, settings, results, .. } = self;
+        let Some(results) = &results[Half::Right as usize] else { return Ok(None) };
+        let Some(measured) = &results.survey else { return Ok(None) };
         // What is left of the split isn't what is timed.
         let alone = Settings { split_surface: None, ..*settings };
         let passes = engine.time(scene, target, camera, &alone, Runs::default())?;
@@ -314,30 +322,28 @@ impl Shot {
             factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
         }
         let name = args.surface.animation.animation.clone();
-        let sizes = engine.sizes(scene, view)?;
         let mut stats = Stats::new(engine, &self.loaded, scene, measured, settings, view, &passes);
-        stats.triangles_in_view = sizes.in_view;
-        stats.triangles_below_3_px = sizes.small;
+        (stats.triangles_in_view, stats.triangles_below_3_px) =
+            results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));
         stats.leaks = leaks;
-        stats.max_error_px = max_error_px;
+        stats.max_error_px = results.screen_error.map(|worst| worst.px);
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(Half::Right);
+        stats.left = self.left_stats();
         stats.animation = self.moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
-        Ok(stats)
+        Ok(Some(stats))
     }
 
     /// What is known of another surface left of the split.
-    fn left_stats(&mut self, args: &Args, measured: &Measured) -> Result<Option<LeftStats>, CliError> {
-        let (max_error_px, accuracy) = self.errors(args, Half::Left, measured)?;
-        let Some((scene, settings)) = self.scene.half(Half::Left).zip(self.settings.half(Half::Left)) else {
-            return Ok(None);
-        };
-        let mut stats = LeftStats::new(scene, measured, &settings, self.view());
-        stats.max_error_px = max_error_px;
-        stats.accuracy = accuracy;
+    fn left_stats(&self) -> Option<LeftStats> {
+        let (scene, settings) = self.scene.half(Half::Left).zip(self.settings.half(Half::Left))?;
+        let results = self.results(Half::Left)?;
+        let mut stats = LeftStats::new(scene, results.survey.as_ref()?, &settings, self.view());
+        stats.max_error_px = results.screen_error.map(|worst| worst.px);
+        stats.accuracy = self.accuracy(Half::Left);
         stats.deviation = self.deviation(Half::Left);
-        Ok(Some(stats))
+        Some(stats)
     }
 }
 

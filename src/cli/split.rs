@@ -6,10 +6,11 @@ use serde::Serialize;
 use super::options;
 use super::stats::CrackStats;
 use super::truth::{AccuracyStats, DeviationStats};
-use crate::measure::{Measured, ScreenView};
+use crate::measure::Measured;
 use crate::render::Scene;
 use crate::settings::{Settings, option_name};
 use crate::tessellate::Surface;
+use crate::view::ScreenView;
 
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct SplitOption {

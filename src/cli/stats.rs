@@ -9,11 +9,12 @@ use super::split::LeftStats;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
-use crate::measure::{Measured, ScreenView, ulp};
+use crate::measure::Measured;
 use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
 use crate::settings::{Settings, option_name};
 use crate::tessellate::Displacement;
+use crate::view::{ScreenView, ulp};
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::engine::Engine;
 use crate::export::Exported;
-use crate::gpu::Timing;
+use crate::gpu::{GpuError, Timing};
 use crate::load::Source;
 use crate::settings::Settings;
 use crate::tessellate::{self, bounds_through};
@@ -41,6 +41,14 @@ pub enum Device {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
+    run_with(args, || Engine::chosen(&args.adapter.choice()))
+}
+
+/// The same with an engine that is made once the arguments are known to be good.
+///
+/// # Errors
+/// As the command's.
+pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
     Exported::check(&args.output, 0, 0)?;
@@ -69,7 +77,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
             }
         }
         Device::Gpu => {
-            let engine = Engine::chosen(&args.adapter.choice())?;
+            let engine = engine()?;
             let mut scene = engine.scene(&loaded, args.surface.arena_bytes())?;
             scene.tessellator.give(given)?;
             scene.set_moment(moment)?;

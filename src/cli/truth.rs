@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::{CliError, SurfaceOptions, options};
 use crate::engine::Loaded;
 use crate::load::Source;
-use crate::measure::{Accuracy, Angles, Distances, Field, Yardstick};
+use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances};
 use crate::progress::Progress;
 use crate::render::Scale;
 use crate::settings::DeviationUnit;
@@ -63,10 +63,10 @@ impl TruthOption {
 
 impl Held {
     /// For what was emitted with these inputs.
-    pub fn yardstick(&self, inputs: &Inputs) -> Yardstick {
+    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
         match self {
-            Self::Truth(_, truth) => Yardstick::Truth(truth.clone()),
-            Self::Limit => Yardstick::Limit(Box::new(*inputs)),
+            Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
+            Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
         }
     }
 
@@ -151,7 +151,7 @@ struct WorstStats {
 }
 
 impl DeviationStats {
-    pub fn new(field: &Field, scale: Scale) -> Self {
+    pub fn new(field: &DeviationField, scale: Scale) -> Self {
         let max = field.worst().map_or(0.0, |worst| worst.value);
         let worst = field.worst().map(|worst| {
             let [emitted, truth] = [worst.emitted, worst.truth].map(|place: DVec3| place.to_array());

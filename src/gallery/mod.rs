@@ -17,8 +17,8 @@ pub use tile::Shown;
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
 use crate::load::{LoadError, Source};
-use crate::measure::sheet;
-use crate::plot::ChartError;
+use crate::measure::EmittedChunk;
+use crate::plot::{ChartError, contact_sheet};
 use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
@@ -108,7 +108,7 @@ impl<'a> Gallery<'a> {
             all.push(shown);
         }
         let columns = if parts.len() % 4 == 0 { 4 } else { 3 };
-        Ok((sheet(&parts, columns, TEXT)?, all))
+        Ok((contact_sheet(&parts, columns, TEXT)?, all))
     }
 
     /// What a mesh of one's own has to be said of: see [`crate::load::LoadedMesh::warnings`].
@@ -157,9 +157,10 @@ impl<'a> Gallery<'a> {
         let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
         self.engine.count(scene, &tile::affordable(&inputs, scene), &mut Timing::Off)?;
         let mut places: Vec<Vec3> = Vec::new();
-        self.engine.read_chunks(scene, false, |_, vertices, _| {
-            places.extend(vertices.iter().map(|vertex| Vec3::from(vertex.position)));
-        })?;
+        let mut take = |chunk: &EmittedChunk| {
+            places.extend(chunk.vertices.iter().map(|vertex| Vec3::from(vertex.position)));
+        };
+        self.engine.visit(scene, &mut [&mut take])?;
         let (center, most) = (scene.bounds.center(), FARTHEST * scene.bounds.radius());
         // Divided first: squares of very small or large lengths leave f32.
         let near = |place: &Vec3| place.is_finite() && ((*place - center) / most).length() <= 1.0;

@@ -9,11 +9,6 @@ use crate::numbers::{grouped, hundredths, short};
 /// The page's file.
 pub const PAGE: &str = "gallery.md";
 
-/// How wide a gap is, in px, where it is drawn as a crack that can be seen.
-pub(super) const VISIBLE_PX: f64 = 0.5;
-/// sRGB colour of edges whose gaps are narrower.
-pub(super) const CALM_COLOR: [u8; 3] = [120, 160, 205];
-
 /// What the columns and colours mean.
 const LEGEND: &str = "Red edges: their sides are half a px apart or more, in this view. Blue ones: less, if only by the last \
      bit of a coordinate.\n\n\

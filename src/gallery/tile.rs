@@ -2,17 +2,21 @@
 
 use image::{DynamicImage, RgbImage};
 
-use super::page::{CALM_COLOR, VISIBLE_PX};
-use crate::engine::{Engine, Loaded, Runs};
+use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
 use crate::gpu::{DRAWING, GpuError, PassTime, Timing};
 use crate::measure::{CrackedEdge, Measured};
 use crate::render::layout::{CRACK_COLOR, linear};
-use crate::render::{Camera, LineSegment, Scene, Target};
+use crate::render::{Camera, LineSegment, Scene, Target, crack_lines_in};
 use crate::settings::{Overlays, Settings};
 use crate::tessellate::{Displacement, Inputs, Lod};
 
 /// Triangles in a tile, about: a mesh of many gets lower factors, since no tile has px for more.
 const MOST_TRIANGLES: f32 = 2e6;
+
+/// Gaps at least this wide, in px, are drawn as visible cracks.
+const VISIBLE_PX: f64 = 0.5;
+/// The sRGB colour of edges whose gaps are narrower than that.
+const CALM_COLOR: [u8; 3] = [120, 160, 205];
 
 /// Px to either side of the line of a crack that can be seen, and of one that can't: thinner than in the window, as tiles are
 /// small.
@@ -65,10 +69,12 @@ pub fn draw_tile(
     let settings = Settings { factor: inputs.factor, ..settings };
     scene.set_lines(&engine.gpu, &[]);
     let passes = engine.time(scene, target, camera, &settings, Runs::default())?;
-    let measured = engine.measure(scene)?;
     // What patches agree on isn't on the surface that each has by itself, which the error is measured against.
     let is_shared = matches!(settings.displacement, Displacement::On | Displacement::AsPublished);
-    let error_px = if is_shared { None } else { engine.deviation(scene, &inputs)?.map(|worst| worst.px) };
+    let wanted =
+        Measurements { survey: true, screen_error: (!is_shared).then_some(&inputs), ..Measurements::default() };
+    let MeasurementResults { survey, screen_error, .. } = engine.measure_all(scene, &wanted)?;
+    let (measured, error_px) = (survey.unwrap_or_default(), screen_error.map(|worst| worst.px));
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
     if overlays.cracks {
         let gap_px = |crack: &CrackedEdge| crack.gap_px(clip_from_object, target.viewport());
@@ -94,7 +100,7 @@ pub fn draw_tile(
 fn crack_lines(measured: &Measured, loaded: &Loaded, gap_px: impl Fn(&CrackedEdge) -> f64) -> Vec<LineSegment> {
     let is_calm = |crack: &CrackedEdge| gap_px(crack) < VISIBLE_PX;
     let color = |crack: &CrackedEdge| if is_calm(crack) { CALM_COLOR } else { CRACK_COLOR };
-    let mut lines = measured.crack_lines_in(&loaded.topology, color);
+    let mut lines = crack_lines_in(measured, &loaded.topology, color);
     let calm = linear(CALM_COLOR);
     lines.sort_by_key(|line| line.color != calm);
     let [seen, unseen] = HALF_WIDTHS;

@@ -26,11 +26,12 @@ pub(crate) use wgsl;
 
 // Files that several passes share. A file that only one pass has is declared where that pass is.
 pub(crate) static FACTORS: WgslFile = wgsl!("factors");
+pub(crate) static RINGS: WgslFile = wgsl!("rings");
 pub(crate) static SUBTRIANGULATION: WgslFile = wgsl!("subtriangulation", FACTORS);
 /// Beside it a module has [`CONNECTIVITY`] or [`PATTERNS`], which declare the same functions.
-pub(crate) static DOMAIN: WgslFile = wgsl!("domain", FACTORS, SUBTRIANGULATION);
-pub(crate) static CONNECTIVITY: WgslFile = wgsl!("connectivity", DOMAIN);
-pub(crate) static PATTERNS: WgslFile = wgsl!("patterns", DOMAIN);
+pub(crate) static DOMAIN: WgslFile = wgsl!("domain", FACTORS, RINGS, SUBTRIANGULATION);
+pub(crate) static CONNECTIVITY: WgslFile = wgsl!("connectivity", DOMAIN, RINGS);
+pub(crate) static PATTERNS: WgslFile = wgsl!("patterns", DOMAIN, RINGS);
 pub(crate) static CONVENTION: WgslFile = wgsl!("convention", FACTORS);
 pub(crate) static SURFACE: WgslFile = wgsl!("surface", FACTORS);
 pub(crate) static NORMAL: WgslFile = wgsl!("normal", FACTORS, SURFACE);

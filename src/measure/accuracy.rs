@@ -6,7 +6,8 @@ use std::thread;
 
 use glam::{DVec3, Vec3};
 
-use super::deviation::Screen;
+use super::screen_error::Screen;
+use super::visitor::{EmittedChunk, Visitor};
 use crate::tessellate::{LodView, Vertex, unpack_normal};
 use crate::truth::{Sample, Triangles, Truth};
 
@@ -28,12 +29,12 @@ impl Default for AccuracyOptions {
 /// What was emitted, held against a truth chunk by chunk, wherever it was emitted.
 ///
 /// All of the mesh must be emitted: what is clipped or culled is missing, and counts as distance from the truth.
-pub struct Measurement<'a> {
+pub struct AccuracyMeasurement<'a> {
     truth: &'a Truth,
     options: AccuracyOptions,
     screen: Option<Screen>,
     /// Points of the truth, and what was emitted nearest to each so far.
-    samples: Vec<(Sample, Option<Place>)>,
+    samples: Vec<(Sample, Option<WorstPoint>)>,
     sums: Sums,
 }
 
@@ -55,7 +56,7 @@ pub struct Angles {
 
 /// Where something is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct WorstPoint {
     /// Object units, px or degrees: what is largest.
     pub value: f64,
     /// The patch that emitted what is here.
@@ -72,16 +73,16 @@ pub struct Accuracy {
     pub diagonal: f64,
     /// From what was emitted to the truth.
     pub to_truth: Distances,
-    pub worst_to_truth: Place,
+    pub worst_to_truth: WorstPoint,
     /// From the truth to what was emitted.
     pub from_truth: Distances,
-    pub worst_from_truth: Place,
+    pub worst_from_truth: WorstPoint,
     /// The largest distance on screen between a point of what was emitted and the truth's nearest; none if none is in view,
     /// or there is no view.
-    pub worst_px: Option<Place>,
+    pub worst_px: Option<WorstPoint>,
     /// Between shading normals and those of the truth's nearest point.
     pub normals: Angles,
-    pub worst_normal: Place,
+    pub worst_normal: WorstPoint,
     /// Vertices that are no numbers, which nothing can be said of; their triangles are left out.
     pub not_finite: u64,
 }
@@ -107,37 +108,11 @@ const LARGEST_BLOCK: usize = 1024;
 /// Into how many segments a triangle's edges are cut at most.
 const MAX_STEPS: u32 = 200;
 
-impl<'a> Measurement<'a> {
+impl<'a> AccuracyMeasurement<'a> {
     /// Nothing seen yet. With a view, distances in px too.
     pub fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
         let samples = truth.samples(options.samples).into_iter().map(|sample| (sample, None)).collect();
         Self { truth, options, screen: view.map(Screen::new), samples, sums: Sums::default() }
-    }
-
-    /// Takes what was emitted: triangles are indices into `vertices`.
-    pub fn take(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
-        let is_finite = |vertex: &Vertex| Vec3::from(vertex.position).is_finite();
-        self.sums.not_finite += vertices.iter().filter(|vertex| !is_finite(vertex)).count() as u64;
-        let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
-        let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
-        let corners = |triangle: &[u32; 3]| triangle.map(|index| Vec3::from(vertices[index as usize].position));
-        let Some(tree) = Triangles::new(triangles.iter().map(corners)) else { return };
-        self.take_triangles(vertices, &triangles);
-        let samples = std::mem::take(&mut self.samples);
-        self.samples = blocks(samples.len(), self.options.threads, |range| {
-            let nearer = |(sample, known): &(Sample, Option<Place>)| {
-                let within = known.map_or(f64::INFINITY, |place| place.value);
-                let found = tree.closest(sample.point, within).map(|closest| Place {
-                    value: closest.distance,
-                    patch: vertices[triangles[closest.triangle as usize][0] as usize].patch(),
-                    emitted: closest.point,
-                    truth: sample.point,
-                });
-                (*sample, found.or(*known))
-            };
-            samples[range].iter().map(nearer).collect::<Vec<_>>()
-        })
-        .concat();
     }
 
     /// From what was emitted to the truth.
@@ -200,7 +175,7 @@ impl<'a> Measurement<'a> {
         if area <= 0.0 {
             return None;
         }
-        let missed: Vec<Place> = self.samples.iter().filter_map(|(_, place)| *place).collect();
+        let missed: Vec<WorstPoint> = self.samples.iter().filter_map(|(_, place)| *place).collect();
         let worst_from_truth = missed.iter().copied().reduce(worse)?;
         let mean = missed.iter().map(|place| place.value * place.value).sum::<f64>() / missed.len() as f64;
         Some(Accuracy {
@@ -214,6 +189,34 @@ impl<'a> Measurement<'a> {
             worst_normal,
             not_finite,
         })
+    }
+}
+
+impl Visitor for AccuracyMeasurement<'_> {
+    fn take(&mut self, chunk: &EmittedChunk) {
+        let EmittedChunk { vertices, triangles, .. } = *chunk;
+        let is_finite = |vertex: &Vertex| Vec3::from(vertex.position).is_finite();
+        self.sums.not_finite += vertices.iter().filter(|vertex| !is_finite(vertex)).count() as u64;
+        let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
+        let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
+        let corners = |triangle: &[u32; 3]| triangle.map(|index| Vec3::from(vertices[index as usize].position));
+        let Some(tree) = Triangles::new(triangles.iter().map(corners)) else { return };
+        self.take_triangles(vertices, &triangles);
+        let samples = std::mem::take(&mut self.samples);
+        self.samples = blocks(samples.len(), self.options.threads, |range| {
+            let nearer = |(sample, known): &(Sample, Option<WorstPoint>)| {
+                let within = known.map_or(f64::INFINITY, |place| place.value);
+                let found = tree.closest(sample.point, within).map(|closest| WorstPoint {
+                    value: closest.distance,
+                    patch: vertices[triangles[closest.triangle as usize][0] as usize].patch(),
+                    emitted: closest.point,
+                    truth: sample.point,
+                });
+                (*sample, found.or(*known))
+            };
+            samples[range].iter().map(nearer).collect::<Vec<_>>()
+        })
+        .concat();
     }
 }
 
@@ -239,9 +242,9 @@ struct Sums {
     /// Of distances and of angles in degrees, times area.
     squares: f64,
     angles: f64,
-    worst: Option<Place>,
-    worst_px: Option<Place>,
-    worst_normal: Option<Place>,
+    worst: Option<WorstPoint>,
+    worst_px: Option<WorstPoint>,
+    worst_normal: Option<WorstPoint>,
     not_finite: u64,
 }
 
@@ -251,7 +254,7 @@ impl Sums {
         let nearest = truth.closest_facing(point.position, point.normal);
         // Of the two ways to an angle, the one that is exact near 0.
         let angle = point.normal.cross(nearest.normal).length().atan2(point.normal.dot(nearest.normal)).to_degrees();
-        let place = |value| Place { value, patch: point.patch, emitted: point.position, truth: nearest.point };
+        let place = |value| WorstPoint { value, patch: point.patch, emitted: point.position, truth: nearest.point };
         let px = screen.and_then(|screen| screen.distance_px(point.position, nearest.point));
         self.area += area;
         self.squares += area * nearest.distance * nearest.distance;
@@ -262,7 +265,7 @@ impl Sums {
     }
 
     fn with(self, other: Self) -> Self {
-        let worst = |a: Option<Place>, b: Option<Place>| a.into_iter().chain(b).reduce(worse);
+        let worst = |a: Option<WorstPoint>, b: Option<WorstPoint>| a.into_iter().chain(b).reduce(worse);
         Self {
             area: self.area + other.area,
             squares: self.squares + other.squares,
@@ -276,7 +279,7 @@ impl Sums {
 }
 
 /// The first of the largest.
-pub(super) fn worse(a: Place, b: Place) -> Place {
+pub(super) fn worse(a: WorstPoint, b: WorstPoint) -> WorstPoint {
     if b.value > a.value { b } else { a }
 }
 

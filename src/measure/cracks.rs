@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Mat4, Vec2, Vec3};
 
-use super::rims::{EdgeSide, RimPoint, Rims};
+use super::outlines::{EdgeSide, OutlinePoint, Outlines};
 use crate::mesh::{EdgeKind, Mesh, Topology};
-use crate::render::project;
+use crate::view::project;
 
 /// What was found.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,26 +41,16 @@ pub struct CrackedEdge {
     pub widest: [Vec3; 2],
 }
 
-/// One unit in the last place of the largest coordinate in magnitude, in object units.
-pub fn ulp(topology: &Topology) -> f64 {
-    ulp_at(topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max))
-}
-
-/// One unit in the last place of a coordinate.
-pub fn ulp_at(coordinate: f32) -> f64 {
-    f64::from(coordinate.next_up()) - f64::from(coordinate)
-}
-
 impl Cracks {
     /// Compares every edge's sides.
-    pub fn find(mesh: &Mesh, topology: &Topology, rims: &Rims) -> Self {
+    pub fn find(mesh: &Mesh, topology: &Topology, outlines: &Outlines) -> Self {
         let mut cracks = Self::default();
         for (index, edge) in (0..).zip(&topology.edges) {
             if edge.kind == EdgeKind::Boundary {
                 continue;
             }
             cracks.edges_compared += 1;
-            let sides = rims.edge(topology, index);
+            let sides = outlines.edge(topology, index);
             cracks.edge_points += points_compared(&sides);
             let different_normals = different_normals(mesh, topology, index, &sides);
             if let Some(crack) = compare(index, &sides, different_normals) {
@@ -170,12 +160,12 @@ fn nearest(a: Vec3, b: Vec3, p: Vec3) -> Vec3 {
     a.lerp(b, t).as_vec3()
 }
 
-fn same_position(a: &RimPoint, b: &RimPoint) -> bool {
+fn same_position(a: &OutlinePoint, b: &OutlinePoint) -> bool {
     a.position.map(f32::to_bits) == b.position.map(f32::to_bits)
 }
 
 /// Points that are not the same; those that one side doesn't have differ from whatever is there.
-fn different(a: &EdgeSide, b: &EdgeSide, same: fn(&RimPoint, &RimPoint) -> bool) -> u32 {
+fn different(a: &EdgeSide, b: &EdgeSide, same: fn(&OutlinePoint, &OutlinePoint) -> bool) -> u32 {
     let (a, b) = (&a.points, &b.points);
     let differ = a.iter().zip(b).filter(|(a, b)| !same(a, b)).count();
     (differ + a.len().abs_diff(b.len())) as u32
@@ -217,20 +207,20 @@ mod tests {
         LodView::new(clip_from_object, Vec2::splat(300.0))
     }
 
-    fn rims(shape: Shape, settings: Settings) -> (Mesh, Topology, Rims) {
+    fn outlines(shape: Shape, settings: Settings) -> (Mesh, Topology, Outlines) {
         let mesh = shape.build();
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
         let inputs = Settings { lod: Lod::Paper, ..settings }.inputs(view());
         let out = tessellate(&mesh, &topology, &inputs, None);
-        let mut rims =
-            Rims::new(out.patch_factors, AskedFactors::new(settings.edges, settings.convention, out.edge_factors));
-        rims.take(0, &out.vertices);
-        (mesh, topology, rims)
+        let mut outlines =
+            Outlines::new(out.patch_factors, AskedFactors::new(settings.edges, settings.convention, out.edge_factors));
+        outlines.take(0, &out.vertices);
+        (mesh, topology, outlines)
     }
 
     fn cracks(shape: Shape, settings: Settings) -> Cracks {
-        let (mesh, topology, rims) = rims(shape, settings);
-        Cracks::find(&mesh, &topology, &rims)
+        let (mesh, topology, outlines) = outlines(shape, settings);
+        Cracks::find(&mesh, &topology, &outlines)
     }
 
     #[test]
@@ -261,17 +251,17 @@ mod tests {
 
     #[test]
     fn one_bit_of_one_point_or_normal_is_a_crack() {
-        let (mesh, topology, mut rims) = rims(Shape::Torus, Settings::default());
-        assert!(Cracks::find(&mesh, &topology, &rims).edges.is_empty());
+        let (mesh, topology, mut outlines) = outlines(Shape::Torus, Settings::default());
+        assert!(Cracks::find(&mesh, &topology, &outlines).edges.is_empty());
         // The second point of patch 5's ring lies inside side 1.
-        let point = &mut rims.ring_mut(5)[1];
+        let point = &mut outlines.ring_mut(5)[1];
         point.position[0] = point.position[0].next_up();
-        let cracks = Cracks::find(&mesh, &topology, &rims);
+        let cracks = Cracks::find(&mesh, &topology, &outlines);
         let side = topology.patches[5].sides[1];
         assert_eq!((cracks.different_bits, cracks.different_normals, cracks.edges.len()), (1, 0, 1));
         assert_eq!(cracks.edges[0].edge, topology.sides[side as usize].edge);
-        rims.ring_mut(5)[1].normal ^= 1;
-        let cracks = Cracks::find(&mesh, &topology, &rims);
+        outlines.ring_mut(5)[1].normal ^= 1;
+        let cracks = Cracks::find(&mesh, &topology, &outlines);
         assert_eq!((cracks.different_bits, cracks.different_normals, cracks.edges.len()), (1, 1, 1));
     }
 
@@ -282,7 +272,7 @@ mod tests {
     }
 
     fn side(points: &[[f32; 3]]) -> EdgeSide {
-        let points: Vec<_> = points.iter().map(|&position| RimPoint { position, normal: 0 }).collect();
+        let points: Vec<_> = points.iter().map(|&position| OutlinePoint { position, normal: 0 }).collect();
         EdgeSide { patch: 0, triangle: 0, factor: 2.0, word: 0, points }
     }
 
@@ -303,12 +293,5 @@ mod tests {
         let crack = compare(0, &[coarse, fine], 0).expect("they differ");
         assert_eq!(crack.gap, 0.5);
         assert_eq!(crack.widest.map(|p| p.y).into_iter().fold(0.0, f32::max), 0.5);
-    }
-
-    #[test]
-    fn an_ulp_is_that_of_the_largest_coordinate() {
-        let mut topology = Topology::default();
-        topology.points = vec![Vec3::new(0.1, -3.0, 0.2), Vec3::ONE];
-        assert_eq!(ulp(&topology), 2f64.powi(-22));
     }
 }

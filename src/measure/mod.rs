@@ -1,30 +1,28 @@
-//! What a tessellation did, measured on what was really emitted.
+//! What a tessellation did, measured on what was emitted: edges, points and numbers. Nothing is drawn here.
 
 mod accuracy;
 mod agreement;
-mod chart;
+mod asked_factors;
 mod cracks;
-mod deviation;
-mod field;
+mod deviation_field;
 mod folds;
 mod indices;
-mod picture;
-mod rims;
-mod sheet;
+mod outlines;
+mod screen_error;
 mod sizes;
 mod survey;
 mod sweep;
+mod visitor;
 
-pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, Measurement, Place};
+pub use accuracy::{Accuracy, AccuracyMeasurement, AccuracyOptions, Angles, Distances, WorstPoint};
 pub use agreement::{Agreement, Disagreement, Order};
-pub use chart::sweep_chart;
-pub use cracks::{CrackedEdge, Cracks, ulp, ulp_at};
-pub use deviation::{Deviant, Deviation};
-pub use field::{Against, Field, MOST_TRIANGLES, Yardstick};
+pub use asked_factors::AskedFactors;
+pub use cracks::{CrackedEdge, Cracks};
+pub use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};
 pub use indices::{IndexDifference, Meaning, index_differences};
-pub use picture::{CompareError, Comparison, compare};
-pub use rims::{AskedFactors, EdgeSide, RimPoint, Rims, patch_edges};
-pub use sheet::sheet;
-pub use sizes::{SMALL_PX, ScreenView, Sizes};
+pub use outlines::{EdgeSide, OutlinePoint, Outlines, patch_edges};
+pub use screen_error::{ScreenError, ScreenErrorMeasurement};
+pub use sizes::{SMALL_PX, Sizes};
 pub use survey::{Culled, Measured, Survey};
 pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};
+pub use visitor::{EmittedChunk, Visitor};

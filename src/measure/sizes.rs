@@ -6,20 +6,14 @@
 //! of. A grid of points 3 px apart is cut into triangles of 3 px. The least height would flag every sliver too, also long
 //! ones, of which few cover a lot.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
-use crate::tessellate::{Vertex, beyond_near, planes_outside};
+use super::visitor::{EmittedChunk, Visitor};
+use crate::tessellate::{beyond_near, planes_outside};
+use crate::view::ScreenView;
 
 /// Triangles below this size cost more than they show, in px.
 pub const SMALL_PX: f64 = 3.0;
-
-/// Where one looks from, as sizes on screen depend on it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenView {
-    pub clip_from_object: Mat4,
-    /// Width and height in px.
-    pub viewport: Vec2,
-}
 
 /// Counts of triangles by their size, seen from one view.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,12 +30,14 @@ impl Sizes {
     pub fn new(view: ScreenView) -> Self {
         Self { view, in_view: 0, small: 0 }
     }
+}
 
-    /// Counts triangles: indices into `vertices`.
-    pub fn take(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
+impl Visitor for Sizes {
+    fn take(&mut self, chunk: &EmittedChunk) {
         let ScreenView { clip_from_object, viewport } = self.view;
-        let clip: Vec<Vec4> = vertices.iter().map(|v| clip_from_object * Vec3::from(v.position).extend(1.0)).collect();
-        for triangle in triangles {
+        let clip: Vec<Vec4> =
+            chunk.vertices.iter().map(|v| clip_from_object * Vec3::from(v.position).extend(1.0)).collect();
+        for triangle in chunk.triangles {
             let corners = triangle.map(|index| clip[index as usize]);
             if corners.into_iter().fold(!0, |shared, corner| shared & planes_outside(corner)) != 0 {
                 continue;
@@ -67,7 +63,8 @@ fn size_px(corners: [Vec4; 3], viewport: Vec2) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::vec3;
+    use crate::tessellate::Vertex;
+    use glam::{Mat4, vec3};
 
     /// Ten px a unit, the middle at the origin, 0 to 1 deep.
     fn view() -> ScreenView {
@@ -79,7 +76,7 @@ mod tests {
         let vertex = |position: &Vec3| Vertex { position: position.to_array(), ..bytemuck::Zeroable::zeroed() };
         let vertices: Vec<_> = triangles.as_flattened().iter().map(vertex).collect();
         let indices: Vec<_> = (0..triangles.len() as u32).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
-        sizes.take(&vertices, &indices);
+        sizes.take(&EmittedChunk::whole(&vertices, &indices));
         (sizes.in_view, sizes.small)
     }
 

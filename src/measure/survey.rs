@@ -2,13 +2,14 @@
 
 use glam::Vec3;
 
-use super::cracks::{CrackedEdge, Cracks, ulp};
+use super::asked_factors::AskedFactors;
+use super::cracks::Cracks;
 use super::folds;
-use super::rims::{AskedFactors, Rims};
+use super::outlines::Outlines;
+use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
-use crate::render::LineSegment;
-use crate::render::layout::CRACK_COLOR;
-use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, Vertex, patch_is_culled};
+use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, patch_is_culled};
+use crate::view::ulp;
 
 /// What has been seen so far.
 pub struct Survey<'a> {
@@ -16,7 +17,7 @@ pub struct Survey<'a> {
     topology: &'a Topology,
     ulp: f64,
     culled: Culled,
-    rims: Rims,
+    outlines: Outlines,
     folds: u64,
     not_finite: u64,
     extent: [Vec3; 2],
@@ -50,7 +51,7 @@ impl Culled {
 }
 
 /// What was emitted, measured.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Measured {
     pub culled: Culled,
     /// Patches drawn with factors that are all below 2.
@@ -64,7 +65,7 @@ pub struct Measured {
     pub not_finite: u64,
     /// Least and greatest coordinates of what was emitted, in object units.
     pub extent: [Vec3; 2],
-    pub rims: Rims,
+    pub outlines: Outlines,
 }
 
 impl<'a> Survey<'a> {
@@ -72,13 +73,29 @@ impl<'a> Survey<'a> {
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let culled = Culled::of(&factors);
-        let rims = Rims::new(factors, asked);
-        Self { mesh, topology, ulp: ulp(topology), culled, rims, folds: 0, not_finite: 0, extent }
+        let outlines = Outlines::new(factors, asked);
+        Self { mesh, topology, ulp: ulp(topology), culled, outlines, folds: 0, not_finite: 0, extent }
     }
 
-    /// Takes the output of patches from `first_patch` on; whole patches, in order. Triangles are indices into `vertices`.
-    pub fn take(&mut self, first_patch: u32, vertices: &[Vertex], triangles: &[[u32; 3]]) {
-        self.rims.take(first_patch, vertices);
+    /// Compares the sides of every edge, once all is taken.
+    pub fn finish(self) -> Measured {
+        Measured {
+            culled: self.culled,
+            patches_low: self.outlines.low(),
+            patches_at_limit: self.outlines.at_limit(),
+            cracks: Cracks::find(self.mesh, self.topology, &self.outlines),
+            folds: self.folds,
+            not_finite: self.not_finite,
+            extent: self.extent,
+            outlines: self.outlines,
+        }
+    }
+}
+
+impl Visitor for Survey<'_> {
+    fn take(&mut self, chunk: &EmittedChunk) {
+        let EmittedChunk { first_patch, vertices, triangles } = *chunk;
+        self.outlines.take(first_patch, vertices);
         self.folds += folds::count(self.topology, self.ulp, vertices, triangles);
         for vertex in vertices {
             let position = Vec3::from(vertex.position);
@@ -89,45 +106,13 @@ impl<'a> Survey<'a> {
             self.extent = [self.extent[0].min(position), self.extent[1].max(position)];
         }
     }
-
-    /// Compares the sides of every edge, once all is taken.
-    pub fn finish(self) -> Measured {
-        Measured {
-            culled: self.culled,
-            patches_low: self.rims.low(),
-            patches_at_limit: self.rims.at_limit(),
-            cracks: Cracks::find(self.mesh, self.topology, &self.rims),
-            folds: self.folds,
-            not_finite: self.not_finite,
-            extent: self.extent,
-            rims: self.rims,
-        }
-    }
 }
 
 impl Measured {
     /// Measures what the CPU made.
     pub fn of(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
         let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), asked);
-        survey.take(0, &out.vertices, &out.triangles);
+        survey.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
         survey.finish()
-    }
-
-    /// Every side of every cracked edge, as lines.
-    pub fn crack_lines(&self, topology: &Topology) -> Vec<LineSegment> {
-        self.crack_lines_in(topology, |_| CRACK_COLOR)
-    }
-
-    /// The same in a colour (sRGB) that is each edge's.
-    pub fn crack_lines_in(&self, topology: &Topology, color: impl Fn(&CrackedEdge) -> [u8; 3]) -> Vec<LineSegment> {
-        let mut lines = Vec::new();
-        for edge in self.cracks.cracked() {
-            let color = color(edge);
-            for side in self.rims.edge(topology, edge.edge) {
-                let points: Vec<_> = side.positions().collect();
-                lines.extend(points.windows(2).map(|ends| LineSegment::new(ends[0], ends[1], color)));
-            }
-        }
-        lines
     }
 }

@@ -228,6 +228,51 @@ mod tests {
         assert!(steep.iter().all(|n| n[2].z < 0.2 && n[2].is_normalized()), "opposite faces don't mix");
     }
 
+    /// A regular pyramid of n sides, whose side i is cut from the apex into `pieces(i)` triangles of different sizes.
+    fn cut_cone(n: usize, height: f32, pieces: impl Fn(usize) -> usize) -> Vec<[Vec3; 3]> {
+        let cut = |(side, [a, b, apex]): (usize, [Vec3; 3])| {
+            let count = pieces(side);
+            // Squares of equal steps: the first piece is the smallest.
+            let at = move |k: usize| a.lerp(b, (k as f32 / count as f32).powi(2));
+            (0..count).map(move |k| [at(k), at(k + 1), apex])
+        };
+        cone(n, height).into_iter().enumerate().flat_map(cut).collect()
+    }
+
+    #[test]
+    fn the_normal_of_a_point_does_not_depend_on_how_its_faces_are_cut_into_triangles() {
+        // A pyramid's apex looks along its axis. Of more than 256 faces, those of one side are gathered first.
+        for (sides, height, most) in [(3, 0.4, 5), (4, 0.5, 7), (7, 0.3, 4), (60, 0.5, 9)] {
+            let triangles = cut_cone(sides, height, |side| 1 + side * side % most);
+            assert!(triangles.len() > sides, "some side is cut");
+            let normals = smooth(&triangles, &Progress::new()).unwrap();
+            for normal in normals.iter().map(|corners| corners[2]) {
+                assert!(normal.distance(Vec3::Z) < 1e-5, "{sides} sides in {} triangles: {normal}", triangles.len());
+            }
+        }
+    }
+
+    #[test]
+    fn faces_count_by_their_angles_and_not_by_their_number_or_area() {
+        // Two faces that meet in an edge along y at 40 degrees, one with 30 degrees at the origin and one with 90.
+        let slant = 20.0_f64.to_radians();
+        let [right, left] = [1.0, -1.0].map(|side| DVec3::new(side * slant.cos(), 0.0, -slant.sin()));
+        let within = |across: DVec3, degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            (DVec3::Y * cos + across * sin).as_vec3()
+        };
+        for [short, long] in [[1.0, 1.0], [0.1, 8.0], [8.0, 0.1]] {
+            let triangles =
+                [[Vec3::ZERO, within(right, 30.0) * short, Vec3::Y], [Vec3::ZERO, Vec3::Y, within(left, 90.0) * long]];
+            let normals = smooth(&triangles, &Progress::new()).unwrap();
+            let [right_up, left_up] = [right.cross(DVec3::Y), DVec3::Y.cross(left)];
+            let expected = (30.0 * right_up + 90.0 * left_up).normalize().as_vec3();
+            for normal in normals.iter().map(|corners| corners[0]) {
+                assert!(normal.distance(expected) < 1e-6, "{normal} and not {expected}");
+            }
+        }
+    }
+
     #[test]
     fn triangles_without_area_still_get_unit_normals() {
         let p = Vec3::new(1.0, 2.0, 3.0);

@@ -2,7 +2,7 @@
 //! front, as glTF has it). Clip space is WebGPU's, with depth reversed: 1 at the near plane, 0 at infinity.
 
 use glam::camera::rh::proj::directx as proj;
-use glam::{Mat4, Vec2, Vec3, vec2, vec3};
+use glam::{Mat4, Vec2, Vec3, vec3};
 
 use crate::mesh::Bounds;
 use crate::tessellate::LodView;
@@ -126,15 +126,11 @@ impl Camera {
     }
 }
 
-/// Where a position lands, in px from the viewport's top left; `None` behind the eye.
-pub fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
-    let clip = clip_from_object * position.extend(1.0);
-    (clip.w > 0.0).then(|| (vec2(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * viewport)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::project;
+    use glam::vec2;
 
     fn unit_bounds() -> Bounds {
         Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter())

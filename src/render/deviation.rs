@@ -5,7 +5,7 @@ use wgpu::util::DeviceExt;
 use super::Scale;
 use super::scale::FACTOR_SCALE;
 use crate::gpu::Gpu;
-use crate::measure::Field;
+use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// How far what is emitted is from the truth.
@@ -19,7 +19,7 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    pub fn new(gpu: &Gpu, field: &Field, scale: Scale, of: u64) -> Self {
+    pub fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
         // What is no number can't be told from others on every device.
         let known = |sample: &f32| if sample.is_nan() { -1.0 } else { *sample };
         let buffer = |samples: &Vec<f32>| {

@@ -106,7 +106,7 @@ mod tests {
     use glam::vec3;
 
     use super::*;
-    use crate::render::project;
+    use crate::view::project;
 
     fn unit_bounds() -> Bounds {
         Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter())

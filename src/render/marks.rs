@@ -3,8 +3,31 @@
 use glam::Vec3;
 
 use super::LineSegment;
-use super::layout::{FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
+use super::layout::{CRACK_COLOR, FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
+use crate::measure::{CrackedEdge, Measured};
 use crate::mesh::{TJunction, Topology};
+
+/// Every side of every cracked edge.
+pub fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
+    crack_lines_in(measured, topology, |_| CRACK_COLOR)
+}
+
+/// Every side of every cracked edge, each edge in the colour (sRGB) that `color` gives it.
+pub fn crack_lines_in(
+    measured: &Measured,
+    topology: &Topology,
+    color: impl Fn(&CrackedEdge) -> [u8; 3],
+) -> Vec<LineSegment> {
+    let mut lines = Vec::new();
+    for edge in measured.cracks.cracked() {
+        let color = color(edge);
+        for side in measured.outlines.edge(topology, edge.edge) {
+            let points: Vec<_> = side.positions().collect();
+            lines.extend(points.windows(2).map(|ends| LineSegment::new(ends[0], ends[1], color)));
+        }
+    }
+    lines
+}
 
 /// The open edges that T-junctions lie on, and a dot on each point.
 pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {

@@ -19,10 +19,10 @@ mod shader_tests;
 mod steps;
 mod target;
 
-pub use camera::{Camera, Standpoint, project};
+pub use camera::{Camera, Standpoint};
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use leaks::LeakCounter;
-pub use marks::{patch_lines, t_junction_lines, worst_lines};
+pub use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
 pub use materials::Materials;
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::Renderer;

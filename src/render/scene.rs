@@ -12,10 +12,11 @@ use super::deviation::Deviations;
 use super::layout::linear;
 use super::materials::Materials;
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
-use crate::measure::{Field, ulp, ulp_at};
+use crate::measure::DeviationField;
 use crate::mesh::{Bounds, Mesh, Moment, Topology};
 use crate::settings::{Half, Settings};
 use crate::tessellate::bounds_through;
+use crate::view::{ulp, ulp_at};
 
 /// One mesh on the device, its materials, and the lines drawn over it.
 pub struct Scene {
@@ -157,7 +158,7 @@ impl Scene {
 
     /// Takes how far what is emitted now is from the truth, and the scale that it is read against in object units; none
     /// when that is no longer so.
-    pub fn set_deviation(&mut self, gpu: &Gpu, field: Option<(&Field, Scale)>) {
+    pub fn set_deviation(&mut self, gpu: &Gpu, field: Option<(&DeviationField, Scale)>) {
         let of = self.tessellator.generation();
         self.deviation = field.map(|(field, scale)| Deviations::new(gpu, field, scale, of));
     }

@@ -6,6 +6,7 @@ mod meshes;
 mod picture;
 mod report;
 mod run;
+mod sweep_chart;
 mod views;
 
 pub use cases::{CASES, Case, LOOK, Look, Probe};

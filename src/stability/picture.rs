@@ -6,14 +6,15 @@ use glam::Vec2;
 use image::{DynamicImage, RgbImage};
 use thiserror::Error;
 
+use super::sweep_chart::sweep_chart;
 use super::{Method, Probe, Subject, views};
 use crate::engine::Engine;
 use crate::gpu::{GpuError, Timing};
-use crate::measure::{SWEEP_STEP, sheet, sweep, sweep_chart};
+use crate::measure::{SWEEP_STEP, sweep};
 use crate::mesh::{Moment, Topology, t_junctions};
-use crate::plot::ChartError;
+use crate::plot::{ChartError, contact_sheet};
 use crate::progress::Progress;
-use crate::render::{LineSegment, Target, t_junction_lines};
+use crate::render::{LineSegment, Target, crack_lines, t_junction_lines};
 use crate::settings::{ARENA_BYTES, Overlays, Settings};
 use crate::tessellate::{LodView, Partitioning};
 
@@ -44,7 +45,7 @@ pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImag
     }
     let names = Method::ALL.map(|method| method.name().to_owned());
     let parts: Vec<_> = names.into_iter().zip(parts(case, engine)?).collect();
-    Ok(sheet(&parts, COLUMNS, TEXT)?)
+    Ok(contact_sheet(&parts, COLUMNS, TEXT)?)
 }
 
 fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
@@ -72,7 +73,7 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
         let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
         engine.count(&mut scene, &inputs, &mut Timing::Off)?;
         let (_, posed) = scene.tessellator.posed().deformed();
-        let mut lines: Vec<LineSegment> = engine.measure(&mut scene)?.crack_lines(&posed);
+        let mut lines: Vec<LineSegment> = crack_lines(&engine.measure(&mut scene)?, &posed);
         lines.extend(t_junction_lines(&topology, &junctions));
         scene.set_lines(&engine.gpu, &lines);
         engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;

@@ -319,7 +319,7 @@ fn longest_segment(topology: &Topology, measured: &Measured, view: &LodView) -> 
     let most = 63 * FIXED_ONE;
     let mut longest = 0.0_f64;
     for edge in 0..topology.edges.len() as u32 {
-        for side in measured.rims.edge(topology, edge).iter().filter(|side| side.word & FACTOR_VALUE < most) {
+        for side in measured.outlines.edge(topology, edge).iter().filter(|side| side.word & FACTOR_VALUE < most) {
             let clip: Vec<Vec4> = side.positions().map(|p| view.clip_from_object * p.extend(1.0)).collect();
             longest = clip.windows(2).map(|ends| visible_length(ends[0], ends[1], view)).fold(longest, f64::max);
         }

@@ -1,7 +1,7 @@
 //! Which points the triangles inside a patch join, each in closed form from its number. Twin: `shaders/connectivity.wgsl`;
 //! [`super::patterns`] has the same looked up.
 
-use super::domain::{TransitionStep, ring_point, rings_before};
+use super::rings::{TransitionStep, ring_point, rings_before};
 
 /// Which of the 31 places before a side's middle have a point, as points appear in the order of a breadth-first
 /// bisection: place 16, then 8 and 24, then 4, 12, 20, 28, and so on.

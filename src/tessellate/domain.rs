@@ -13,6 +13,7 @@ use super::factors::{
     FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity, patch_is_minimal,
     patch_is_subtriangulated, segments,
 };
+use super::rings::{TransitionStep, ring_point, rings_before};
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
 /// Two thirds in 16.16 fixed point, rounded down as the tessellator has it.
@@ -80,16 +81,6 @@ pub fn row_location(row: DomainRow, p: u32) -> u32 {
     let fine_part = fine * row.fine_step * row.fraction;
     let x = (coarse_part + fine_part + FIXED_HALF) >> 16;
     if mirrored { FIXED_ONE - x } else { x }
-}
-
-/// The largest `s` up to `m / 2` with `s * (m - s) <= area`, for `m` up to 64 and `area` up to `m * m / 4`: the number
-/// of whole rings before something, as a ring has a fixed number of things fewer than the one around it.
-///
-/// The exact root is a whole number or at least 1/64 below the next one. Half of that is added, hundreds of times the
-/// error that WGSL allows a square root, so that the result is exact everywhere.
-pub fn rings_before(m: u32, area: u32) -> u32 {
-    let root = ((m * m - 4 * area) as f32).sqrt();
-    ((m as f32 - root) * 0.5 + 0.0078125) as u32
 }
 
 /// How a patch is cut.
@@ -186,11 +177,6 @@ fn inner_point(row: DomainRow, n: u32, i: u32) -> [u32; 2] {
     }
 }
 
-/// The number of point `p` of a closed ring of `length` points: the one after the last is the first.
-pub fn ring_point(start: u32, length: u32, p: u32) -> u32 {
-    start + if p == length { 0 } else { p }
-}
-
 /// The corners of triangle `t`, below `triangle_count(factors)`, as point numbers, clockwise.
 pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     match plan.kind {
@@ -200,18 +186,6 @@ pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     }
     let transition = plan.outer + 3 * (plan.n - 2);
     if t < transition { transition_triangle(plan, t) } else { regular_triangle(plan.outer, plan.n, t - transition) }
-}
-
-/// One triangle between an edge and the side inside it. It has point `inner` of the inner side, point `outer` of the edge,
-/// and the next point of one of the two.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransitionStep {
-    pub inner: u32,
-    pub outer: u32,
-    /// The third corner is the inner side's next point, not the edge's.
-    pub along_inner: bool,
-    /// The triangle is written from its inner point.
-    pub inner_first: bool,
 }
 
 /// Triangle `t` between the inside's first ring and an edge. After its middle a side mirrors what came before it.

@@ -1,10 +1,11 @@
 //! A whole mesh, tessellated on the CPU: what the passes do, in the same order, one patch after another.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 
 use super::nets::Nets;
 use super::relief::{Relief, reach};
+use super::vertex::{Vertex, pack_key};
 use super::{
     ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, Normals, PatchFactors, SEEN, Solid, corner_weights,
     domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv, linear_normal, linear_uv,
@@ -12,36 +13,6 @@ use super::{
     triangle_count, unseen,
 };
 use crate::mesh::{Mesh, Topology};
-
-/// An emitted vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct Vertex {
-    /// Object units.
-    pub position: [f32; 3],
-    /// See [`super::pack_normal`].
-    pub normal: u32,
-    /// Patch and domain coordinates: see [`pack_key`].
-    pub key: [u32; 2],
-    pub uv: [f32; 2],
-}
-
-impl Vertex {
-    /// The patch that emitted it.
-    pub fn patch(&self) -> u32 {
-        self.key[1] >> 2
-    }
-
-    /// Its domain point: the weights of corners 0 and 1 in 16.16 fixed point, whatever the convention calls them.
-    pub fn domain(&self) -> [u32; 2] {
-        [self.key[0] & 0x1ffff, (self.key[0] >> 17) | ((self.key[1] & 3) << 15)]
-    }
-}
-
-/// U and V need 17 bits each; the patch gets the other 30. Twin of `pack_key` in `shaders/types.wgsl`.
-pub fn pack_key(patch: u32, [u, v]: [u32; 2]) -> [u32; 2] {
-    [u | (v << 17), (v >> 15) | (patch << 2)]
-}
 
 /// Everything emitted, patch after patch.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -219,20 +190,5 @@ impl Nets<'_> {
             Normals::Linear | Normals::Surface => edge_normal(at_a.normal, at_b.normal, t),
         };
         (position, normal, edge_uv(at_a.uv, at_b.uv, t))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_key_gives_back_what_was_packed() {
-        for patch in [0, 1, (1 << 30) - 1] {
-            for uv in [[0, 0], [65536, 0], [0, 65536], [32767, 32768], [21845, 21845]] {
-                let vertex = Vertex { key: pack_key(patch, uv), ..Zeroable::zeroed() };
-                assert_eq!((vertex.patch(), vertex.domain()), (patch, uv));
-            }
-        }
     }
 }

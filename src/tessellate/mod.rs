@@ -1,5 +1,6 @@
 //! The mathematics on the CPU: the reference that the shaders are held against. `shaders/X.wgsl` is the twin of `X.rs`;
-//! `mesh.rs` does for a whole mesh what `shaders/pass_*.wgsl` do, and is their twin.
+//! `mesh.rs`, `nets.rs`,
+//! `mesh_factors.rs` and `relief.rs` do for a whole mesh what `shaders/pass_*.wgsl` do, and are their twins.
 
 mod budget;
 mod connectivity;
@@ -17,15 +18,18 @@ mod inputs;
 mod limit;
 mod lod;
 mod mesh;
+mod mesh_factors;
 mod nets;
 mod normal;
 pub(crate) mod patterns;
 mod posed;
 mod relief;
+mod rings;
 mod solid;
 mod spans;
 mod subtriangulation;
 mod surface;
+mod vertex;
 
 pub use budget::fit_budget;
 pub use control_points::{
@@ -54,9 +58,7 @@ pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,
     project_and_scale,
 };
-pub use mesh::{
-    Tessellated, Vertex, edge_factors, given_totals, hull_factors, pack_key, tessellate, tessellate_given, totals,
-};
+pub use mesh::{Tessellated, edge_factors, given_totals, hull_factors, tessellate, tessellate_given, totals};
 pub use normal::{
     Normals, edge_normal, linear_normal, middle_normal, pack_normal, quadratic_edge_normal, quadratic_normal,
     surface_normal, unpack_normal,
@@ -66,6 +68,7 @@ pub use relief::{displacing, height_units, reach};
 pub use solid::{Solid, is_beyond_near};
 pub use spans::{Span, is_mixed, map_number, spans};
 pub use surface::{ControlNet, Surface, edge_position, edge_uv, linear_uv, patch_position, patch_tangents, place};
+pub use vertex::{Vertex, pack_key};
 
 /// The constants of the mathematics that the shaders have too, for the test that compares them.
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use std::sync::LazyLock;
 
 use super::connectivity;
-use super::domain::TransitionStep;
+use super::rings::TransitionStep;
 
 /// Numbers of segments that half a side may have: 0 to 32.
 pub(crate) const PATTERN_HALVES: u32 = 33;

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
+use super::Inputs;
 use super::displace::{
     Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
@@ -10,8 +11,8 @@ use super::nets::Nets;
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
 use super::spans::{Maps, Span, map_number, spans};
 use super::surface::{UNIT, linear_uv, patch_tangents, place};
+use super::vertex::Vertex;
 use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, factor_side};
-use super::{Inputs, Vertex};
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
 /// What displaces a mesh under these inputs, if anything does.

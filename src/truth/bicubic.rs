@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::exact::Surface;
+use super::surface::Surface;
 use super::{Nearest, Sample};
 use crate::mesh::shapes::bicubic::{BezierNet, at};
 

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use super::exact::Surface;
 use super::root::root;
+use super::surface::Surface;
 use super::{Nearest, Sample};
 
 pub(super) struct Ellipsoid {

@@ -7,26 +7,12 @@ use super::ellipsoid::Ellipsoid;
 use super::revolved::{Profile, Torus};
 use super::saddle::Saddle;
 use super::spread::{Spread, radical_inverse};
+use super::surface::Surface;
 use super::{Nearest, Sample};
 use crate::mesh::Shape;
 use crate::mesh::shapes::polyhedra::ELLIPSOID;
 use crate::mesh::shapes::revolved::{HALF_HEIGHT, MAJOR, MINOR, RADIUS};
 use crate::mesh::shapes::sheets::SADDLE_HALF;
-
-/// What each kind of surface knows about itself.
-pub(super) trait Surface: Send + Sync {
-    /// See [`super::Truth::closest_facing`].
-    fn closest(&self, p: DVec3, facing: DVec3) -> Nearest;
-
-    /// Least and greatest coordinates.
-    fn extent(&self) -> [DVec3; 2];
-
-    /// Unit squares that together cover the surface.
-    fn charts(&self) -> usize;
-
-    /// A chart's point at `s` and `t`, and how much area the surface has there for the square's.
-    fn at(&self, chart: usize, s: f64, t: f64) -> (Sample, f64);
-}
 
 /// A surface whose nearest points are computed to about 1e-12 of its size.
 pub struct Exact {

@@ -10,6 +10,7 @@ mod revolved;
 mod root;
 mod saddle;
 mod spread;
+mod surface;
 mod triangles;
 
 use glam::DVec3;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::exact::Surface;
+use super::surface::Surface;
 use super::{Nearest, ON_CREASE, Sample};
 
 /// The distance from the axis, and the direction away from it: on the axis that of `facing`, if it has one.

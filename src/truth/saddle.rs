@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::exact::Surface;
 use super::root::root;
+use super::surface::Surface;
 use super::{Nearest, Sample};
 
 pub(super) struct Saddle {

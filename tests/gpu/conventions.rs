@@ -43,7 +43,7 @@ fn on_device(scene: &mut Scene, inputs: &Inputs) -> (Tessellated, Measured) {
 
 /// What every side of every edge has made of it.
 fn sides(loaded: &Loaded, measured: &Measured) -> Vec<Vec<EdgeSide>> {
-    (0..loaded.topology.edges.len() as u32).map(|edge| measured.rims.edge(&loaded.topology, edge)).collect()
+    (0..loaded.topology.edges.len() as u32).map(|edge| measured.outlines.edge(&loaded.topology, edge)).collect()
 }
 
 /// Holds every consistent convention against Direct3D 11's.
@@ -53,7 +53,7 @@ fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inp
         let (out, measured) = run(&inputs(loaded, &settings));
         (format!("{:?} {settings:?}", loaded.source), out, measured)
     });
-    assert!(first.2.rims.edge(&loaded.topology, 0)[0].points.len() > 1);
+    assert!(first.2.outlines.edge(&loaded.topology, 0)[0].points.len() > 1);
     for (what, out, measured) in others {
         assert_eq!(out.triangles.len(), first.1.triangles.len(), "{what}");
         assert_eq!(out.edge_factors, first.1.edge_factors, "{what}");
@@ -213,7 +213,7 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
         let measured = Measured::of(&loaded.mesh, &loaded.topology, AskedFactors::given(convention, &given), &out);
         for (index, patch) in (0..).zip(&loaded.topology.patches) {
             let found = patch.sides.map(|side| {
-                let edge = measured.rims.edge(&loaded.topology, loaded.topology.sides[side as usize].edge);
+                let edge = measured.outlines.edge(&loaded.topology, loaded.topology.sides[side as usize].edge);
                 let own = edge.iter().find(|side| side.patch == index).expect("nothing is culled");
                 let ends =
                     [&own.points[0], &own.points[own.points.len() - 1]].map(|point| glam::Vec3::from(point.position));

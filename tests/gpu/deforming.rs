@@ -5,12 +5,12 @@ use std::sync::Arc;
 use pnaen::engine::{Loaded, Preparation, Runs, load};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::load::Source;
-use pnaen::measure::ulp;
 use pnaen::mesh::{Mesh, Moment, Rig};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::tessellate::{Edges, Lod, Partitioning, Surface, tessellate};
+use pnaen::view::ulp;
 
 use crate::engine;
 use crate::moving::{CLIPS, moving};

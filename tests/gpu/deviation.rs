@@ -4,13 +4,15 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use image::RgbaImage;
+use pnaen::engine::Measurements;
 use pnaen::gpu::Timing;
-use pnaen::measure::{Field, Yardstick};
+use pnaen::measure::{DeviationField, DeviationTarget};
 use pnaen::mesh::Shape;
-use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, project, worst_lines};
+use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
 use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Half, Overlays, Settings};
 use pnaen::tessellate::{Lod, Surface};
 use pnaen::truth::Truth;
+use pnaen::view::project;
 
 use crate::engine;
 use crate::pictures::{SIZE, differing};
@@ -20,13 +22,25 @@ fn settings(surface: Surface, factor: f32) -> Settings {
     Settings { surface, factor, overlays, ..Settings::default() }
 }
 
+/// How far what is emitted is from a surface, all over.
+fn deviation_from(scene: &mut Scene, target: &DeviationTarget) -> DeviationField {
+    let wanted = Measurements { deviation: Some(target), ..Measurements::default() };
+    engine().measure_all(scene, &wanted).expect("a readback").deviation.expect("it was asked for")
+}
+
 /// Measures against the surface that a shape is sampled from, and draws.
-fn drawn(scene: &mut Scene, shape: Shape, camera: &Camera, target: &Target, settings: &Settings) -> (Field, RgbaImage) {
+fn drawn(
+    scene: &mut Scene,
+    shape: Shape,
+    camera: &Camera,
+    target: &Target,
+    settings: &Settings,
+) -> (DeviationField, RgbaImage) {
     let engine = engine();
     let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
     let truth = Truth::of_shape(shape).expect("a shape that is sampled from a surface");
-    let field = engine.field(scene, &Yardstick::Truth(Arc::new(truth))).expect("a readback");
+    let field = deviation_from(scene, &DeviationTarget::Truth(Arc::new(truth)));
     let scale = deviation_scale(field.worst().expect("something is emitted").value, scene.ulp());
     scene.set_deviation(&engine.gpu, Some((&field, scale)));
     engine.draw(scene, target, camera, settings, &mut Timing::Off).expect("a draw");
@@ -130,7 +144,7 @@ fn the_limit_surface_is_what_a_fine_tessellation_comes_to() {
     let mut worst = |surface, factor| {
         let inputs = settings(surface, factor).inputs(camera.lod_view(target.viewport(), &scene.bounds));
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
-        let field = engine().field(&mut scene, &Yardstick::Limit(Box::new(inputs))).expect("a readback");
+        let field = deviation_from(&mut scene, &DeviationTarget::Limit(Box::new(inputs)));
         field.worst().expect("something is emitted").value
     };
     let [coarse, fine] = [3.0, 27.0].map(|factor| worst(Surface::PnAen, factor));
@@ -152,7 +166,7 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
     let fields = Half::BOTH.map(|half| {
         let (scene, settings) = scene.half_mut(half).zip(split.half(half)).expect("both halves");
         engine().count(scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
-        engine().field(scene, &Yardstick::Truth(truth.clone())).expect("a readback")
+        deviation_from(scene, &DeviationTarget::Truth(truth.clone()))
     });
     let scale = deviation_scale(fields[0].worst().expect("something is emitted").value, scene.ulp());
     let [right_hand, _, to_eye] = camera.axes();

@@ -3,10 +3,11 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
+use pnaen::engine::Measurements;
 use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::Timing;
 use pnaen::load::{Budget, HeightSource, Source};
-use pnaen::measure::{Measured, ulp};
+use pnaen::measure::Measured;
 use pnaen::mesh::rim::Rim;
 use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Topology};
 use pnaen::progress::Progress;
@@ -17,6 +18,7 @@ use pnaen::tessellate::{
     Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Vertex, deform,
     tessellate, tessellate_given, triangle_count, unpack_normal,
 };
+use pnaen::view::ulp;
 
 use crate::engine;
 use crate::passes::{inputs, on_gpu};
@@ -274,7 +276,9 @@ fn lod_by_error_holds_with_gentle_heights() {
         };
         let inputs = inputs(&loaded, &settings);
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
-        let worst = engine().deviation(&mut scene, &inputs).expect("a readback").expect("it is in view");
+        let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
+        let results = engine().measure_all(&mut scene, &wanted).expect("a readback");
+        let worst = results.screen_error.expect("it is in view");
         assert!(worst.px <= 1.0, "{shape:?}: {} px", worst.px);
         let without = Settings { displacement: Displacement::Off, ..settings };
         let plain = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &without)).triangles.len() as u64;

@@ -122,6 +122,7 @@ fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
     let source = [
         include_str!("../../shaders/factors.wgsl"),
+        include_str!("../../shaders/rings.wgsl"),
         include_str!("../../shaders/domain.wgsl"),
         include_str!("../../shaders/connectivity.wgsl"),
         include_str!("../../shaders/subtriangulation.wgsl"),
@@ -267,6 +268,7 @@ fn function_names(source: &str) -> Vec<&str> {
 fn twins_have_the_same_functions_in_the_same_order() {
     let twins = [
         (include_str!("../../src/tessellate/factors.rs"), include_str!("../../shaders/factors.wgsl")),
+        (include_str!("../../src/tessellate/rings.rs"), include_str!("../../shaders/rings.wgsl")),
         (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
         (include_str!("../../src/tessellate/connectivity.rs"), include_str!("../../shaders/connectivity.wgsl")),
         (include_str!("../../src/tessellate/patterns.rs"), include_str!("../../shaders/patterns.wgsl")),

@@ -2,14 +2,15 @@
 
 use glam::Vec2;
 use pnaen::gpu::Timing;
-use pnaen::measure::Deviation;
+use pnaen::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, hull_factors, tessellate};
+use pnaen::tessellate::{self, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, hull_factors, tessellate};
 use proptest::prelude::*;
 
+use crate::passes::edge_factors;
 use crate::stability::{Trial, any_trial};
 use crate::{engine, scene};
 
@@ -21,9 +22,9 @@ fn is_capped(written: &[HullFactors]) -> bool {
 }
 
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
-    let mut deviation = Deviation::new(mesh, topology, inputs);
-    deviation.take(&out.vertices, &out.triangles, out.triangles.len() as u64);
-    deviation.worst().map_or(0.0, |worst| worst.px)
+    let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, out.triangles.len() as u64);
+    measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
+    measurement.worst().map_or(0.0, |worst| worst.px)
 }
 
 /// What rounding adds to a distance in px: emitted positions are off by a few units in the last place of coordinates
@@ -104,6 +105,16 @@ fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
     assert!(tried > 25 && closest > 0.6, "{tried} tried, {closest} of the tolerance used at best");
 }
 
+/// How much of the tolerance, at most, rounding may make of a bound: its differences, divisions and roots are each good to a
+/// few units in the last place.
+const ROUNDING: f32 = 1e-4;
+
+/// Whether two factors of an edge are the same: levels exactly; beyond the last, where they are asked for as they are, but
+/// for rounding.
+fn agrees(device: f32, here: f32) -> bool {
+    device == here || (device > 64.0 && here > 64.0 && (device - here).abs() <= ROUNDING * here)
+}
+
 #[test]
 fn the_device_takes_the_factors_that_the_cpu_does() {
     let (mut same, mut all) = (0, 0);
@@ -112,14 +123,34 @@ fn the_device_takes_the_factors_that_the_cpu_does() {
         for (camera, partitioning) in cameras(&scene).into_iter().zip(Partitioning::DIRECT3D) {
             let settings = by_error(Settings { partitioning, ..Settings::default() }, 0.5);
             let (inputs, out) = on_device(&mut scene, &settings, &camera);
-            let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
-            let pairs = out.patch_factors.iter().zip(&here.patch_factors);
-            same += pairs.filter(|(a, b)| a == b).count();
-            all += here.patch_factors.len();
+            // Where a bound falls on a level to the last bits, either level may be taken: that is the one of a tolerance
+            // that differs by no more than rounding.
+            let near = [1.0, 1.0 - ROUNDING, 1.0 + ROUNDING]
+                .map(|part| Inputs { tolerance: inputs.tolerance * part, ..inputs });
+            let what = format!("{shape:?} {partitioning}");
+            let on_edges = edge_factors(&scene);
+            let edges = near.each_ref().map(|inputs| tessellate::edge_factors(&loaded.mesh, &loaded.topology, inputs));
+            for (edge, &factor) in on_edges.iter().enumerate() {
+                let known = edges.each_ref().map(|factors| factors[edge]);
+                assert!(
+                    known.iter().any(|&known| agrees(factor, known)),
+                    "{what}, edge {edge}: {factor}, not {known:?}"
+                );
+            }
+            // Patches are compared at the device's factors of edges, of which those inside depend.
+            let patches = near.map(|inputs| {
+                tessellate::tessellate(&loaded.mesh, &loaded.topology, &inputs, Some(&on_edges)).patch_factors
+            });
+            for (patch, factors) in out.patch_factors.iter().enumerate() {
+                let known = patches.each_ref().map(|patches| patches[patch]);
+                assert!(known.contains(factors), "{what}, patch {patch}: {factors:?}, not {known:?}");
+                same += usize::from(known[0] == *factors);
+                all += 1;
+            }
         }
     }
-    // Where a bound falls on a level to the last bits, either may be taken.
-    assert!(all > 1000 && same * 1000 >= all * 995, "{same} of {all} patches");
+    println!("{same} of {all} patches agree without any allowance");
+    assert!(all > 1000, "{all} patches");
 }
 
 #[test]

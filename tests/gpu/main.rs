@@ -16,6 +16,7 @@ mod moving;
 mod passes;
 mod picking;
 mod pictures;
+mod readbacks;
 mod rim;
 mod stability;
 
@@ -26,7 +27,7 @@ use pnaen::gpu::Timing;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene, Target};
+use pnaen::render::{Camera, Scene, Target, crack_lines};
 use pnaen::settings::{ARENA_BYTES, Settings};
 
 /// One engine for all tests: compiling its pipelines is what takes long.
@@ -60,7 +61,7 @@ pub fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image:
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
     if settings.overlays.cracks {
         let measured = engine.measure(scene).expect("a readback");
-        let lines = measured.crack_lines(scene.tessellator.topology());
+        let lines = crack_lines(&measured, scene.tessellator.topology());
         scene.set_lines(&engine.gpu, &lines);
     }
     engine.draw(scene, &target, &camera, settings, &mut Timing::Off).expect("a draw");

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use pnaen::engine::{Loaded, Preparation, Runs};
+use pnaen::engine::{Loaded, Measurements, Preparation, Runs};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::load::Source;
-use pnaen::measure::{Measured, ScreenView, Sizes, ulp};
+use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
 use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Rim, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
@@ -14,6 +14,7 @@ use pnaen::tessellate::{
     Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, point_count,
     process, tessellate, totals, triangle_count, unpack_normal,
 };
+use pnaen::view::{ScreenView, ulp};
 
 use crate::coverage::sifting;
 use crate::{engine, loaded, picture, scene};
@@ -188,8 +189,9 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
             };
             assert_eq!(on_gpu.patches_low, if low { 256 } else { 0 }, "{what}");
             let mut sizes = Sizes::new(view);
-            sizes.take(&cpu.vertices, &cpu.triangles);
-            let seen = engine().sizes(&mut scene, view).expect("a readback");
+            sizes.take(&EmittedChunk::whole(&cpu.vertices, &cpu.triangles));
+            let wanted = Measurements { sizes: Some(view), ..Measurements::default() };
+            let seen = engine().measure_all(&mut scene, &wanted).expect("a readback").sizes.expect("it was asked for");
             assert_eq!(seen.in_view, sizes.in_view, "{what}");
             // Positions differ by a few ULP, which may take a triangle across 3 px.
             assert!(seen.small.abs_diff(sizes.small) <= 2, "{what}: {} and {}", seen.small, sizes.small);

@@ -4,9 +4,10 @@ use glam::{DMat4, DVec2, DVec4, Vec3, dvec2, vec3};
 use pnaen::engine::Loaded;
 use pnaen::gpu::Timing;
 use pnaen::mesh::Shape;
-use pnaen::render::{Camera, Picked, Pixel, Scene, project};
+use pnaen::render::{Camera, Picked, Pixel, Scene};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellated, tessellate};
+use pnaen::view::project;
 
 use crate::{engine, loaded, scene};
 

@@ -5,17 +5,18 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use image::RgbaImage;
+use pnaen::cli::compare;
 use pnaen::engine::{Preparation, load};
 use pnaen::load::Source;
-use pnaen::measure::compare;
 use pnaen::mesh::{EdgeKind, Shape, t_junctions};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
-use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, project, t_junction_lines};
+use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, t_junction_lines};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlay, Overlays, Settings};
 use pnaen::tessellate::{
     Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, domain_side,
 };
+use pnaen::view::project;
 
 use crate::displacement::wavy;
 use crate::passes::sheet;
@@ -197,7 +198,7 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         for (channel, corner) in corners.into_iter().enumerate() {
             let near = corner.lerp(middle, 0.1);
-            let at = pnaen::render::project(clip, target.viewport(), near).expect("in front of the eye");
+            let at = pnaen::view::project(clip, target.viewport(), near).expect("in front of the eye");
             let colour = picture.get_pixel(at.x as u32, at.y as u32).0;
             let brightest = (0..3).max_by_key(|&c| colour[c]).expect("three channels");
             assert_eq!(brightest, channel, "{colour:?} at {at}");

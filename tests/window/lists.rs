@@ -1,9 +1,12 @@
 //! What is found about a mesh and listed: cracks, worst edges, what a weld would join.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use egui::accesskit::Role;
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::tessellate::Surface;
@@ -100,20 +103,39 @@ fn as_published_edges_crack_and_once_an_edge_they_close() {
     assert_eq!(harness.state().cracks().expect("measured").different_bits, 0);
 }
 
+/// A file with two triangles whose shared edge is there twice, a part of 1e-4 of the bounding diagonal apart.
+fn slit() -> PathBuf {
+    let path = std::env::temp_dir().join(format!("pnaen-slit-{}.obj", std::process::id()));
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.0001 0 0\nv 1 1 0\nv 0.0001 1 0\n";
+    std::fs::write(&path, format!("{corners}f 1 2 3\nf 4 5 6\n")).expect("a writable temporary folder");
+    path
+}
+
 #[test]
 fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
-    let mut harness = uniform(Some(Source::Shape(Shape::Saddle)));
+    let path = slit();
+    let mut harness = uniform(Some(Source::File(path.clone())));
     let start = Instant::now();
     while harness.state().is_checking() {
         assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
         harness.step();
     }
+    let edges = |harness: &Harness<App>| {
+        let topology = &harness.state().loaded().expect("a mesh").topology;
+        (topology.edges.len(), topology.edge_counts().boundary)
+    };
+    assert_eq!(edges(&harness), (6, 6), "two triangles with a slit between them");
     press(&mut harness, egui::Key::Num3);
     let camera = *harness.state().camera();
-    choose(&mut harness, "Weld", "1e-5: joins nothing");
-    let app = harness.state();
-    assert_eq!(app.loaded().map(|loaded| loaded.preparation.weld), Some(1e-5));
-    assert_eq!(*app.camera(), camera, "the view stays");
+    for (entry, weld, expected) in
+        [("1e-5: joins nothing", 1e-5, (6, 6)), ("1e-4: joins 2 edges", 1e-4, (5, 4)), ("Exact", 0.0, (6, 6))]
+    {
+        choose(&mut harness, "Weld", entry);
+        assert_eq!(harness.state().loaded().map(|loaded| loaded.preparation.weld), Some(weld));
+        assert_eq!(edges(&harness), expected, "{entry}");
+        assert_eq!(*harness.state().camera(), camera, "the view stays");
+    }
+    let _ = std::fs::remove_file(path);
 }
 
 #[test]

@@ -18,8 +18,8 @@ fn emitted(mesh: &Mesh, surface: Surface, factor: f32) -> Tessellated {
 }
 
 fn measured(truth: &Truth, out: &Tessellated, samples: usize) -> Accuracy {
-    let mut measurement = Measurement::new(truth, None, options(samples));
-    measurement.take(&out.vertices, &out.triangles);
+    let mut measurement = AccuracyMeasurement::new(truth, None, options(samples));
+    measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
     measurement.finish().unwrap()
 }
 
@@ -87,8 +87,8 @@ fn rms_of_a_face(inradius: f64) -> f64 {
 #[test]
 fn parallel_squares_are_as_far_both_ways() {
     let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
-    let mut measurement = Measurement::new(&truth, None, options(1000));
-    measurement.take(&vertices, &triangles);
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     for distances in [accuracy.to_truth, accuracy.from_truth, accuracy.both_ways()] {
         near(distances.largest, 0.25, 1e-12);
@@ -102,8 +102,8 @@ fn parallel_squares_are_as_far_both_ways() {
 #[test]
 fn what_is_missing_shows_from_the_truth_alone() {
     let (truth, (vertices, triangles)) = (square_truth(1.0), square(0.5, 0.0));
-    let mut measurement = Measurement::new(&truth, None, options(50_000));
-    measurement.take(&vertices, &triangles);
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(50_000));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     assert!(accuracy.to_truth.largest < 1e-12, "{accuracy:?}");
     near(accuracy.from_truth.largest, 0.5_f64.sqrt(), 0.01);
@@ -131,8 +131,8 @@ fn normals_that_lean_are_measured_in_degrees() {
     let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.0));
     let lean = 10.0_f32.to_radians();
     vertices.iter_mut().for_each(|vertex| vertex.normal = pack_normal(vec3(lean.sin(), lean.cos(), 0.0)));
-    let mut measurement = Measurement::new(&truth, None, options(100));
-    measurement.take(&vertices, &triangles);
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(100));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     near(accuracy.normals.rms, 10.0, 0.01);
     near(accuracy.normals.largest, 10.0, 0.01);
@@ -143,8 +143,8 @@ fn distances_on_screen_are_in_px_of_what_is_in_view() {
     let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
     let px = |clip_from_object| {
         let view = LodView::new(clip_from_object, Vec2::new(400.0, 300.0));
-        let mut measurement = Measurement::new(&truth, Some(&view), options(100));
-        measurement.take(&vertices, &triangles);
+        let mut measurement = AccuracyMeasurement::new(&truth, Some(&view), options(100));
+        measurement.take(&EmittedChunk::whole(&vertices, &triangles));
         measurement.finish().unwrap().worst_px.map(|place| place.value)
     };
     // Seen from the side, y upwards: half the viewport's height is one unit.
@@ -155,13 +155,13 @@ fn distances_on_screen_are_in_px_of_what_is_in_view() {
 #[test]
 fn nothing_and_what_is_no_number_give_nothing() {
     let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
-    assert_eq!(Measurement::new(&truth, None, options(10)).finish(), None);
-    let mut flat = Measurement::new(&truth, None, options(10));
-    flat.take(&vertices, &[[0, 0, 1]]);
+    assert_eq!(AccuracyMeasurement::new(&truth, None, options(10)).finish(), None);
+    let mut flat = AccuracyMeasurement::new(&truth, None, options(10));
+    flat.take(&EmittedChunk::whole(&vertices, &[[0, 0, 1]]));
     assert_eq!(flat.finish(), None);
     vertices[3].position[1] = f32::NAN;
-    let mut measurement = Measurement::new(&truth, None, options(1000));
-    measurement.take(&vertices, &triangles);
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     assert_eq!(accuracy.not_finite, 1);
     near(accuracy.to_truth.rms, 0.25, 1e-12);
@@ -173,9 +173,11 @@ fn threads_change_no_bit_and_chunks_nothing_else() {
     let truth = Truth::of_shape(Shape::Bicubic).unwrap();
     let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
     let measure = |threads, chunks: usize| {
-        let mut measurement = Measurement::new(&truth, None, AccuracyOptions { samples: 3000, threads });
+        let mut measurement = AccuracyMeasurement::new(&truth, None, AccuracyOptions { samples: 3000, threads });
         let size = out.triangles.len().div_ceil(chunks);
-        out.triangles.chunks(size).for_each(|triangles| measurement.take(&out.vertices, triangles));
+        out.triangles
+            .chunks(size)
+            .for_each(|triangles| measurement.take(&EmittedChunk::whole(&out.vertices, triangles)));
         measurement.finish().unwrap()
     };
     let once = measure(1, 1);

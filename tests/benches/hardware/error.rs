@@ -1,6 +1,6 @@
 //! Equal error on screen: our LOD by error and our culling against the peer with the white paper's LOD and clipping.
 
-use pnaen::engine::Engine;
+use pnaen::engine::{Engine, Measurements};
 use pnaen::gpu::{GpuError, Timing};
 use pnaen::settings::{Settings, TOLERANCE_RANGE};
 use pnaen::tessellate::{Clip, Lod, Partitioning};
@@ -154,5 +154,7 @@ fn deviation(engine: &Engine, subject: &mut Subject) -> Result<f64, GpuError> {
     let view = subject.camera.lod_view(subject.target.viewport(), &subject.scene.bounds);
     let inputs = subject.settings.inputs(view);
     engine.count(&mut subject.scene, &inputs, &mut Timing::Off)?;
-    Ok(engine.deviation(&mut subject.scene, &inputs)?.map_or(0.0, |worst| worst.px))
+    let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
+    let results = engine.measure_all(&mut subject.scene, &wanted)?;
+    Ok(results.screen_error.map_or(0.0, |worst| worst.px))
 }

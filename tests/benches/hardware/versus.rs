@@ -1,8 +1,8 @@
 //! One subject, by our passes and by the peer.
 
+use pnaen::cli::{CompareError, compare};
 use pnaen::engine::Engine;
 use pnaen::gpu::{GpuError, Timing};
-use pnaen::measure::{CompareError, compare};
 use pnaen::tessellate::Partitioning;
 use thiserror::Error;
 

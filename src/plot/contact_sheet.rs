@@ -1,18 +1,18 @@
-//! Pictures side by side, each under its name.
+//! Contact sheets: pictures in rows, each under its caption.
 
 use image::{Rgb, RgbImage, imageops};
 
-use crate::plot::{ChartError, write_text};
+use super::{ChartError, write_text};
 
 /// Between pictures and around them, in px.
 const GAP: u32 = 4;
 
-/// Pictures of one size in rows, each under its caption, on white. `text` is how high captions are, in px: larger where the
-/// whole is shown smaller.
+/// Puts pictures of one size in rows of `columns`, each under its caption, on white. `text` is the height of captions in px:
+/// it should be larger where the whole sheet is shown smaller.
 ///
 /// # Errors
-/// The captions' font can't be used.
-pub fn sheet(parts: &[(String, RgbImage)], columns: u32, text: u32) -> Result<RgbImage, ChartError> {
+/// The font of the captions can't be used.
+pub fn contact_sheet(parts: &[(String, RgbImage)], columns: u32, text: u32) -> Result<RgbImage, ChartError> {
     let (width, height) = parts.first().map_or((0, 0), |(_, part)| part.dimensions());
     let room = text + text / 3;
     let (across, down) = (width + GAP, height + GAP + room);
@@ -34,7 +34,7 @@ mod tests {
     fn parts_stand_in_rows_under_their_captions() {
         let part = |shade: u8| RgbImage::from_pixel(40, 30, Rgb([shade; 3]));
         let parts = [("one", 10), ("two", 20), ("three", 30)].map(|(name, shade)| (name.to_owned(), part(shade)));
-        let all = sheet(&parts, 2, 18).expect("a font");
+        let all = contact_sheet(&parts, 2, 18).expect("a font");
         assert_eq!(all.dimensions(), (2 * 44 + 4, 2 * 58 + 4));
         let at = |x, y| all.get_pixel(x, y).0[0];
         assert_eq!([at(20, 40), at(64, 40), at(20, 98), at(64, 98)], [10, 20, 30, 255]);

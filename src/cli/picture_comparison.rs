@@ -1,4 +1,4 @@
-//! How far one picture is from another.
+//! How much one picture differs from another.
 
 use image::{Rgb, RgbImage, RgbaImage};
 use thiserror::Error;

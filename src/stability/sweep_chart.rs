@@ -1,4 +1,4 @@
-//! Factor sweeps as a picture.
+//! The chart of factor sweeps: how far the surface jumps at each tessellation factor.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use plotters::coord::combinators::LogCoord;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use super::{Sweep, SweepStep};
+use crate::measure::{Sweep, SweepStep};
 use crate::plot::{self, BLUE, BLUISH_GREEN, CHART_RANGE, ChartError, DENSITY, INK, REDDISH_PURPLE, VERMILION};
 use crate::settings::FACTOR_RANGE;
 use crate::tessellate::Partitioning;

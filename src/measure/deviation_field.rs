@@ -6,36 +6,37 @@ use std::thread;
 
 use glam::DVec3;
 
-use super::accuracy::{Place, blocks, worse};
+use super::accuracy::{WorstPoint, blocks, worse};
+use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::progress::{Cancelled, Progress};
 use crate::tessellate::{FIXED_ONE, Inputs, Limit, Vertex};
 use crate::truth::Truth;
 
-/// What deviation is measured from.
+/// The surface that deviation is measured from.
 #[derive(Clone)]
-pub enum Yardstick {
+pub enum DeviationTarget {
     Truth(Arc<Truth>),
     /// The limit surface under these inputs.
     Limit(Box<Inputs>),
 }
 
-impl Yardstick {
-    /// Calls `work` with what is measured against on this mesh.
-    pub fn with<T>(&self, mesh: &Mesh, topology: &Topology, work: impl FnOnce(&Against) -> T) -> T {
+impl DeviationTarget {
+    /// The same surface for a mesh: of a limit, its control nets.
+    fn on<'a>(&'a self, mesh: &'a Mesh, topology: &'a Topology) -> TargetSurface<'a> {
         match self {
-            Self::Truth(truth) => work(&Against::Truth(truth)),
-            Self::Limit(inputs) => work(&Against::Limit(&Limit::new(mesh, topology, inputs))),
+            Self::Truth(truth) => TargetSurface::Truth(truth),
+            Self::Limit(inputs) => TargetSurface::Limit(Box::new(Limit::new(mesh, topology, inputs))),
         }
     }
 }
 
-/// What is measured against.
-pub enum Against<'a> {
+/// A [`DeviationTarget`], ready to be asked for points.
+enum TargetSurface<'a> {
     /// The nearest point of a truth.
     Truth(&'a Truth),
     /// The point of the limit surface at the same place of the patch.
-    Limit(&'a Limit<'a>),
+    Limit(Box<Limit<'a>>),
 }
 
 /// Into how many segments triangles' edges are cut, finest first. Multiples of 3 have a sample in the middle, where a flat
@@ -49,19 +50,16 @@ pub const MOST_TRIANGLES: u64 = 1 << 24;
 /// Distances in object units. Samples of a triangle lie on a grid that cuts its edges into equal segments: row i has the
 /// weight i / steps of corner 1, and in it sample j the weight j / steps of corner 2.
 #[derive(Clone, Debug)]
-pub struct Field {
+pub struct DeviationField {
     pub steps: u32,
     /// Those of each chunk, triangle after triangle. A triangle with a corner that is no number has no numbers.
     pub chunks: Vec<Vec<f32>>,
     /// Triangles that were too many.
     pub left_out: u64,
-    worst: Option<Place>,
+    worst: Option<WorstPoint>,
     area: f64,
     /// Of distances, times area.
     squares: f64,
-    room: u64,
-    /// Triangles in all.
-    total: u64,
 }
 
 /// How many samples a triangle has.
@@ -69,55 +67,95 @@ pub fn samples_of(steps: u32) -> u32 {
     (steps + 1) * (steps + 2) / 2
 }
 
-impl Field {
-    /// Nothing seen yet of so many triangles.
-    pub fn new(triangles: u64) -> Self {
-        let fits = |steps: &u32| triangles.saturating_mul(samples_of(*steps).into()) <= SAMPLES;
-        let steps = STEPS.into_iter().find(fits).unwrap_or(0);
-        let room = MOST_TRIANGLES;
-        Self { steps, chunks: Vec::new(), left_out: 0, worst: None, area: 0.0, squares: 0.0, room, total: triangles }
+/// Measures a [`DeviationField`].
+pub struct DeviationMeasurement<'a> {
+    target: TargetSurface<'a>,
+    /// Is told how far the measurement is, and may be cancelled.
+    progress: &'a Progress,
+    field: DeviationField,
+    /// Triangles in all chunks together.
+    triangles: u64,
+    /// Triangles that may still be looked at.
+    room: u64,
+    cancelled: Option<Cancelled>,
+}
+
+impl<'a> DeviationMeasurement<'a> {
+    /// Nothing seen yet of a tessellation of this mesh with so many triangles.
+    pub fn new(
+        target: &'a DeviationTarget,
+        mesh: &'a Mesh,
+        topology: &'a Topology,
+        triangles: u64,
+        progress: &'a Progress,
+    ) -> Self {
+        let (target, field) = (target.on(mesh, topology), DeviationField::unknown(triangles));
+        Self { target, progress, field, triangles, room: MOST_TRIANGLES, cancelled: None }
     }
 
-    /// Takes the next chunk: triangles are indices into `vertices`. Tells `wanted` how far all are.
+    /// The field, once all chunks are taken.
     ///
     /// # Errors
-    /// `wanted` was cancelled.
-    pub fn take(
-        &mut self,
-        against: &Against,
-        vertices: &[Vertex],
-        triangles: &[[u32; 3]],
-        wanted: &Progress,
-    ) -> Result<(), Cancelled> {
-        let taken = triangles.len().min(self.room as usize);
+    /// The progress was cancelled before all of a chunk was measured.
+    pub fn finish(self) -> Result<DeviationField, Cancelled> {
+        self.cancelled.map_or(Ok(self.field), Err)
+    }
+
+    fn measure(&mut self, chunk: &EmittedChunk) -> Result<(), Cancelled> {
+        let taken = chunk.triangles.len().min(self.room as usize);
         self.room -= taken as u64;
-        self.left_out += (triangles.len() - taken) as u64;
+        self.field.left_out += (chunk.triangles.len() - taken) as u64;
         let threads = thread::available_parallelism().map_or(1, |cores| cores.get());
-        let (steps, total) = (self.steps, self.total.clamp(1, MOST_TRIANGLES));
+        let (steps, total) = (self.field.steps, self.triangles.clamp(1, MOST_TRIANGLES));
         let finished = AtomicU64::new(MOST_TRIANGLES - self.room - taken as u64);
+        let (target, progress) = (&self.target, self.progress);
         let done = blocks(taken, threads, |range| {
             let (mut sums, count) = (Sums::default(), range.len() as u64);
-            for triangle in &triangles[range] {
-                wanted.check()?;
-                sums.take(against, triangle.map(|index| &vertices[index as usize]), steps);
+            for triangle in &chunk.triangles[range] {
+                progress.check()?;
+                sums.take(target, triangle.map(|index| &chunk.vertices[index as usize]), steps);
             }
-            wanted.set((finished.fetch_add(count, Ordering::Relaxed) + count) as f32 / total as f32);
+            progress.set((finished.fetch_add(count, Ordering::Relaxed) + count) as f32 / total as f32);
             Ok(sums)
         });
         let mut samples = Vec::with_capacity(taken * samples_of(steps) as usize);
+        let field = &mut self.field;
         for sums in done {
             let sums = sums?;
             samples.extend(sums.samples);
-            self.area += sums.area;
-            self.squares += sums.squares;
-            self.worst = self.worst.into_iter().chain(sums.worst).reduce(worse);
+            field.area += sums.area;
+            field.squares += sums.squares;
+            field.worst = field.worst.into_iter().chain(sums.worst).reduce(worse);
         }
-        self.chunks.push(samples);
+        field.chunks.push(samples);
         Ok(())
+    }
+}
+
+impl Visitor for DeviationMeasurement<'_> {
+    /// Looks at nothing more once it was cancelled.
+    fn take(&mut self, chunk: &EmittedChunk) {
+        if self.cancelled.is_none() {
+            self.cancelled = self.measure(chunk).err();
+        }
+    }
+}
+
+impl DeviationField {
+    /// No samples yet, of so many triangles.
+    fn unknown(triangles: u64) -> Self {
+        let fits = |steps: &u32| triangles.saturating_mul(samples_of(*steps).into()) <= SAMPLES;
+        let steps = STEPS.into_iter().find(fits).unwrap_or(0);
+        Self { steps, chunks: Vec::new(), left_out: 0, worst: None, area: 0.0, squares: 0.0 }
+    }
+
+    /// The field of nothing at all.
+    pub fn empty() -> Self {
+        Self::unknown(0)
     }
 
     /// Where the distance is largest; none if nothing was emitted.
-    pub fn worst(&self) -> Option<Place> {
+    pub fn worst(&self) -> Option<WorstPoint> {
         self.worst
     }
 
@@ -132,11 +170,11 @@ struct Sums {
     samples: Vec<f32>,
     area: f64,
     squares: f64,
-    worst: Option<Place>,
+    worst: Option<WorstPoint>,
 }
 
 impl Sums {
-    fn take(&mut self, against: &Against, corners: [&Vertex; 3], steps: u32) {
+    fn take(&mut self, target: &TargetSurface, corners: [&Vertex; 3], steps: u32) {
         let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
         if !positions.iter().all(|position| position.is_finite()) {
             self.samples.extend(std::iter::repeat_n(f32::NAN, samples_of(steps) as usize));
@@ -144,25 +182,25 @@ impl Sums {
         }
         let [a, b, c] = positions;
         let area = (b - a).cross(c - a).length() / 2.0;
-        let net = match against {
-            Against::Limit(limit) => Some(limit.net(corners[0].patch())),
-            Against::Truth(_) => None,
+        let net = match target {
+            TargetSurface::Limit(limit) => Some(limit.net(corners[0].patch())),
+            TargetSurface::Truth(_) => None,
         };
         let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
         for (weights, share) in grid(steps) {
             let emitted = (0..3).map(|k| positions[k] * weights[k]).sum();
-            let truth = match (against, &net) {
-                (Against::Limit(limit), Some(net)) => {
+            let truth = match (target, &net) {
+                (TargetSurface::Limit(limit), Some(net)) => {
                     let [u, v] = [0, 1].map(|i| (0..3).map(|k| weights[k] * domains[k][i]).sum());
                     limit.position(corners[0].patch(), net, u, v)
                 }
-                (Against::Truth(truth), _) => truth.closest(emitted).point,
-                (Against::Limit(_), None) => emitted,
+                (TargetSurface::Truth(truth), _) => truth.closest(emitted).point,
+                (TargetSurface::Limit(_), None) => emitted,
             };
             let value = emitted.distance(truth);
             self.samples.push(value as f32);
             self.squares += area * share * value * value;
-            let place = Place { value, patch: corners[0].patch(), emitted, truth };
+            let place = WorstPoint { value, patch: corners[0].patch(), emitted, truth };
             self.worst = self.worst.into_iter().chain([place]).reduce(worse);
         }
         self.area += area;
@@ -199,11 +237,15 @@ mod tests {
         corners.map(|position| Vertex { position, ..bytemuck::Zeroable::zeroed() }).to_vec()
     }
 
-    fn field(corners: [[f32; 3]; 3], truth: &Truth) -> Field {
-        let mut field = Field::new(1);
-        let taken = field.take(&Against::Truth(truth), &triangle(corners), &[[0, 1, 2]], &Progress::new());
-        taken.expect("nobody cancels");
-        field
+    fn measured(corners: [[f32; 3]; 3], truth: &Arc<Truth>, progress: &Progress) -> Result<DeviationField, Cancelled> {
+        let (target, mesh, topology) = (DeviationTarget::Truth(truth.clone()), Mesh::default(), Topology::default());
+        let mut measurement = DeviationMeasurement::new(&target, &mesh, &topology, 1, progress);
+        measurement.take(&EmittedChunk::whole(&triangle(corners), &[[0, 1, 2]]));
+        measurement.finish()
+    }
+
+    fn field(corners: [[f32; 3]; 3], truth: &Arc<Truth>) -> DeviationField {
+        measured(corners, truth, &Progress::new()).expect("nobody cancels")
     }
 
     #[test]
@@ -220,7 +262,7 @@ mod tests {
 
     #[test]
     fn a_face_in_a_sphere_is_farthest_from_it_in_its_middle() {
-        let sphere = Truth::of_shape(Shape::Icosphere).expect("a sphere");
+        let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         let [samples] = &field.chunks[..] else { panic!("one chunk") };
         assert_eq!(field.steps, 24);
@@ -239,7 +281,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number_has_none_and_hides_nothing() {
-        let sphere = Truth::of_shape(Shape::Icosphere).expect("a sphere");
+        let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[f32::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         assert!(field.chunks[0].iter().all(|sample| sample.is_nan()));
         assert_eq!((field.worst(), field.rms()), (None, 0.0));
@@ -247,12 +289,11 @@ mod tests {
 
     #[test]
     fn many_triangles_have_fewer_samples_each_and_a_cancelled_field_stops() {
-        assert_eq!([1, 5_000, 20_000, 60_000, 1_000_000].map(|count| Field::new(count).steps), STEPS);
-        let sphere = Truth::of_shape(Shape::Icosphere).expect("a sphere");
-        let wanted = Progress::new();
-        wanted.cancel();
-        let vertices = triangle([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
-        let taken = Field::new(1).take(&Against::Truth(&sphere), &vertices, &[[0, 1, 2]], &wanted);
-        assert_eq!(taken, Err(Cancelled));
+        assert_eq!([1, 5_000, 20_000, 60_000, 1_000_000].map(|count| DeviationField::unknown(count).steps), STEPS);
+        let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
+        let progress = Progress::new();
+        progress.cancel();
+        let field = measured([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere, &progress);
+        assert!(matches!(field, Err(Cancelled)));
     }
 }

@@ -1,5 +1,7 @@
-//! What charts have in common: their font, ink and colours, and pictures that are drawn at twice their size and then halved,
-//! which smooths edges that the plotting library leaves jagged.
+//! What charts have in common: their font and colours. Charts are drawn at twice their size and then halved, which smooths
+//! the edges that the plotting library leaves jagged.
+
+mod contact_sheet;
 
 use std::fmt::Display;
 
@@ -10,6 +12,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use thiserror::Error;
+
+pub use contact_sheet::contact_sheet;
 
 /// The smallest and largest side of a chart, in px.
 pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
@@ -28,9 +32,10 @@ impl ChartError {
     }
 }
 
-/// Drawn px a px of the chart, along each side.
+/// How many px are drawn for one px of the chart, along each side.
 pub const DENSITY: u32 = 2;
-/// The name that the plotting library looks for where it isn't told another; in SVG files, any such font of the reader's.
+/// The font's name as the plotting library knows it. SVG files carry the name alone, so that they are shown in the reader's
+/// own font of that kind.
 pub const FONT: &str = "sans-serif";
 pub const INK: RGBColor = RGBColor(40, 40, 40);
 
@@ -42,7 +47,7 @@ pub const REDDISH_PURPLE: RGBColor = RGBColor(204, 121, 167);
 pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
 pub const SKY_BLUE: RGBColor = RGBColor(86, 180, 233);
 
-/// A picture of so many px, which `draw` draws at [`DENSITY`] times that.
+/// Makes a picture of this width and height in px; `draw` draws it at [`DENSITY`] times that size.
 ///
 /// # Errors
 /// `draw` fails, or the font can't be used.
@@ -82,7 +87,7 @@ pub fn write_text(picture: &mut RgbImage, at: [i32; 2], size: u32, text: &str) -
     area.present().map_err(|error| ChartError::failed(&error))
 }
 
-/// Letters of this size, in px drawn.
+/// The text style for letters of this height, in drawn px.
 pub fn font(size: i32) -> TextStyle<'static> {
     (FONT, size).into_font().color(&INK)
 }

@@ -1,16 +1,16 @@
-//! The outer ring of every patch, gathered from what was emitted: what the sides of an edge have made of it.
+//! The outline of every patch, gathered from what was emitted: which points each side of an edge has.
 
 use glam::Vec3;
 
+use super::asked_factors::AskedFactors;
 use crate::mesh::Topology;
 use crate::tessellate::{
-    Convention, Edges, HullFactors, Partitioning, PatchFactors, Vertex, domain_side, factor_side, outer_count,
-    patch_is_culled, patch_is_low, point_count, segments,
+    Convention, PatchFactors, Vertex, domain_side, outer_count, patch_is_culled, patch_is_low, point_count, segments,
 };
 
 /// A vertex on a patch's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RimPoint {
+pub struct OutlinePoint {
     /// Object units.
     pub position: [f32; 3],
     /// See [`crate::tessellate::pack_normal`].
@@ -19,80 +19,24 @@ pub struct RimPoint {
 
 /// The outer ring of every patch, and the factors it was emitted with.
 #[derive(Clone, Debug, Default)]
-pub struct Rims {
+pub struct Outlines {
     factors: Vec<PatchFactors>,
     /// Ring of patch p: `points[starts[p]..starts[p + 1]]`, in the tessellator's order.
     starts: Vec<u32>,
-    points: Vec<RimPoint>,
+    points: Vec<OutlinePoint>,
     asked: AskedFactors,
-}
-
-/// The factors that were asked for, before the tessellator clamped and rounded them, and the convention under which.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct AskedFactors {
-    factors: Vec<f32>,
-    belong: Belong,
-    convention: Convention,
-}
-
-/// What each of them belongs to.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Belong {
-    /// An edge.
-    #[default]
-    Edges,
-    /// As published, a side (an index into [`Topology::sides`]).
-    Sides,
-    /// Three a patch: TessFactor[0..2], as they were given.
-    Patches,
-}
-
-impl AskedFactors {
-    /// What LOD gave.
-    pub fn new(edges: Edges, convention: Convention, factors: Vec<f32>) -> Self {
-        let belong = if edges == Edges::AsPublished { Belong::Sides } else { Belong::Edges };
-        Self { factors, belong, convention }
-    }
-
-    /// What was given in place of LOD's.
-    pub fn given(convention: Convention, given: &[HullFactors]) -> Self {
-        let factors = given.iter().flat_map(|patch| patch.edges).collect();
-        Self { factors, belong: Belong::Patches, convention }
-    }
-
-    /// What LOD gave; nothing where factors were given.
-    pub fn into_factors(self) -> Vec<f32> {
-        if self.belong == Belong::Patches { Vec::new() } else { self.factors }
-    }
-
-    /// How many are larger than a partitioning's largest.
-    pub fn beyond(&self, partitioning: Partitioning) -> u64 {
-        let most = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
-        self.factors.iter().filter(|&&factor| factor > most).count() as u64
-    }
-
-    /// Which of a patch's factors its side `k` is cut by.
-    fn index(&self, k: usize) -> usize {
-        (0..3).position(|i| domain_side(self.convention, i) == k as u32).unwrap_or_default()
-    }
-
-    /// What a patch's factor `i` was asked to be.
-    fn of(&self, topology: &Topology, patch: u32, i: usize) -> f32 {
-        let side = topology.patches[patch as usize].sides[factor_side(self.convention, i as u32) as usize];
-        let index = match self.belong {
-            Belong::Edges => topology.sides[side as usize].edge as usize,
-            Belong::Sides => side as usize,
-            Belong::Patches => 3 * patch as usize + i,
-        };
-        self.factors.get(index).copied().unwrap_or(f32::NAN)
-    }
 }
 
 /// The edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut, point by point as they were
 /// emitted; straight where that isn't known, or nothing is emitted.
-pub fn patch_edges(topology: &Topology, patch: u32, rims: Option<&Rims>, convention: Convention) -> [Vec<Vec3>; 3] {
+pub fn patch_edges(
+    topology: &Topology,
+    patch: u32,
+    outlines: Option<&Outlines>,
+    convention: Convention,
+) -> [Vec<Vec3>; 3] {
     let corners = topology.patch_positions(patch);
-    let sides = rims.and_then(|rims| rims.patch(topology, patch));
+    let sides = outlines.and_then(|outlines| outlines.patch(topology, patch));
     [0, 1, 2].map(|i| {
         let k = domain_side(convention, i) as usize;
         match &sides {
@@ -114,7 +58,7 @@ pub struct EdgeSide {
     /// What the tessellator made of it: its word in [`PatchFactors`].
     pub word: u32,
     /// In the edge's direction, ends included.
-    pub points: Vec<RimPoint>,
+    pub points: Vec<OutlinePoint>,
 }
 
 impl EdgeSide {
@@ -129,8 +73,8 @@ impl EdgeSide {
     }
 }
 
-impl Rims {
-    /// Room for the rims of patches with these factors.
+impl Outlines {
+    /// Room for the outlines of patches with these factors.
     pub fn new(factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
         let mut starts = vec![0];
         let mut end = 0;
@@ -138,7 +82,7 @@ impl Rims {
             end += outer_count(patch);
             starts.push(end);
         }
-        Self { factors, starts, points: vec![RimPoint::default(); end as usize], asked }
+        Self { factors, starts, points: vec![OutlinePoint::default(); end as usize], asked }
     }
 
     /// Takes the vertices of patches from `first_patch` on; whole patches, in order.
@@ -151,7 +95,7 @@ impl Rims {
             }
             let (own, later) = rest.split_at(count);
             let ring = &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize];
-            ring.iter_mut().zip(own).for_each(|(to, v)| *to = RimPoint { position: v.position, normal: v.normal });
+            ring.iter_mut().zip(own).for_each(|(to, v)| *to = OutlinePoint { position: v.position, normal: v.normal });
             rest = later;
         }
     }
@@ -209,14 +153,14 @@ impl Rims {
     }
 
     /// A patch's ring, in the tessellator's order.
-    fn ring(&self, patch: u32) -> &[RimPoint] {
+    fn ring(&self, patch: u32) -> &[OutlinePoint] {
         let patch = patch as usize;
         &self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
     }
 
     /// For tests that break something: a point of a patch's ring.
     #[cfg(test)]
-    pub fn ring_mut(&mut self, patch: u32) -> &mut [RimPoint] {
+    pub fn ring_mut(&mut self, patch: u32) -> &mut [OutlinePoint] {
         let patch = patch as usize;
         &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
     }
@@ -225,7 +169,7 @@ impl Rims {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tessellate::process;
+    use crate::tessellate::{Edges, Partitioning, process};
 
     #[test]
     fn patches_at_the_limit_and_below_two_are_counted_and_culled_ones_are_neither() {
@@ -238,7 +182,7 @@ mod tests {
             of([0.0; 3], 64.0),
         ];
         let asked = AskedFactors::new(Edges::PerEdge, Convention::D3d11, Vec::new());
-        let rims = Rims::new(factors, asked);
-        assert_eq!((rims.at_limit(), rims.low()), (3, 1));
+        let outlines = Outlines::new(factors, asked);
+        assert_eq!((outlines.at_limit(), outlines.low()), (3, 1));
     }
 }

@@ -4,15 +4,18 @@ use std::thread;
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
+use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, Limit, LodView, Vertex};
 
 /// The largest distance on screen between a point of what was emitted and the surface's at the same place of its domain.
 /// That is no less than the distance to the nearest point of the surface, and is what bounds on the error speak of.
-pub struct Deviation<'a> {
+pub struct ScreenErrorMeasurement<'a> {
     limit: Limit<'a>,
     screen: Screen,
-    worst: Option<Deviant>,
+    /// Segments that each edge of a triangle is divided into for sampling.
+    steps: u32,
+    worst: Option<ScreenError>,
 }
 
 /// A view that distances are measured in.
@@ -23,7 +26,7 @@ pub(super) struct Screen {
 
 /// Where a distance on screen is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deviant {
+pub struct ScreenError {
     pub px: f64,
     pub patch: u32,
     /// What was emitted and what it stands for, in object units.
@@ -32,42 +35,26 @@ pub struct Deviant {
 }
 
 /// Triangles up to which each is sampled at all points that divide its edges in 8; four times as many in 4; else 2.
-const FINE: usize = 100_000;
+const FINE: u64 = 100_000;
 
-impl<'a> Deviation<'a> {
-    /// Nothing seen yet of a tessellation with these inputs, whose view is the one measured in.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        Self { limit: Limit::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), worst: None }
-    }
-
-    /// Samples triangles (indices into `vertices`) with a grid that divides their edges; `total` is how many there are
-    /// in all. Corners of triangles lie on the surface but for rounding, and are not sampled.
-    pub fn take(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]], total: u64) {
-        let steps = match total as usize {
+impl<'a> ScreenErrorMeasurement<'a> {
+    /// Nothing seen yet of a tessellation with these inputs, whose view is the one measured in. `triangles` is how many
+    /// will come in all chunks together: the more there are, the fewer samples each gets.
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
+        let steps = match triangles {
             0..=FINE => 8,
-            total if total <= 10 * FINE => 4,
+            triangles if triangles <= 10 * FINE => 4,
             _ => 2,
         };
-        let workers = thread::available_parallelism().map_or(1, |cores| cores.get());
-        let share = triangles.len().div_ceil(workers).max(1);
-        let this = &*self;
-        let worst = thread::scope(|scope| {
-            let run = |part| scope.spawn(move || this.worst_of(vertices, part, steps));
-            let threads: Vec<_> = triangles.chunks(share).map(run).collect();
-            let found = threads
-                .into_iter()
-                .filter_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-            found.reduce(worse)
-        });
-        self.worst = self.worst.into_iter().chain(worst).reduce(worse);
+        Self { limit: Limit::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), steps, worst: None }
     }
 
     /// The worst so far; none if nothing was in view.
-    pub fn worst(&self) -> Option<Deviant> {
+    pub fn worst(&self) -> Option<ScreenError> {
         self.worst
     }
 
-    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]], steps: u32) -> Option<Deviant> {
+    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Option<ScreenError> {
         let mut known = None;
         let worst = triangles.iter().filter_map(|triangle| {
             let corners = triangle.map(|i| &vertices[i as usize]);
@@ -75,18 +62,18 @@ impl<'a> Deviation<'a> {
             let patch = corners[0].patch();
             let (_, net) =
                 known.take().filter(|(of, _)| *of == patch).unwrap_or_else(|| (patch, self.limit.net(patch)));
-            let worst = self.worst_on(corners, &net, steps);
+            let worst = self.worst_on(corners, &net);
             known = Some((patch, net));
             worst
         });
         worst.reduce(worse)
     }
 
-    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, steps: u32) -> Option<Deviant> {
-        let patch = corners[0].patch();
+    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet) -> Option<ScreenError> {
+        let (patch, steps) = (corners[0].patch(), self.steps);
         let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
         let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
-        let mut worst: Option<Deviant> = None;
+        let mut worst: Option<ScreenError> = None;
         for i in 0..=steps {
             for j in 0..=steps - i {
                 if [i, j, steps - i - j].contains(&steps) {
@@ -97,10 +84,29 @@ impl<'a> Deviation<'a> {
                 let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
                 let limit = self.limit.position(patch, net, u, v);
                 let px = self.screen.distance_px(emitted, limit);
-                worst = worst.into_iter().chain(px.map(|px| Deviant { px, patch, emitted, limit })).reduce(worse);
+                worst = worst.into_iter().chain(px.map(|px| ScreenError { px, patch, emitted, limit })).reduce(worse);
             }
         }
         worst
+    }
+}
+
+impl Visitor for ScreenErrorMeasurement<'_> {
+    /// Samples triangles with a grid that divides their edges. Corners of triangles lie on the surface but for rounding,
+    /// and are not sampled.
+    fn take(&mut self, chunk: &EmittedChunk) {
+        let workers = thread::available_parallelism().map_or(1, |cores| cores.get());
+        let share = chunk.triangles.len().div_ceil(workers).max(1);
+        let this = &*self;
+        let worst = thread::scope(|scope| {
+            let run = |part| scope.spawn(move || this.worst_of(chunk.vertices, part));
+            let threads: Vec<_> = chunk.triangles.chunks(share).map(run).collect();
+            let found = threads
+                .into_iter()
+                .filter_map(|thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+            found.reduce(worse)
+        });
+        self.worst = self.worst.into_iter().chain(worst).reduce(worse);
     }
 }
 
@@ -126,6 +132,6 @@ fn in_view(clip: DVec4) -> bool {
     clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w
 }
 
-fn worse(a: Deviant, b: Deviant) -> Deviant {
+fn worse(a: ScreenError, b: ScreenError) -> ScreenError {
     if b.px > a.px { b } else { a }
 }
