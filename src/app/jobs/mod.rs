@@ -1,0 +1,28 @@
+//! What runs on threads of its own while the window goes on: loading, checking and measuring.
+
+pub mod background_job;
+pub mod chart_job;
+pub mod deviation_job;
+pub mod document;
+pub mod loading;
+pub mod measure_job;
+pub mod mesh_checks;
+pub mod truth;
+
+use crate::files::Limits;
+
+use deviation_job::DeviationJob;
+use document::Load;
+use measure_job::MeasureJob;
+use truth::TruthLoad;
+
+/// Jobs that are under way, and what the measuring ones know.
+#[derive(Default)]
+pub struct Jobs {
+    /// The limits of files that are opened.
+    pub limits: Limits,
+    pub load: Option<Load>,
+    pub truth_load: Option<TruthLoad>,
+    pub measure: MeasureJob,
+    pub deviation: DeviationJob,
+}
