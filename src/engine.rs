@@ -242,19 +242,34 @@ impl Engine {
         mut take: impl FnMut(u32, &[Vertex], &[[u32; 3]]),
     ) -> Result<(), GpuError> {
         for index in 0..scene.tessellator.chunk_count() {
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&self.gpu, &mut timing);
-            scene.tessellator.emit(&mut recorder, index);
-            recorder.submit();
-            let chunk = scene.tessellator.chunk(index);
-            let mut halves = Vec::new();
-            for (buffer, bytes) in chunk.vertices() {
-                halves.extend(read_buffer(&self.gpu, buffer, bytes.start, bytes.end - bytes.start)?);
-            }
-            let triangle_bytes = if triangles { u64::from(chunk.chunk.triangle_count) * 12 } else { 0 };
-            let indices = read_buffer(&self.gpu, chunk.indices, 0, triangle_bytes)?;
-            take(chunk.chunk.first_patch, &vertices_of(&halves), &cast(&indices));
+            self.read_chunk(scene, index, triangles, &mut take)?;
         }
+        Ok(())
+    }
+
+    /// One chunk of everything that is emitted: see [`Self::read_chunks`].
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn read_chunk(
+        &self,
+        scene: &mut Scene,
+        index: usize,
+        triangles: bool,
+        take: impl FnOnce(u32, &[Vertex], &[[u32; 3]]),
+    ) -> Result<(), GpuError> {
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(&self.gpu, &mut timing);
+        scene.tessellator.emit(&mut recorder, index);
+        recorder.submit();
+        let chunk = scene.tessellator.chunk(index);
+        let mut halves = Vec::new();
+        for (buffer, bytes) in chunk.vertices() {
+            halves.extend(read_buffer(&self.gpu, buffer, bytes.start, bytes.end - bytes.start)?);
+        }
+        let triangle_bytes = if triangles { u64::from(chunk.chunk.triangle_count) * 12 } else { 0 };
+        let indices = read_buffer(&self.gpu, chunk.indices, 0, triangle_bytes)?;
+        take(chunk.chunk.first_patch, &vertices_of(&halves), &cast(&indices));
         Ok(())
     }
 
@@ -296,11 +311,7 @@ impl Engine {
             edge_factors: self.asked_factors(scene)?.into_factors(),
             ..Tessellated::default()
         };
-        self.read_chunks(scene, true, |_, vertices, triangles| {
-            let base = out.vertices.len() as u32;
-            out.vertices.extend_from_slice(vertices);
-            out.triangles.extend(triangles.iter().map(|triangle| triangle.map(|i| base + i)));
-        })?;
+        self.read_chunks(scene, true, |_, vertices, triangles| out.append(vertices, triangles))?;
         Ok(out)
     }
 

@@ -9,7 +9,6 @@ mod patch_names;
 mod persistence;
 mod style;
 mod text;
-mod value_names;
 mod viewport;
 mod widgets;
 mod window;
@@ -174,6 +173,7 @@ impl eframe::App for App {
         self.take_checks();
         self.take_dialog(context);
         self.take_chart(context);
+        self.take_written();
         self.take_device_problem();
         self.take_dropped(context);
         self.hold_typing(context);

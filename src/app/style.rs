@@ -2,6 +2,8 @@
 
 /// Sets the spacing that both themes share, and the colours that egui has too pale.
 pub fn style(context: &egui::Context) {
+    // Its keys are the command table's.
+    context.options_mut(|options| options.zoom_with_keyboard = false);
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);
         style.spacing.slider_width = 82.0;

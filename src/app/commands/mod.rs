@@ -1,11 +1,17 @@
-//! How a person gives commands: the menus, the keys and the window that searches.
+//! How a person gives commands: the menus, the keys and the search, all made from the table in [`crate::commands`]; and
+//! what the window does then.
 
-pub mod menu_bar;
-pub mod palette;
+mod copy_command;
+mod key_list;
+mod keyboard;
+mod menu_bar;
+mod palette;
+mod perform;
 
+use crate::commands::Action;
 use palette::Palette;
 
-/// What is open of that.
+/// Windows of commands that are open.
 #[derive(Default)]
 pub struct Commands {
     pub shows_keys: bool,
@@ -13,4 +19,6 @@ pub struct Commands {
     pub palette: Option<Palette>,
     /// The command line that was copied, while it is shown.
     pub copied: Option<String>,
+    /// What was last performed.
+    pub last: Option<Action>,
 }

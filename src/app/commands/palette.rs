@@ -1,125 +1,36 @@
-//! Every command by its name: what menus, keys and lists do, found by typing a part of it.
+//! The window that searches for a command by a part of its name.
 
-use egui::{Button, Context, Key, TextEdit, ThemePreference};
+use egui::{Button, Context, Key, TextEdit};
 
 use crate::app::App;
-use crate::app::dialogs::typed_path::Purpose;
-use crate::app::value_names::{CLIPS, COLORS, CONVENTIONS, EDGES, LODS, NORMALS, OVERLAYS, PARTITIONINGS, SURFACES};
-use crate::load::Source;
-use crate::mesh::Shape;
-use crate::render::Standpoint;
-use crate::settings::Settings;
+use crate::commands::{Availability, Command, all};
 
 /// Commands that are listed at once.
 const LISTED: usize = 14;
 
-/// The window that searches.
+/// The search, while it is open.
 pub struct Palette {
     query: String,
-    /// Which of those found.
+    /// Which of the commands found is chosen with Enter.
     at: usize,
     commands: Vec<Command>,
+    /// When it was opened: what was possible then.
+    now: Availability,
 }
 
-struct Command {
-    /// What it belongs to, and what it is.
-    title: String,
-    /// That does the same; empty if none does.
-    key: &'static str,
-    run: Run,
-}
-
-type Run = Box<dyn Fn(&mut App, &Context)>;
-
-type Plain = (&'static str, &'static str, fn(&mut App, &Context));
-
-/// Those that aren't one of several.
-const PLAIN: [Plain; 30] = [
-    ("Open…", "Ctrl+O", |app, context| app.open_dialog(context)),
-    ("Open path…", "Ctrl+L", |app, _| app.type_path(Purpose::Open)),
-    ("Height image…", "", |app, context| app.height_dialog(context)),
-    ("Reload", "R", |app, context| app.reload(context)),
-    ("Truth…", "", |app, context| app.truth_dialog(context)),
-    ("Truth path…", "", |app, _| app.type_path(Purpose::Truth)),
-    ("No truth", "", |app, _| app.forget_truth()),
-    ("Undo", "Ctrl+Z", |app, _| app.undo()),
-    ("Redo", "Ctrl+Shift+Z", |app, _| app.redo()),
-    ("Copy as command", "Ctrl+K", |app, context| app.copy_command(context)),
-    ("Frame", "F", |app, _| app.frame()),
-    ("Frame patch", "Shift+F", |app, _| app.frame_patch()),
-    ("Front", "1", |app, _| app.viewport.camera.look_from(Standpoint::Front)),
-    ("Right", "3", |app, _| app.viewport.camera.look_from(Standpoint::Right)),
-    ("Top", "7", |app, _| app.viewport.camera.look_from(Standpoint::Top)),
-    ("Orthographic", "5", |app, _| app.viewport.camera.orthographic = !app.viewport.camera.orthographic),
-    ("Adaptive LOD", "L", |app, _| app.toggle_lod()),
-    ("Cull back faces", "", |app, _| app.settings.cull_back_faces = !app.settings.cull_back_faces),
-    ("Freeze LOD camera", "Z", |app, _| app.toggle_frozen()),
-    ("Displacement", "D", |app, _| app.toggle_displacement()),
-    ("Split view", "S", |app, _| app.toggle_split()),
-    ("Play or pause", "Space", |app, context| app.toggle_playing(context)),
-    ("At rest", "", |app, _| app.choose_clip(None)),
-    ("Deselect", "Esc", |app, _| app.deselect()),
-    ("Chart", "G", |app, _| app.toggle_chart()),
-    ("Theme of the system", "", |_, context| context.set_theme(ThemePreference::System)),
-    ("Light theme", "", |_, context| context.set_theme(ThemePreference::Light)),
-    ("Dark theme", "", |_, context| context.set_theme(ThemePreference::Dark)),
-    ("Keys…", "", |app, _| app.commands.shows_keys = true),
-    ("Quit", "Ctrl+Q", |_, context| context.send_viewport_cmd(egui::ViewportCommand::Close)),
-];
-
-/// A command for each value of a setting.
-fn choices<T: Copy + 'static>(
-    what: &'static str,
-    values: impl IntoIterator<Item = (T, &'static str)>,
-    set: fn(&mut Settings, T),
-) -> impl Iterator<Item = Command> {
-    values.into_iter().map(move |(value, name)| Command {
-        title: format!("{what}: {name}"),
-        key: "",
-        run: Box::new(move |app, _| set(&mut app.settings, value)),
-    })
-}
-
-/// All that there is now.
-fn commands(app: &App) -> Vec<Command> {
-    let plain = |(title, key, run): Plain| Command { title: title.to_owned(), key, run: Box::new(run) };
-    let mut all: Vec<Command> = PLAIN.into_iter().map(plain).collect();
-    all.extend(choices("Surface", SURFACES, |settings, surface| settings.surface = surface));
-    all.extend(choices("Shading", NORMALS, |settings, normals| settings.normals = normals));
-    let partitionings = PARTITIONINGS.map(|(value, name, _)| (value, name));
-    all.extend(choices("Partitioning", partitionings, |settings, value| settings.partitioning = value));
-    all.extend(choices("Edges", EDGES, Settings::set_edges));
-    all.extend(choices("LOD", LODS, |settings, lod| settings.lod = lod));
-    all.extend(choices("Clipping", CLIPS, |settings, clip| settings.clip = clip));
-    all.extend(choices("Convention", CONVENTIONS, |settings, convention| settings.convention = convention));
-    let colors = COLORS.map(|(value, name, _)| (value, name));
-    all.extend(choices("Colours", colors, |settings, colors| settings.overlays.colors = colors));
-    let overlays = OVERLAYS.map(|(overlay, name, _)| (overlay, name));
-    all.extend(choices("Overlay", overlays, |settings, overlay| settings.overlays.toggle(overlay)));
-    let opens = |title: String, source: Source| Command {
-        title,
-        key: "",
-        run: Box::new(move |app, context| app.open(context, source.clone())),
-    };
-    all.extend(Shape::ALL.map(|shape| opens(format!("Shape: {}", shape.title()), Source::Shape(shape))));
-    let recent = app.persistence.recent().map(|path| Source::File(path.into()));
-    all.extend(recent.map(|source| opens(format!("Recent: {}", source.title()), source)));
-    all
-}
-
-/// Those whose titles have every word of the query, in any case; where words of titles begin with its words first.
+/// Those whose names have every word of the query, in any case; where words of names begin with its words first.
 fn found(commands: &[Command], query: &str) -> Vec<usize> {
     let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();
-    let begins = |title: &str, word: &String| {
-        title.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word.as_str()))
+    let begins = |name: &str, word: &String| {
+        name.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word.as_str()))
     };
     let rank = |index: &usize| {
-        let title = commands[*index].title.to_lowercase();
-        !words.iter().all(|word| begins(&title, word))
+        let name = commands[*index].name.to_lowercase();
+        !words.iter().all(|word| begins(&name, word))
     };
     let has = |index: &usize| {
-        let title = commands[*index].title.to_lowercase();
-        words.iter().all(|word| title.contains(word.as_str()))
+        let name = commands[*index].name.to_lowercase();
+        words.iter().all(|word| name.contains(word.as_str()))
     };
     let mut found: Vec<usize> = (0..commands.len()).filter(has).collect();
     found.sort_by_key(rank);
@@ -129,7 +40,7 @@ fn found(commands: &[Command], query: &str) -> Vec<usize> {
 impl Palette {
     /// The command that was chosen, if one was.
     fn rows(&mut self, ui: &mut egui::Ui) -> Option<usize> {
-        // What goes through the list isn't for the field.
+        // The keys that go through the list aren't for the field.
         let [down, up, enter] = [Key::ArrowDown, Key::ArrowUp, Key::Enter]
             .map(|key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key)));
         let label = ui.label("Search commands");
@@ -140,13 +51,10 @@ impl Palette {
         let last = found.len().saturating_sub(1);
         self.at = if self.query == before { self.at } else { 0 };
         self.at = (self.at + usize::from(down)).saturating_sub(usize::from(up)).min(last);
-        let mut chosen = found.get(self.at).copied().filter(|_| enter);
+        let mut chosen = found.get(self.at).copied().filter(|&index| enter && self.is_possible(index));
         let first = (self.at + 1).saturating_sub(LISTED);
         for (row, &index) in found.iter().enumerate().skip(first).take(LISTED) {
-            let Command { title, key, .. } = &self.commands[index];
-            let button = Button::selectable(row == self.at, title);
-            let button = if key.is_empty() { button } else { button.shortcut_text(*key) };
-            if ui.add(button.min_size(egui::vec2(ui.available_width(), 0.0))).clicked() {
+            if self.row(ui, index, row == self.at) {
                 chosen = Some(index);
             }
         }
@@ -155,12 +63,32 @@ impl Palette {
         }
         chosen
     }
+
+    fn is_possible(&self, index: usize) -> bool {
+        self.commands[index].why_not(&self.now).is_none()
+    }
+
+    /// A command with its key, dim where it isn't possible; true when it is clicked.
+    fn row(&self, ui: &mut egui::Ui, index: usize, is_selected: bool) -> bool {
+        let command = &self.commands[index];
+        let why_not = command.why_not(&self.now);
+        let button = Button::selectable(is_selected, &*command.name).truncate();
+        let button = match command.keys.first() {
+            Some(key) => button.shortcut_text(ui.ctx().format_shortcut(key)),
+            None => button,
+        };
+        let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
+        let response = ui.add_enabled(why_not.is_none(), button).on_hover_text(&*command.text);
+        let not_now = || format!("{} Not now: {}", command.text, why_not.unwrap_or_default());
+        response.on_disabled_hover_ui(|ui| drop(ui.label(not_now()))).clicked()
+    }
 }
 
 impl App {
     /// Opens the window that searches for a command.
     pub(in crate::app) fn search_commands(&mut self) {
-        self.commands.palette = Some(Palette { query: String::new(), at: 0, commands: commands(self) });
+        let now = self.availability();
+        self.commands.palette = Some(Palette { query: String::new(), at: 0, commands: all(&now), now });
     }
 
     pub(in crate::app) fn palette_window(&mut self, context: &Context) {
@@ -173,7 +101,7 @@ impl App {
         match shown.inner.flatten() {
             Some(index) => {
                 let command = self.commands.palette.take().map(|mut palette| palette.commands.swap_remove(index));
-                command.into_iter().for_each(|command| (command.run)(self, context));
+                command.into_iter().for_each(|command| self.give(context, &command));
             }
             None if pressed.is_some_and(is_elsewhere) => self.commands.palette = None,
             None => {}
@@ -185,22 +113,35 @@ impl App {
 mod tests {
     use super::*;
 
-    fn titles(query: &str) -> Vec<String> {
-        let titled = |title: &str| Command { title: title.to_owned(), key: "", run: Box::new(|_, _| {}) };
-        let all = ["Frame", "Surface: Flat", "Partitioning: Fractional odd", "LOD: Uniform", "Frame patch"].map(titled);
-        found(&all, query).into_iter().map(|index| all[index].title.clone()).collect()
+    fn names(query: &str, most: usize) -> Vec<String> {
+        let all = all(&Availability::default());
+        found(&all, query).into_iter().take(most).map(|index| all[index].name.to_string()).collect()
     }
 
     #[test]
     fn every_word_must_be_there_and_beginnings_come_first() {
-        assert_eq!(titles("").len(), 5);
-        assert_eq!(titles("FRAC odd"), ["Partitioning: Fractional odd"]);
-        assert_eq!(titles("fra"), ["Frame", "Partitioning: Fractional odd", "Frame patch"]);
-        assert_eq!(titles("la"), ["Surface: Flat"]);
-        assert_eq!(
-            titles("f"),
-            ["Frame", "Surface: Flat", "Partitioning: Fractional odd", "Frame patch", "LOD: Uniform"]
-        );
-        assert_eq!(titles("frame odd"), [""; 0]);
+        assert_eq!(names("", usize::MAX).len(), all(&Availability::default()).len());
+        assert_eq!(names("FRAC odd", 9), ["Partitioning: Fractional odd"]);
+        assert_eq!(names("frame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
+        assert_eq!(names("surf fl", 9), ["Surface: Flat"]);
+        assert_eq!(names("rame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
+        assert_eq!(names("frame odd", 9), [""; 0]);
+    }
+
+    #[test]
+    fn what_has_no_key_is_found_too() {
+        for (query, name) in [
+            ("factor up", "Factor up"),
+            ("weld 1e-5", "Weld: 1e-5"),
+            ("weld exact", "Weld: Exact"),
+            ("rim on", "Rim: On"),
+            ("background", "Background colour…"),
+            ("save picture", "Save picture…"),
+            ("export", "Export mesh…"),
+            ("rest pose", "Animation: Rest pose"),
+            ("reset", "Reset settings"),
+        ] {
+            assert_eq!(names(query, 1), [name], "{query}");
+        }
     }
 }

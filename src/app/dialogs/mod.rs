@@ -1,8 +1,10 @@
 //! The small windows over everything, and the desktop's file dialogs.
 
+mod background;
 mod desktop_dialog;
 pub mod typed_path;
 pub mod windows;
+mod writing;
 
 use typed_path::{PendingDialog, TypedPath};
 
@@ -15,4 +17,10 @@ pub struct Dialogs {
     pub typed_path: Option<TypedPath>,
     /// What went wrong last, until it is closed.
     pub error: Option<String>,
+    /// What was written where, until it is closed.
+    pub notice: Option<String>,
+    /// Whether the colour behind the mesh is being chosen.
+    pub chooses_background: bool,
+    /// Whether it is asked if everything is to be forgotten.
+    pub asks_to_forget: bool,
 }

@@ -1,12 +1,15 @@
 //! A path that is typed: the window that takes it, and keys that come before its field has the focus.
 
+use std::path::Path;
+
 use egui::text::{CCursor, CCursorRange};
-use egui::{Event, Id, Key, KeyboardShortcut, TextEdit};
+use egui::{Event, Id, Key, TextEdit};
 
 use super::desktop_dialog::Asked;
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::load::Source;
+use crate::names::shown_path;
 
 /// What a path is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +18,8 @@ pub enum Purpose {
     Heights,
     Truth,
     SaveChart,
+    SavePicture,
+    ExportMesh,
 }
 
 /// A path that is being typed.
@@ -56,6 +61,8 @@ impl Purpose {
             Self::Heights => "Height image path",
             Self::Truth => "Truth path",
             Self::SaveChart => "Save chart",
+            Self::SavePicture => "Save picture",
+            Self::ExportMesh => "Export mesh",
         }
     }
 
@@ -66,23 +73,42 @@ impl Purpose {
             Self::Heights => "A .png or .jpg image",
             Self::Truth => "A .gltf, .glb, .obj, .stl or .ply file, shape:NAME",
             Self::SaveChart => "A new .svg, .png or .csv file",
+            Self::SavePicture => "A new .png file",
+            Self::ExportMesh => "A new .glb or .obj file",
         }
     }
 
     fn button(self) -> &'static str {
-        if self == Self::SaveChart { "Save" } else { "Open" }
+        match self {
+            Self::Open | Self::Heights | Self::Truth => "Open",
+            Self::SaveChart | Self::SavePicture => "Save",
+            Self::ExportMesh => "Export",
+        }
     }
 
     /// What is there before anything is typed.
     fn proposed(self, open: Option<&Source>) -> String {
+        let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
             (Self::Open | Self::Truth, Some(Source::File(path))) => path.display().to_string(),
-            (Self::SaveChart, _) => {
-                std::path::absolute("chart.svg").unwrap_or_else(|_| "chart.svg".into()).display().to_string()
-            }
-            _ => String::new(),
+            (Self::Open | Self::Truth | Self::Heights, _) => String::new(),
+            (Self::SaveChart, _) => absolute("chart.svg"),
+            (Self::SavePicture, _) => absolute(&name_beside(&title, "-view.png")),
+            (Self::ExportMesh, _) => absolute(&name_beside(&title, "-tessellated.glb")),
         }
     }
+}
+
+/// The path of a name in the working folder.
+pub fn absolute(name: &str) -> String {
+    std::path::absolute(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
+}
+
+/// The name of a file that is made of a mesh of this title: without the title's own ending, and with this one.
+pub fn name_beside(title: &str, ending: &str) -> String {
+    let stem = Path::new(title).file_stem().unwrap_or_default().to_string_lossy();
+    // A shape's title has a colon, which isn't for file names everywhere.
+    stem.replace([':', '@', ' '], "-") + ending
 }
 
 /// What a person does in the window.
@@ -188,13 +214,17 @@ impl App {
 
     fn take_typed(&mut self, context: &egui::Context) {
         let Some(TypedPath { purpose, path, .. }) = &self.dialogs.typed_path else { return };
-        let taken = match (*purpose, path.trim()) {
-            (Purpose::SaveChart, path) => self.save_new_chart(context, path.into()),
-            (purpose, path) => match path.parse() {
-                Ok(source) => {
-                    self.take_source(context, purpose, source);
-                    Ok(())
-                }
+        let (purpose, path) = (*purpose, path.trim());
+        let taken = match purpose {
+            // Nobody was asked whether a file that is there is to be replaced.
+            Purpose::SaveChart | Purpose::SavePicture | Purpose::ExportMesh if Path::new(path).exists() => {
+                Err(format!("{} is there already: choose another name", shown_path(Path::new(path))))
+            }
+            Purpose::SaveChart | Purpose::SavePicture | Purpose::ExportMesh => {
+                self.take_source(context, purpose, Source::File(path.into()))
+            }
+            Purpose::Open | Purpose::Heights | Purpose::Truth => match path.parse() {
+                Ok(source) => self.take_source(context, purpose, source),
                 Err(error) => Err(error.to_string()),
             },
         };
@@ -204,13 +234,20 @@ impl App {
         }
     }
 
-    fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) {
+    /// Does what the path was asked for.
+    ///
+    /// # Errors
+    /// No such file can be written, in a sentence.
+    fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) -> Result<(), String> {
         match (purpose, source) {
             (Purpose::Truth, source) => self.open_truth(context, source),
             (Purpose::SaveChart, Source::File(path)) => self.save_chart_beside(context, path),
-            (_, Source::File(path)) => self.open_path(context, path),
+            (Purpose::SavePicture, Source::File(path)) => self.save_picture(context, path)?,
+            (Purpose::ExportMesh, Source::File(path)) => self.export_mesh(context, path)?,
+            (Purpose::Open | Purpose::Heights, Source::File(path)) => self.open_path(context, path),
             (_, source) => self.open(context, source),
         }
+        Ok(())
     }
 
     /// Takes what was chosen in the desktop's dialog, or asks for it to be typed where there is none.
@@ -218,11 +255,15 @@ impl App {
         let Some(ended) = self.dialogs.pending.as_ref().and_then(|dialog| dialog.job.take()) else { return };
         let Some(PendingDialog { purpose, early, .. }) = self.dialogs.pending.take() else { return };
         match ended {
-            Ok(Asked::Chosen(path)) => self.take_source(context, purpose, Source::File(path)),
+            Ok(Asked::Chosen(path)) => {
+                let taken = self.take_source(context, purpose, Source::File(path));
+                self.dialogs.error = taken.err().or(self.dialogs.error.take());
+            }
             Ok(Asked::Cancelled) => {}
             Ok(Asked::NoDialog) => self.type_path_instead(purpose, early),
             Err(stopped) => {
-                self.dialogs.error = Some(format!("the desktop's file dialog {stopped}; type a path instead (Ctrl+L)"));
+                self.dialogs.error =
+                    Some(format!("the desktop's file dialog {stopped}; type a path instead with File > Open path…"));
             }
         }
     }
@@ -231,21 +272,6 @@ impl App {
 /// The field, wherever it is shown.
 fn field() -> Id {
     Id::unique("typed path")
-}
-
-/// Takes a shortcut out of what comes in this frame, and tells its place there.
-pub(in crate::app) fn taken_at(context: &egui::Context, shortcut: &KeyboardShortcut) -> Option<usize> {
-    let is_it = |event: &Event| match event {
-        Event::Key { key, pressed: true, modifiers, .. } => {
-            *key == shortcut.logical_key && modifiers.matches_logically(shortcut.modifiers)
-        }
-        _ => false,
-    };
-    context.input_mut(|input| {
-        let place = input.events.iter().position(is_it)?;
-        input.events.remove(place);
-        Some(place)
-    })
 }
 
 /// Takes keys and text out of what comes in this frame, from a place on.

@@ -4,6 +4,7 @@ pub mod background_job;
 pub mod chart_job;
 pub mod deviation_job;
 pub mod document;
+pub mod export_job;
 pub mod loading;
 pub mod measure_job;
 pub mod mesh_checks;
@@ -11,8 +12,10 @@ pub mod truth;
 
 use crate::files::Limits;
 
+use background_job::BackgroundJob;
 use deviation_job::DeviationJob;
 use document::Load;
+use export_job::ExportJob;
 use measure_job::MeasureJob;
 use truth::TruthLoad;
 
@@ -25,4 +28,7 @@ pub struct Jobs {
     pub truth_load: Option<TruthLoad>,
     pub measure: MeasureJob,
     pub deviation: DeviationJob,
+    pub export: Option<ExportJob>,
+    /// The writing of a picture: what was written where, or why it wasn't.
+    pub picture_file: Option<BackgroundJob<Result<String, String>>>,
 }

@@ -7,7 +7,6 @@ use crate::app::dialogs::typed_path::Purpose;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::chart_job::{ChartJob, Charted, Job, Of};
 use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
-use crate::names::shown_path;
 use crate::settings::Settings;
 
 /// What the chart's panel is about.
@@ -188,18 +187,6 @@ impl App {
             let dialog = kinds.into_iter().fold(dialog, |dialog, (name, ending)| dialog.add_filter(name, &[ending]));
             dialog.save_file()
         });
-    }
-
-    /// Saves the chart under a name that was typed, which nobody was asked about.
-    ///
-    /// # Errors
-    /// There is such a file, in a sentence.
-    pub(in crate::app) fn save_new_chart(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        if path.exists() {
-            return Err(format!("{} is there already: choose another name", shown_path(&path)));
-        }
-        self.save_chart_beside(context, path);
-        Ok(())
     }
 
     pub(in crate::app) fn save_chart_beside(&mut self, context: &egui::Context, path: PathBuf) {

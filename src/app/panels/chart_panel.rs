@@ -102,6 +102,12 @@ impl App {
         ui.add(egui::Label::new(text).truncate()).on_hover_text(format!("{hover}{facts}"));
     }
 
+    /// Whether there is something to measure.
+    pub(in crate::app) fn can_measure_chart(&self) -> bool {
+        let is_idle = self.panels.chart.is_open && self.panels.chart.charting.progress().is_none();
+        is_idle && self.document.is_some() && !self.chart_settings().is_empty()
+    }
+
     /// What starts measuring, or ends it; how many settings are known, of all.
     fn measure_button(&mut self, ui: &mut egui::Ui) -> (usize, usize) {
         let button = |text| egui::Button::new(text).min_size(egui::vec2(BUTTON_WIDTH, 0.0));

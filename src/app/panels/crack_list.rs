@@ -6,6 +6,7 @@ use super::statistics::EDGE_KINDS;
 use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, fact, list, number, swatch};
+use crate::commands::{Action, with_key};
 use crate::measure::{CrackedEdge, EdgeSide, ulp};
 use crate::mesh::{EdgeKind, TJunction, Topology};
 use crate::render::LineSegment;
@@ -67,7 +68,10 @@ impl App {
         ui.horizontal(|ui| {
             ui.label(RichText::new(format!("Edge {edge}")).strong());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                closed = ui.small_button("Deselect").on_hover_text("Closes this section (Esc).").clicked();
+                closed = ui
+                    .small_button("Deselect")
+                    .on_hover_text(with_key("Closes this section.", &Action::Cancel))
+                    .clicked();
             });
         });
         ui.separator();

@@ -6,20 +6,10 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::text::short;
 use crate::app::widgets::value_chooser;
+use crate::commands::{Action, key_name, value_names};
 use crate::load::{HeightSource, Source};
 use crate::settings::{HEIGHT_RANGE, MIDLEVEL_RANGE};
 use crate::tessellate::Displacement;
-
-const DISPLACEMENTS: [(Displacement, &str); 4] = [
-    (Displacement::Off, "Off"),
-    (Displacement::On, "On"),
-    (Displacement::AsPublished, "As published"),
-    (Displacement::PerPatch, "Per patch"),
-];
-
-/// What an image of one's own does.
-pub(in crate::app) const HEIGHT_IMAGE: &str =
-    "Displaces the mesh by a PNG or JPEG image over all materials, its brightness as stored.";
 
 /// Whether a path names an image rather than a mesh.
 fn is_image(path: &Path) -> bool {
@@ -61,7 +51,7 @@ impl App {
         self.history.displace(self.settings.displacement);
     }
 
-    fn has_heights(&self) -> bool {
+    pub(in crate::app) fn has_heights(&self) -> bool {
         self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some())
     }
 
@@ -84,7 +74,7 @@ impl App {
                 chosen = Some(Some(HeightSource::Materials));
             }
             let is_file = matches!(heights, Some(HeightSource::File(_)));
-            if entry("Image file…", is_file, HEIGHT_IMAGE) {
+            if entry("Image file…", is_file, value_names::HEIGHT_IMAGE) {
                 self.height_dialog(ui.ctx());
             }
         });
@@ -117,9 +107,11 @@ impl App {
         let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
         let radius = heights.map_or(0.0, |heights| heights.radius);
         let settings = &mut self.settings;
-        let hover =
-            "Whether the surface is displaced, and what its patches agree on where they meet (D; --displacement).";
-        value_chooser(ui, "Displace", hover, &mut settings.displacement, &DISPLACEMENTS);
+        let hover = format!(
+            "Whether the surface is displaced, and what its patches agree on where they meet ({}; --displacement).",
+            key_name(&Action::ToggleDisplacement)
+        );
+        value_chooser(ui, "Displace", &hover, &mut settings.displacement, &value_names::DISPLACEMENTS);
         let is_on = settings.displacement != Displacement::Off;
         let units = short(f64::from(settings.height_scale * radius));
         let hover =

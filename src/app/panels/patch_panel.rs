@@ -9,6 +9,7 @@ use crate::app::App;
 use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
 use crate::app::text::{factor, short};
 use crate::app::widgets::{SWATCH, swatch};
+use crate::commands::{Action, with_key};
 use crate::measure::EdgeSide;
 use crate::mesh::{Mesh, Topology, adjacency};
 use crate::render::PickedTriangle;
@@ -117,7 +118,7 @@ fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Opti
         }
         let deselect = ui.add_enabled(selected.is_some(), egui::Button::new("Deselect").small());
         deselect.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, selected.is_some(), "Deselect patch"));
-        if deselect.on_hover_text("Nothing is selected any more (Esc).").clicked() {
+        if deselect.on_hover_text(with_key("Selects nothing.", &Action::Cancel)).clicked() {
             wish = Some(Wish::Deselect);
         }
     });

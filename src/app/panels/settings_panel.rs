@@ -1,16 +1,18 @@
-//! On the left: what one sets.
+//! The panel on the left: the settings.
 
 use crate::app::App;
 use crate::app::text::short;
-use crate::app::value_names::{
-    CLIPS, COLORS, CONVENTIONS, DEVIATION_UNITS, EDGES, LOD_FIXED, LODS, NORMALS, OVERLAYS, PARTITIONINGS, SURFACES,
-    surface_name,
+use crate::app::widgets::{chooser, fixed, heading, value_chooser};
+use crate::commands::value_names::{
+    BACKS_ARE_SEEN, CLIPS, COLORS, CONVENTIONS, DEVIATION_UNITS, EDGES, LOD_FIXED, LODS, NORMALS, OVERLAYS,
+    PARTITIONINGS, SURFACES, explanation, surface_name,
 };
-use crate::app::widgets::{chooser, explanation, fixed, heading, value_chooser};
+use crate::commands::{Action, Change, key_name, with_key};
 use crate::settings::{
-    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Half, PIXELS_RANGE, Settings, TOLERANCE_RANGE,
+    ALPHA_RANGE, Colors, Control, DISTANCE_RANGE, FACTOR_RANGE, Half, Overlay, Overlays, PIXELS_RANGE, Settings,
+    TOLERANCE_RANGE,
 };
-use crate::tessellate::{Displacement, Edges, Lod, Partitioning};
+use crate::tessellate::{Displacement, Lod, Partitioning};
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -29,7 +31,10 @@ impl App {
             heading(ui, "Overlays");
             let Settings { overlays, deviation_in: unit, .. } = &mut self.settings;
             egui::Grid::new("colors").num_columns(2).min_col_width(84.0).show(ui, |ui| {
-                chooser(ui, "Colours", "What the surface's colours mean.", &mut overlays.colors, &COLORS);
+                let texts = COLORS.map(|(colors, _, text)| with_key(text, &colors_action(colors)));
+                let choices: Vec<_> =
+                    COLORS.iter().zip(&texts).map(|(&(colors, name, _), text)| (colors, name, text.as_str())).collect();
+                chooser(ui, "Colours", "What the surface's colours mean.", &mut overlays.colors, &choices);
                 let hover = "What distances are coloured by (--deviation-in).";
                 if overlays.colors == Colors::Deviation {
                     value_chooser(ui, "Distances in", hover, unit, &DEVIATION_UNITS);
@@ -40,7 +45,7 @@ impl App {
             });
             for (overlay, name, hover) in OVERLAYS {
                 if let Control::Switch(switch) = overlays.control(overlay) {
-                    ui.checkbox(switch, name).on_hover_text(hover);
+                    ui.checkbox(switch, name).on_hover_text(with_key(hover, &overlay_action(overlay)));
                 }
             }
             heading(ui, "View");
@@ -69,9 +74,12 @@ impl App {
             &mut settings.normals,
             &NORMALS,
         );
-        let hover = "Tessellation factor: segments that each edge is cut into, 1 to 64 (+ and -). Under LOD by distance, the \
-                     largest.";
-        let label = ui.label("Factor").on_hover_text(hover);
+        let hover = format!(
+            "Tessellation factor: segments that each edge is cut into, 1 to 64 ({} and {}). Under LOD by distance, the largest.",
+            key_name(&Action::Setting(Change::FactorUp)),
+            key_name(&Action::Setting(Change::FactorDown)),
+        );
+        let label = ui.label("Factor").on_hover_text(&hover);
         let slider = egui::Slider::new(&mut settings.factor, FACTOR_RANGE)
             .max_decimals(3)
             .logarithmic(true)
@@ -92,7 +100,10 @@ impl App {
         value_chooser(
             ui,
             "Edges",
-            "Who computes what the sides of an edge must agree on (E; --edges).",
+            &format!(
+                "Shared edges: computed once, which is watertight, or by each patch, as published ({}; --edges).",
+                key_name(&Action::Setting(Change::ToggleEdges))
+            ),
             &mut edges,
             &EDGES,
         );
@@ -105,7 +116,11 @@ impl App {
             if settings.partitioning == Partitioning::Subtriangulation {
                 fixed(ui, "LOD", "Uniform", LOD_FIXED);
             } else {
-                value_chooser(ui, "LOD", "Where factors come from (L; --lod).", &mut settings.lod, &LODS);
+                let hover = format!(
+                    "Where factors come from ({}; --lod).",
+                    key_name(&Action::Setting(Change::AdaptiveLod))
+                );
+                value_chooser(ui, "LOD", &hover, &mut settings.lod, &LODS);
             }
             lod_row(ui, settings);
             ui.end_row();
@@ -116,27 +131,30 @@ impl App {
         });
         self.back_face_row(ui);
         let mut frozen = self.viewport.frozen.is_some();
-        let hover = "LOD and clipping stay as they are for the camera of now, while you look from elsewhere (Z).";
+        let hover = "LOD and clipping stay as they are for the camera of now, while you look from elsewhere.";
+        let hover = with_key(hover, &Action::FreezeLodCamera);
         if ui.checkbox(&mut frozen, "Freeze LOD camera").on_hover_text(hover).changed() {
             self.toggle_frozen();
         }
     }
 
-    fn back_face_row(&mut self, ui: &mut egui::Ui) {
+    /// Whether backs of the mesh can't be seen, so that patches that face away can be left out.
+    pub(in crate::app) fn can_cull_back_faces(&self) -> bool {
         let scene = self.document.as_ref().map(|document| &document.scene);
         let moves = self.settings.displacement != Displacement::Off
             && scene.is_some_and(|scene| scene.tessellator.mesh().heights.is_some());
-        let is_solid = scene.is_some_and(|scene| scene.tessellator.is_solid()) && !moves && self.moment().is_none();
+        scene.is_some_and(|scene| scene.tessellator.is_solid()) && !moves && self.moment().is_none()
+    }
+
+    fn back_face_row(&mut self, ui: &mut egui::Ui) {
+        let is_solid = self.can_cull_back_faces();
         let check = egui::Checkbox::new(&mut self.settings.cull_back_faces, "Cull back faces");
         ui.add_enabled(is_solid, check)
             .on_hover_text(
                 "Leaves out patches whose surface shows its back everywhere, as long as nothing can be seen of it: not in a \
                  clip, not while the near plane cuts the mesh, nor where PN, edges as published or a mistaken convention tear it.",
             )
-            .on_disabled_hover_text(
-                "Backs of this mesh can be seen: it is open, a part of it is wound inward, a material is double-sided, it is \
-                 displaced, or it moves.",
-            );
+            .on_disabled_hover_text(BACKS_ARE_SEEN);
     }
 
     /// The tolerances, each with what it would join; another one loads the mesh again.
@@ -173,8 +191,10 @@ impl App {
 
     fn view_rows(&mut self, ui: &mut egui::Ui) {
         let mut split = self.settings.split.is_some();
-        let hover =
-            "Left of the divider the mesh as it came or another surface, right of it this one, from one camera (S).";
+        let hover = with_key(
+            "Left of the divider the untessellated mesh or another surface, right of it this one, from one camera.",
+            &Action::SplitView,
+        );
         if ui.checkbox(&mut split, "Split view").on_hover_text(hover).changed() {
             self.toggle_split();
         }
@@ -200,14 +220,6 @@ impl App {
         });
     }
 
-    pub(in crate::app) fn toggle_lod(&mut self) {
-        if self.settings.partitioning == Partitioning::Subtriangulation {
-            return;
-        }
-        let adaptive = if self.settings.edges == Edges::AsPublished { Lod::Paper } else { Lod::Error };
-        self.settings.lod = if self.settings.lod == Lod::Uniform { adaptive } else { Lod::Uniform };
-    }
-
     pub(in crate::app) fn toggle_split(&mut self) {
         self.settings.split = if self.settings.split.is_some() { None } else { Some(self.viewport.last_split) };
     }
@@ -218,6 +230,21 @@ impl App {
             None => self.viewport.picture.shown_view(),
         };
     }
+}
+
+/// The command that switches an overlay.
+fn overlay_action(overlay: Overlay) -> Action {
+    Action::Setting(Change::Overlay(overlay))
+}
+
+/// The command that gives the surface these colours.
+fn colors_action(colors: Colors) -> Action {
+    let gives = |overlay: &Overlay| match Overlays::default().control(*overlay) {
+        Control::Colors(_, given) => given == colors,
+        Control::Switch(_) => false,
+    };
+    let overlay = Overlay::ALL.into_iter().find(gives);
+    overlay.map_or(Action::Setting(Change::MaterialColors), overlay_action)
 }
 
 /// What is left of the split.

@@ -213,34 +213,26 @@ impl App {
         self.persistence.finish()
     }
 
-    /// The files that were opened last; one is opened again.
-    pub(in crate::app) fn recent_menu(&mut self, ui: &mut egui::Ui) {
-        let recent: Vec<PathBuf> = self.persistence.recent().map(PathBuf::from).collect();
-        ui.add_enabled_ui(!recent.is_empty(), |ui| {
-            ui.menu_button("Open recent", |ui| {
-                for path in recent {
-                    if recent_entry(ui, &path).clicked() {
-                        self.open(ui.ctx(), Source::File(path));
-                        ui.close();
-                    }
-                }
-            });
+    /// Asks whether everything that is kept is to be forgotten.
+    pub(in crate::app) fn forget_window(&mut self, context: &egui::Context) {
+        if !self.dialogs.asks_to_forget {
+            return;
+        }
+        let window = egui::Window::new("Forget all settings").resizable(false).collapsible(false);
+        let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
+        let answer = window.show(context, |ui| {
+            ui.set_max_width(320.0);
+            ui.label("Settings, theme, size, recent files and their cameras: there is no way back. The mesh stays.");
+            ui.horizontal(|ui| {
+                let forgets = ui.button("Forget them").clicked();
+                ui.button("Cancel").clicked().then_some(false).or(forgets.then_some(true))
+            })
+            .inner
         });
-    }
-
-    /// Asks once.
-    pub(in crate::app) fn forget_menu(&mut self, ui: &mut egui::Ui) {
-        let hover = "Goes back to how the window first opened: settings, theme, size, recent files and their cameras. The \
-                     mesh stays.";
-        let asks = |ui: &mut egui::Ui| {
-            ui.set_max_width(230.0);
-            ui.label("Settings, theme, size, recent files and their cameras: there is no way back.");
-            ui.button("Forget them").on_hover_text(hover).clicked()
-        };
-        let menu = ui.menu_button("Forget all settings", asks);
-        menu.response.on_hover_text(hover);
-        if menu.inner == Some(true) {
-            self.forget_all(ui.ctx());
+        let Some(forgets) = answer.and_then(|answer| answer.inner).flatten() else { return };
+        self.dialogs.asks_to_forget = false;
+        if forgets {
+            self.forget_all(context);
         }
     }
 
@@ -260,16 +252,4 @@ impl App {
         self.persistence.kept.files.clear();
         self.persistence.open = None;
     }
-}
-
-/// A file by its name, and the folder that it is in.
-fn recent_entry(ui: &mut egui::Ui, path: &Path) -> egui::Response {
-    const NAME: usize = 48;
-    const FOLDER: usize = 32;
-    let text = |name: Option<&std::ffi::OsStr>, most| {
-        crate::app::text::shortened(&name.unwrap_or_default().to_string_lossy(), most)
-    };
-    let folder = text(path.parent().and_then(Path::file_name), FOLDER);
-    let button = egui::Button::new(text(path.file_name(), NAME)).shortcut_text(folder);
-    ui.add(button).on_hover_text(path.display().to_string())
 }

@@ -7,7 +7,7 @@ use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::deviation_job::DeviationJob;
 use crate::app::jobs::document::arena_bytes;
 use crate::app::jobs::measure_job::{MeasureJob, Trouble};
-use crate::app::value_names::surface_name;
+use crate::commands::value_names::surface_name;
 use crate::engine::Engine;
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;

@@ -1,5 +1,6 @@
 //! The picture in the middle: the camera, what is drawn and what is selected in it.
 
+mod camera;
 mod highlight;
 pub mod left_half;
 pub mod legend;

@@ -1,8 +1,8 @@
-//! The middle: pointer and keys move the camera; over the picture are the divider, notes and progress.
+//! The panel in the middle: the pointer moves the camera; over the picture are the divider, notes and progress.
 
 use std::sync::Arc;
 
-use egui::{Key, PointerButton, Sense};
+use egui::{PointerButton, Sense};
 use glam::{Vec2, vec2};
 
 use super::legend::legend;
@@ -10,17 +10,15 @@ use super::picture::Wanted;
 use crate::app::App;
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::grouped;
+use crate::commands::{Action, with_key};
 use crate::gpu::GpuError;
 use crate::measure::ScreenView;
 use crate::progress::Stage;
 use crate::render::Scene;
 use crate::settings::{Colors, Half};
 
-/// Degrees that the camera turns for a point of dragging, and for a press of an arrow key.
+/// Degrees that the camera turns for a point of dragging.
 const DEGREES_PER_POINT: f32 = 0.4;
-const DEGREES_PER_KEY: f32 = 7.5;
-/// Points that a press of an arrow key moves the target by.
-const POINTS_PER_KEY: f32 = 40.0;
 /// Half the width in points in which the divider can be grabbed.
 const DIVIDER_REACH: f32 = 5.0;
 
@@ -157,27 +155,6 @@ impl App {
                 self.viewport.camera.zoom(ratio, vec2(pointer.x, pointer.y), points);
             }
         }
-        // An open list takes the keys, also before one of its entries has the focus.
-        if ui.memory(|memory| memory.focused().is_none()) && !egui::Popup::is_any_open(ui.ctx()) {
-            self.move_camera_by_keys(ui, points);
-        }
-    }
-
-    fn move_camera_by_keys(&mut self, ui: &egui::Ui, points: Vec2) {
-        let pressed = |key| ui.input(|input| input.key_pressed(key));
-        let axis = |less, more| f32::from(u8::from(pressed(more))) - f32::from(u8::from(pressed(less)));
-        let arrows = vec2(axis(Key::ArrowLeft, Key::ArrowRight), axis(Key::ArrowDown, Key::ArrowUp));
-        if arrows != Vec2::ZERO {
-            if ui.input(|input| input.modifiers.shift) {
-                self.viewport.camera.pan(vec2(arrows.x, -arrows.y) * POINTS_PER_KEY, points);
-            } else {
-                self.viewport.camera.orbit(arrows * DEGREES_PER_KEY);
-            }
-        }
-        let closer = axis(Key::PageDown, Key::PageUp);
-        if closer != 0.0 {
-            self.viewport.camera.zoom(0.8f32.powf(closer), points * 0.5, points);
-        }
     }
 
     /// The split's divider, which can be dragged.
@@ -252,6 +229,13 @@ impl App {
                 self.jobs.truth_load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if let Some(export) = &self.jobs.export {
+            let (title, done) = (format!("Exporting {}", export.name()), Some(export.progress.fraction()));
+            let hover = with_key("Stops exporting; nothing is written.", &Action::Cancel);
+            if progress(ui, rect, &title, done, ("Cancel", &hover)) {
+                self.jobs.export = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {
             let hover = "Draws with these settings after all. Any other change draws too.";
             if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
@@ -261,8 +245,8 @@ impl App {
         } else if let Some(drawing) = self.viewport.picture.drawing.as_ref().filter(|_| self.viewport.picture.is_long())
         {
             let done = Some(drawing.given as f32 / drawing.steps as f32);
-            let hover = "Leaves the last picture as it is, and every setting too (Esc).";
-            if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", hover)) {
+            let hover = with_key("Leaves the last picture as it is, and every setting too.", &Action::Cancel);
+            if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", &hover)) {
                 self.viewport.picture.cancel();
             }
         }

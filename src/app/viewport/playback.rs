@@ -3,6 +3,7 @@
 use crate::app::App;
 use crate::app::text::shortened;
 use crate::app::widgets::{chooser, heading};
+use crate::commands::{Action, with_key};
 use crate::mesh::Moment;
 use crate::mesh::rig::Clip;
 
@@ -60,6 +61,12 @@ impl App {
     fn clips(&self) -> &[Clip] {
         let rig = self.document.as_ref().and_then(|document| document.loaded.mesh.rig.as_deref());
         rig.map_or(&[], |rig| &rig.clips)
+    }
+
+    /// Names of the clips, as the command line tells those of one name apart.
+    pub(in crate::app) fn clip_names(&self) -> Vec<String> {
+        let rig = self.document.as_ref().and_then(|document| document.loaded.mesh.rig.as_deref());
+        rig.map_or_else(Vec::new, |rig| (0..rig.clips.len().min(LISTED)).map(|clip| rig.clip_name(clip)).collect())
     }
 
     /// Shows a clip from its start on, not playing; or the mesh at rest.
@@ -182,9 +189,9 @@ impl App {
     fn play_button(&mut self, ui: &mut egui::Ui) {
         let is_playing = self.is_playing();
         let button = egui::Button::new(if is_playing { "Pause" } else { "Play" }).min_size(egui::vec2(72.0, 0.0));
-        let hover = "Plays the clip round and round, the first one if none is chosen (Space). What is shown is measured while \
-                     it is paused.";
-        if ui.add(button).on_hover_text(hover).clicked() {
+        let hover = "Plays the clip round and round, the first one if none is chosen. What is shown is measured while it is \
+                     paused.";
+        if ui.add(button).on_hover_text(with_key(hover, &Action::PlayOrPause)).clicked() {
             self.toggle_playing(ui.ctx());
         }
     }

@@ -142,6 +142,10 @@ impl App {
         if let Some(load) = &mut self.jobs.truth_load {
             load.wake(context);
         }
+        if let Some(export) = &mut self.jobs.export {
+            export.wake(context);
+        }
+        self.jobs.picture_file = self.jobs.picture_file.take().map(|job| job.waking(context));
         self.dialogs.pending = self.dialogs.pending.take().map(|dialog| PendingDialog {
             job: dialog.job.waking(context),
             since: f64::NEG_INFINITY,

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
-use crate::app::commands::menu_bar::QUIT;
+use crate::app::dialogs::typed_path::{absolute, name_beside};
 use crate::app::jobs::background_job::BackgroundJob;
+use crate::commands::{Action, FileAction, QUIT, with_key};
 use crate::engine::Loaded;
 use crate::export::Exported;
 use crate::gpu::Gpu;
@@ -85,7 +86,11 @@ impl App {
                 screen.tries_again = true;
                 ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             }
-            if ui.button("Quit").on_hover_text("Closes the window (Ctrl+Q).").clicked() {
+            if ui
+                .button("Quit")
+                .on_hover_text(with_key("Closes the window.", &Action::File(FileAction::Quit)))
+                .clicked()
+            {
                 ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             }
         });
@@ -95,7 +100,9 @@ impl App {
         let Some(document) = &self.document else { return };
         let label = ui.label("Tessellated mesh, a .glb or .obj file");
         ui.horizontal(|ui| {
-            let path = screen.path.get_or_insert_with(|| proposed(&document.loaded.source.title()));
+            let path = screen
+                .path
+                .get_or_insert_with(|| absolute(&name_beside(&document.loaded.source.title(), "-tessellated.obj")));
             ui.add(egui::TextEdit::singleline(path).desired_width(420.0)).labelled_by(label.id);
             let is_free = screen.saving.is_none() && !path.trim().is_empty();
             let text = if screen.saving.is_some() { "Saving…" } else { "Save mesh" };
@@ -110,14 +117,6 @@ impl App {
             }
         });
     }
-}
-
-/// Where one is, named after the mesh.
-fn proposed(title: &str) -> String {
-    let stem = Path::new(title).file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    // A shape's title has a colon, which isn't for file names everywhere.
-    let name = format!("{}-tessellated.obj", stem.replace([':', '@', ' '], "-"));
-    std::path::absolute(&name).map_or(name, |path| path.display().to_string())
 }
 
 /// What was written where; or why it wasn't, in a sentence as well.
