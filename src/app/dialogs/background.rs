@@ -1,9 +1,7 @@
 //! The window that chooses the colour behind the mesh.
 
-use egui::color_picker::{Alpha, color_picker_color32};
-
 use crate::app::App;
-use crate::app::widgets::rgb;
+use crate::app::widgets::swatch;
 
 impl App {
     pub(in crate::app) fn background_window(&mut self, context: &egui::Context) {
@@ -13,11 +11,14 @@ impl App {
         let window = egui::Window::new("Background colour").open(&mut self.dialogs.chooses_background);
         let window = window.resizable(false).collapsible(false).default_pos(context.content_rect().center());
         window.show(context, |ui| {
-            let mut color = rgb(self.settings.background);
-            if color_picker_color32(ui, &mut color, Alpha::Opaque) {
-                let [r, g, b, _] = color.to_array();
-                self.settings.background = [r, g, b];
-            }
+            egui::Grid::new("background").num_columns(2).show(ui, |ui| {
+                for (name, channel) in ["Red", "Green", "Blue"].into_iter().zip(&mut self.settings.background) {
+                    let label = ui.label(name).on_hover_text("sRGB, 0 to 255.");
+                    ui.add(egui::Slider::new(channel, 0..=255)).labelled_by(label.id);
+                    ui.end_row();
+                }
+            });
+            swatch(ui, self.settings.background);
         });
     }
 }
