@@ -10,7 +10,10 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
 use pnaen::engine::Preparation;
-use pnaen::mesh::{HeightSource, Limits, Progress, Shape, Source};
+use pnaen::files::Limits;
+use pnaen::load::{HeightSource, Source};
+use pnaen::mesh::Shape;
+use pnaen::progress::Progress;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Lod, Surface};
 
