@@ -18,7 +18,7 @@ use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Lod, Surface};
 
 use crate::driver::PATIENCE;
-use crate::{choose, click, moving, press, settle, uniform, window};
+use crate::{choose, moving, press, settle, uniform, window};
 
 /// A folder of its own for what is written.
 struct Folder(PathBuf);
