@@ -256,20 +256,34 @@ impl Engine {
             return Ok(());
         }
         for index in 0..scene.tessellator.chunk_count() {
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&self.gpu, &mut timing);
-            scene.tessellator.emit(&mut recorder, index)?;
-            recorder.submit();
-            let buffers = scene.tessellator.chunk(index);
-            let [first, second] = buffers.vertices();
-            let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
-            let bytes = read_buffers(&self.gpu, [first, second, (buffers.indices, 0..triangle_bytes)])?;
-            self.chunks_read.fetch_add(1, Ordering::Relaxed);
-            let (halves, indices) = bytes.split_at(bytes.len() - triangle_bytes as usize);
-            let (first_patch, vertices, triangles) = (buffers.chunk.first_patch, vertices_of(halves), cast(indices));
-            let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
-            visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+            self.visit_chunk(scene, index, visitors)?;
         }
+        Ok(())
+    }
+
+    /// Gives one chunk of everything that is emitted to every visitor.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn visit_chunk(
+        &self,
+        scene: &mut Scene,
+        index: usize,
+        visitors: &mut [&mut dyn Visitor],
+    ) -> Result<(), GpuError> {
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(&self.gpu, &mut timing);
+        scene.tessellator.emit(&mut recorder, index)?;
+        recorder.submit();
+        let buffers = scene.tessellator.chunk(index);
+        let [first, second] = buffers.vertices();
+        let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
+        let bytes = read_buffers(&self.gpu, [first, second, (buffers.indices, 0..triangle_bytes)])?;
+        self.chunks_read.fetch_add(1, Ordering::Relaxed);
+        let (halves, indices) = bytes.split_at(bytes.len() - triangle_bytes as usize);
+        let (first_patch, vertices, triangles) = (buffers.chunk.first_patch, vertices_of(halves), cast(indices));
+        let chunk = EmittedChunk { first_patch, vertices: &vertices, triangles: &triangles };
+        visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
         Ok(())
     }
 
@@ -313,14 +327,7 @@ impl Engine {
             edge_factors: self.asked_factors(scene)?.into_factors(),
             ..Tessellated::default()
         };
-        self.visit(
-            scene,
-            &mut [&mut |chunk: &EmittedChunk| {
-                let base = out.vertices.len() as u32;
-                out.vertices.extend_from_slice(chunk.vertices);
-                out.triangles.extend(chunk.triangles.iter().map(|triangle| triangle.map(|i| base + i)));
-            }],
-        )?;
+        self.visit(scene, &mut [&mut |chunk: &EmittedChunk| out.append(chunk.vertices, chunk.triangles)])?;
         Ok(out)
     }
 

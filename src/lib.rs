@@ -9,6 +9,7 @@ pub mod adjacency_file;
 pub mod app;
 pub mod chart;
 pub mod cli;
+pub mod commands;
 pub mod engine;
 pub mod export;
 pub mod factors_file;

@@ -24,7 +24,7 @@ const ORDER: &[&[&str]] = &[
     &["render"],
     &["engine"],
     &["export"],
-    &["chart", "stability", "gallery"],
+    &["chart", "stability", "gallery", "commands"],
     &["cli"],
     &["app"],
 ];

@@ -178,7 +178,7 @@ fn a_window_that_loses_its_device_goes_on_once_and_then_says_so() {
     let watch = move |app: &mut App, context: &egui::Context| {
         assert!(start.elapsed() < PATIENCE, "the window has come no further than {}", seen.borrow().len());
         context.request_repaint();
-        if app.farewell_said().is_some() {
+        if app.fatal_message().is_some() {
             still += 1;
             if still == 10 {
                 picture("3-farewell.png");

@@ -4,6 +4,8 @@
 mod animation;
 #[path = "window/chart.rs"]
 mod chart;
+#[path = "window/commands.rs"]
+mod commands;
 #[path = "window/deviation.rs"]
 mod deviation;
 #[path = "window/driver.rs"]

@@ -3,17 +3,13 @@
 use clap::ValueEnum;
 use egui::RichText;
 
+use crate::commands::value_names::explanation;
+
 /// A section's name, and a line under it.
 pub fn heading(ui: &mut egui::Ui, text: &str) {
     ui.add_space(8.0);
     ui.label(RichText::new(text).strong());
     ui.separator();
-}
-
-/// What the commands say of a value.
-pub fn explanation(value: impl ValueEnum) -> String {
-    let help = value.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
-    format!("{}.", help.unwrap_or_default())
 }
 
 /// A row with a name and a list to choose from.

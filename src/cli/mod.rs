@@ -264,7 +264,7 @@ fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
 }
 
 /// Writes a PNG file, whatever its name ends in.
-fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
+pub(crate) fn write_picture(path: &Path, picture: &image::DynamicImage) -> Result<(), CliError> {
     let mut bytes = Vec::new();
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
     picture.write_with_encoder(encoder).map_err(|error| file_error(path, "encoded", &error))?;

@@ -26,6 +26,15 @@ pub struct Tessellated {
     pub edge_factors: Vec<f32>,
 }
 
+impl Tessellated {
+    /// Takes vertices, and triangles of indices into these.
+    pub fn append(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
+        let base = self.vertices.len() as u32;
+        self.vertices.extend_from_slice(vertices);
+        self.triangles.extend(triangles.iter().map(|triangle| triangle.map(|index| base + index)));
+    }
+}
+
 /// Tessellates the mesh. With `factors`, those are used in place of the ones that LOD gives: one for each edge, or as
 /// published one for each curve (see [`crate::mesh::Curves::factor`]).
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {

@@ -16,7 +16,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
 use image::RgbaImage;
-use pnaen::app::{App, Lasting};
+use pnaen::app::{App, Persistence};
 use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
@@ -77,7 +77,7 @@ fn window(kept: &Path, source: Option<Source>, [width, height]: [f32; 2]) -> Har
     let kept = kept.to_owned();
     let mut harness = Harness::builder().with_size([width, height]).wgpu().build_eframe(move |context| {
         let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
-        app.resume(&context.egui_ctx, Lasting::read(Some(&kept)));
+        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
         app
     });
     settle(&mut harness);

@@ -147,7 +147,8 @@ fn commands_are_found_by_typing_a_part_of_them() {
     harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("wire");
     settle(&mut harness);
     assert_eq!(*harness.state().settings(), before);
-    click(&mut harness, "Overlay: Wireframe");
+    harness.get_by_label_contains("Overlay: Wireframe").click();
+    settle(&mut harness);
     assert!(!harness.state().settings().overlays.wireframe);
     press_with(&mut harness, Modifiers::COMMAND, Key::P);
     press(&mut harness, Key::Escape);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use pnaen::app::{App, Lasting};
+use pnaen::app::{App, Persistence};
 use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
@@ -53,7 +53,7 @@ fn window(folder: &Folder, source: Option<Source>) -> Harness<'static, App> {
     let kept = folder.0.join("kept");
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
         let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
-        app.resume(&context.egui_ctx, Lasting::read(Some(&kept)));
+        app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
         app
     });
     settle(&mut harness);
@@ -121,7 +121,7 @@ fn what_changed_is_written_after_a_while_and_the_picture_stays() {
     let mut harness = window(&folder, Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "Surface", "Nagata");
     let (pictures, start) = (harness.state().pictures(), std::time::Instant::now());
-    let written = || Lasting::read(folder.file().parent()).settings().surface;
+    let written = || Persistence::read(folder.file().parent()).settings().surface;
     while written() != Surface::Nagata {
         assert!(start.elapsed() < crate::PATIENCE, "it isn't written");
         harness.step();

@@ -149,7 +149,7 @@ fn lost_again_it_offers_to_save_and_tries_again_only_when_told_to() {
     lose(&mut harness);
     let mut harness = anew(harness);
     harness.run_steps(3);
-    assert!(harness.state().farewell_said().is_some_and(|said| said.contains("lost again (it was destroyed)")));
+    assert!(harness.state().fatal_message().is_some_and(|said| said.contains("lost again (it was destroyed)")));
     harness.get_by_label("Quit");
     save_as(&mut harness, &path);
     harness.get_by_label_contains("is written.");
@@ -214,6 +214,6 @@ fn lost_twice_before_anything_is_drawn_it_says_so() {
     lose(&mut harness);
     let mut harness = anew(harness);
     harness.run_steps(2);
-    assert!(harness.state().farewell_said().is_some());
+    assert!(harness.state().fatal_message().is_some());
     harness.get_by_label("Try again");
 }

@@ -1,0 +1,107 @@
+//! The menu bar, made from the table of commands.
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use crate::app::App;
+use crate::app::text::shortened;
+use crate::commands::{Action, Availability, CameraAction, Command, FileAction, Menu, Place, Submenu, all};
+
+impl App {
+    pub(in crate::app) fn menu_bar(&mut self, ui: &mut egui::Ui) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            for menu in Menu::ALL {
+                ui.menu_button(menu.name(), |ui| self.menu(ui, menu));
+            }
+            let source = self.document.as_ref().map(|document| &document.loaded.source);
+            let (title, whole) = source.map_or_else(Default::default, |source| (source.title(), source.to_string()));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.weak(concat!("pnaen ", env!("CARGO_PKG_VERSION")));
+                ui.separator();
+                ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
+            });
+        });
+    }
+
+    /// The commands of a menu, with a line between its groups, and its lists at the ends of theirs.
+    fn menu(&mut self, ui: &mut egui::Ui, menu: Menu) {
+        let now = self.availability();
+        let commands = all(&now);
+        let group_of = |command: &Command| match command.place {
+            Some(Place::Menu(of, group)) if of == menu => Some(group),
+            _ => None,
+        };
+        let last = commands.iter().filter_map(group_of).chain(menu.submenus().iter().map(|(group, _)| *group)).max();
+        let mut chosen = None;
+        for group in 0..=last.unwrap_or(0) {
+            if group > 0 {
+                ui.separator();
+            }
+            for command in commands.iter().filter(|command| group_of(command) == Some(group)) {
+                if self.menu_entry(ui, command, &now) {
+                    chosen = Some(command);
+                }
+            }
+            for (_, submenu) in menu.submenus().iter().filter(|(of, _)| *of == group) {
+                chosen = submenu_entries(ui, *submenu, &commands).or(chosen);
+            }
+        }
+        if let Some(command) = chosen {
+            ui.close();
+            self.give(ui.ctx(), command);
+        }
+    }
+
+    /// A command in a menu; true when it is chosen.
+    fn menu_entry(&self, ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
+        let why_not = command.why_not(now);
+        let key = command.keys.first().map(|key| ui.ctx().format_shortcut(key)).unwrap_or_default();
+        let response = ui.add_enabled_ui(why_not.is_none(), |ui| match self.is_on(ui.ctx(), &command.action) {
+            Some(is_on) if matches!(command.action, Action::Theme(_)) => ui.radio(is_on, &*command.name),
+            Some(mut is_on) => ui.checkbox(&mut is_on, &*command.name),
+            None => ui.add(egui::Button::new(&*command.name).shortcut_text(&key)),
+        });
+        // A switch has no room for its key.
+        let text = match (self.is_on(ui.ctx(), &command.action), key.is_empty()) {
+            (Some(_), false) => format!("{} ({key})", command.text),
+            _ => command.text.to_string(),
+        };
+        let response = response.inner.on_hover_text(text).on_disabled_hover_text(why_not.unwrap_or_default());
+        response.clicked()
+    }
+
+    /// Whether a command that switches something has it on; none for one that doesn't.
+    fn is_on(&self, context: &egui::Context, action: &Action) -> Option<bool> {
+        match action {
+            Action::Camera(CameraAction::Orthographic) => Some(self.viewport.camera.orthographic),
+            Action::Chart => Some(self.panels.chart.is_open),
+            Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),
+            _ => None,
+        }
+    }
+}
+
+/// A list that a menu opens; the command that is chosen in it.
+fn submenu_entries<'a>(ui: &mut egui::Ui, submenu: Submenu, commands: &'a [Command]) -> Option<&'a Command> {
+    let entries: Vec<_> = commands.iter().filter(|command| command.place == Some(Place::Submenu(submenu))).collect();
+    let show = |ui: &mut egui::Ui| {
+        ui.menu_button(submenu.name(), |ui| entries.iter().copied().filter(|command| entry(ui, command)).last()).inner
+    };
+    ui.add_enabled_ui(!entries.is_empty(), show).inner.flatten()
+}
+
+fn entry(ui: &mut egui::Ui, command: &Command) -> bool {
+    let button = match &command.action {
+        Action::File(FileAction::OpenRecent(path)) => recent_button(path),
+        _ => egui::Button::new(command.value_name()),
+    };
+    ui.add(button).on_hover_text(&*command.text).clicked()
+}
+
+/// A file by its name, and the folder that it is in.
+fn recent_button(path: &Path) -> egui::Button<'static> {
+    const NAME: usize = 48;
+    const FOLDER: usize = 32;
+    let text = |name: Option<&OsStr>, most| shortened(&name.unwrap_or_default().to_string_lossy(), most);
+    egui::Button::new(text(path.file_name(), NAME)).shortcut_text(text(path.parent().and_then(Path::file_name), FOLDER))
+}

@@ -1,0 +1,147 @@
+//! The window that searches for a command by a part of its name.
+
+use egui::{Button, Context, Key, TextEdit};
+
+use crate::app::App;
+use crate::commands::{Availability, Command, all};
+
+/// Commands that are listed at once.
+const LISTED: usize = 14;
+
+/// The search, while it is open.
+pub struct Palette {
+    query: String,
+    /// Which of the commands found is chosen with Enter.
+    at: usize,
+    commands: Vec<Command>,
+    /// When it was opened: what was possible then.
+    now: Availability,
+}
+
+/// Those whose names have every word of the query, in any case; where words of names begin with its words first.
+fn found(commands: &[Command], query: &str) -> Vec<usize> {
+    let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();
+    let begins = |name: &str, word: &String| {
+        name.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word.as_str()))
+    };
+    let rank = |index: &usize| {
+        let name = commands[*index].name.to_lowercase();
+        !words.iter().all(|word| begins(&name, word))
+    };
+    let has = |index: &usize| {
+        let name = commands[*index].name.to_lowercase();
+        words.iter().all(|word| name.contains(word.as_str()))
+    };
+    let mut found: Vec<usize> = (0..commands.len()).filter(has).collect();
+    found.sort_by_key(rank);
+    found
+}
+
+impl Palette {
+    /// The command that was chosen, if one was.
+    fn rows(&mut self, ui: &mut egui::Ui) -> Option<usize> {
+        // The keys that go through the list aren't for the field.
+        let [down, up, enter] = [Key::ArrowDown, Key::ArrowUp, Key::Enter]
+            .map(|key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key)));
+        let label = ui.label("Search commands");
+        let before = self.query.clone();
+        let field = ui.add(TextEdit::singleline(&mut self.query).desired_width(f32::INFINITY));
+        field.labelled_by(label.id).request_focus();
+        let found = found(&self.commands, &self.query);
+        let last = found.len().saturating_sub(1);
+        self.at = if self.query == before { self.at } else { 0 };
+        self.at = (self.at + usize::from(down)).saturating_sub(usize::from(up)).min(last);
+        let mut chosen = found.get(self.at).copied().filter(|&index| enter && self.is_possible(index));
+        let first = (self.at + 1).saturating_sub(LISTED);
+        for (row, &index) in found.iter().enumerate().skip(first).take(LISTED) {
+            if self.row(ui, index, row == self.at) {
+                chosen = Some(index);
+            }
+        }
+        if found.is_empty() {
+            ui.weak("No command has these words.");
+        }
+        chosen
+    }
+
+    fn is_possible(&self, index: usize) -> bool {
+        self.commands[index].why_not(&self.now).is_none()
+    }
+
+    /// A command with its key, dim where it isn't possible; true when it is clicked.
+    fn row(&self, ui: &mut egui::Ui, index: usize, is_selected: bool) -> bool {
+        let command = &self.commands[index];
+        let why_not = command.why_not(&self.now);
+        let button = Button::selectable(is_selected, &*command.name).truncate();
+        let button = match command.keys.first() {
+            Some(key) => button.shortcut_text(ui.ctx().format_shortcut(key)),
+            None => button,
+        };
+        let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
+        let response = ui.add_enabled(why_not.is_none(), button).on_hover_text(&*command.text);
+        let not_now = || format!("{} Not now: {}", command.text, why_not.unwrap_or_default());
+        response.on_disabled_hover_ui(|ui| drop(ui.label(not_now()))).clicked()
+    }
+}
+
+impl App {
+    /// Opens the window that searches for a command.
+    pub(in crate::app) fn search_commands(&mut self) {
+        let now = self.availability();
+        self.commands.palette = Some(Palette { query: String::new(), at: 0, commands: all(&now), now });
+    }
+
+    pub(in crate::app) fn palette_window(&mut self, context: &Context) {
+        let Some(palette) = &mut self.commands.palette else { return };
+        let window = egui::Window::new("Commands").title_bar(false).resizable(false);
+        let window = window.anchor(egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0)).default_width(360.0);
+        let Some(shown) = window.show(context, |ui| palette.rows(ui)) else { return };
+        let is_elsewhere = |at: egui::Pos2| !shown.response.rect.contains(at);
+        let pressed = context.input(|input| input.pointer.press_origin().filter(|_| input.pointer.any_pressed()));
+        match shown.inner.flatten() {
+            Some(index) => {
+                let command = self.commands.palette.take().map(|mut palette| palette.commands.swap_remove(index));
+                command.into_iter().for_each(|command| self.give(context, &command));
+            }
+            None if pressed.is_some_and(is_elsewhere) => self.commands.palette = None,
+            None => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(query: &str, most: usize) -> Vec<String> {
+        let all = all(&Availability::default());
+        found(&all, query).into_iter().take(most).map(|index| all[index].name.to_string()).collect()
+    }
+
+    #[test]
+    fn every_word_must_be_there_and_beginnings_come_first() {
+        assert_eq!(names("", usize::MAX).len(), all(&Availability::default()).len());
+        assert_eq!(names("FRAC odd", 9), ["Partitioning: Fractional odd"]);
+        assert_eq!(names("frame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
+        assert_eq!(names("surf fl", 9), ["Surface: Flat"]);
+        assert_eq!(names("rame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
+        assert_eq!(names("frame odd", 9), [""; 0]);
+    }
+
+    #[test]
+    fn what_has_no_key_is_found_too() {
+        for (query, name) in [
+            ("factor up", "Factor up"),
+            ("weld 1e-5", "Weld: 1e-5"),
+            ("weld exact", "Weld: Exact"),
+            ("rim on", "Rim: On"),
+            ("background", "Background colour…"),
+            ("save picture", "Save picture…"),
+            ("export", "Export mesh…"),
+            ("rest pose", "Animation: Rest pose"),
+            ("reset", "Reset settings"),
+        ] {
+            assert_eq!(names(query, 1), [name], "{query}");
+        }
+    }
+}

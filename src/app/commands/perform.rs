@@ -1,0 +1,140 @@
+//! What each command does, and what there is that decides whether it is possible.
+
+use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
+
+use crate::app::App;
+use crate::app::dialogs::typed_path::Purpose;
+use crate::commands::{Action, Availability, Command, FileAction, Preparing};
+use crate::load::{HeightSource, Source};
+use crate::settings::{Colors, Settings};
+use crate::tessellate::{Lod, Partitioning};
+
+const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
+
+impl App {
+    /// The action that was performed last.
+    pub fn last_action(&self) -> Option<&Action> {
+        self.commands.last.as_ref()
+    }
+
+    /// What there is now, on which it depends which commands are possible.
+    pub fn availability(&self) -> Availability {
+        let lod = self.settings.used_lod();
+        Availability {
+            has_document: self.document.is_some(),
+            has_picture: self.viewport.picture.drawn.is_some(),
+            has_truth: self.truth.is_some(),
+            can_undo: self.can_undo(),
+            can_redo: self.can_redo(),
+            has_selection: self.viewport.selected_edge.is_some() || self.selected_triangle().is_some(),
+            has_selected_patch: self.selected_patch().is_some(),
+            has_heights: self.has_heights(),
+            takes_factor: matches!(lod, Lod::Uniform | Lod::Distance),
+            takes_lod: self.settings.partitioning != Partitioning::Subtriangulation,
+            can_cull_back_faces: self.can_cull_back_faces(),
+            is_split: self.settings.split.is_some(),
+            shows_deviation: self.settings.overlays.colors == Colors::Deviation,
+            can_measure_chart: self.can_measure_chart(),
+            has_chart: !self.chart_rows().is_empty() && self.panels.chart.saving.is_none(),
+            is_exporting: self.jobs.export.is_some(),
+            clips: self.clip_names(),
+            recent: self.persistence.recent().map(Into::into).collect(),
+        }
+    }
+
+    /// Performs a command, if it is possible.
+    pub fn give(&mut self, context: &Context, command: &Command) {
+        if command.why_not(&self.availability()).is_none() {
+            self.perform(context, &command.action);
+            self.commands.last = Some(command.action.clone());
+        }
+    }
+
+    fn perform(&mut self, context: &Context, action: &Action) {
+        match action {
+            Action::File(action) => self.perform_on_files(context, action),
+            Action::Camera(action) => self.move_camera_by(context, *action),
+            Action::Setting(change) => change.apply(&mut self.settings),
+            Action::Prepare(preparing) => self.prepare_as(context, *preparing),
+            Action::Undo => self.undo(),
+            Action::Redo => self.redo(),
+            Action::CopyAsCommand => self.copy_command(context),
+            Action::ResetSettings => self.reset_settings(),
+            Action::ForgetEverything => self.dialogs.asks_to_forget = true,
+            Action::SplitView => self.toggle_split(),
+            Action::FreezeLodCamera => self.toggle_frozen(),
+            Action::Background => self.dialogs.chooses_background = true,
+            Action::Chart => self.toggle_chart(),
+            Action::MeasureChart => self.measure_chart(context),
+            Action::Theme(theme) => context.set_theme(*theme),
+            Action::LargerText => gui_zoom::zoom_in(context),
+            Action::SmallerText => gui_zoom::zoom_out(context),
+            Action::UsualText => context.set_zoom_factor(1.0),
+            Action::ToggleDisplacement => self.toggle_displacement(),
+            Action::PlayOrPause => self.toggle_playing(context),
+            Action::AnimationClip(clip) => self.choose_clip(*clip),
+            Action::Deselect => self.deselect(),
+            Action::Cancel => self.cancel(),
+            Action::SearchCommands => self.search_commands(),
+            Action::Keys => self.commands.shows_keys = true,
+            Action::WhitePaper => context.open_url(OpenUrl::new_tab(WHITE_PAPER)),
+        }
+    }
+
+    fn perform_on_files(&mut self, context: &Context, action: &FileAction) {
+        match action {
+            FileAction::Open => self.open_dialog(context),
+            FileAction::OpenPath => self.type_path(Purpose::Open),
+            FileAction::OpenRecent(path) => self.open(context, Source::File(path.clone())),
+            FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
+            FileAction::Reload => self.reload(context),
+            FileAction::HeightImage => self.height_dialog(context),
+            FileAction::Truth => self.truth_dialog(context),
+            FileAction::TruthPath => self.type_path(Purpose::Truth),
+            FileAction::ForgetTruth => self.forget_truth(),
+            FileAction::SavePicture => self.picture_dialog(context),
+            FileAction::SavePicturePath => self.type_path(Purpose::SavePicture),
+            FileAction::ExportMesh => self.export_dialog(context),
+            FileAction::ExportMeshPath => self.type_path(Purpose::ExportMesh),
+            FileAction::SaveChart => self.save_dialog(context),
+            FileAction::Quit => context.send_viewport_cmd(ViewportCommand::Close),
+        }
+    }
+
+    /// Loads the mesh again with something else made of it, unless that is what it has.
+    fn prepare_as(&mut self, context: &Context, preparing: Preparing) {
+        let before = self.preparation();
+        let mut after = before.clone();
+        match preparing {
+            Preparing::NoHeights => after.heights = None,
+            Preparing::HeightsFromMaterials => after.heights = Some(HeightSource::Materials),
+            Preparing::Weld(tolerance) => after.weld = tolerance,
+            Preparing::CreaseBand(width) => after.rim = width,
+        }
+        if (after.weld, after.rim, &after.heights) != (before.weld, before.rim, &before.heights) {
+            self.prepare(context, |preparation| *preparation = after);
+        }
+    }
+
+    /// Sets what the window first opened with; whether the mesh is displaced is the mesh's.
+    fn reset_settings(&mut self) {
+        self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
+    }
+
+    /// Stops or closes what is most in the way: what was just opened, or else a long drawing, or else everything that is
+    /// under way or over the window, and the selection.
+    fn cancel(&mut self) {
+        let asked = std::mem::take(&mut self.dialogs.asks_to_forget);
+        let chose = std::mem::take(&mut self.dialogs.chooses_background);
+        if self.commands.palette.take().is_some() || self.commands.copied.take().is_some() || asked || chose {
+            return;
+        }
+        if self.jobs.load.is_none() && self.viewport.picture.is_long() {
+            return self.viewport.picture.cancel();
+        }
+        (self.jobs.load, self.jobs.truth_load, self.jobs.export) = (None, None, None);
+        (self.dialogs.error, self.dialogs.notice, self.dialogs.typed_path) = (None, None, None);
+        self.commands.shows_keys = false;
+        self.deselect();
+    }
+}

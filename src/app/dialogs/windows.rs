@@ -1,0 +1,90 @@
+//! The small windows over everything, and the desktop's file dialog.
+
+use std::path::PathBuf;
+
+use super::desktop_dialog;
+use super::typed_path::{PendingDialog, Purpose, name_beside};
+use crate::app::App;
+use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::jobs::loading::MESHES;
+
+impl App {
+    pub(in crate::app) fn open_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::Open, context, || meshes("Open a mesh").pick_file());
+    }
+
+    pub(in crate::app) fn truth_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::Truth, context, || meshes("Choose what the mesh should have been").pick_file());
+    }
+
+    /// Asks where the picture is to be saved.
+    pub(in crate::app) fn picture_dialog(&mut self, context: &egui::Context) {
+        let name = self.proposed_name("-view.png");
+        self.dialog(Purpose::SavePicture, context, move || {
+            let dialog = rfd::FileDialog::new().set_title("Save the picture").set_file_name(name);
+            dialog.add_filter("PNG picture", &["png"]).save_file()
+        });
+    }
+
+    /// Asks where the tessellated mesh is to be exported.
+    pub(in crate::app) fn export_dialog(&mut self, context: &egui::Context) {
+        let name = self.proposed_name("-tessellated.glb");
+        self.dialog(Purpose::ExportMesh, context, move || {
+            let dialog = rfd::FileDialog::new().set_title("Export the tessellated mesh").set_file_name(name);
+            dialog.add_filter("glTF binary", &["glb"]).add_filter("Wavefront OBJ", &["obj"]).save_file()
+        });
+    }
+
+    /// The name of a file that is made of the mesh.
+    fn proposed_name(&self, ending: &str) -> String {
+        self.source().map_or_else(|| format!("mesh{ending}"), |source| name_beside(&source.title(), ending))
+    }
+
+    /// The desktop's file dialog, on a thread of its own.
+    pub(in crate::app) fn dialog(
+        &mut self,
+        purpose: Purpose,
+        context: &egui::Context,
+        choose: impl FnOnce() -> Option<PathBuf> + Send + 'static,
+    ) {
+        if self.dialogs.pending.is_none() {
+            let job = BackgroundJob::start(context, move || desktop_dialog::ask(choose));
+            let since = context.input(|input| input.time);
+            self.dialogs.pending = Some(PendingDialog { purpose, job, since, early: Vec::new() });
+        }
+    }
+
+    /// What lies over everything.
+    pub(in crate::app) fn windows(&mut self, context: &egui::Context) {
+        self.path_window(context);
+        self.keys_window(context);
+        self.command_window(context);
+        self.palette_window(context);
+        self.forget_window(context);
+        self.background_window(context);
+        self.message_window(context);
+    }
+
+    /// What went wrong, or what was written, until it is closed.
+    fn message_window(&mut self, context: &egui::Context) {
+        let (title, text) = match (&self.dialogs.error, &self.dialogs.notice) {
+            (Some(error), _) => ("Problem", error),
+            (None, Some(notice)) => ("Written", notice),
+            (None, None) => return,
+        };
+        let mut closed = false;
+        let anchor = (egui::Align2::CENTER_TOP, egui::vec2(0.0, 40.0));
+        let window = egui::Window::new(title).resizable(false).collapsible(false).anchor(anchor.0, anchor.1);
+        window.default_width(420.0).show(context, |ui| {
+            ui.label(text);
+            closed = ui.button("Close").clicked();
+        });
+        if closed && self.dialogs.error.take().is_none() {
+            self.dialogs.notice = None;
+        }
+    }
+}
+
+fn meshes(title: &str) -> rfd::FileDialog {
+    rfd::FileDialog::new().set_title(title).add_filter("Meshes", &MESHES)
+}

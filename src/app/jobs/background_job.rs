@@ -1,0 +1,150 @@
+//! Jobs beside the window, on threads of their own. One that panics ends alone: it becomes a sentence, and the window stays
+//! as it is.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread::JoinHandle;
+
+use thiserror::Error;
+
+use crate::app::text::shortened;
+
+/// Characters that are said of why, at most.
+const MAX_REASON: usize = 200;
+
+/// Why a job came to no end.
+#[derive(Debug, Error)]
+#[error("stopped unexpectedly ({0})")]
+pub struct Stopped(String);
+
+/// A job under way.
+pub struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
+
+impl<T: Send + 'static> BackgroundJob<T> {
+    /// Starts a job; the window is repainted when it ends, however it does.
+    pub fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
+        let (sender, done) = channel();
+        let context = context.clone();
+        spawn(move || {
+            // Nobody is waiting any more if it isn't wanted by now.
+            let _ = sender.send(caught(job));
+            context.request_repaint();
+        });
+        Self(done)
+    }
+
+    /// What came of it, once it has ended: then it has nothing more to say.
+    pub fn take(&self) -> Option<Result<T, Stopped>> {
+        match self.0.try_recv() {
+            Ok(result) => Some(result),
+            Err(TryRecvError::Empty) => None,
+            // Without a thread the sender is gone as well.
+            Err(TryRecvError::Disconnected) => Some(Err(Stopped("the system gives no more threads".into()))),
+        }
+    }
+}
+
+impl<T: Send + 'static> BackgroundJob<T> {
+    /// The same job, which repaints another window when it ends.
+    pub fn waking(self, context: &egui::Context) -> Self {
+        let (sender, done) = channel();
+        let context = context.clone();
+        spawn(move || {
+            // Without a result there was no thread: then this one ends without as well.
+            if let Ok(result) = self.0.recv() {
+                let _ = sender.send(result);
+            }
+            drop(sender);
+            context.request_repaint();
+        });
+        Self(done)
+    }
+}
+
+impl<T> BackgroundJob<T> {
+    /// Waits for it to end.
+    pub fn wait(self) {
+        let _ = self.0.recv();
+    }
+}
+
+/// A thread; none if the system gives no more.
+pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+    std::thread::Builder::new().spawn(job).ok()
+}
+
+/// Runs a job that may panic.
+///
+/// # Errors
+/// It did: why, in its own words.
+pub fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
+    // What it leaves half done is dropped with it: jobs share nothing with the window but what they send.
+    catch_unwind(AssertUnwindSafe(job)).map_err(|panic| Stopped(words(panic.as_ref())))
+}
+
+fn words(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    let first = text.and_then(|text| text.lines().next()).unwrap_or("for no reason that it gave");
+    shortened(first, MAX_REASON)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    use std::time::{Duration, Instant};
+
+    use super::*;
+
+    /// What a job came to, and how often the window was asked to repaint.
+    fn ended<T: Send + 'static>(job: impl FnOnce() -> T + Send + 'static) -> (Result<T, Stopped>, usize) {
+        let context = egui::Context::default();
+        let repaints = Arc::new(AtomicUsize::new(0));
+        let counted = repaints.clone();
+        context.set_request_repaint_callback(move |_| {
+            counted.fetch_add(1, Ordering::SeqCst);
+        });
+        let (beside, start) = (BackgroundJob::start(&context, job), Instant::now());
+        // The result is there by the time that the window is asked to look.
+        while repaints.load(Ordering::SeqCst) == 0 {
+            assert!(start.elapsed() < Duration::from_secs(30), "it hasn't ended");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        (beside.take().expect("an end"), repaints.load(Ordering::SeqCst))
+    }
+
+    #[test]
+    fn a_job_gives_what_it_made_and_wakes_the_window() {
+        let (result, repaints) = ended(|| 6 * 7);
+        assert_eq!((result.ok(), repaints), (Some(42), 1));
+    }
+
+    #[test]
+    fn a_job_that_moves_to_another_window_wakes_that() {
+        let (go, wait) = channel::<()>();
+        let first = egui::Context::default();
+        let job = BackgroundJob::start(&first, move || wait.recv().is_ok());
+        let (second, (woken, wakes)) = (egui::Context::default(), channel());
+        second.set_request_repaint_callback(move |_| {
+            let _ = woken.send(());
+        });
+        let job = job.waking(&second);
+        assert!(job.take().is_none(), "it is under way");
+        go.send(()).expect("it waits");
+        wakes.recv_timeout(Duration::from_secs(30)).expect("the window is woken");
+        assert!(job.take().is_some_and(|result| result.is_ok_and(|went| went)));
+    }
+
+    #[test]
+    fn a_job_that_panics_becomes_a_sentence_and_wakes_the_window() {
+        let (result, repaints) = ended(|| [1, 2, 3][std::hint::black_box(5)]);
+        let said = result.expect_err("it panicked").to_string();
+        assert_eq!(said, "stopped unexpectedly (index out of bounds: the len is 3 but the index is 5)");
+        assert_eq!(repaints, 1);
+        let (result, _) = ended(|| std::panic::panic_any(7));
+        assert!(result.is_err_and(|stopped: Stopped| stopped.to_string().ends_with("(for no reason that it gave)")));
+        let long = caught(|| panic!("{}\nand more", "x".repeat(1000))).expect_err("it panicked").to_string();
+        assert!(long.chars().count() < 240 && !long.contains("more"), "{long}");
+    }
+}

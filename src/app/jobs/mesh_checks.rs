@@ -1,0 +1,78 @@
+//! What is looked for in a mesh beside the window, once it is loaded: bad normals, T-junctions, edges that nearly meet.
+
+use std::sync::{Arc, OnceLock};
+
+use super::background_job::{BackgroundJob, Stopped};
+use crate::engine::Loaded;
+use crate::mesh::{Joins, NormalFaults, TJunction, joins, t_junctions};
+use crate::progress::Progress;
+
+/// Checks under way or done; dropping them stops them.
+#[derive(Default)]
+pub struct Checks {
+    found: Arc<Found>,
+    wanted: Progress,
+    /// None once it has ended.
+    job: Option<BackgroundJob<()>>,
+}
+
+#[derive(Default)]
+struct Found {
+    normal_faults: OnceLock<NormalFaults>,
+    t_junctions: OnceLock<Vec<TJunction>>,
+    joins: OnceLock<Vec<Joins>>,
+}
+
+impl Checks {
+    /// Starts them on a thread of their own; each result repaints the window.
+    pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
+        let mut checks = Self::default();
+        let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
+        let weld = loaded.preparation.weld;
+        let (found, wanted, repainted) = (checks.found.clone(), checks.wanted.clone(), context.clone());
+        checks.job = Some(BackgroundJob::start(context, move || {
+            let _ = found.normal_faults.set(NormalFaults::of(&mesh, &topology));
+            if let Ok(all) = t_junctions(&topology, &wanted) {
+                let _ = found.t_junctions.set(all);
+            }
+            repainted.request_repaint();
+            let exact = (weld == 0.0 && Arc::ptr_eq(&read, &mesh)).then_some(&*topology);
+            if let Ok(all) = joins(&read, exact, &wanted) {
+                let _ = found.joins.set(all);
+            }
+        }));
+        checks
+    }
+
+    /// Normals that are legal but suspicious, once counted.
+    pub fn normal_faults(&self) -> Option<&NormalFaults> {
+        self.found.normal_faults.get()
+    }
+
+    /// All T-junctions, once found.
+    pub fn t_junctions(&self) -> Option<&[TJunction]> {
+        self.found.t_junctions.get().map(Vec::as_slice)
+    }
+
+    /// What each tolerance would join, once tried.
+    pub fn joins(&self) -> Option<&[Joins]> {
+        self.found.joins.get().map(Vec::as_slice)
+    }
+
+    pub fn is_busy(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Whether they have ended, and if before they were done, why; said once.
+    pub fn take_stopped(&mut self) -> Option<Stopped> {
+        let ended = self.job.as_ref()?.take()?;
+        self.job = None;
+        ended.err()
+    }
+}
+
+impl Drop for Checks {
+    fn drop(&mut self) {
+        self.wanted.cancel();
+    }
+}

@@ -1,0 +1,34 @@
+//! What runs on threads of its own while the window goes on: loading, checking and measuring.
+
+pub mod background_job;
+pub mod chart_job;
+pub mod deviation_job;
+pub mod document;
+pub mod export_job;
+pub mod loading;
+pub mod measure_job;
+pub mod mesh_checks;
+pub mod truth;
+
+use crate::files::Limits;
+
+use background_job::BackgroundJob;
+use deviation_job::DeviationJob;
+use document::Load;
+use export_job::ExportJob;
+use measure_job::MeasureJob;
+use truth::TruthLoad;
+
+/// Jobs that are under way, and what the measuring ones know.
+#[derive(Default)]
+pub struct Jobs {
+    /// The limits of files that are opened.
+    pub limits: Limits,
+    pub load: Option<Load>,
+    pub truth_load: Option<TruthLoad>,
+    pub measure: MeasureJob,
+    pub deviation: DeviationJob,
+    pub export: Option<ExportJob>,
+    /// The writing of a picture: what was written where, or why it wasn't.
+    pub picture_file: Option<BackgroundJob<Result<String, String>>>,
+}

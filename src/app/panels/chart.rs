@@ -1,0 +1,222 @@
+//! Speed against accuracy of what is shown: what is tried when, whether it still is of what is shown, and saving it.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::App;
+use crate::app::dialogs::typed_path::Purpose;
+use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::jobs::chart_job::{ChartJob, Charted, Job, Of};
+use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
+use crate::settings::Settings;
+
+/// What the chart's panel is about.
+#[derive(Default)]
+pub struct Chart {
+    pub is_open: bool,
+    pub(in crate::app) cost: Cost,
+    /// Surfaces and LODs that are tried; shading is the window's.
+    pub(in crate::app) plan: Plan,
+    pub(in crate::app) effort: Effort,
+    pub(in crate::app) charting: ChartJob,
+    /// What the window last had that isn't in the chart, and since when, on the window's clock in s.
+    still: Option<(Settings, f64)>,
+    pub(in crate::app) saving: Option<BackgroundJob<Result<(), String>>>,
+}
+
+/// How long settings that aren't in the chart are left alone before they are measured too, in s.
+const STILL: f64 = 0.4;
+
+impl Chart {
+    /// Stops what is under way; what is known stays.
+    pub fn stop(&mut self) {
+        self.charting.stop();
+    }
+
+    /// Stops, and frees its device, which may be as lost as the window's was; what is known stays.
+    pub(in crate::app) fn go_on_in(&mut self, context: &egui::Context) {
+        self.charting.close();
+        self.still = None;
+        self.saving = self.saving.take().map(|saving| saving.waking(context));
+    }
+
+    pub(in crate::app) fn charted(&self) -> Option<&Charted> {
+        self.charting.charted.as_ref()
+    }
+}
+
+impl App {
+    pub(in crate::app) fn toggle_chart(&mut self) {
+        self.panels.chart.is_open = !self.panels.chart.is_open;
+        if !self.panels.chart.is_open {
+            self.panels.chart.charting.close();
+        }
+    }
+
+    /// Changes what the chart tries, and how much it spends on it.
+    pub fn chart_with(&mut self, plan: Plan, effort: Effort) {
+        (self.panels.chart.plan, self.panels.chart.effort) = (plan, effort);
+    }
+
+    /// How many settings were tried for the chart, and how many there are, while they are.
+    pub fn charting(&self) -> Option<(usize, usize)> {
+        self.panels.chart.charting.progress()
+    }
+
+    /// What was measured for the chart.
+    pub fn chart_rows(&self) -> &[Row] {
+        self.panels.chart.charted().map_or(&[], |charted| &charted.subject.rows)
+    }
+
+    /// What was measured of settings that the chart doesn't list.
+    pub fn chart_current(&self) -> Option<Probe> {
+        self.panels.chart.charted()?.current?.1
+    }
+
+    /// Writes the chart as an SVG, PNG or CSV file.
+    ///
+    /// # Errors
+    /// The path ends otherwise, or can't be written. Without a chart nothing is written.
+    pub fn save_chart(&self, path: &Path) -> Result<(), SaveError> {
+        self.panels.chart.charted().map_or(Ok(()), |charted| save(path, &charted.subject))
+    }
+
+    /// What a chart of what is shown would be about.
+    fn chart_of(&self) -> Option<Of> {
+        let document = self.document.as_ref()?;
+        let size = self.viewport.picture.target.as_ref()?.0.size;
+        let (moment, truth, base) = (self.moment(), self.yardstick().0, base(&self.settings));
+        Some(Of { document: document.generation, moment, truth, camera: self.viewport.camera, size, base })
+    }
+
+    /// What the chart is of that isn't shown any more.
+    pub(in crate::app) fn chart_is_of(&self) -> Option<&'static str> {
+        let (charted, now) = (self.panels.chart.charted()?, self.chart_of()?);
+        charted.of.other_than(&now)
+    }
+
+    /// Starts to measure what is missing of the chart; all of it, if nothing is, or it is of something else.
+    pub(in crate::app) fn measure_chart(&mut self, context: &egui::Context) {
+        let Some(of) = self.chart_of() else { return };
+        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
+        let (_, truth, words) = self.yardstick();
+        let all = self.chart_settings();
+        let is_known = |setting: &Setting| self.panels.chart.charted().is_some_and(|charted| charted.has(setting));
+        let missing: Vec<_> = all.iter().filter(|setting| !is_known(setting)).copied().collect();
+        let starts_over = missing.is_empty() || self.panels.chart.charted().is_none_or(|charted| charted.of != of);
+        if starts_over {
+            let (title, adapter) = (loaded.source.title(), self.engine.gpu.info.name.clone());
+            let charted = Charted::new(of, title, truth.as_deref().map(|truth| (truth, words)), adapter);
+            self.panels.chart.charting.charted = Some(charted);
+        }
+        let mut settings = if starts_over { all } else { missing };
+        // What the window has comes first.
+        let own = Setting::of(&self.settings);
+        settings.sort_by_key(|setting| Some(*setting) != own);
+        let is_listed = settings.first().is_some_and(|first| Some(*first) == own);
+        let current = self.unknown_current().filter(|_| !is_listed);
+        let adapter = self.render_state.adapter.clone();
+        let job = Job { adapter, loaded, of, truth, current, settings, effort: self.chart_effort() };
+        self.panels.chart.charting.start(context, job);
+    }
+
+    /// What is tried, in order.
+    pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
+        let plan = Plan { normals: vec![self.settings.normals], ..self.panels.chart.plan.clone() };
+        coarse_first(plan.settings())
+    }
+
+    /// As much as for the command's chart, but one core stays the window's.
+    fn chart_effort(&self) -> Effort {
+        let mut effort = self.panels.chart.effort;
+        effort.accuracy.threads = effort.accuracy.threads.saturating_sub(1).max(1);
+        effort
+    }
+
+    /// What the window has, if the chart neither lists nor knows it.
+    fn unknown_current(&self) -> Option<Settings> {
+        let (charted, current) = (self.panels.chart.charted()?, whole(&self.settings));
+        let listed = Setting::of(&current).is_some_and(|own| charted.has(&own));
+        let known = charted.current.is_some_and(|(known, _)| known == current);
+        (!listed && !known).then_some(current)
+    }
+
+    /// Takes what has been measured, and measures the window's own settings once they are left alone.
+    pub(in crate::app) fn take_chart(&mut self, context: &egui::Context) {
+        if let Err(error) = self.panels.chart.charting.take() {
+            self.dialogs.error = Some(error);
+        }
+        if let Some(ended) = self.panels.chart.saving.as_ref().and_then(BackgroundJob::take) {
+            self.panels.chart.saving = None;
+            let saved = ended.unwrap_or_else(|stopped| Err(format!("saving the chart {stopped}")));
+            self.dialogs.error = saved.err().or(self.dialogs.error.take());
+        }
+        self.measure_current(context);
+    }
+
+    fn measure_current(&mut self, context: &egui::Context) {
+        let is_idle = self.panels.chart.is_open && self.charting().is_none() && !self.is_busy() && !self.is_playing();
+        let of = self.panels.chart.charted().map(|charted| charted.of).filter(|_| is_idle);
+        let wanted = of.filter(|of| Some(*of) == self.chart_of()).and_then(|of| Some((of, self.unknown_current()?)));
+        let Some((of, current)) = wanted else {
+            self.panels.chart.still = None;
+            return;
+        };
+        let now = context.input(|input| input.time);
+        let since = self.panels.chart.still.filter(|(known, _)| *known == current).map_or(now, |(_, since)| since);
+        self.panels.chart.still = Some((current, since));
+        if now - since < STILL {
+            context.request_repaint_after(std::time::Duration::from_secs_f64(STILL - (now - since)));
+            return;
+        }
+        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
+        let (adapter, truth) = (self.render_state.adapter.clone(), self.yardstick().1);
+        let (effort, settings) = (self.chart_effort(), Vec::new());
+        let job = Job { adapter, loaded, of, truth, current: Some(current), settings, effort };
+        self.panels.chart.charting.start(context, job);
+    }
+
+    /// Lets measuring wait while the window has something to draw or to measure itself.
+    pub(in crate::app) fn hold_chart(&self) {
+        self.panels.chart.charting.hold(self.is_busy());
+    }
+
+    pub(in crate::app) fn save_dialog(&mut self, context: &egui::Context) {
+        self.dialog(Purpose::SaveChart, context, || {
+            let dialog = rfd::FileDialog::new().set_title("Save the chart").set_file_name("chart.svg");
+            let kinds = [("SVG picture", "svg"), ("PNG picture", "png"), ("CSV table", "csv")];
+            let dialog = kinds.into_iter().fold(dialog, |dialog, (name, ending)| dialog.add_filter(name, &[ending]));
+            dialog.save_file()
+        });
+    }
+
+    pub(in crate::app) fn save_chart_beside(&mut self, context: &egui::Context, path: PathBuf) {
+        let Some(charted) = self.panels.chart.charted() else { return };
+        let subject = charted.subject.clone();
+        let write = move || save(&path, &subject).map_err(|error| error.to_string());
+        self.panels.chart.saving = Some(BackgroundJob::start(context, write));
+    }
+}
+
+impl Of {
+    /// What of this isn't the other's, in words; none if they are the same.
+    fn other_than(&self, now: &Self) -> Option<&'static str> {
+        if self.document != now.document {
+            Some("another mesh: measure again")
+        } else if self.moment != now.moment {
+            Some("another moment: measure again")
+        } else if self.truth != now.truth {
+            Some("another truth: measure again")
+        } else if (self.camera, self.size) != (now.camera, now.size) {
+            Some("another view: measure again")
+        } else {
+            (self.base != now.base).then_some("other settings: measure again")
+        }
+    }
+}
+
+/// What settings that are tried have in common: all but what they change.
+fn base(settings: &Settings) -> Settings {
+    let Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
+        Settings::default();
+    Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, ..whole(settings) }
+}

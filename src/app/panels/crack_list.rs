@@ -1,0 +1,231 @@
+//! Edges whose sides disagree, the worst first; one of them in detail; and T-junctions.
+
+use egui::RichText;
+
+use super::statistics::EDGE_KINDS;
+use crate::app::App;
+use crate::app::text::{grouped, short};
+use crate::app::widgets::{columns, fact, list, number, swatch};
+use crate::commands::{Action, with_key};
+use crate::measure::{CrackedEdge, EdgeSide};
+use crate::mesh::{EdgeKind, TJunction, Topology};
+use crate::render::LineSegment;
+use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
+use crate::settings::Half;
+use crate::view::ulp;
+use glam::Vec3;
+
+impl App {
+    /// A list of edges; a click frames one.
+    pub(in crate::app) fn worst_edges(&mut self, ui: &mut egui::Ui) {
+        let (Some(document), Some(cracks)) = (&self.document, self.jobs.measure.cracks()) else { return };
+        if cracks.edges.is_empty() {
+            return;
+        }
+        ui.add_space(4.0);
+        ui.label("Worst edges").on_hover_text(
+            "Edges whose sides disagree in a position, factor or normal, the widest gap first; a click frames one.",
+        );
+        columns(ui, &format!("{:<6}{:<13}{:>10}", "edge", "kind", "gap, units"), true);
+        let (topology, ulp) = (&document.loaded.topology, ulp(&document.loaded.topology));
+        let mut clicked = None;
+        let text = |row: usize| {
+            let crack = &cracks.edges[row];
+            let kind = kind_name(topology.edges[crack.edge as usize].kind);
+            (crack.edge, format!("{:<6}{kind:<13}{:>10}", crack.edge, short(crack.gap)))
+        };
+        list(ui, "worst edges", cracks.edges.len(), |ui, row| {
+            let (edge, text) = text(row);
+            let crack = &cracks.edges[row];
+            let response =
+                ui.selectable_label(self.viewport.selected_edge == Some(edge), RichText::new(text).monospace());
+            let response = response.on_hover_ui(|ui| {
+                ui.label(format!(
+                    "{} px on screen, {} ULP; {} points and {} normals differ; factors {}. A click frames the edge.",
+                    short(self.viewport.picture.gap_of_edge_px(crack)),
+                    short(crack.gap / ulp),
+                    crack.different_bits,
+                    crack.different_normals,
+                    if crack.different_factors { "differ" } else { "agree" },
+                ));
+            });
+            if response.clicked() {
+                clicked = Some(edge);
+            }
+            response
+        });
+        if let Some(edge) = clicked {
+            self.select_edge(edge);
+        }
+    }
+
+    /// The selected edge: its kind, its triangles, and what each side made of it.
+    pub(in crate::app) fn edge_details(&mut self, ui: &mut egui::Ui) {
+        let (Some(edge), Some(document)) = (self.viewport.selected_edge, &self.document) else { return };
+        let topology = &document.loaded.topology;
+        let kind = kind_name(topology.edges[edge as usize].kind);
+        let mut closed = false;
+        ui.add_space(8.0);
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(format!("Edge {edge}")).strong());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                closed = ui
+                    .small_button("Deselect")
+                    .on_hover_text(with_key("Closes this section.", &Action::Cancel))
+                    .clicked();
+            });
+        });
+        ui.separator();
+        let sides = self.jobs.measure.found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            fact(ui, "Kind", kind, "What the edge's sides have in common.");
+            if let Some(crack) = self.crack_of(edge, Half::Right) {
+                let (px, ulps) = (self.viewport.picture.gap_of_edge_px(crack), crack.gap / ulp(topology));
+                fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
+                fact(
+                    ui,
+                    "",
+                    &format!("{} ULP", short(ulps)),
+                    "In units of the last place of the mesh's largest coordinate.",
+                );
+                fact(ui, "", &format!("{} px", short(px)), "On screen.");
+            }
+        });
+        side_rows(ui, &sides);
+        if sides.len() > 1 {
+            point_rows(ui, &sides);
+        }
+        if closed {
+            self.viewport.selected_edge = None;
+        }
+    }
+
+    /// A list of T-junctions; a click frames one.
+    pub(in crate::app) fn t_junction_list(&mut self, ui: &mut egui::Ui) {
+        let Some(junctions) = self.document.as_ref().and_then(|document| document.checks.t_junctions()) else { return };
+        if junctions.is_empty() {
+            return;
+        }
+        ui.add_space(4.0);
+        ui.horizontal(|ui| {
+            swatch(ui, T_JUNCTION_COLOR);
+            ui.label("T-junctions").on_hover_text(
+                "Points between the ends of open edges, on them or close beside them. No tessellation closes these: the edge is cut without knowing of the points.",
+            );
+            number(ui, &grouped(junctions.len() as u64));
+        });
+        columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, of 1"), true);
+        let mut clicked: Option<TJunction> = None;
+        list(ui, "t-junctions", junctions.len(), |ui, row| {
+            let TJunction { edge, point, t, .. } = junctions[row];
+            let text = RichText::new(format!("{point:<9}{edge:<9}{t:>11.3}")).monospace();
+            let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
+            let response = response.on_hover_text("Where along the edge the point lies. A click frames the edge.");
+            if response.clicked() {
+                clicked = Some(junctions[row]);
+            }
+            response
+        });
+        if let Some(junction) = clicked {
+            self.settings.overlays.t_junctions = true;
+            self.select_edge(junction.edge);
+        }
+    }
+
+    /// Selects an edge and turns the camera so that it is in the middle, seen from the side its triangles face.
+    pub fn select_edge(&mut self, edge: u32) {
+        let Some(document) = &self.document else { return };
+        let topology = &document.shown().1;
+        let Some(chosen) = topology.edges.get(edge as usize) else { return };
+        let ends = topology.edge_points(chosen).map(|point| topology.points[point as usize]);
+        self.viewport.camera.frame_edge(ends, topology.edge_facing(chosen), &document.scene.bounds);
+        self.viewport.selected_edge = Some(edge);
+        self.keep_triangle_of(edge);
+    }
+
+    /// The crack along an edge in a half, if there is one.
+    fn crack_of(&self, edge: u32, half: Half) -> Option<&CrackedEdge> {
+        self.measured(half).cracks()?.edges.iter().find(|crack| crack.edge == edge)
+    }
+
+    /// What marks the selected edge: each of its sides in a colour of its own, the later ones thinner, so that sides in
+    /// one place both show; and where they are farthest apart. If its patches emit nothing, the straight line.
+    pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
+        let Some(edge) = self.viewport.selected_edge else { return Vec::new() };
+        let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
+        let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
+        if polylines.iter().all(|points| points.len() < 2) {
+            polylines = vec![
+                topology
+                    .edge_points(&topology.edges[edge as usize])
+                    .map(|point| topology.points[point as usize])
+                    .to_vec(),
+            ];
+        }
+        let strip = |points: &[Vec3], color, half_width| {
+            let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);
+            ends.map(|[a, b]| LineSegment { half_width, ..LineSegment::new(a, b, color) }).collect::<Vec<_>>()
+        };
+        let outline = polylines.iter().flat_map(|points| strip(points, OUTLINE_COLOR, 4.0));
+        let colored = polylines
+            .iter()
+            .enumerate()
+            .flat_map(|(k, points)| strip(points, SIDE_COLORS[k % SIDE_COLORS.len()], if k == 0 { 2.5 } else { 1.25 }));
+        let gap = self.crack_of(edge, half).filter(|crack| crack.gap > 0.0).map(|crack| crack.widest);
+        let dots = gap.into_iter().flatten();
+        let dots = dots.map(|place| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, CRACK_COLOR) });
+        outline.chain(colored).chain(dots).collect()
+    }
+}
+
+/// Each side: its triangle in the colour that it has over the mesh, and its factor.
+fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
+    egui::Grid::new("sides").num_columns(3).min_col_width(60.0).show(ui, |ui| {
+        ui.weak("side");
+        for (text, hover) in [
+            ("factor", "As LOD gave it, before it was clamped and rounded."),
+            ("segments", "That the side was cut into."),
+        ] {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.weak(text).on_hover_text(hover));
+        }
+        ui.end_row();
+        for (k, side) in sides.iter().enumerate() {
+            ui.horizontal(|ui| {
+                swatch(ui, SIDE_COLORS[k % SIDE_COLORS.len()]);
+                ui.label(format!("Triangle {}", side.triangle))
+                    .on_hover_text("The triangle's number in the mesh, from 0.");
+            });
+            number(ui, &format!("{:.5}", side.factor));
+            number(ui, &side.segments().to_string());
+            ui.end_row();
+        }
+    });
+}
+
+pub(in crate::app) fn kind_name(kind: EdgeKind) -> &'static str {
+    EDGE_KINDS.iter().find(|(known, ..)| *known == kind).map_or("", |(_, name, _)| name)
+}
+
+/// Every point of an edge, and how far its sides are apart there; the positions themselves on hover.
+fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
+    let Some((first, others)) = sides.split_first() else { return };
+    let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);
+    columns(ui, &format!("{:<6}{:>23}", "point", "apart, units"), true);
+    list(ui, "points", count, |ui, index| {
+        let place = |side: &EdgeSide| side.positions().nth(index);
+        let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
+        let gap = gaps
+            .map(|gap| gap.map_or(f64::NAN, |gap| gap))
+            .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
+        let text = if gap.is_nan() { "not on all sides".to_owned() } else { short(gap) };
+        columns(ui, &format!("{index:<6}{text:>23}"), false).on_hover_ui(|ui| {
+            for side in sides {
+                let text = match place(side) {
+                    Some(p) => format!("triangle {}: {:e} {:e} {:e}", side.triangle, p.x, p.y, p.z),
+                    None => format!("triangle {} has no such point", side.triangle),
+                };
+                ui.label(RichText::new(text).monospace());
+            }
+        })
+    });
+}

@@ -1,0 +1,243 @@
+//! How far off the picture is: measuring it, the section that says it, its marks and its scale. Both halves are read against one.
+
+use egui::RichText;
+use glam::{Vec2, Vec3};
+
+use crate::app::App;
+use crate::app::jobs::deviation_job::{DeviationJob, Found, Of};
+use crate::app::jobs::measure_job::Trouble;
+use crate::app::text::{grouped, short, shortened};
+use crate::app::viewport::legend::Distances;
+use crate::app::widgets::{fact, heading, number, swatch};
+use crate::commands::value_names::surface_name;
+use crate::measure::{DeviationTarget, MOST_TRIANGLES};
+use crate::render::layout::WORST_COLOR;
+use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, worst_lines};
+use crate::settings::{Colors, DeviationUnit, Half, Settings};
+use crate::tessellate::{Clip, Inputs, Lod};
+use crate::view::project;
+
+impl App {
+    fn deviating(&self, half: Half) -> &DeviationJob {
+        match half {
+            Half::Left => &self.viewport.left.deviating,
+            Half::Right => &self.jobs.deviation,
+        }
+    }
+
+    fn deviation_of(&self, half: Half) -> Option<Of> {
+        let document = self.document.as_ref()?;
+        let tessellation = document.scene.half(half)?.tessellator.generation();
+        let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.surface);
+        Some(Of { document, tessellation, truth, limit })
+    }
+
+    fn shows_deviation(&self) -> bool {
+        self.settings.overlays.colors == Colors::Deviation
+    }
+
+    /// Counts the results that the picture shows; 0 without the overlay.
+    pub(in crate::app) fn deviation_shown(&self) -> u64 {
+        if self.shows_deviation() {
+            self.jobs.deviation.generation + self.viewport.left.deviating.generation
+        } else {
+            0
+        }
+    }
+
+    /// How far what is shown is from the truth, once that is known.
+    pub fn deviation(&self, half: Half) -> Option<f64> {
+        Some(self.known_deviation(half)?.worst?.value)
+    }
+
+    fn known_deviation(&self, half: Half) -> Option<&Found> {
+        self.settings.half(half)?;
+        self.deviating(half).found_of(self.deviation_of(half)?)
+    }
+
+    /// Lets measuring go on, if the overlay is on and nothing is under way that it would disturb. Without a truth both halves
+    /// are held against the limit of the right one, which has these inputs: what flat triangles converge to they are already.
+    pub(in crate::app) fn deviate(&mut self, inputs: &Inputs) -> Result<(), Trouble> {
+        if !self.shows_deviation() || self.viewport.playback.is_playing() {
+            self.jobs.deviation.stop();
+            self.viewport.left.deviating.stop();
+            return Ok(());
+        }
+        if !self.viewport.picture.is_free() || self.viewport.picture.cancelled.is_some() {
+            return Ok(());
+        }
+        for half in Half::BOTH {
+            let Some(of) = self.deviation_of(half).filter(|_| self.settings.half(half).is_some()) else { continue };
+            let truth = self.yardstick().1;
+            let Some(document) = self.document.as_mut() else { continue };
+            let is_posed = document.moment == self.viewport.playback.moment();
+            let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
+            let Some(scene) = scene else { continue };
+            let target = || truth.map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::Truth);
+            let deviating = match half {
+                Half::Left => &mut self.viewport.left.deviating,
+                Half::Right => &mut self.jobs.deviation,
+            };
+            deviating.go_on(&self.engine.gpu, scene, of, target)?;
+        }
+        self.scale_deviation();
+        Ok(())
+    }
+
+    /// In object units, for the half that is farther off by what was last known of each.
+    fn deviation_scale(&self) -> Option<Scale> {
+        let scene = &self.document.as_ref()?.scene;
+        let shown = Half::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
+        let largest = shown.filter_map(|half| self.deviating(half).found()).map(Found::largest).reduce(f64::max)?;
+        Some(deviation_scale(largest, scene.ulp()))
+    }
+
+    fn scale_deviation(&mut self) {
+        let (Some(scale), Some(document)) = (self.deviation_scale(), self.document.as_mut()) else { return };
+        for half in Half::BOTH {
+            if let Some(scene) = document.scene.half_mut(half) {
+                scene.scale_deviation(scale);
+            }
+        }
+    }
+
+    /// The mark on the place of a half that is farthest from the truth.
+    pub(in crate::app) fn worst_mark(&self, half: Half) -> Vec<LineSegment> {
+        let shown = self.known_deviation(half).filter(|_| self.shows_deviation());
+        let worst = shown.and_then(|found| found.worst);
+        worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()))
+    }
+
+    /// What the marks are a function of: the result that each is of, 0 for none.
+    pub(in crate::app) fn worst_marked(&self) -> [u64; 2] {
+        let is_marked = |half| self.shows_deviation() && self.known_deviation(half).is_some();
+        Half::BOTH.map(|half| if is_marked(half) { self.deviating(half).generation } else { 0 })
+    }
+
+    /// What the legend says of distances.
+    pub(in crate::app) fn legend_distances(&self) -> Distances {
+        let unit = self.settings.deviation_in;
+        let scale = match unit {
+            DeviationUnit::Units => self.deviation_scale(),
+            DeviationUnit::Px => Some(DEVIATION_PX_SCALE),
+        };
+        let known = |half| self.known_deviation(half);
+        let is_partial = Half::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
+        let measured = Half::BOTH.into_iter().filter_map(|half| self.deviating(half).fraction()).reduce(f32::min);
+        Distances { unit, scale, is_partial, measured }
+    }
+
+    /// The largest distance of a half in the unit that is coloured, while that is shown; it keeps its place until it is known.
+    pub(in crate::app) fn largest_text(&self, half: Half) -> Option<String> {
+        if !self.shows_deviation() {
+            return None;
+        }
+        let (number, unit) = match self.settings.deviation_in {
+            DeviationUnit::Units => (self.known_deviation(half).map(Found::largest), "units"),
+            DeviationUnit::Px => (self.deviation_px(half), "px"),
+        };
+        Some(format!("{} {unit}", number.map_or_else(|| "…".into(), short)))
+    }
+
+    /// What the mesh is held against, and how far off the picture is; while that is shown.
+    pub(in crate::app) fn deviation_section(&mut self, ui: &mut egui::Ui) {
+        if !self.shows_deviation() {
+            return;
+        }
+        heading(ui, "Deviation");
+        let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
+        let is_split = self.settings.half(Half::Left).is_some();
+        if is_split && truth.is_none() {
+            name = format!("{}'s limit", surface_name(self.settings.surface));
+        }
+        let mut clicked = None;
+        egui::Grid::new("deviation").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "What the mesh should have been: the surface that a shape is sampled from, a file chosen under File, or \
+                         else the surface that the tessellation converges to.";
+            fact(ui, "Truth", &shortened(&name, 20), hover);
+            for half in Half::BOTH {
+                let Some(settings) = self.settings.half(half) else { continue };
+                let place = if half == Half::Left { "Left" } else { "Right" };
+                if is_split {
+                    let hover = "What is shown in this half of the split.";
+                    ui.label(RichText::new(place).strong()).on_hover_text(hover);
+                    number(ui, surface_name(settings.surface));
+                    ui.end_row();
+                }
+                if self.deviation_rows(ui, half, if is_split { place } else { "" }) {
+                    clicked = Some(half);
+                }
+            }
+        });
+        let known = Half::BOTH.into_iter().filter_map(|half| self.known_deviation(half));
+        let left_out: u64 = known.map(|found| found.left_out).sum();
+        if left_out > 0 {
+            let most = grouped(MOST_TRIANGLES);
+            let text = format!("Only the first {most} triangles are measured; {} have no colour.", grouped(left_out));
+            ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
+        }
+        if let Some(half) = clicked {
+            self.frame_worst(half);
+        }
+    }
+
+    /// How far off a half is; true if its worst point was clicked. Until it is measured the rows keep their places.
+    fn deviation_rows(&self, ui: &mut egui::Ui, half: Half, place: &str) -> bool {
+        let found = self.known_deviation(half);
+        let text = |number: Option<f64>, unit| format!("{} {unit}", number.map_or_else(|| "…".into(), short));
+        let hover = "The largest distance from what is shown to the truth, in object units.";
+        fact(ui, "Largest", &text(found.map(Found::largest), "units"), hover);
+        let hover = "On screen, between the worst point and the truth's point nearest to it.";
+        fact(ui, "", &text(self.deviation_px(half), "px"), hover);
+        let hover = "Root mean square of the distance over the area that is shown, in object units.";
+        fact(ui, "RMS", &text(found.map(|found| found.rms), "units"), hover);
+        ui.horizontal(|ui| {
+            swatch(ui, WORST_COLOR);
+            ui.label("Worst point").on_hover_text("Where the distance is largest. A click frames it.");
+        });
+        let worst = found.and_then(|found| found.worst);
+        let column = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let text = worst.map_or_else(|| "…".into(), |worst| format!("in patch {}", worst.patch));
+            let button = egui::Button::selectable(false, RichText::new(&text).monospace());
+            let response = ui.add_enabled(worst.is_some(), button);
+            let name = format!("{place} Worst point {text}");
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, worst.is_some(), name.trim_start()));
+            let hover = "Turns the camera to it. LOD and clipping stay as they are, so that it stays the worst.";
+            response.on_hover_text(hover).clicked()
+        });
+        ui.end_row();
+        column.inner
+    }
+
+    /// The largest distance of a half in px, seen as the last picture was.
+    fn deviation_px(&self, half: Half) -> Option<f64> {
+        let (worst, view) = (self.known_deviation(half)?.worst?, self.viewport.picture.seen_from()?);
+        let at = |place: glam::DVec3| project(view.clip_from_object, view.viewport, place.as_vec3());
+        Some(f64::from(at(worst.emitted)?.distance(at(worst.truth)?)))
+    }
+
+    /// Turns the camera so that a half's worst point is in the middle of that half, seen from where its patch faces.
+    fn frame_worst(&mut self, half: Half) {
+        let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
+        let Some(document) = &self.document else { return };
+        let (mesh, topology) = document.shown();
+        let Some(patch) = topology.patches.get(worst.patch as usize) else { return };
+        // Tessellated for the new view it would be another mesh, with another worst point.
+        if self.viewport.frozen.is_none() && follows_view(&self.settings) {
+            self.viewport.frozen = self.viewport.picture.shown_view();
+        }
+        let corners: [Vec3; 3] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].position);
+        self.viewport.camera.frame_triangle(corners, &document.scene.bounds);
+        self.viewport.camera.target = worst.emitted.as_vec3();
+        if let Some(split) = self.settings.split {
+            let middle = if half == Half::Left { split / 2.0 } else { (1.0 + split) / 2.0 };
+            let size = self.viewport.picture.size();
+            self.viewport.camera.pan(Vec2::new((middle - 0.5) * size.x, 0.0), size);
+        }
+    }
+}
+
+/// Whether what is emitted depends on where one looks from.
+fn follows_view(settings: &Settings) -> bool {
+    settings.used_lod() != Lod::Uniform || settings.clip != Clip::Off || settings.cull_back_faces
+}

@@ -1,0 +1,34 @@
+//! The panels around the viewport: settings on the left, statistics and details on the right, the chart and the status line
+//! below.
+
+pub mod chart;
+mod chart_diagram;
+mod chart_panel;
+mod crack_list;
+mod crease_band;
+mod deviation;
+pub mod displacement;
+mod patch_panel;
+mod patch_pattern;
+mod settings_panel;
+mod statistics;
+mod status_line;
+
+use crate::tessellate::Displacement;
+
+use chart::Chart;
+
+/// What the panels remember from one frame to the next.
+pub struct Panels {
+    pub chart: Chart,
+    /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
+    pub dragged_rim: Option<f32>,
+    /// What displacement was before it was last switched.
+    pub last_displacement: Displacement,
+}
+
+impl Default for Panels {
+    fn default() -> Self {
+        Self { chart: Chart::default(), dragged_rim: None, last_displacement: Displacement::Off }
+    }
+}

@@ -1,0 +1,342 @@
+//! The selected patch: what LOD and the tessellator made of it, who its neighbours are, and what it was made from.
+
+use egui::{RichText, Ui};
+
+use super::crack_list::kind_name;
+use super::patch_pattern::{pattern_plot, weights_text};
+use super::statistics::EDGE_KINDS;
+use crate::app::App;
+use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
+use crate::app::text::{factor, short};
+use crate::app::widgets::{SWATCH, swatch};
+use crate::commands::{Action, with_key};
+use crate::measure::EdgeSide;
+use crate::mesh::{Mesh, Topology, adjacency};
+use crate::render::PickedTriangle;
+use crate::render::layout::FACTOR_COLORS;
+use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
+use crate::tessellate::{
+    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_plan, domain_side,
+    domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
+};
+
+/// What was asked for in the section.
+enum Wish {
+    Select(Option<u32>),
+    Edge(u32),
+    Frame,
+    Deselect,
+}
+
+/// A selected triangle, and all that is known about it.
+struct Shown<'a> {
+    mesh: &'a Mesh,
+    topology: &'a Topology,
+    triangle: u32,
+    patch: u32,
+    convention: Convention,
+    lod: Lod,
+    selected_edge: Option<u32>,
+    /// Once it is measured: all zero where nothing is emitted.
+    factors: Option<PatchFactors>,
+    sides: Option<[EdgeSide; 3]>,
+    hit: Option<PickedTriangle>,
+    /// Whether it is measured only later.
+    is_playing: bool,
+}
+
+impl App {
+    pub(in crate::app) fn patch_section(&mut self, ui: &mut Ui) {
+        let Some(document) = &self.document else { return };
+        let at_rest = || (document.loaded.mesh.clone(), document.loaded.topology.clone());
+        let (mesh, topology) = &self.selected_triangle().map_or_else(at_rest, |_| document.shown());
+        let mut wish = chosen_triangle(ui, mesh, topology, self.selected_triangle());
+        let found = self.jobs.measure.found();
+        match (self.selected_triangle(), self.selected_patch()) {
+            (None, _) => drop(ui.weak("Click a triangle, or give its number.")),
+            (Some(triangle), None) => drop(ui.label(format!("Triangle {triangle} is degenerate: it has no patch."))),
+            (Some(triangle), Some(patch)) => {
+                let shown = Shown {
+                    mesh,
+                    topology,
+                    triangle,
+                    patch,
+                    convention: self.convention(),
+                    lod: self.settings.used_lod(),
+                    selected_edge: self.viewport.selected_edge,
+                    factors: found.map(|found| found.outlines.factors(patch)),
+                    sides: found.and_then(|found| found.outlines.patch(topology, patch)),
+                    hit: self.hit().copied(),
+                    is_playing: self.is_playing(),
+                };
+                // Tables: lines closer than elsewhere.
+                ui.scope(|ui| {
+                    ui.spacing_mut().item_spacing.y = 3.0;
+                    ui.spacing_mut().interact_size.y = 16.0;
+                    shown.factor_rows(ui);
+                    shown.plot(ui);
+                    shown.edge_rows(ui, &mut wish);
+                    shown.corner_rows(ui);
+                    shown.index_rows(ui);
+                    shown.hit_rows(ui);
+                });
+            }
+        }
+        match wish {
+            None => {}
+            Some(Wish::Select(triangle)) => self.select_triangle(triangle),
+            Some(Wish::Edge(edge)) => self.viewport.selected_edge = Some(edge),
+            Some(Wish::Frame) => self.frame_patch(),
+            Some(Wish::Deselect) => self.deselect(),
+        }
+    }
+}
+
+/// The number of the selected triangle, which can be dragged and typed; and what one does with it.
+fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Option<u32>) -> Option<Wish> {
+    let mut wish = None;
+    ui.horizontal(|ui| {
+        let hover = "Number in the mesh, from 0. A file's triangles are grouped by material.";
+        let label = ui.label("Triangle").on_hover_text(hover);
+        let mut number = selected.map_or(-1, i64::from);
+        let drag = egui::DragValue::new(&mut number)
+            .range(-1..=mesh.triangles.len() as i64 - 1)
+            .speed(0.1)
+            .update_while_editing(false)
+            .custom_formatter(|number, _| if number < 0.0 { "none".into() } else { format!("{number}") })
+            .custom_parser(|text| {
+                if text.trim() == "none" { Some(-1.0) } else { text.trim().parse::<u32>().ok().map(f64::from) }
+            });
+        let response = ui.add_sized([64.0, ui.spacing().interact_size.y], drag).labelled_by(label.id);
+        if response.on_hover_text(hover).changed() {
+            wish = Some(Wish::Select(u32::try_from(number).ok()));
+        }
+        let patch = selected.and_then(|triangle| topology.patch_of(triangle));
+        let frame = ui.add_enabled(patch.is_some(), egui::Button::new("Frame").small());
+        if frame.on_hover_text("Puts the patch in the middle, seen from where it faces (Shift+F).").clicked() {
+            wish = Some(Wish::Frame);
+        }
+        let deselect = ui.add_enabled(selected.is_some(), egui::Button::new("Deselect").small());
+        deselect.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, selected.is_some(), "Deselect patch"));
+        if deselect.on_hover_text(with_key("Selects nothing.", &Action::Cancel)).clicked() {
+            wish = Some(Wish::Deselect);
+        }
+    });
+    wish
+}
+
+impl Shown<'_> {
+    /// Every factor: its edge, as LOD gave it, as the tessellator has it, and the segments that it cuts.
+    fn factor_rows(&self, ui: &mut Ui) {
+        title(ui, "Factors", "TessFactor[i] belongs to the edge on which weight i (u, v, w) is 0.");
+        let header = format!("{:<4}{:<4}{:>8}{:>8}{:>6}", "", "edge", "asked", "used", "cut");
+        factor_row(ui, None, &header, true).on_hover_text(
+            "Asked: as LOD gave it. Used: as the tessellator clamped and rounded it. Cut: into so many segments.",
+        );
+        for i in 0..3 {
+            let (word, side) = (self.factors.map(|f| f.outside[i as usize]), factor_side(self.convention, i));
+            let numbers = self.factor_numbers(self.asked(i), word, word.map(segments));
+            let text = format!("{:<4}{:<4}{numbers}", format!("[{i}]"), ends_text(side));
+            factor_row(ui, Some(FACTOR_COLORS[i as usize]), &text, false).on_hover_text(format!("TessFactor[{i}]"));
+        }
+        let asked = match self.lod {
+            // What the error asks for is a whole number already, and isn't kept.
+            Lod::Error => self.factors.map(|factors| used(factors.inside) as f32),
+            _ => (0..3).map(|i| self.asked(i)).reduce(|a, b| Some(a?.max(b?))).flatten(),
+        };
+        let cut = |factors| if patch_is_minimal(factors) { 1 } else { inside_segments(factors.inside) };
+        let numbers = self.factor_numbers(asked, self.factors.map(|f| f.inside), self.factors.map(cut));
+        factor_row(ui, None, &format!("{:<8}{numbers}", "inside"), false).on_hover_text("InsideTessFactor");
+        for text in (0..3).filter_map(|i| mistake(self.convention, i)) {
+            ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
+        }
+    }
+
+    /// The factor that LOD gave the edge whose factor the hull shader writes as factor `i`.
+    fn asked(&self, i: u32) -> Option<f32> {
+        self.sides.as_ref().map(|sides| sides[factor_side(self.convention, i) as usize].factor)
+    }
+
+    /// Three columns; dots until they are known.
+    fn factor_numbers(&self, asked: Option<f32>, word: Option<u32>, cut: Option<u32>) -> String {
+        match (asked, word, cut) {
+            _ if self.factors.is_some_and(patch_is_culled) => format!("{:>22}", "culled"),
+            (Some(asked), Some(word), Some(cut)) => {
+                format!("{:>8}{:>8}{cut:>6}", factor(f64::from(asked), 3), factor(used(word), 3))
+            }
+            _ => format!("{:>8}{:>8}{:>6}", "…", "…", "…"),
+        }
+    }
+
+    fn plot(&self, ui: &mut Ui) {
+        let pattern = match self.factors {
+            None => "… points, … triangles".to_owned(),
+            Some(factors) => format!("{} points, {} triangles", point_count(factors), triangle_count(factors)),
+        };
+        title(
+            ui,
+            &format!("Pattern: {pattern}"),
+            "Domain points and triangles that the tessellator makes of the factors.",
+        );
+        let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
+        let empty = match self.factors {
+            None if self.is_playing => "measured when paused",
+            None => "measuring…",
+            Some(PatchFactors { inside: OUT_OF_VIEW, .. }) => "out of view: nothing is emitted",
+            Some(PatchFactors { inside: FACING_AWAY, .. }) => "facing away: nothing is emitted",
+            Some(_) => "culled by a factor: nothing is emitted",
+        };
+        pattern_plot(ui, self.factors, self.hit.map(|hit| hit.number), letters, empty);
+    }
+
+    /// Every edge: its kind, and the triangles across it.
+    fn edge_rows(&self, ui: &mut Ui, wish: &mut Option<Wish>) {
+        title(ui, "Edges of the patch", "From corner to corner; a click selects one.");
+        let grid =
+            egui::Grid::new("patch edges").num_columns(4).min_col_width(14.0).min_row_height(0.0).spacing([8.0, 3.0]);
+        grid.show(ui, |ui| {
+            for text in ["", "edge", "kind", "neighbour"] {
+                ui.weak(text);
+            }
+            ui.end_row();
+            for i in 0..3 {
+                let k = domain_side(self.convention, i);
+                let side = &self.topology.sides[self.topology.patches[self.patch as usize].sides[k as usize] as usize];
+                let edge = &self.topology.edges[side.edge as usize];
+                swatch(ui, FACTOR_COLORS[i as usize]);
+                let text = dense(ends_text(k));
+                let response = ui.selectable_label(self.selected_edge == Some(side.edge), text);
+                let named = format!("Edge {} of the patch", ends_text(k));
+                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &named));
+                if response.on_hover_text(format!("Selects the edge, number {}.", side.edge)).clicked() {
+                    *wish = Some(Wish::Edge(side.edge));
+                }
+                let hover = EDGE_KINDS.iter().find(|(kind, ..)| *kind == edge.kind).map_or("", |(.., hover)| hover);
+                ui.label(kind_name(edge.kind)).on_hover_text(hover);
+                let others = self.topology.edge_sides(edge).iter().map(|side| side.patch());
+                let others: Vec<_> = others.filter(|&patch| patch != self.patch).collect();
+                if let Some(triangle) = neighbours(ui, self.topology, &others) {
+                    *wish = Some(Wish::Select(Some(triangle)));
+                }
+                ui.end_row();
+            }
+        });
+    }
+
+    /// Position, normal and uv of every corner.
+    fn corner_rows(&self, ui: &mut Ui) {
+        title(ui, "Corners", "As loaded: object units, unit normals, texture coordinates. Exact numbers on hover.");
+        for (k, corner) in (0..).zip(self.topology.patch_corners(self.patch)) {
+            let point = self.topology.corner_points[corner as usize];
+            let (at, letter) = (&self.mesh.corners[corner as usize], letter(self.convention, k));
+            ui.label(dense(format!("{k} {letter}  corner {corner}, point {point}")));
+            let rows =
+                [("at", &at.position.to_array()[..]), ("normal", &at.normal.to_array()), ("uv", &at.uv.to_array())];
+            for (name, numbers) in rows {
+                let text = |number: &f32| format!("{:>9}", short(f64::from(*number)));
+                let exact: Vec<_> = numbers.iter().map(|number| format!("{number:e}")).collect();
+                ui.label(dense(format!("{name:>6}{}", numbers.iter().map(text).collect::<String>())))
+                    .on_hover_text(exact.join(" "));
+            }
+        }
+        let material = self.mesh.materials.iter().find(|material| material.triangles.contains(&self.triangle));
+        let material =
+            material.map_or("none", |material| if material.name.is_empty() { "unnamed" } else { &material.name });
+        ui.add(egui::Label::new(format!("Material: {material}")).truncate());
+    }
+
+    /// The nine indices of PN-AEN, and the three of dominant corners.
+    fn index_rows(&self, ui: &mut Ui) {
+        let hover = "Indices of corners, as pnaen adjacency writes them: nine, or twelve with the dominant corners.";
+        title(ui, "Adjacency indices", hover);
+        let twelve = adjacency::twelve(self.topology, self.patch);
+        let row = |name: &str, indices: &[u32]| {
+            format!("{name:<10}{}", indices.iter().map(|index| format!("{index:>8}")).collect::<String>())
+        };
+        ui.label(dense(row("corners", &twelve[..3]))).on_hover_text("The triangle's own corners 0, 1, 2.");
+        for k in 0..3_usize {
+            let pair = &twelve[3 + 2 * k..5 + 2 * k];
+            let hover = "The neighbour's corners across this edge, in the patch's direction; its own where there is not \
+                         one neighbour.";
+            ui.label(dense(row(&format!("edge {}", ends_text(k as u32)), pair))).on_hover_text(hover);
+        }
+        ui.label(dense(row("dominant", &twelve[9..]))).on_hover_text("The lowest corner on each of the three points.");
+    }
+
+    /// The emitted triangle that was clicked on: its domain points.
+    fn hit_rows(&self, ui: &mut Ui) {
+        let Some(hit) = &self.hit else { return };
+        let hover = "Its number in the patch, and its domain points in 16.16 fixed point and as decimals.";
+        title(ui, &format!("Emitted triangle {}", hit.number), hover);
+        ui.label(dense(format!("{:<5}{:>9}{:>9}{:>9}", "point", "u", "v", "w")).weak());
+        // A triangle of a tessellation that isn't measured yet has no numbers.
+        let points = self.factors.filter(|&factors| hit.number < triangle_count(factors));
+        let points = points.map(|factors| domain_triangle(&domain_plan(factors), hit.number));
+        for (k, vertex) in hit.vertices.iter().enumerate() {
+            let point = points.map_or_else(|| "…".into(), |points| points[k].to_string());
+            let [fixed, decimals] = weights_text(self.convention.domain_weights(Vertex::domain(vertex)));
+            ui.label(dense(format!("{point:<5}{fixed}")));
+            ui.label(dense(format!("{:<5}{decimals}", "")).weak());
+        }
+    }
+}
+
+/// Buttons that select the triangles of patches; the one that was clicked on.
+fn neighbours(ui: &mut Ui, topology: &Topology, patches: &[u32]) -> Option<u32> {
+    let button = |ui: &mut Ui, patch: &u32| {
+        let triangle = topology.patches[*patch as usize].triangle;
+        let response = ui.small_button(dense(triangle.to_string()));
+        let named = format!("Neighbour, triangle {triangle}");
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &named));
+        response.on_hover_text("Selects this triangle.").clicked().then_some(triangle)
+    };
+    match patches {
+        [] => {
+            ui.weak("none");
+            None
+        }
+        [patch] => button(ui, patch),
+        several => {
+            let listed = |ui: &mut Ui| {
+                let shown = several.iter().take(LISTED_NEIGHBOURS);
+                let clicked = shown.fold(None, |clicked, patch| button(ui, patch).or(clicked));
+                if several.len() > LISTED_NEIGHBOURS {
+                    ui.weak(format!("{} more", several.len() - LISTED_NEIGHBOURS));
+                }
+                clicked
+            };
+            ui.vertical(listed).inner
+        }
+    }
+}
+
+/// Triangles that are listed across one edge: of a hundred, one looks at the first few.
+const LISTED_NEIGHBOURS: usize = 16;
+
+/// The factor in a word: see [`PatchFactors`].
+fn used(word: u32) -> f64 {
+    f64::from(word & FACTOR_VALUE) / f64::from(FIXED_ONE)
+}
+
+/// A line of the factors' table, and the colour of the edge.
+fn factor_row(ui: &mut Ui, color: Option<[u8; 3]>, text: &str, is_weak: bool) -> egui::Response {
+    let row = ui.horizontal(|ui| {
+        match color {
+            Some(color) => swatch(ui, color),
+            None => drop(ui.allocate_exact_size(SWATCH, egui::Sense::hover())),
+        }
+        ui.label(if is_weak { dense(text).weak() } else { dense(text) })
+    });
+    row.inner
+}
+
+/// Monospaced, small enough for a position's three coordinates.
+fn dense(text: impl Into<String>) -> RichText {
+    RichText::new(text).monospace().size(12.0)
+}
+
+/// The name of a table.
+fn title(ui: &mut Ui, text: &str, hover: &str) {
+    ui.add_space(6.0);
+    ui.label(text).on_hover_text(hover);
+}

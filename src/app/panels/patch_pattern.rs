@@ -1,0 +1,131 @@
+//! The domain pattern of one patch: the points and triangles that the tessellator makes of its factors.
+
+use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
+
+use crate::app::widgets::rgb;
+use crate::render::layout::FACTOR_COLORS;
+use crate::tessellate::{
+    FIXED_ONE, PatchFactors, domain_plan, domain_point, domain_triangle, point_count, triangle_count,
+};
+
+/// Width and height of the plot, in points.
+const SIZE: Vec2 = vec2(250.0, 244.0);
+/// Points around the triangle, for the letters of its corners.
+const MARGIN: Vec2 = vec2(14.0, 26.0);
+/// Points of a pattern that can be numbered: more would not be read.
+const NUMBERED: u32 = 60;
+/// Points on screen within which a domain point is under the pointer.
+const REACH: f32 = 8.0;
+
+/// A point's weights in 16.16 fixed point, and as decimals.
+pub fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
+    let weights = [u, v, FIXED_ONE - u - v];
+    let decimals = weights.map(|weight| format!("{:>9.5}", f64::from(weight) / f64::from(FIXED_ONE)));
+    [weights.map(|weight| format!("{weight:>9}")).concat(), decimals.concat()]
+}
+
+/// Draws the pattern, or an empty one until the factors are known. `letters` are written where u, v and w are 1; triangle
+/// `hit` is filled; `empty` is said where there are no points.
+pub fn pattern_plot(
+    ui: &mut Ui,
+    factors: Option<PatchFactors>,
+    hit: Option<u32>,
+    letters: [String; 3],
+    empty: &str,
+) -> Response {
+    let (rect, response) = ui.allocate_exact_size(SIZE, Sense::hover());
+    let points: Vec<Pos2> = factors.map_or_else(Vec::new, |factors| {
+        let plan = domain_plan(factors);
+        (0..point_count(factors)).map(|i| place(rect, domain_point(&plan, i))).collect()
+    });
+    if let Some(factors) = factors {
+        draw_triangles(ui, factors, &points, hit.filter(|&hit| hit < triangle_count(factors)));
+    }
+    draw_outline(ui, rect, letters);
+    let named = match factors {
+        None => "Domain pattern, measuring".to_owned(),
+        Some(_) if points.is_empty() => format!("Domain pattern, {empty}"),
+        Some(factors) => format!("Domain pattern, {} points, {} triangles", points.len(), triangle_count(factors)),
+    };
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &named));
+    let (Some(factors), false) = (factors, points.is_empty()) else {
+        text(ui, rect.center(), empty, ui.visuals().weak_text_color());
+        return response;
+    };
+    draw_points(ui, &points);
+    hover(ui, response, factors, &points)
+}
+
+/// Where the plot has a domain point: u is 1 on top, v at the left and w at the right.
+fn place(rect: Rect, [u, v]: [u32; 2]) -> Pos2 {
+    let [u, v] = [u, v].map(|weight| weight as f32 / FIXED_ONE as f32);
+    let inner = rect.shrink2(MARGIN);
+    let [top, left, right] = [inner.center_top(), inner.left_bottom(), inner.right_bottom()].map(Pos2::to_vec2);
+    (top * u + left * v + right * (1.0 - u - v)).to_pos2()
+}
+
+fn draw_triangles(ui: &Ui, factors: PatchFactors, points: &[Pos2], hit: Option<u32>) {
+    let painter = ui.painter();
+    let plan = domain_plan(factors);
+    let at = |i: u32| points[i as usize];
+    if let Some(hit) = hit {
+        let corners = domain_triangle(&plan, hit).map(at).to_vec();
+        painter.add(Shape::convex_polygon(corners, ui.visuals().selection.bg_fill, Stroke::NONE));
+    }
+    let stroke = Stroke::new(if points.len() > 600 { 0.5 } else { 1.0 }, ui.visuals().weak_text_color());
+    let edges = (0..triangle_count(factors)).flat_map(|t| {
+        let [a, b, c] = domain_triangle(&plan, t);
+        [(a, b), (b, c), (c, a)]
+    });
+    // Two triangles share an edge and run it in opposite directions; the outline is drawn by itself.
+    let lines = edges.filter(|(a, b)| a < b).map(|(a, b)| Shape::line_segment([at(a), at(b)], stroke));
+    painter.extend(lines);
+}
+
+/// The edges on which u, v and w are 0, in the colours of their factors, and the corners' letters.
+fn draw_outline(ui: &Ui, rect: Rect, letters: [String; 3]) {
+    let corners = [[FIXED_ONE, 0], [0, FIXED_ONE], [0, 0]].map(|uv| place(rect, uv));
+    for (i, color) in FACTOR_COLORS.into_iter().enumerate() {
+        let ends = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
+        ui.painter().line_segment(ends, Stroke::new(2.0, rgb(color)));
+    }
+    let color = ui.visuals().text_color();
+    for (corner, (letter, below)) in corners.into_iter().zip(letters.into_iter().zip([-19.0, 14.0, 14.0])) {
+        text(ui, corner + vec2(0.0, below), &letter, color);
+    }
+}
+
+fn draw_points(ui: &Ui, points: &[Pos2]) {
+    if points.len() as u32 > NUMBERED {
+        return;
+    }
+    let (font, color) = (egui::FontId::proportional(9.5), ui.visuals().strong_text_color());
+    for (i, &point) in points.iter().enumerate() {
+        ui.painter().circle_filled(point, 1.75, color);
+        let beside = point + vec2(3.0, 1.0);
+        ui.painter().text(beside, egui::Align2::LEFT_BOTTOM, i.to_string(), font.clone(), color);
+    }
+}
+
+/// Tells the number and the weights of the point under the pointer.
+fn hover(ui: &Ui, response: Response, factors: PatchFactors, points: &[Pos2]) -> Response {
+    let Some(pointer) = response.hover_pos() else { return response };
+    let near = (0..).zip(points).map(|(i, point)| (i, point.distance(pointer)));
+    let Some((i, distance)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) else { return response };
+    if distance > REACH {
+        return response;
+    }
+    ui.painter().circle_stroke(points[i as usize], 4.0, ui.visuals().selection.stroke);
+    let [fixed, decimals] = weights_text(domain_point(&domain_plan(factors), i));
+    response.on_hover_ui_at_pointer(|ui| {
+        ui.label(format!("Point {i}"));
+        for text in [format!("{:>9}{:>9}{:>9}", "u", "v", "w"), fixed, decimals] {
+            ui.monospace(text);
+        }
+    })
+}
+
+fn text(ui: &Ui, center: Pos2, text: &str, color: Color32) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    ui.painter().text(center, egui::Align2::CENTER_CENTER, text, font, color);
+}

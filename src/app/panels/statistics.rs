@@ -1,0 +1,212 @@
+//! On the right: what one learns.
+
+use egui::RichText;
+
+use crate::app::App;
+use crate::app::text::{grouped, part, short};
+use crate::app::widgets::{fact, heading, number, swatch};
+use crate::measure::{Cracks, Culled};
+use crate::mesh::EdgeKind;
+use crate::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
+use crate::view::ulp;
+
+/// Name and explanation of each kind of edge.
+pub(in crate::app) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
+    (EdgeKind::Smooth, "smooth", "Two triangles that share normals and uvs."),
+    (EdgeKind::Split, "split normal", "Two triangles whose normals differ at an end: where PN cracks."),
+    (EdgeKind::Seam, "uv seam", "Two triangles that share normals but not uvs."),
+    (EdgeKind::Boundary, "boundary", "Only one triangle: a hole or a border."),
+    (EdgeKind::NonManifold, "non-manifold", "Three or more triangles."),
+];
+
+impl App {
+    pub(in crate::app) fn facts_panel(&mut self, ui: &mut egui::Ui) {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            heading(ui, "Patch");
+            self.patch_section(ui);
+            self.deviation_section(ui);
+            heading(ui, "Cracks");
+            self.crack_facts(ui);
+            self.worst_edges(ui);
+            self.t_junction_list(ui);
+            self.edge_details(ui);
+            heading(ui, "Patches");
+            self.patch_facts(ui);
+            heading(ui, "Waste");
+            self.waste_facts(ui);
+            heading(ui, "Edges");
+            self.edge_legend(ui);
+            heading(ui, "Mesh");
+            self.mesh_facts(ui);
+            self.pass_times(ui);
+        });
+    }
+
+    fn edge_legend(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let edges = &document.edges;
+        let counts = [edges.smooth, edges.split, edges.seam, edges.boundary, edges.non_manifold];
+        egui::Grid::new("edges").num_columns(3).min_col_width(14.0).show(ui, |ui| {
+            for ((kind, name, hover), count) in EDGE_KINDS.into_iter().zip(counts) {
+                swatch(ui, edge_color(kind));
+                ui.label(name).on_hover_text(hover);
+                number(ui, &grouped(count as u64));
+                ui.end_row();
+            }
+        });
+    }
+
+    fn crack_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        // Until they are measured the rows keep their places.
+        let cracks = self.jobs.measure.cracks();
+        let count = |number: fn(&Cracks) -> u64| cracks.map_or_else(|| "…".into(), |cracks| grouped(number(cracks)));
+        let gap = |size: &dyn Fn(&Cracks) -> f64, unit: &str| {
+            cracks.map_or_else(|| format!("… {unit}"), |cracks| format!("{} {unit}", short(size(cracks))))
+        };
+        let ulp = ulp(&document.loaded.topology);
+        egui::Grid::new("cracks").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "Points of edges with several sides, once for each side after the first.";
+            fact(ui, "Points compared", &count(|cracks| cracks.edge_points), hover);
+            let hover = "Those that differ in at least one bit from the first side's.";
+            fact(ui, "Different", &count(|cracks| cracks.different_bits), hover);
+            let hover = "Edges whose sides were given factors that differ in at least one bit.";
+            fact(ui, "Factors differ", &count(|cracks| cracks.different_factors), hover);
+            let hover = "Points whose normals differ in at least one bit though the file's agree.";
+            fact(ui, "Normals differ", &count(|cracks| cracks.different_normals), hover);
+            ui.horizontal(|ui| {
+                swatch(ui, CRACK_COLOR);
+                ui.label("Cracked edges")
+                    .on_hover_text("Edges with a point or factor that differs; the overlay shows them.");
+            });
+            number(ui, &count(|cracks| cracks.cracked().count() as u64));
+            ui.end_row();
+            let hover = "Largest distance between two sides' positions of one point, in object units.";
+            fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
+            let hover = "In units of the last place of the mesh's largest coordinate.";
+            fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
+            fact(ui, "", &gap(&|cracks| self.viewport.picture.gap_px(cracks), "px"), "On screen.");
+            ui.horizontal(|ui| {
+                swatch(ui, FOLD_COLOR);
+                ui.label("Folds").on_hover_text("Triangles that face away from the side that their patch faces.");
+            });
+            number(ui, &self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.folds)));
+            ui.end_row();
+        });
+    }
+
+    fn patch_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let all = document.loaded.topology.patches.len() as u64;
+        let culled = self.jobs.measure.found().map(|found| found.culled);
+        let count =
+            |number: &dyn Fn(Culled) -> u64| culled.map_or_else(|| "…".into(), |culled| grouped(number(culled)));
+        egui::Grid::new("patches").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let drawn = count(&|culled| all - u64::from(culled.total()));
+            fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
+            let hover = "Patches left out by clipping, for the LOD camera.";
+            fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
+            let hover = "Patches left out because their surface shows its back everywhere, to the LOD camera.";
+            fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
+            let limit = self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
+            let hover = "Patches with a factor that is the largest there is, 63 or 64: what asked for more didn't get it, so \
+                         that LOD by error may not keep its tolerance there.";
+            fact(ui, "At the limit", &limit, hover);
+        });
+    }
+
+    /// What is tessellated too finely, or for nothing.
+    fn waste_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let patches = document.loaded.topology.patches.len() as u64;
+        let unknown = || if self.jobs.measure.is_busy() { "…".to_owned() } else { "-".to_owned() };
+        let small = self.sizes_shown().map_or_else(unknown, |sizes| part(sizes.small, sizes.in_view));
+        let low = self.jobs.measure.found().map_or_else(unknown, |found| part(found.patches_low.into(), patches));
+        egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "Triangles in view that are half of squares with sides of less than 3 px, and their share of those \
+                         in view. Where only the camera moved, they are counted anew while the triangle size is shown.";
+            marked(ui, "Below 3 px", &small, hover);
+            let hover = "Patches whose factors are all below 2, and their share of all patches: drawing them untessellated \
+                         would hardly show.";
+            marked(ui, "Below factor 2", &low, hover);
+        });
+    }
+
+    fn mesh_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let (mesh, topology) = (&document.loaded.mesh, &document.loaded.topology);
+        let size = document.scene.bounds.max - document.scene.bounds.min;
+        egui::Grid::new("mesh").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "As loaded.");
+            fact(ui, "Patches", &grouped(topology.patches.len() as u64), "Triangles that are tessellated.");
+            fact(
+                ui,
+                "Degenerate",
+                &grouped(u64::from(topology.degenerate)),
+                "Triangles left out: two corners on one point.",
+            );
+            fact(
+                ui,
+                "Points",
+                &grouped(topology.points.len() as u64),
+                "Positions, welded where they are equal, or within the tolerance chosen.",
+            );
+            fact(ui, "Corners", &grouped(mesh.corners.len() as u64), "Distinct position, normal and uv.");
+            self.normal_facts(ui);
+            fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
+            for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
+                fact(
+                    ui,
+                    axis,
+                    &format!("{} units", short(f64::from(length))),
+                    "Extent of the mesh, in object units; all through the clip, if one is chosen.",
+                );
+            }
+            fact(ui, "Loading", &format!("{} ms", short(document.loaded.load_ms)), "Reading the file.");
+            fact(
+                ui,
+                "Topology",
+                &format!("{} ms", short(document.loaded.topology_ms)),
+                "Welding points and finding edges.",
+            );
+        });
+        for warning in &document.loaded.warnings {
+            ui.add(egui::Label::new(RichText::new(warning).color(ui.visuals().warn_fg_color)).wrap());
+        }
+    }
+
+    fn pass_times(&self, ui: &mut egui::Ui) {
+        if self.viewport.picture.times.is_empty() {
+            return;
+        }
+        heading(ui, "Passes");
+        egui::Grid::new("passes").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            for time in &self.viewport.picture.times {
+                fact(ui, time.pass, &format!("{:.3} ms", time.ms), "The GPU's own time for the last run of this pass.");
+            }
+        });
+    }
+
+    /// Normals that are legal but suspicious.
+    fn normal_facts(&self, ui: &mut egui::Ui) {
+        let Some(document) = &self.document else { return };
+        let faults = document.checks.normal_faults();
+        let count = |number: Option<u32>| number.map_or_else(|| "…".into(), |count| grouped(count.into()));
+        let hover = "Corners whose normal points against their triangle.";
+        fact(ui, "Normals inward", &count(faults.map(|faults| faults.against_face)), hover);
+        let hover = "Edges at an end of which two sides' normals are opposite.";
+        fact(ui, "Normals opposite", &count(faults.map(|faults| faults.opposite)), hover);
+        let hover = "Corners whose normal runs along one of their edges.";
+        fact(ui, "Normals along edge", &count(faults.map(|faults| faults.along_edge)), hover);
+    }
+}
+
+/// A row whose name has the colour that it has over the mesh.
+fn marked(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
+    ui.horizontal(|ui| {
+        swatch(ui, WASTE_COLOR);
+        ui.label(name).on_hover_text(hover);
+    });
+    number(ui, value);
+    ui.end_row();
+}

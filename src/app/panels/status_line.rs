@@ -1,0 +1,109 @@
+//! Below: what it cost.
+
+use egui::RichText;
+
+use crate::app::App;
+use crate::app::text::{grouped, mebibytes, short};
+use crate::app::widgets::{rgb, status};
+use crate::gpu::DRAWING;
+use crate::render::layout::CRACK_COLOR;
+
+impl App {
+    pub(in crate::app) fn status_line(&mut self, ui: &mut egui::Ui) {
+        ui.horizontal(|ui| {
+            ui.set_min_height(22.0);
+            let Some(document) = &self.document else {
+                ui.weak("nothing is open");
+                return;
+            };
+            let scene = &document.scene;
+            // While a clip plays, the last picture's: fields that flicker can't be read.
+            let is_known = scene.tessellator.is_counted() || self.is_playing();
+            let totals = is_known.then(|| scene.tessellator.totals());
+            let (vertices, triangles) = totals.map_or_else(
+                || ("…".to_owned(), "…".to_owned()),
+                |(vertices, triangles)| (grouped(vertices), grouped(triangles)),
+            );
+            let patches = document.loaded.topology.patches.len() as u64;
+            let drawn = patches - u64::from(self.jobs.measure.found().map_or(0, |found| found.culled.total()));
+            let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
+            status(
+                ui,
+                120.0,
+                format!("{} of {} patches", grouped(drawn), grouped(patches)),
+                "Patches drawn, of all; the rest is out of view or faces away.",
+            );
+            status(
+                ui,
+                170.0,
+                format!("{} to {} triangles", grouped(before.0), triangles),
+                "Before and after tessellation.",
+            );
+            status(
+                ui,
+                160.0,
+                format!("{} to {} vertices", grouped(before.1), vertices),
+                "Before and after tessellation.",
+            );
+            self.status_of_cracks(ui);
+            status(
+                ui,
+                76.0,
+                mebibytes(document.bytes() + self.viewport.picture.bytes()),
+                "Memory on the device: topology, output and picture.",
+            );
+            let (ms, hover) = self.times();
+            status(ui, 112.0, ms, &hover);
+            let warnings = &document.loaded.warnings;
+            if !warnings.is_empty() {
+                let text =
+                    RichText::new(format!("{} warning{}", warnings.len(), if warnings.len() == 1 { "" } else { "s" }))
+                        .color(ui.visuals().warn_fg_color);
+                status(ui, 82.0, text, &warnings.join("\n"));
+            }
+            ui.add(egui::Label::new(RichText::new(&self.engine.gpu.info.name).weak()).truncate())
+                .on_hover_text(format!("Graphics adapter: {}.", self.engine.gpu.info.name));
+        });
+    }
+
+    /// Tessellation and drawing, by the last run of each pass and the GPU's own clock; or else the last whole picture.
+    fn times(&self) -> (String, String) {
+        let times = &self.viewport.picture.times;
+        if !(self.viewport.picture.pass_times_hold && times.iter().any(|time| time.pass == "draw")) {
+            let ms = self.viewport.picture.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
+            let why = "From submitting the last picture to its completion: this adapter can't time single passes, or the \
+                       picture was drawn in several steps.";
+            return (ms, why.into());
+        }
+        let sum =
+            |drawing| times.iter().filter(|time| DRAWING.contains(&time.pass) == drawing).map(|time| time.ms).sum();
+        let (tessellation, draw): (f64, f64) = (sum(false), sum(true));
+        let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
+        let hover =
+            format!("Tessellation and drawing: each pass's last run, by the GPU's own clock.\n{}", passes.join("\n"));
+        (format!("{:.2} + {:.2} ms", tessellation, draw), hover)
+    }
+
+    fn status_of_cracks(&self, ui: &mut egui::Ui) {
+        const WIDTH: f32 = 150.0;
+        let hover = "Edges whose sides differ, and the largest gap on screen.";
+        match self.jobs.measure.cracks() {
+            None => {
+                let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
+                let text = match self.jobs.measure.fraction(chunks) {
+                    _ if self.is_playing() => "cracks when paused".into(),
+                    Some(part) if chunks > 1 => format!("cracks … {:.0} %", 100.0 * part),
+                    _ if self.is_busy() => "cracks …".into(),
+                    _ => "cracks not measured".into(),
+                };
+                status(ui, WIDTH, text, hover);
+            }
+            Some(cracks) if cracks.edges.is_empty() => status(ui, WIDTH, "cracks 0", hover),
+            Some(cracks) => {
+                let (count, px) = (grouped(cracks.edges.len() as u64), short(self.viewport.picture.gap_px(cracks)));
+                let text = RichText::new(format!("cracks {count}, {px} px"));
+                status(ui, WIDTH, text.color(rgb(CRACK_COLOR)).strong(), hover);
+            }
+        }
+    }
+}

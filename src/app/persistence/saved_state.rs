@@ -1,0 +1,201 @@
+//! What is kept from one window to the next, as JSON. Each field is read for itself: one that is missing, unknown or out of
+//! its range is as it is in a window that opens for the first time, so that older and newer versions understand each other.
+
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use clap::ValueEnum;
+use egui::ThemePreference;
+use glam::Vec3;
+use serde_json::{Value, json};
+
+use super::saved_settings::{read_settings, written_settings};
+use crate::render::Camera;
+use crate::settings::Settings;
+use crate::tessellate::Displacement;
+
+/// Files whose cameras are kept, at most.
+pub const MAX_FILES: usize = 50;
+/// The smallest and largest side of a window, in points.
+pub const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
+const LARGEST_SIDE: f32 = 16384.0;
+/// How much larger or smaller than usual the window's text is.
+const ZOOM_RANGE: RangeInclusive<f32> = 0.2..=5.0;
+/// How much larger or smaller a mesh may have become for its camera to be of use still.
+const SAME_SIZE: RangeInclusive<f32> = 0.5..=2.0;
+const THEMES: [(ThemePreference, &str); 3] =
+    [(ThemePreference::System, "system"), (ThemePreference::Light, "light"), (ThemePreference::Dark, "dark")];
+
+/// All of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SavedState {
+    /// Without what is bound to a mesh.
+    pub settings: Settings,
+    pub frame: WindowGeometry,
+    /// The one that was opened last comes first.
+    pub files: Vec<SavedFile>,
+}
+
+/// The window itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WindowGeometry {
+    /// While it isn't maximised, in points that are as large as without zoom.
+    pub size: [f32; 2],
+    pub is_maximized: bool,
+    pub theme: ThemePreference,
+    pub zoom: f32,
+}
+
+/// A file that was open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SavedFile {
+    /// Absolute.
+    pub path: String,
+    pub seen: Option<SavedCamera>,
+    /// It wasn't there when it was last asked for: it isn't listed until it is back.
+    pub is_gone: bool,
+}
+
+/// Where a mesh was last looked at from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SavedCamera {
+    pub camera: Camera,
+    /// Of the mesh's bounds, in object units.
+    pub diagonal: f32,
+}
+
+impl Default for WindowGeometry {
+    fn default() -> Self {
+        Self { size: [1400.0, 860.0], is_maximized: false, theme: ThemePreference::System, zoom: 1.0 }
+    }
+}
+
+impl Default for SavedState {
+    fn default() -> Self {
+        Self { settings: Settings::opening(), frame: WindowGeometry::default(), files: Vec::new() }
+    }
+}
+
+impl SavedCamera {
+    /// Its camera, unless the mesh has another size by now.
+    pub fn camera_for(&self, diagonal: f32) -> Option<Camera> {
+        SAME_SIZE.contains(&(diagonal / self.diagonal)).then_some(self.camera)
+    }
+}
+
+impl SavedState {
+    /// None if it isn't what [`Self::written`] made.
+    pub fn read(bytes: &[u8]) -> Option<Self> {
+        let all: Value = serde_json::from_slice(bytes).ok()?;
+        all.is_object().then(|| {
+            let mut files: Vec<SavedFile> = Vec::new();
+            for file in all["files"].as_array().into_iter().flatten().filter_map(SavedFile::read) {
+                if files.len() < MAX_FILES && files.iter().all(|other| other.path != file.path) {
+                    files.push(file);
+                }
+            }
+            Self { settings: read_settings(&all["settings"]), frame: WindowGeometry::read(&all["window"]), files }
+        })
+    }
+
+    /// As text, with a line end.
+    pub fn written(&self) -> String {
+        let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
+        let settings = written_settings(&self.settings);
+        format!("{:#}\n", json!({ "settings": settings, "window": self.frame.written(), "files": files }))
+    }
+
+    /// Settings without what is bound to a mesh: heights displace it once it has some.
+    pub fn take_settings(&mut self, settings: &Settings) {
+        self.settings = Settings { displacement: Displacement::Off, ..*settings };
+    }
+}
+
+impl WindowGeometry {
+    fn read(value: &Value) -> Self {
+        let opening = Self::default();
+        let fields = Fields(value);
+        let side = |name, i: usize| fields.number(name, LEAST_SIZE[i]..=LARGEST_SIDE, opening.size[i]);
+        let theme = THEMES.iter().find(|(_, name)| value["theme"].as_str() == Some(name));
+        Self {
+            size: [side("width", 0), side("height", 1)],
+            is_maximized: fields.switch("maximized", opening.is_maximized),
+            theme: theme.map_or(opening.theme, |(theme, _)| *theme),
+            zoom: fields.number("zoom", ZOOM_RANGE, opening.zoom),
+        }
+    }
+
+    fn written(&self) -> Value {
+        let Self { size: [width, height], is_maximized, theme, zoom } = self;
+        let theme = THEMES.iter().find(|(choice, _)| choice == theme).map(|(_, name)| name);
+        json!({ "width": width, "height": height, "maximized": is_maximized, "theme": theme, "zoom": zoom })
+    }
+}
+
+impl SavedFile {
+    fn read(value: &Value) -> Option<Self> {
+        let path = value["path"].as_str().filter(|path| Path::new(path).is_absolute())?;
+        let is_gone = Fields(value).switch("gone", false);
+        Some(Self { path: path.to_owned(), seen: SavedCamera::read(value), is_gone })
+    }
+
+    fn written(&self) -> Value {
+        let mut written = json!({ "path": self.path });
+        if self.is_gone {
+            written["gone"] = true.into();
+        }
+        let Some(SavedCamera { camera, diagonal }) = &self.seen else { return written };
+        let Camera { target, azimuth, elevation, distance, orthographic } = camera;
+        written["camera"] = json!({
+            "target": target.to_array(),
+            "azimuth": azimuth,
+            "elevation": elevation,
+            "distance": distance,
+            "orthographic": orthographic,
+        });
+        written["diagonal"] = json!(diagonal);
+        written
+    }
+}
+
+impl SavedCamera {
+    fn read(file: &Value) -> Option<Self> {
+        let number = |value: &Value| value.as_f64().map(|number| number as f32).filter(|number| number.is_finite());
+        let camera = &file["camera"];
+        let target = [0, 1, 2].map(|i| number(&camera["target"][i]));
+        let [Some(x), Some(y), Some(z)] = target else { return None };
+        let camera = Camera {
+            target: Vec3::new(x, y, z),
+            azimuth: number(&camera["azimuth"])?,
+            elevation: number(&camera["elevation"])?,
+            distance: number(&camera["distance"])?,
+            orthographic: camera["orthographic"].as_bool()?,
+        };
+        camera.is_sound().then_some(Self { camera, diagonal: number(&file["diagonal"])? })
+    }
+}
+
+/// The members of an object, or of anything else, which has none.
+pub struct Fields<'a>(pub &'a Value);
+
+impl Fields<'_> {
+    pub fn switch(&self, name: &str, otherwise: bool) -> bool {
+        self.0[name].as_bool().unwrap_or(otherwise)
+    }
+
+    pub fn number(&self, name: &str, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
+        self.number_in(name, range).unwrap_or(otherwise)
+    }
+
+    pub fn number_in(&self, name: &str, range: RangeInclusive<f32>) -> Option<f32> {
+        self.0[name].as_f64().map(|number| number as f32).filter(|number| range.contains(number))
+    }
+
+    pub fn choice<T: ValueEnum>(&self, name: &str, otherwise: T) -> T {
+        self.choice_of(name).unwrap_or(otherwise)
+    }
+
+    pub fn choice_of<T: ValueEnum>(&self, name: &str) -> Option<T> {
+        T::from_str(self.0[name].as_str()?, false).ok()
+    }
+}

@@ -1,0 +1,267 @@
+//! What is written is read again, and what nobody wrote does no harm.
+
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+use super::saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState, WindowGeometry};
+use super::{Persistence, state_file};
+use crate::load::Source;
+use crate::render::Camera;
+use crate::settings::random::settings;
+use crate::settings::{Overlays, Settings};
+use crate::tessellate::Surface;
+
+/// A folder of this test's own, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-lasting-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self) -> PathBuf {
+        self.0.join("window.json")
+    }
+
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> = std::fs::read_dir(&self.0)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+prop_compose! {
+    fn seen()(
+        target in proptest::array::uniform3(-1e9f32..1e9),
+        azimuth in 0.0f32..360.0,
+        elevation in -89.9f32..=89.9,
+        distance in 1e-20f32..1e20,
+        orthographic in proptest::bool::ANY,
+        diagonal in 0.0f32..1e20,
+    ) -> SavedCamera {
+        SavedCamera { camera: Camera { target: Vec3::from(target), azimuth, elevation, distance, orthographic }, diagonal }
+    }
+}
+
+prop_compose! {
+    fn kept()(
+        settings in settings(),
+        width in 760.0f32..4000.0,
+        height in 480.0f32..4000.0,
+        is_maximized in proptest::bool::ANY,
+        theme in proptest::sample::select(vec![
+            egui::ThemePreference::System, egui::ThemePreference::Light, egui::ThemePreference::Dark,
+        ]),
+        zoom in 0.2f32..=5.0,
+        files in proptest::collection::btree_map(
+            "[ -~äßłβ]{1,20}", (proptest::option::of(seen()), proptest::bool::ANY), 0..MAX_FILES,
+        ),
+    ) -> SavedState {
+        let absolute = |name: String| std::env::temp_dir().join(name).to_str().unwrap().to_owned();
+        let file = |(name, (seen, is_gone))| SavedFile { path: absolute(name), seen, is_gone };
+        let files = files.into_iter().map(file).collect();
+        SavedState { settings, frame: WindowGeometry { size: [width, height], is_maximized, theme, zoom }, files }
+    }
+}
+
+/// What someone may have put in place of any value.
+fn odd() -> impl Strategy<Value = Value> {
+    proptest::sample::select(vec![
+        json!(null),
+        json!(true),
+        json!("nurbs"),
+        json!(-1e300),
+        json!(1e300),
+        json!(-1),
+        json!(65),
+        json!([1, 2]),
+        json!({ "a": [] }),
+        json!(""),
+    ])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_written_is_read_again(kept in kept()) {
+        let read = SavedState::read(kept.written().as_bytes());
+        prop_assert!(read.as_ref() == Some(&kept), "{:?} {:?}", read.map(|read| read.settings), kept.settings);
+    }
+
+    #[test]
+    fn a_field_that_is_odd_leaves_all_others_as_they_were(kept in kept(), odd in odd(), field in 0usize..100) {
+        let mut value: Value = serde_json::from_str(&kept.written()).unwrap();
+        let fields = value["settings"].as_object_mut().unwrap();
+        let name = fields.keys().nth(field % fields.len()).unwrap().clone();
+        fields.insert(name.clone(), odd);
+        let read = SavedState::read(value.to_string().as_bytes()).unwrap();
+        // What is read is sound: it is read again as it is.
+        let again = SavedState::read(read.written().as_bytes());
+        prop_assert_eq!(again.as_ref(), Some(&read));
+        prop_assert_eq!((&read.files, &read.frame), (&kept.files, &kept.frame));
+        let written = |kept: &SavedState| serde_json::from_str::<Value>(&kept.written()).unwrap()["settings"].take();
+        let (before, after) = (written(&kept), written(&read));
+        for (other, value) in before.as_object().unwrap() {
+            // Near is nearer than far: they go together.
+            let is_same = *other != name && !(["near", "far"].contains(&other.as_str()) && ["near", "far"].contains(&&*name));
+            prop_assert!(!is_same || after[other] == *value, "{} by {}", other, name);
+        }
+    }
+
+    #[test]
+    fn what_is_cut_off_is_not_read(kept in kept(), part in 0.0f64..1.0) {
+        let text = kept.written();
+        let end = (part * (text.trim_end().len() - 1) as f64) as usize;
+        prop_assert_eq!(SavedState::read(&text.as_bytes()[..end]), None);
+    }
+
+    #[test]
+    fn no_bytes_do_harm(bytes in proptest::collection::vec(0u8.., 0..200)) {
+        prop_assert_eq!(SavedState::read(&bytes), None);
+    }
+}
+
+#[test]
+fn unknown_and_missing_fields_are_no_fault() {
+    let text = r#"{"version": 7, "settings": {"surface": "phong", "shadows": true}, "window": [], "files": "none"}"#;
+    let read = SavedState::read(text.as_bytes()).unwrap();
+    let settings = Settings { surface: Surface::Phong, ..Settings::opening() };
+    assert_eq!(read, SavedState { settings, ..SavedState::default() });
+    assert_eq!(SavedState::read(b"{}"), Some(SavedState::default()));
+    for text in ["", "[]", "null", "7", "{\"settings\": {\"alpha\": NaN}}"] {
+        assert_eq!(SavedState::read(text.as_bytes()), None, "{text:?}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range_are_as_at_first() {
+    let read = |settings: Value, window: Value| {
+        SavedState::read(json!({ "settings": settings, "window": window }).to_string().as_bytes()).unwrap()
+    };
+    for name in ["alpha", "factor", "pixels", "tolerance", "near", "far", "height_scale", "midlevel", "split"] {
+        for number in [-2.0, 1e5, 1e39] {
+            assert_eq!(read(json!({ name: number }), json!({})), SavedState::default(), "{name} {number}");
+        }
+    }
+    assert_eq!(read(json!({ "near": 8.0, "far": 3.0 }), json!({})), SavedState::default());
+    for (name, number) in [("width", 10.0), ("height", 1e9), ("zoom", 0.0), ("zoom", -1.0)] {
+        assert_eq!(read(json!({}), json!({ name: number })), SavedState::default(), "{name}");
+    }
+    assert_eq!(read(json!({ "overlays": ["factors", "barycentric"] }), json!({})), SavedState::default());
+    let overlays = read(json!({ "overlays": ["cracks", "shadows"] }), json!({})).settings.overlays;
+    assert_eq!(overlays, Overlays { cracks: true, ..Overlays::default() });
+}
+
+#[test]
+fn cameras_that_look_nowhere_are_not_taken() {
+    let camera = json!({"target": [0, 1, 2], "azimuth": 30, "elevation": 20, "distance": 5, "orthographic": false});
+    let read = |camera: &Value| {
+        let path = std::env::temp_dir().join("a.glb");
+        let file = json!({ "path": path, "camera": camera, "diagonal": 2.0 });
+        SavedState::read(json!({ "files": [file] }).to_string().as_bytes()).unwrap().files.remove(0).seen
+    };
+    let seen = read(&camera).unwrap();
+    assert_eq!((seen.camera.target, seen.camera.distance), (Vec3::new(0.0, 1.0, 2.0), 5.0));
+    for (name, odd) in [
+        ("target", json!([0, 1e39, 0])),
+        ("target", json!([0, 1])),
+        ("azimuth", json!(1e39)),
+        ("elevation", json!(90)),
+        ("distance", json!(0)),
+        ("distance", json!(-1)),
+        ("orthographic", json!(null)),
+    ] {
+        let mut camera = camera.clone();
+        camera[name] = odd;
+        assert_eq!(read(&camera), None, "{camera}");
+    }
+    assert_eq!(seen.camera_for(2.1), Some(seen.camera), "the mesh was changed a little");
+    for diagonal in [0.0, 0.02, 200.0, f32::NAN] {
+        assert_eq!(seen.camera_for(diagonal), None, "{diagonal}");
+    }
+}
+
+#[test]
+fn files_are_few_and_the_last_one_comes_first() {
+    let mut lasting = Persistence::default();
+    let file = |i: usize| Source::File(std::env::temp_dir().join(format!("{i}.glb")));
+    for i in 0..MAX_FILES + 10 {
+        assert_eq!(lasting.opened(&file(i), 1.0), None);
+    }
+    assert_eq!(lasting.opened(&file(30), 1.0), None);
+    assert_eq!(lasting.opened(&Source::default(), 1.0), None);
+    let names: Vec<_> = lasting.recent().map(|path| Path::new(path).file_stem().unwrap().to_owned()).collect();
+    assert_eq!(names, ["30", "59", "58", "57", "56", "55", "54", "53", "52", "51"]);
+    let many = lasting.kept.written();
+    assert_eq!(
+        (lasting.kept.files.len(), SavedState::read(many.as_bytes()).unwrap().files.len()),
+        (MAX_FILES, MAX_FILES)
+    );
+    assert!(lasting.gone(&file(30)) && !lasting.gone(&file(30)) && !lasting.gone(&Source::default()));
+    let path = std::env::temp_dir().join("a.glb");
+    let named = |paths: Value| json!({ "files": paths }).to_string();
+    let files = (0..200).map(|i| json!({ "path": path.with_file_name(i.to_string()) })).collect();
+    assert_eq!(SavedState::read(named(files).as_bytes()).unwrap().files.len(), MAX_FILES);
+    let odd = named(json!([{ "path": path }, { "path": "a.glb" }, { "path": path }, { "path": 7 }, null]));
+    assert_eq!(SavedState::read(odd.as_bytes()).unwrap().files.len(), 1, "once, and no relative ones");
+}
+
+#[test]
+fn a_damaged_file_is_set_aside_and_that_is_said() {
+    let folder = Folder::new("damaged");
+    assert!(state_file::read(&folder.0).said.is_none(), "the first time there is none");
+    assert!(folder.names().is_empty());
+    for damage in [&b"{\"settings\":"[..], b"\xff\xfe", b""] {
+        std::fs::write(folder.file(), damage).unwrap();
+        let found = state_file::read(&folder.0);
+        let said = found.said.unwrap();
+        assert!(said.contains("window.json is damaged: it is window.damaged.json now"), "{said}");
+        assert_eq!((found.kept, found.place), (SavedState::default(), Some(folder.file())));
+        assert_eq!(folder.names(), ["window.damaged.json"]);
+        assert_eq!(std::fs::read(folder.0.join("window.damaged.json")).unwrap(), damage);
+    }
+    let file = std::fs::File::create(folder.file()).unwrap();
+    file.set_len(1 << 30).unwrap();
+    assert!(state_file::read(&folder.0).said.is_some_and(|said| said.contains("is damaged")), "larger than any");
+}
+
+#[test]
+fn what_is_no_file_is_left_alone() {
+    let folder = Folder::new("no-file");
+    std::fs::create_dir(folder.file()).unwrap();
+    let found = state_file::read(&folder.0);
+    assert!(found.place.is_none());
+    let said = found.said.unwrap();
+    assert!(said.contains("nothing is kept this time (it is no file)"), "{said}");
+    // Nothing can be beside it where the folder is none.
+    let below = folder.0.join("file");
+    std::fs::write(&below, "").unwrap();
+    let failed = state_file::write(&below.join("window.json"), &SavedState::default()).unwrap_err();
+    assert!(failed.contains("settings could not be kept ("), "{failed}");
+}
+
+#[test]
+fn a_folder_is_made_for_what_is_kept() {
+    let folder = Folder::new("made");
+    let below = folder.0.join("config/pnaen");
+    let settings = Settings { surface: Surface::Nagata, ..Settings::opening() };
+    let kept = SavedState { settings, ..SavedState::default() };
+    state_file::write(&below.join("window.json"), &kept).unwrap();
+    let found = state_file::read(&below);
+    assert_eq!((found.kept, found.said), (kept, None));
+}

@@ -1,0 +1,58 @@
+//! Where the picture is seen from, as far as commands change it.
+
+use glam::{Vec2, vec2};
+
+use crate::app::App;
+use crate::commands::{CameraAction, Direction};
+use crate::render::Camera;
+
+/// Degrees that the camera turns at a press of an arrow key.
+const DEGREES_PER_KEY: f32 = 7.5;
+/// Points that a press of an arrow key moves the target by.
+const POINTS_PER_KEY: f32 = 40.0;
+/// What a press of a key makes of the distance to the mesh.
+const CLOSER: f32 = 0.8;
+
+impl App {
+    pub(in crate::app) fn move_camera_by(&mut self, context: &egui::Context, action: CameraAction) {
+        let points = self.viewport.picture.size() / context.pixels_per_point();
+        let camera = &mut self.viewport.camera;
+        match action {
+            CameraAction::Frame => self.frame(),
+            CameraAction::FramePatch => self.frame_patch(),
+            CameraAction::LookFrom(standpoint) => camera.look_from(standpoint),
+            CameraAction::Orthographic => camera.orthographic = !camera.orthographic,
+            CameraAction::Orbit(direction) => camera.orbit(towards(direction) * DEGREES_PER_KEY),
+            CameraAction::Pan(direction) => {
+                let arrows = towards(direction);
+                camera.pan(vec2(arrows.x, -arrows.y) * POINTS_PER_KEY, points);
+            }
+            CameraAction::ZoomIn => camera.zoom(CLOSER, points * 0.5, points),
+            CameraAction::ZoomOut => camera.zoom(CLOSER.recip(), points * 0.5, points),
+        }
+    }
+
+    /// Shows all of the mesh: all through its clip, and as far as heights lift it.
+    pub(in crate::app) fn frame(&mut self) {
+        if let Some(document) = &self.document {
+            self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.picture.size());
+            self.viewport.framed = Some(self.viewport.camera);
+        }
+    }
+
+    /// Whether the camera still is where [`Self::frame`] last put it; it may have turned.
+    pub(in crate::app) fn is_framed(&self) -> bool {
+        let place = |camera: &Camera| (camera.target, camera.distance);
+        self.viewport.framed.as_ref().map(place) == Some(place(&self.viewport.camera))
+    }
+}
+
+/// To the right and up.
+fn towards(direction: Direction) -> Vec2 {
+    match direction {
+        Direction::Left => Vec2::NEG_X,
+        Direction::Right => Vec2::X,
+        Direction::Up => Vec2::Y,
+        Direction::Down => Vec2::NEG_Y,
+    }
+}

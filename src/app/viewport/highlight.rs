@@ -1,0 +1,83 @@
+//! The lines over the mesh: cracks, T-junctions, the worst point, what is selected.
+
+use super::selection::Outlined;
+use crate::app::App;
+use crate::app::jobs::document::Document;
+use crate::mesh::{Moment, Topology};
+use crate::render::{LineSegment, crack_lines, t_junction_lines};
+use crate::settings::Half;
+
+/// What the lines over the mesh are a function of.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Highlight {
+    document: u64,
+    /// By half.
+    measured: [u64; 2],
+    /// Which scene is left of the split; 0 for none.
+    left: u64,
+    cracks: bool,
+    t_junctions: bool,
+    selected_edge: Option<u32>,
+    outlined: Outlined,
+    worst: [u64; 2],
+    /// If there are any; and whether it is known where they are then.
+    moment: Option<(Moment, bool)>,
+    /// Counts the times that they changed.
+    pub generation: u64,
+}
+
+impl App {
+    /// Puts the lines over the mesh that belong there by now: cracks, T-junctions, the selected edge.
+    pub(in crate::app) fn mark(&mut self) {
+        let Some(document) = &self.document else { return };
+        let overlays = self.settings.overlays;
+        let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
+        let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
+        let is_marked = junctions.is_some() || is_selected;
+        let posed = if is_marked { document.posed() } else { None };
+        let measured = |half| if overlays.cracks || is_selected { self.measured(half).generation } else { 0 };
+        let wanted = Highlight {
+            document: document.generation,
+            measured: Half::BOTH.map(measured),
+            left: document.scene.half(Half::Left).map_or(0, |_| self.viewport.left.made),
+            cracks: overlays.cracks,
+            t_junctions: junctions.is_some(),
+            selected_edge: self.viewport.selected_edge,
+            outlined: self.outlined(),
+            worst: self.worst_marked(),
+            moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
+            generation: self.viewport.highlight.map_or(0, |marked| marked.generation),
+        };
+        if self.viewport.highlight == Some(wanted) {
+            return;
+        }
+        let lines = Half::BOTH.map(|half| self.marks(half, document, posed.as_ref().map(|(_, topology)| &**topology)));
+        self.viewport.highlight = Some(Highlight { generation: wanted.generation + 1, ..wanted });
+        if let Some(document) = &mut self.document {
+            for (half, lines) in Half::BOTH.into_iter().zip(lines) {
+                if let Some(scene) = document.scene.half_mut(half) {
+                    scene.set_lines(&self.engine.gpu, &lines);
+                }
+            }
+        }
+    }
+
+    /// The lines over a half, in the pose that it is shown in if that is known.
+    fn marks(&self, half: Half, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
+        let overlays = self.settings.overlays;
+        let mut lines = Vec::new();
+        if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {
+            lines.extend(t_junction_lines(topology, junctions));
+        }
+        if let Some(found) = self.measured(half).found().filter(|_| overlays.cracks) {
+            lines.extend(crack_lines(found, &document.loaded.topology));
+        }
+        lines.extend(self.worst_mark(half));
+        // Over all else.
+        if let Some(topology) = posed {
+            lines.extend(self.patch_outline(topology, half));
+            lines.extend(self.selection_lines(topology, half));
+        }
+        lines
+    }
+}

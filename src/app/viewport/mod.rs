@@ -1,0 +1,57 @@
+//! The picture in the middle: the camera, what is drawn and what is selected in it.
+
+mod camera;
+mod highlight;
+pub mod left_half;
+pub mod legend;
+pub mod panel;
+mod patch_labels;
+pub mod picture;
+pub mod playback;
+pub mod selection;
+
+use crate::engine::Engine;
+use crate::render::Camera;
+use crate::tessellate::LodView;
+
+use highlight::Highlight;
+use left_half::LeftHalf;
+use picture::Picture;
+use playback::Playback;
+use selection::Selection;
+
+/// What the viewport shows, and from where.
+pub struct Viewport {
+    pub camera: Camera,
+    /// The camera as it was when it last framed the whole mesh.
+    pub framed: Option<Camera>,
+    /// The view that LOD and clipping stay computed for, while it is frozen.
+    pub frozen: Option<LodView>,
+    /// The divider's place when the view was last split: 0 is the left edge, 1 the right one.
+    pub last_split: f32,
+    pub picture: Picture,
+    pub playback: Playback,
+    pub left: LeftHalf,
+    /// What the lines over the mesh were last made from.
+    pub highlight: Option<Highlight>,
+    pub selection: Selection,
+    /// The selected edge: an index into the edges of the topology that is shown.
+    pub selected_edge: Option<u32>,
+}
+
+impl Viewport {
+    pub fn new(engine: &Engine) -> Self {
+        Self {
+            camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
+            framed: None,
+            frozen: None,
+            last_split: 0.5,
+            picture: Picture::new(engine),
+            playback: Playback::default(),
+            left: LeftHalf::default(),
+            highlight: None,
+            selection: Selection::default(),
+            selected_edge: None,
+        }
+    }
+}

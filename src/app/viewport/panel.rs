@@ -1,0 +1,304 @@
+//! The panel in the middle: the pointer moves the camera; over the picture are the divider, notes and progress.
+
+use std::sync::Arc;
+
+use egui::{PointerButton, Sense};
+use glam::{Vec2, vec2};
+
+use super::legend::legend;
+use super::picture::Wanted;
+use crate::app::App;
+use crate::app::jobs::measure_job::Trouble;
+use crate::app::text::grouped;
+use crate::commands::{Action, with_key};
+use crate::gpu::GpuError;
+use crate::progress::Stage;
+use crate::render::Scene;
+use crate::settings::{Colors, Half};
+use crate::view::ScreenView;
+
+/// Degrees that the camera turns for a point of dragging.
+const DEGREES_PER_POINT: f32 = 0.4;
+/// Half the width in points in which the divider can be grabbed.
+const DIVIDER_REACH: f32 = 5.0;
+
+/// Where the halves of a split have their names: beside the divider.
+const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TOP];
+
+impl App {
+    pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
+        let points = vec2(rect.width(), rect.height());
+        self.move_camera(ui, &response, points);
+        let scale = ui.ctx().pixels_per_point();
+        self.click(&response, scale);
+        let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
+        if let Err(error) = self.advance(ui.ctx(), size) {
+            self.dialogs.error = Some(error.to_string());
+        }
+        // What was refused may be half drawn.
+        let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
+        if let Some((_, id)) = self.viewport.picture.target.as_ref().filter(|_| is_whole) {
+            let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+            ui.painter().image(*id, rect, whole, egui::Color32::WHITE);
+        }
+        self.patch_labels(ui, rect);
+        self.divider(ui, rect);
+        self.viewport_notes(ui, rect);
+        legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
+    }
+
+    /// Lets everything beside the window go on, and draws what is wanted.
+    fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), Trouble> {
+        // Callbacks of readbacks run here; a lost device reports through its own callback.
+        self.engine.gpu.poll(wgpu::PollType::Poll);
+        self.viewport.picture.fit(&self.render_state, &self.engine, size)?;
+        self.viewport.picture.land(&self.engine);
+        self.keep_left(context)?;
+        self.pose()?;
+        self.mark();
+        let deviation = self.deviation_shown();
+        let moment = self.moment();
+        let Some(document) = &mut self.document else { return Ok(()) };
+        let viewport = vec2(size[0] as f32, size[1] as f32);
+        let view =
+            self.viewport.frozen.unwrap_or_else(|| self.viewport.camera.lod_view(viewport, &document.scene.bounds));
+        let inputs = self.settings.inputs(view);
+        let wanted = Wanted {
+            document: document.generation,
+            moment: document.moment,
+            lines: self.viewport.highlight.map_or(0, |marked| marked.generation),
+            deviation,
+            camera: self.viewport.camera,
+            settings: self.settings,
+            inputs,
+            clip_from_object: self.viewport.camera.clip_from_object(viewport, &document.scene.bounds),
+            viewport,
+        };
+        let drawn = self.viewport.picture.draw(&self.engine, document, &wanted);
+        // What the device says itself explains more than what it led to.
+        if let Err(problem) = self.engine.gpu.check().and(drawn) {
+            self.viewport.picture.refuse(&mut document.scene, &wanted);
+            return Err(problem.into());
+        }
+        self.jobs.measure.keep_only(document.generation, document.scene.tessellator.generation());
+        if let Some(left) = document.scene.half(Half::Left) {
+            self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
+        }
+        let is_posed = document.moment == moment;
+        let shown = is_posed && self.viewport.picture.drawn.as_ref() == Some(&wanted);
+        self.viewport.picture.outdated = !shown && self.viewport.picture.cancelled.is_none();
+        let still = shown && !self.viewport.playback.is_playing();
+        if still && self.viewport.picture.in_flight.is_none() && document.scene.tessellator.is_counted() {
+            let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport };
+            let follows = self.settings.overlays.colors == Colors::TriangleSize;
+            self.jobs.measure.go_on(&self.engine.gpu, &mut document.scene, document.generation, view, follows)?;
+            self.measure_left(view)?;
+        }
+        self.deviate(&inputs)?;
+        if let Err(problem) = self.engine.gpu.check() {
+            self.jobs.measure.give_up();
+            self.viewport.left.measuring.give_up();
+            self.jobs.deviation.give_up();
+            self.viewport.left.deviating.give_up();
+            return Err(problem.into());
+        }
+        let measures =
+            self.jobs.deviation.is_busy() || self.viewport.left.deviating.is_busy() || !self.viewport.left.is_made();
+        let copies = self.jobs.measure.is_busy() || self.viewport.left.measuring.is_busy();
+        let measures_only = measures && self.viewport.picture.is_free() && !copies;
+        if self.pick()? || (self.is_busy() && !measures_only) {
+            context.request_repaint();
+        } else if measures_only {
+            // Drawing the window would only take time from it.
+            context.request_repaint_after(std::time::Duration::from_millis(30));
+        }
+        Ok(())
+    }
+
+    /// Takes the moment that is wanted by now, unless a picture of another is under way: that is finished first, so that
+    /// playing shows pictures however long one takes.
+    fn pose(&mut self) -> Result<(), GpuError> {
+        if self.viewport.picture.is_free() { self.pose_now() } else { Ok(()) }
+    }
+
+    /// Takes the moment that is wanted.
+    ///
+    /// # Errors
+    /// The mesh's rig is larger than the adapter binds.
+    pub(in crate::app) fn pose_now(&mut self) -> Result<(), GpuError> {
+        let wanted = self.moment();
+        let Some(document) = &mut self.document else { return Ok(()) };
+        if document.moment != wanted {
+            document.moment = wanted;
+            document.scene.set_moment(wanted)?;
+        }
+        Ok(())
+    }
+
+    fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, points: Vec2) {
+        let drag = vec2(response.drag_delta().x, response.drag_delta().y);
+        let shift = ui.input(|input| input.modifiers.shift);
+        let pans = response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && shift);
+        if pans {
+            self.viewport.camera.pan(drag, points);
+        } else if response.dragged_by(PointerButton::Primary) {
+            self.viewport.camera.orbit(vec2(-drag.x, drag.y) * DEGREES_PER_POINT);
+        }
+        if let Some(pointer) = response.hover_pos() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let ratio = (-scroll * 0.0025).exp() / pinch;
+            if ratio != 1.0 {
+                let pointer = pointer - response.rect.min;
+                self.viewport.camera.zoom(ratio, vec2(pointer.x, pointer.y), points);
+            }
+        }
+    }
+
+    /// The split's divider, which can be dragged.
+    fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        let [left, right] = Half::BOTH.map(|half| self.half_title(half));
+        let Some(split) = &mut self.settings.split else { return };
+        let at = rect.left() + rect.width() * *split;
+        let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
+        let response = ui.interact(reach, ui.scope_id().with("divider"), Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Split divider"));
+        if response.dragged_by(PointerButton::Primary)
+            && let Some(pointer) = response.interact_pointer_pos()
+        {
+            *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+            self.viewport.last_split = *split;
+        } else if response.dragged_by(PointerButton::Middle) {
+            // As beside it.
+            let drag = response.drag_delta();
+            self.viewport.camera.pan(vec2(drag.x, drag.y), vec2(rect.width(), rect.height()));
+        }
+        let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+        // Over the picture, which is dark in both themes.
+        let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
+        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
+        let titles = match (left, right) {
+            (Some(left), Some(right)) => [left, right],
+            _ => ["untessellated", "tessellated"].map(str::to_owned),
+        };
+        let halves = [rect.with_max_x(at), rect.with_min_x(at)];
+        for ((half, place), (title, align)) in halves.into_iter().zip(["Left", "Right"]).zip(titles.iter().zip(ALIGN)) {
+            half_note(ui, half, align, title, &format!("{place}: {title}"));
+        }
+    }
+
+    /// How many triangles what is wanted has.
+    fn triangles(&self) -> String {
+        let of = |scene: &Scene| scene.tessellator.totals().1;
+        let triangles = self.document.as_ref().map_or(0, |document| {
+            let halves =
+                Half::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
+            halves.map(of).sum()
+        });
+        format!("{} triangles", grouped(triangles))
+    }
+
+    /// What the picture alone doesn't say: loading, freezing.
+    fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+        if self.viewport.frozen.is_some() {
+            let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
+            note(ui, position, egui::Align2::LEFT_BOTTOM, "LOD camera frozen");
+        }
+        let is_old = self.document.as_ref().map(|document| document.generation)
+            != self.viewport.picture.drawn.as_ref().map(|drawn| drawn.document);
+        let is_cancelled = self.viewport.picture.cancelled.is_some();
+        if self.document.is_some() && !is_cancelled && (is_old || self.viewport.left.takes_long()) {
+            note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
+        }
+        if let Some(load) = &self.jobs.load {
+            let title = match (load.progress.stage(), &load.preparation.heights) {
+                (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
+                _ => format!("Loading {}", load.source.title()),
+            };
+            let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what is open stays open.");
+            if progress(ui, rect, &title, done, ("Cancel", hover)) {
+                self.jobs.load = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if let Some(load) = &self.jobs.truth_load {
+            let title = format!("Loading the truth {}", load.source.title());
+            let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what the mesh is held against stays.");
+            if progress(ui, rect, &title, done, ("Cancel", hover)) {
+                self.jobs.truth_load = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if let Some(export) = &self.jobs.export {
+            let (title, done) = (format!("Exporting {}", export.name()), Some(export.progress.fraction()));
+            let hover = with_key("Stops exporting; nothing is written.", &Action::Cancel);
+            if progress(ui, rect, &title, done, ("Cancel", &hover)) {
+                self.jobs.export = None;
+            }
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+        } else if self.viewport.picture.cancelled.is_some() {
+            let hover = "Draws with these settings after all. Any other change draws too.";
+            if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
+                self.viewport.picture.cancelled = None;
+                ui.ctx().request_repaint();
+            }
+        } else if let Some(drawing) = self.viewport.picture.drawing.as_ref().filter(|_| self.viewport.picture.is_long())
+        {
+            let done = Some(drawing.given as f32 / drawing.steps as f32);
+            let hover = with_key("Leaves the last picture as it is, and every setting too.", &Action::Cancel);
+            if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", &hover)) {
+                self.viewport.picture.cancel();
+            }
+        }
+    }
+}
+
+/// What takes long and the part of it that is done, in the middle of the picture, and a button with its explanation. True
+/// when that is pressed.
+fn progress(
+    ui: &mut egui::Ui,
+    rect: egui::Rect,
+    title: &str,
+    done: Option<f32>,
+    (button, hover): (&str, &str),
+) -> bool {
+    let area = egui::Rect::from_center_size(rect.center(), egui::vec2(280.0, 84.0));
+    let show = |ui: &mut egui::Ui| {
+        ui.set_min_width(260.0);
+        ui.label(title);
+        if let Some(done) = done {
+            ui.add(egui::ProgressBar::new(done).desired_width(260.0));
+        }
+        ui.button(button).on_hover_text(hover).clicked()
+    };
+    let popup = |ui: &mut egui::Ui| egui::Frame::popup(ui.style()).show(ui, show).inner;
+    ui.scope_builder(egui::UiBuilder::new().max_rect(area), popup).inner
+}
+
+/// What a half of a split is called, at its top beside the divider; nothing where it has no room for that.
+fn half_note(ui: &egui::Ui, half: egui::Rect, align: egui::Align2, text: &str, name: &str) {
+    let galley = note_text(ui, text, egui::Color32::from_gray(235));
+    let room = half.shrink(8.0);
+    if galley.size().x > room.width() {
+        return;
+    }
+    let place = align.align_size_within_rect(galley.size(), room);
+    let response = ui.interact(place, ui.scope_id().with(("half", align.x() as u8)), Sense::empty());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
+    paint_note(ui, place, galley);
+}
+
+/// A short text over the picture, legible on any of it.
+fn note(ui: &egui::Ui, position: egui::Pos2, align: egui::Align2, text: &str) {
+    let galley = note_text(ui, text, egui::Color32::from_gray(235));
+    paint_note(ui, align.anchor_size(position, galley.size()), galley);
+}
+
+pub(in crate::app) fn note_text(ui: &egui::Ui, text: &str, color: egui::Color32) -> Arc<egui::Galley> {
+    ui.painter().layout_no_wrap(text.to_owned(), egui::TextStyle::Body.resolve(ui.style()), color)
+}
+
+pub(in crate::app) fn paint_note(ui: &egui::Ui, rect: egui::Rect, galley: Arc<egui::Galley>) {
+    ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(170));
+    ui.painter().galley(rect.min, galley, egui::Color32::WHITE);
+}

@@ -1,0 +1,124 @@
+//! Names over the picture: the selected patch's corners with their weights, and its edges with their factors.
+
+use egui::{Color32, Pos2, Rect, Stroke, Vec2};
+
+use super::panel::{note_text, paint_note};
+use crate::app::App;
+use crate::app::patch_names::letter;
+use crate::app::text::factor;
+use crate::app::widgets::rgb;
+use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
+use crate::settings::Half;
+use crate::tessellate::{domain_side, factor_side, segments};
+use crate::view::{ScreenView, project};
+
+/// Points on screen that a patch must extend over to be labelled.
+const LEAST_EXTENT: f32 = 60.0;
+/// Points between what is labelled and its label, and around a label.
+const GAP: f32 = 10.0;
+const MARGIN: Vec2 = Vec2::new(6.0, 3.0);
+
+impl App {
+    /// Labels the selected patch in a picture shown in `rect`, if it is large enough there.
+    pub(in crate::app) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
+        let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
+        let Some(ScreenView { clip_from_object, viewport }) = self.viewport.picture.seen_from() else { return };
+        let Some((_, topology)) = &document.posed() else { return };
+        let at = |position| {
+            let px = project(clip_from_object, viewport, position)?;
+            Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
+        };
+        let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
+        if let Some(split) = self.settings.split.filter(|_| self.settings.half(Half::Left).is_none()) {
+            let source = rect.with_max_x(rect.left() + rect.width() * split);
+            self.source_outline(&ui.painter_at(source), [a, b, c]);
+        }
+        let extent = Rect::from_points(&[a, b, c]).size().max_elem();
+        if extent < LEAST_EXTENT {
+            return;
+        }
+        let middle = ((a.to_vec2() + b.to_vec2() + c.to_vec2()) / 3.0).to_pos2();
+        let corners = (0..).zip([a, b, c]).map(|(k, place)| {
+            let text = format!("{k} {}", letter(self.convention(), k));
+            (place, text, Color32::from_gray(235))
+        });
+        let corners: Vec<_> = corners.collect();
+        let edges = (0..).zip(self.patch_edges(topology, patch, Half::Right)).filter_map(|(i, points)| {
+            let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
+            let place = at((*before + *after) / 2.0)?;
+            Some((i, place, self.factor_text(patch, i), rgb(FACTOR_COLORS[i as usize])))
+        });
+        let edges: Vec<_> = edges.collect();
+        // The longest names of edges that leave room for one another, or none.
+        for name in ["TessFactor", ""] {
+            let named = edges.iter().map(|(i, place, value, color)| (*place, format!("{name}[{i}]{value}"), *color));
+            let labels: Vec<_> = corners.iter().cloned().chain(named).collect();
+            if show(ui, rect, middle, &labels) {
+                return;
+            }
+        }
+        show(ui, rect, middle, &corners);
+    }
+
+    /// Outlines the triangle as it came, left of the split, where the picture has no lines over the mesh.
+    fn source_outline(&self, painter: &egui::Painter, corners: [Pos2; 3]) {
+        let [casing, inner] = [8.0, 5.5].map(|px| px / painter.pixels_per_point());
+        let side = |i: u32| domain_side(self.convention(), i) as usize;
+        let ends = [0, 1, 2].map(|i| [corners[side(i)], corners[(side(i) + 1) % 3]]);
+        for line in ends {
+            painter.line_segment(line, Stroke::new(casing, rgb(OUTLINE_COLOR)));
+        }
+        for (line, color) in ends.into_iter().zip(FACTOR_COLORS) {
+            painter.line_segment(line, Stroke::new(inner, rgb(color)));
+        }
+    }
+
+    /// Factor `i` of a patch as LOD gave it, and the segments that it became.
+    fn factor_text(&self, patch: u32, i: u32) -> String {
+        let (Some(document), Some(found)) = (&self.document, self.jobs.measure.found()) else { return " = …".into() };
+        let Some(sides) = found.outlines.patch(&document.loaded.topology, patch) else { return String::new() };
+        let asked = sides[factor_side(self.convention(), i) as usize].factor;
+        let cut = segments(found.outlines.factors(patch).outside[i as usize]);
+        format!(" = {} -> {cut}", factor(f64::from(asked), 2))
+    }
+}
+
+/// Writes each text beside its place and away from `middle`, where the place is in sight; false, and nothing, if two would
+/// overlap.
+fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color32)]) -> bool {
+    let mut placed: Vec<(Rect, _)> = Vec::new();
+    for (place, text, color) in labels.iter().filter(|(place, ..)| rect.contains(*place)) {
+        let galley = note_text(ui, text, *color);
+        let away = (*place - middle).normalized();
+        let half = galley.size() / 2.0 + MARGIN;
+        let center = *place + away * (GAP + (away.x * half.x).abs() + (away.y * half.y).abs());
+        let room = rect.shrink2(half);
+        let own = Rect::from_center_size(if room.is_positive() { room.clamp(center) } else { center }, half * 2.0);
+        if placed.iter().any(|(other, _)| other.intersects(own)) {
+            return false;
+        }
+        placed.push((own, galley));
+    }
+    for (own, galley) in placed {
+        paint_note(ui, own.shrink2(MARGIN), galley);
+    }
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn labels_are_all_shown_or_none_where_two_would_overlap() {
+        let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 300.0));
+        let label = |x, y| (pos2(x, y), "TessFactor[0] = 8.00 -> 9".to_owned(), Color32::WHITE);
+        egui::__run_test_ui(|ui| {
+            let all = |labels: &[_]| show(ui, rect, pos2(200.0, 150.0), labels);
+            assert!(all(&[label(200.0, 50.0), label(200.0, 250.0)]), "above and below");
+            assert!(!all(&[label(200.0, 50.0), label(210.0, 52.0)]), "one over the other");
+            assert!(all(&[label(200.0, 50.0), label(200.0, -50.0)]), "what is out of sight has no label");
+        });
+    }
+}

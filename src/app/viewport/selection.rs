@@ -1,0 +1,171 @@
+//! What is selected: a triangle of the mesh, one of its edges, and the emitted triangle that was clicked on.
+
+use egui::Response;
+use glam::Vec3;
+
+use super::picture::SHORT;
+use crate::app::App;
+use crate::gpu::GpuError;
+use crate::measure::patch_edges;
+use crate::mesh::Topology;
+use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
+use crate::settings::Half;
+use crate::tessellate::Convention;
+
+/// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
+#[derive(Default)]
+pub struct Selection {
+    /// Index into the mesh's triangles.
+    triangle: Option<u32>,
+    /// With the tessellation that it belongs to.
+    hit: Option<(u64, PickedTriangle)>,
+    /// A click on a picture whose tessellation isn't known yet.
+    clicked: Option<(Half, Pixel)>,
+    /// With the tessellation that is searched; none for the left half's, of which nothing more is said.
+    picking: Option<(Option<u64>, Picking)>,
+}
+
+/// What the lines over a selected patch are a function of, besides what was measured.
+#[derive(Clone, Copy, PartialEq)]
+pub struct Outlined {
+    triangle: Option<u32>,
+    /// Number of the emitted triangle in its patch.
+    hit: Option<u32>,
+}
+
+impl Selection {
+    /// Keeps what is looked at, and lets go of what is about one tessellation.
+    pub fn forget_tessellation(&mut self) {
+        *self = Self { triangle: self.triangle, ..Self::default() };
+    }
+
+    /// Whether a click is still being answered.
+    pub fn is_busy(&self) -> bool {
+        self.clicked.is_some() || self.picking.is_some()
+    }
+}
+
+impl App {
+    /// The triangle that is looked at: an index into the mesh's triangles.
+    pub fn selected_triangle(&self) -> Option<u32> {
+        self.viewport.selection.triangle
+    }
+
+    /// The emitted triangle that was clicked on, as long as it is emitted.
+    pub fn hit(&self) -> Option<&PickedTriangle> {
+        let emitted = self.document.as_ref()?.scene.tessellator.generation();
+        self.viewport.selection.hit.as_ref().filter(|(of, _)| *of == emitted).map(|(_, triangle)| triangle)
+    }
+
+    /// The patch of the triangle that is looked at.
+    pub(in crate::app) fn selected_patch(&self) -> Option<u32> {
+        self.document.as_ref()?.loaded.topology.patch_of(self.viewport.selection.triangle?)
+    }
+
+    /// What factors and weights are taken for.
+    pub(in crate::app) fn convention(&self) -> Convention {
+        self.settings.convention
+    }
+
+    /// Selects a triangle. The selected edge stays if it is one of its edges.
+    pub fn select_triangle(&mut self, triangle: Option<u32>) {
+        let Some(document) = &self.document else { return };
+        let triangle = triangle.filter(|&triangle| (triangle as usize) < document.loaded.mesh.triangles.len());
+        self.viewport.selection = Selection { triangle, ..Selection::default() };
+        if self.viewport.selected_edge.is_some_and(|edge| !self.patch_has(edge)) {
+            self.viewport.selected_edge = None;
+        }
+    }
+
+    /// Lets go of the triangle, unless `edge` is one of its edges: one looks at that now.
+    pub(in crate::app) fn keep_triangle_of(&mut self, edge: u32) {
+        if !self.patch_has(edge) {
+            self.viewport.selection = Selection::default();
+        }
+    }
+
+    fn patch_has(&self, edge: u32) -> bool {
+        let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return false };
+        let topology = &document.loaded.topology;
+        topology.patches[patch as usize].sides.iter().any(|&side| topology.sides[side as usize].edge == edge)
+    }
+
+    /// Nothing is looked at any more.
+    pub(in crate::app) fn deselect(&mut self) {
+        self.viewport.selection = Selection::default();
+        self.viewport.selected_edge = None;
+    }
+
+    /// Asks what the picture shows where it was clicked.
+    pub(in crate::app) fn click(&mut self, response: &Response, pixels_per_point: f32) {
+        let Some(pointer) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let place = (pointer - response.rect.min) * pixels_per_point;
+        self.viewport.selection.clicked =
+            self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
+    }
+
+    /// Lets the device look for what was clicked on, and takes what it has found: true if it has.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(in crate::app) fn pick(&mut self) -> Result<bool, GpuError> {
+        let Some(document) = &mut self.document else { return Ok(false) };
+        if document.scene.tessellator.is_counted()
+            && let Some((half, pixel)) = self.viewport.selection.clicked.take()
+            && let Some(scene) = document.scene.half_mut(half)
+        {
+            // What takes many steps to draw would take as long to pick: then it is done without emitted triangles.
+            let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
+            let pixel = Pixel { split, ..pixel };
+            let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
+            let emitted = (half == Half::Right).then(|| scene.tessellator.generation());
+            self.viewport.selection.picking = Some((emitted, picking));
+        }
+        let Some((emitted, mut picking)) = self.viewport.selection.picking.take() else { return Ok(false) };
+        let Some(found) = picking.poll()? else {
+            self.viewport.selection.picking = Some((emitted, picking));
+            return Ok(false);
+        };
+        self.take_picked(emitted, found);
+        Ok(true)
+    }
+
+    fn take_picked(&mut self, emitted: Option<u64>, found: Option<Picked>) {
+        let (Some(picked), Some(document)) = (found, &self.document) else { return self.deselect() };
+        let topology = &document.loaded.topology;
+        let Some(patch) = topology.patches.get(picked.patch as usize) else { return self.deselect() };
+        // Weights are by corner: opposite corner k is side k + 1.
+        let side = patch.sides[(picked.weight as usize + 1) % 3];
+        self.viewport.selected_edge = Some(topology.sides[side as usize].edge);
+        let hit = emitted.zip(picked.triangle);
+        self.viewport.selection = Selection { triangle: Some(patch.triangle), hit, ..Selection::default() };
+    }
+
+    /// Turns the camera so that the selected patch is in the middle, seen from the side that it faces.
+    pub(in crate::app) fn frame_patch(&mut self) {
+        let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
+        self.viewport.camera.frame_triangle(document.shown().1.patch_positions(patch), &document.scene.bounds);
+    }
+
+    pub(in crate::app) fn outlined(&self) -> Outlined {
+        Outlined { triangle: self.viewport.selection.triangle, hit: self.hit().map(|hit| hit.number) }
+    }
+
+    /// See [`patch_edges`].
+    pub(in crate::app) fn patch_edges(&self, topology: &Topology, patch: u32, half: Half) -> [Vec<Vec3>; 3] {
+        patch_edges(topology, patch, self.measured(half).found().map(|found| &found.outlines), self.convention())
+    }
+
+    /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.
+    pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
+        let Some(patch) = self.selected_patch() else { return Vec::new() };
+        let mut lines = patch_lines(&self.patch_edges(topology, patch, half));
+        if let Some(hit) = self.hit().filter(|_| half == Half::Right) {
+            let corners = hit.vertices.map(|vertex| Vec3::from(vertex.position));
+            let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
+            let edge = |(a, b)| LineSegment { half_width: 1.25, ..LineSegment::new(a, b, [255; 3]) };
+            lines.extend(edges.map(edge));
+        }
+        lines
+    }
+}

@@ -1,0 +1,239 @@
+//! A device that fails. A command that it refuses costs the picture; when it is lost the window goes on with another, and
+//! all that isn't the device's stays: mesh, settings, camera, playback, truth, chart, what is selected.
+
+use std::time::{Duration, Instant};
+
+use super::fatal_screen::FatalScreen;
+use crate::app::App;
+use crate::app::dialogs::typed_path::PendingDialog;
+use crate::app::jobs::document::{Load, scene_of};
+use crate::app::jobs::mesh_checks::Checks;
+use crate::app::persistence::WindowGeometry;
+use crate::app::style::style;
+use crate::app::viewport::picture::Picture;
+use crate::engine::Engine;
+use crate::gpu::{Gpu, GpuError};
+
+/// A device that is lost sooner after the last one isn't replaced by itself.
+const LASTS: Duration = Duration::from_secs(60);
+
+/// When a device was lost last.
+#[derive(Default)]
+pub struct DeviceLosses(Option<Instant>);
+
+impl DeviceLosses {
+    /// Whether one that is lost now is replaced without asking: the first one is, and any that has drawn a picture and came
+    /// a minute or more after the last loss. Others would be lost again.
+    fn replaces(&mut self, now: Instant, has_drawn: bool) -> bool {
+        let last = self.0.replace(now);
+        last.is_none_or(|last| has_drawn && now.duration_since(last) >= LASTS)
+    }
+}
+
+/// What follows a window that was closed.
+pub enum Next {
+    Quit,
+    /// Another, with the same state.
+    Anew,
+    /// Nothing, and why.
+    GiveUp(String),
+}
+
+impl App {
+    /// The device that the window is drawn with.
+    pub fn gpu(&self) -> &Gpu {
+        self.window.fatal_screen.as_ref().map_or(&self.engine.gpu, |screen| &screen.gpu)
+    }
+
+    /// Whether that was lost: then nothing can be shown in this window any more.
+    pub fn is_lost(&self) -> bool {
+        self.gpu().lost().is_some()
+    }
+
+    /// What is said, once it isn't replaced any more.
+    pub fn fatal_message(&self) -> Option<&str> {
+        self.window.fatal_screen.as_ref().map(FatalScreen::why)
+    }
+
+    pub(in crate::app) fn next(&self) -> Next {
+        match (&self.window.fatal_screen, self.gpu().lost()) {
+            (None, None) => Next::Quit,
+            (None, Some(_)) => Next::Anew,
+            (Some(screen), None) => {
+                if screen.tries_again() {
+                    Next::Anew
+                } else {
+                    Next::Quit
+                }
+            }
+            (Some(_), Some(why)) => Next::GiveUp(why.to_owned()),
+        }
+    }
+
+    pub(in crate::app) fn frame_kept(&self) -> &WindowGeometry {
+        self.persistence.frame()
+    }
+
+    /// The same in another window, with its device; `before` is the window that was. If that device is better not tried, or
+    /// doesn't do, it only says so and offers to save.
+    ///
+    /// # Errors
+    /// The window isn't drawn through wgpu.
+    pub fn anew(mut self, creation: &eframe::CreationContext, before: &egui::Context) -> Result<Self, GpuError> {
+        let state = creation.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
+        // Theme and zoom, and what is folded or scrolled where.
+        let memory = before.memory(Clone::clone);
+        creation.egui_ctx.memory_mut(|own| *own = memory);
+        style(&creation.egui_ctx);
+        let why = self.engine.gpu.lost().unwrap_or_default().to_owned();
+        let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
+        let (was_fatal, has_drawn) = (self.window.fatal_screen.take().is_some(), self.viewport.picture.pictures() > 0);
+        if !self.window.losses.replaces(Instant::now(), has_drawn) && !was_fatal {
+            self.window.fatal_screen =
+                Some(FatalScreen::new(gpu, format!("The graphics device was lost again ({why}).")));
+        } else if let Err(error) = self.move_to(&creation.egui_ctx, gpu.clone(), state) {
+            self.window.fatal_screen =
+                Some(FatalScreen::new(gpu, format!("The graphics device was lost ({why}); then {error}.")));
+        } else {
+            self.dialogs.error = Some(format!(
+                "The graphics device was lost ({why}). The window goes on with a new one: mesh, settings and camera are as \
+                 they were."
+            ));
+        }
+        Ok(self)
+    }
+
+    /// Makes on another device what was on the last one. Without success nothing is changed.
+    fn move_to(
+        &mut self,
+        context: &egui::Context,
+        gpu: Gpu,
+        render_state: egui_wgpu::RenderState,
+    ) -> Result<(), GpuError> {
+        let engine = gpu.attempt(|| Engine::new(gpu.clone()))?;
+        let scene = self.document.as_ref().map(|document| scene_of(&engine, &document.loaded)).transpose()?;
+        let mut viewport = Picture::new(&engine);
+        viewport.cancelled = self.viewport.picture.cancelled;
+        (self.engine, self.render_state, self.viewport.picture) = (engine, render_state, viewport);
+        if let Some((document, scene)) = self.document.as_mut().zip(scene) {
+            (document.scene, document.moment) = (scene, None);
+            if document.checks.is_busy() {
+                document.checks = Checks::start(context, &document.loaded);
+            }
+            let title = format!("{} - pnaen", document.loaded.source.title());
+            context.send_viewport_cmd(egui::ViewportCommand::Title(title));
+        }
+        self.jobs.measure.forget();
+        self.jobs.deviation.forget();
+        self.viewport.left.forget();
+        self.viewport.highlight = None;
+        self.viewport.selection.forget_tessellation();
+        self.go_on_in(context);
+        self.keep_playback(true);
+        Ok(())
+    }
+
+    /// What is under way goes on, and wakes this window; what was under way on the lost device starts over.
+    fn go_on_in(&mut self, context: &egui::Context) {
+        if let Some(load) = self.jobs.load.take() {
+            let (source, preparation) = (load.source.clone(), load.preparation.clone());
+            self.jobs.load =
+                Some(Load::start(&self.engine, context, source, preparation, self.settings, load.keep_view));
+        }
+        if let Some(load) = &mut self.jobs.truth_load {
+            load.wake(context);
+        }
+        if let Some(export) = &mut self.jobs.export {
+            export.wake(context);
+        }
+        self.jobs.picture_file = self.jobs.picture_file.take().map(|job| job.waking(context));
+        self.dialogs.pending = self.dialogs.pending.take().map(|dialog| PendingDialog {
+            job: dialog.job.waking(context),
+            since: f64::NEG_INFINITY,
+            ..dialog
+        });
+        self.panels.chart.go_on_in(context);
+        self.persistence.go_on_in(context);
+        self.viewport.playback.go_on_in(context);
+    }
+
+    /// Says what the device has refused since it was last asked.
+    pub(in crate::app) fn take_device_problem(&mut self) {
+        if let Err(problem) = self.engine.gpu.check() {
+            self.dialogs.error = Some(problem.to_string());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    use super::*;
+    use crate::files::Limits;
+    use crate::load::Source;
+    use crate::mesh::Shape;
+
+    /// Steps until nothing is under way.
+    fn settle(harness: &mut Harness<App>) {
+        let start = Instant::now();
+        harness.run_steps(3);
+        while harness.state().is_busy() {
+            assert!(start.elapsed() < Duration::from_secs(60), "it is still busy");
+            std::thread::sleep(Duration::from_millis(2));
+            harness.step();
+        }
+        harness.run_steps(2);
+    }
+
+    #[test]
+    fn a_picture_that_is_refused_is_not_shown_nor_tried_again_by_itself() {
+        let torus = Some(Source::Shape(Shape::Torus));
+        let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(|context| {
+            App::new(context, torus, Limits::default()).expect("these tests need a graphics adapter")
+        });
+        settle(&mut harness);
+        let loaded = harness.state().loaded().cloned().expect("a torus");
+        let pictures = harness.state().pictures();
+        let document = harness.state().document.as_ref().expect("a torus");
+        document.scene.tessellator.edge_factors().0.destroy();
+        harness.state_mut().settings.tolerance = 3.0;
+        let refused = |harness: &mut Harness<App>| {
+            settle(harness);
+            harness.get_by_label_contains("the graphics device refused a command");
+            harness.get_by_label("Draw");
+            assert_eq!(harness.state().pictures(), pictures, "nothing was drawn");
+            assert!(harness.state().viewport.picture.drawn.is_none(), "and nothing is shown as if it were");
+            harness.get_by_label("Close").click();
+            harness.run_steps(20);
+            assert!(harness.query_by_label("Close").is_none(), "it isn't tried again");
+        };
+        refused(&mut harness);
+        harness.get_by_label("Draw").click();
+        refused(&mut harness);
+        let (context, settings) = (harness.ctx.clone(), *harness.state().settings());
+        harness.state_mut().reload(&context);
+        settle(&mut harness);
+        assert!(harness.state().pictures() > pictures && harness.query_by_label("Draw").is_none());
+        assert_eq!(
+            (harness.state().settings(), &harness.state().loaded().expect("a torus").source),
+            (&settings, &loaded.source)
+        );
+    }
+
+    #[test]
+    fn a_device_is_replaced_once_a_minute_and_only_after_a_picture() {
+        let start = Instant::now();
+        let lost = |times: &[(u64, bool)]| {
+            let mut losses = DeviceLosses::default();
+            let replaces = |&(s, has_drawn): &(u64, bool)| losses.replaces(start + Duration::from_secs(s), has_drawn);
+            times.iter().map(replaces).collect::<Vec<_>>()
+        };
+        assert_eq!(lost(&[(0, false)]), [true], "also before the first picture");
+        assert_eq!(lost(&[(5, true), (64, true)]), [true, false], "59 s later");
+        assert_eq!(lost(&[(5, true), (65, true)]), [true, true]);
+        assert_eq!(lost(&[(5, true), (600, false)]), [true, false], "it has drawn nothing");
+        assert_eq!(lost(&[(0, true), (59, true), (118, true)]), [true, false, false], "counted from the last one");
+    }
+}

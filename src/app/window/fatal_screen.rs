@@ -1,0 +1,136 @@
+//! In place of the window, when its device was lost again: what happened, and saving what needs no device.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::App;
+use crate::app::dialogs::typed_path::{absolute, name_beside};
+use crate::app::jobs::background_job::BackgroundJob;
+use crate::commands::{Action, FileAction, QUIT, with_key};
+use crate::engine::Loaded;
+use crate::export::Exported;
+use crate::gpu::Gpu;
+use crate::mesh::Moment;
+use crate::tessellate::{Inputs, tessellate, totals};
+
+/// What is said, and what a person does about it.
+pub struct FatalScreen {
+    /// The device that the words are drawn with, and nothing else.
+    pub gpu: Gpu,
+    why: String,
+    /// Where the mesh is to be saved, as it is typed.
+    path: Option<String>,
+    saving: Option<BackgroundJob<Result<String, String>>>,
+    said: Option<String>,
+    tries_again: bool,
+}
+
+impl FatalScreen {
+    pub fn new(gpu: Gpu, why: String) -> Self {
+        Self { gpu, why, path: None, saving: None, said: None, tries_again: false }
+    }
+
+    pub fn why(&self) -> &str {
+        &self.why
+    }
+
+    pub fn tries_again(&self) -> bool {
+        self.tries_again
+    }
+}
+
+impl App {
+    /// Quits as the window does.
+    pub(in crate::app) fn fatal_screen_keys(&self, context: &egui::Context) {
+        if context.input_mut(|input| input.consume_shortcut(&QUIT)) {
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+        }
+    }
+
+    pub(in crate::app) fn show_fatal_screen(&mut self, ui: &mut egui::Ui) {
+        let Some(mut screen) = self.window.fatal_screen.take() else { return };
+        if let Some(ended) = screen.saving.as_ref().and_then(BackgroundJob::take) {
+            screen.saving = None;
+            screen.said = Some(match ended {
+                Ok(Ok(said) | Err(said)) => said,
+                Err(stopped) => format!("saving the mesh {stopped}"),
+            });
+        }
+        egui::CentralPanel::default().show(ui, |ui| {
+            ui.add_space(ui.available_height() * 0.2);
+            ui.vertical_centered(|ui| {
+                ui.set_max_width(560.0);
+                ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| self.offers(ui, &mut screen));
+            });
+        });
+        self.window.fatal_screen = Some(screen);
+    }
+
+    fn offers(&mut self, ui: &mut egui::Ui, screen: &mut FatalScreen) {
+        ui.heading("Nothing can be drawn");
+        ui.label(&screen.why);
+        ui.label(
+            "It isn't tried again by itself: a driver that loses its device twice mostly does so again. Settings, recent \
+             files and their cameras are kept for the next window.",
+        );
+        if self.document.is_some() {
+            ui.add_space(12.0);
+            self.save_row(ui, screen);
+        }
+        if let Some(said) = &screen.said {
+            ui.label(said);
+        }
+        ui.add_space(12.0);
+        ui.horizontal(|ui| {
+            let hover = "Opens the window with a new device, and the same mesh, settings and camera.";
+            if ui.button("Try again").on_hover_text(hover).clicked() {
+                screen.tries_again = true;
+                ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+            if ui
+                .button("Quit")
+                .on_hover_text(with_key("Closes the window.", &Action::File(FileAction::Quit)))
+                .clicked()
+            {
+                ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+            }
+        });
+    }
+
+    fn save_row(&mut self, ui: &mut egui::Ui, screen: &mut FatalScreen) {
+        let Some(document) = &self.document else { return };
+        let label = ui.label("Tessellated mesh, a .glb or .obj file");
+        ui.horizontal(|ui| {
+            let path = screen
+                .path
+                .get_or_insert_with(|| absolute(&name_beside(&document.loaded.source.title(), "-tessellated.obj")));
+            ui.add(egui::TextEdit::singleline(path).desired_width(420.0)).labelled_by(label.id);
+            let is_free = screen.saving.is_none() && !path.trim().is_empty();
+            let text = if screen.saving.is_some() { "Saving…" } else { "Save mesh" };
+            let hover = "Writes what these settings make of the mesh, seen from here; computed on the CPU.";
+            if ui.add_enabled(is_free, egui::Button::new(text)).on_hover_text(hover).clicked() {
+                let path = PathBuf::from(path.trim());
+                let view = self.viewport.camera.lod_view(self.viewport.picture.size(), &document.scene.bounds);
+                let inputs = self.settings.inputs(self.viewport.frozen.unwrap_or(view));
+                let (loaded, moment) = (document.loaded.clone(), self.moment());
+                screen.said = None;
+                screen.saving = Some(BackgroundJob::start(ui.ctx(), move || save(&loaded, moment, &inputs, &path)));
+            }
+        });
+    }
+}
+
+/// What was written where; or why it wasn't, in a sentence as well.
+fn save(loaded: &Loaded, moment: Option<Moment>, inputs: &Inputs, path: &Path) -> Result<String, String> {
+    if path.exists() {
+        return Err(format!("{} is there already: choose another name", path.display()));
+    }
+    let posed = loaded.posed(moment);
+    let (mesh, topology) = (&posed.mesh, &posed.topology);
+    let (vertices, triangles) = totals(mesh, topology, inputs);
+    let write = || {
+        Exported::check(path, vertices, triangles)?;
+        let tessellated = tessellate(mesh, topology, inputs, None);
+        Exported::new(mesh, topology, &tessellated).write(path)
+    };
+    write().map(|()| format!("{} is written.", path.display())).map_err(|error| error.to_string())
+}

@@ -1,0 +1,138 @@
+//! What there is at the moment, on which it depends which commands are possible.
+
+use std::path::PathBuf;
+
+/// The window's state as far as commands depend on it.
+#[derive(Clone, Debug, Default)]
+pub struct Availability {
+    pub has_document: bool,
+    /// Whether a picture of the document has been drawn.
+    pub has_picture: bool,
+    /// Whether a truth was chosen for the mesh.
+    pub has_truth: bool,
+    pub can_undo: bool,
+    pub can_redo: bool,
+    /// Whether an edge or a triangle is selected.
+    pub has_selection: bool,
+    pub has_selected_patch: bool,
+    /// Whether the mesh has heights that can displace it.
+    pub has_heights: bool,
+    /// Whether the LOD that is used takes a tessellation factor.
+    pub takes_factor: bool,
+    /// Whether the partitioning leaves a choice of LOD.
+    pub takes_lod: bool,
+    /// Whether backs of the mesh can't be seen, so that patches that face away can be left out.
+    pub can_cull_back_faces: bool,
+    pub is_split: bool,
+    pub shows_deviation: bool,
+    /// Whether the chart's panel is open, with something to measure.
+    pub can_measure_chart: bool,
+    /// Whether the chart has points.
+    pub has_chart: bool,
+    /// Whether a mesh is being exported.
+    pub is_exporting: bool,
+    /// The names of the mesh's animation clips.
+    pub clips: Vec<String>,
+    /// Files that were opened last, the last one first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Availability {
+    /// A state in which every command is possible.
+    #[cfg(test)]
+    pub fn everything() -> Self {
+        Self {
+            has_document: true,
+            has_picture: true,
+            has_truth: true,
+            can_undo: true,
+            can_redo: true,
+            has_selection: true,
+            has_selected_patch: true,
+            has_heights: true,
+            takes_factor: true,
+            takes_lod: true,
+            can_cull_back_faces: true,
+            is_split: true,
+            shows_deviation: true,
+            can_measure_chart: true,
+            has_chart: true,
+            is_exporting: false,
+            clips: vec!["Walk".into()],
+            recent: vec!["/meshes/vase.glb".into()],
+        }
+    }
+}
+
+/// The sentence, where a condition doesn't hold.
+fn unless(holds: bool, why_not: &'static str) -> Option<&'static str> {
+    if holds { None } else { Some(why_not) }
+}
+
+pub fn document(now: &Availability) -> Option<&'static str> {
+    unless(now.has_document, "No mesh is open.")
+}
+
+pub fn picture(now: &Availability) -> Option<&'static str> {
+    unless(now.has_picture, "Nothing is drawn yet.")
+}
+
+pub fn export(now: &Availability) -> Option<&'static str> {
+    document(now).or(unless(!now.is_exporting, "A mesh is being exported."))
+}
+
+pub fn truth(now: &Availability) -> Option<&'static str> {
+    unless(now.has_truth, "No truth was chosen.")
+}
+
+pub fn undo(now: &Availability) -> Option<&'static str> {
+    unless(now.can_undo, "No setting was changed.")
+}
+
+pub fn redo(now: &Availability) -> Option<&'static str> {
+    unless(now.can_redo, "No change was undone.")
+}
+
+pub fn selection(now: &Availability) -> Option<&'static str> {
+    unless(now.has_selection, "Nothing is selected.")
+}
+
+pub fn selected_patch(now: &Availability) -> Option<&'static str> {
+    unless(now.has_selected_patch, "No patch is selected: click on one.")
+}
+
+pub fn heights(now: &Availability) -> Option<&'static str> {
+    unless(now.has_heights, "The mesh has no heights: choose a height image.")
+}
+
+pub fn factor(now: &Availability) -> Option<&'static str> {
+    unless(now.takes_factor, "Adaptive LOD computes a factor for every edge.")
+}
+
+pub fn lod(now: &Availability) -> Option<&'static str> {
+    unless(now.takes_lod, super::value_names::LOD_FIXED)
+}
+
+pub fn culling(now: &Availability) -> Option<&'static str> {
+    unless(now.can_cull_back_faces, super::value_names::BACKS_ARE_SEEN)
+}
+
+pub fn split(now: &Availability) -> Option<&'static str> {
+    unless(now.is_split, "Only a split view has a left half.")
+}
+
+pub fn deviation(now: &Availability) -> Option<&'static str> {
+    unless(now.shows_deviation, "Only deviation colours distances.")
+}
+
+pub fn measure_chart(now: &Availability) -> Option<&'static str> {
+    unless(now.can_measure_chart, "The chart is not open, or has no surface and LOD to measure.")
+}
+
+pub fn chart(now: &Availability) -> Option<&'static str> {
+    unless(now.has_chart, "The chart has no points yet.")
+}
+
+pub fn clips(now: &Availability) -> Option<&'static str> {
+    unless(!now.clips.is_empty(), "The mesh has no animation.")
+}

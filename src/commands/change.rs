@@ -1,0 +1,103 @@
+//! Changes of settings that are commands.
+
+use crate::settings::{Colors, DeviationUnit, FACTOR_RANGE, Overlay, Settings};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+
+/// A change of the settings, which are a function of nothing else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    FactorUp,
+    FactorDown,
+    /// Between adaptive LOD and one factor everywhere.
+    AdaptiveLod,
+    ToggleEdges,
+    CullBackFaces,
+    Surface(Surface),
+    /// None is the untessellated mesh.
+    LeftSurface(Option<Surface>),
+    Shading(Normals),
+    Partitioning(Partitioning),
+    Edges(Edges),
+    Lod(Lod),
+    Clipping(Clip),
+    Convention(Convention),
+    Displacement(Displacement),
+    MaterialColors,
+    DeviationIn(DeviationUnit),
+    Overlay(Overlay),
+}
+
+impl Change {
+    pub fn apply(self, settings: &mut Settings) {
+        let factor = |factor: f32| factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
+        match self {
+            Self::FactorUp => settings.factor = factor(settings.factor + 1.0),
+            Self::FactorDown => settings.factor = factor(settings.factor - 1.0),
+            Self::AdaptiveLod => settings.lod = switched_lod(settings),
+            Self::ToggleEdges => settings.set_edges(match settings.edges {
+                Edges::AsPublished => Edges::PerEdge,
+                Edges::PerEdge => Edges::AsPublished,
+            }),
+            Self::CullBackFaces => settings.cull_back_faces = !settings.cull_back_faces,
+            Self::Surface(surface) => settings.surface = surface,
+            Self::LeftSurface(surface) => settings.split_surface = surface,
+            Self::Shading(normals) => settings.normals = normals,
+            Self::Partitioning(partitioning) => settings.partitioning = partitioning,
+            Self::Edges(edges) => settings.set_edges(edges),
+            Self::Lod(lod) => settings.lod = lod,
+            Self::Clipping(clip) => settings.clip = clip,
+            Self::Convention(convention) => settings.convention = convention,
+            Self::Displacement(displacement) => settings.displacement = displacement,
+            Self::MaterialColors => settings.overlays.colors = Colors::Material,
+            Self::DeviationIn(unit) => settings.deviation_in = unit,
+            Self::Overlay(overlay) => settings.overlays.toggle(overlay),
+        }
+    }
+}
+
+/// The LOD that follows when adaptive LOD is switched.
+fn switched_lod(settings: &Settings) -> Lod {
+    match (settings.lod, settings.edges) {
+        (Lod::Uniform, Edges::AsPublished) => Lod::Paper,
+        (Lod::Uniform, Edges::PerEdge) => Lod::Error,
+        _ => Lod::Uniform,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed(settings: Settings, change: Change) -> Settings {
+        let mut settings = settings;
+        change.apply(&mut settings);
+        settings
+    }
+
+    #[test]
+    fn the_factor_stays_in_its_range() {
+        let of = |factor| Settings { factor, ..Settings::default() };
+        assert_eq!(changed(of(3.5), Change::FactorUp).factor, 4.5);
+        assert_eq!(changed(of(63.5), Change::FactorUp).factor, 64.0);
+        assert_eq!(changed(of(1.5), Change::FactorDown).factor, 1.0);
+    }
+
+    #[test]
+    fn adaptive_lod_is_the_one_that_belongs_to_the_edges() {
+        let settings = Settings { lod: Lod::Uniform, ..Settings::default() };
+        assert_eq!(changed(settings, Change::AdaptiveLod).lod, Lod::Error);
+        let published = changed(settings, Change::ToggleEdges);
+        assert_eq!(published.edges, Edges::AsPublished);
+        let adaptive = changed(published, Change::AdaptiveLod);
+        assert_eq!(adaptive.lod, Lod::Paper);
+        assert_eq!(changed(adaptive, Change::AdaptiveLod), published);
+    }
+
+    #[test]
+    fn colours_given_again_are_the_materials() {
+        let factors = changed(Settings::default(), Change::Overlay(Overlay::Factors));
+        assert_eq!(factors.overlays.colors, Colors::Factors);
+        assert_eq!(changed(factors, Change::Overlay(Overlay::Factors)), Settings::default());
+        assert_eq!(changed(factors, Change::MaterialColors), Settings::default());
+    }
+}

@@ -1,0 +1,145 @@
+//! Commands that are made from what declares them: a setting's values, tolerances, clips, files.
+
+use std::path::PathBuf;
+
+use egui::{Key, KeyboardShortcut};
+
+use super::availability as when;
+use super::value_names::{self, Named};
+use super::{Action, Availability, Change, Command, FileAction, Preparing, Submenu, plain};
+use crate::mesh::joins::TOLERANCES;
+use crate::names::shortened;
+use crate::settings::Overlay;
+use crate::tessellate::Surface;
+
+/// Animation clips that are listed at most.
+const CLIPS: usize = 1000;
+/// The width of the crease band that is switched on by a command, as a part of the bounding diagonal.
+const CREASE_BAND: f32 = 0.02;
+
+pub fn commands(now: &Availability) -> Vec<Command> {
+    let mut all = settings();
+    all.extend(colors_and_overlays());
+    all.extend(mesh());
+    all.extend(clips(now));
+    all.extend(recent(now));
+    all
+}
+
+/// A command for each value of a setting.
+fn values<T: Copy>(
+    what: &str,
+    named: &[Named<T>],
+    change: impl Fn(T) -> Change,
+    why_not: super::WhyNot,
+) -> Vec<Command> {
+    let command = |named: &Named<T>| {
+        Command::new(Action::Setting(change(named.value)), format!("{what}: {}", named.name), named.text.clone())
+            .unless(why_not)
+    };
+    named.iter().map(command).collect()
+}
+
+fn settings() -> Vec<Command> {
+    let always = |_: &Availability| None;
+    let mut all = values("Surface", &value_names::surfaces(), Change::Surface, always);
+    let untessellated = "Shows the untessellated mesh left of the divider.";
+    all.push(
+        Command::new(Action::Setting(Change::LeftSurface(None)), "Left of the split: As it came", untessellated)
+            .unless(when::split),
+    );
+    let left = |surface: Surface| Change::LeftSurface(Some(surface));
+    all.extend(values("Left of the split", &value_names::surfaces(), left, when::split));
+    all.extend(values("Shading", &value_names::normals(), Change::Shading, always));
+    all.extend(values("Partitioning", &value_names::partitionings(), Change::Partitioning, always));
+    all.extend(values("Edges", &value_names::edges(), Change::Edges, always));
+    all.extend(values("LOD", &value_names::lods(), Change::Lod, when::lod));
+    all.extend(values("Clipping", &value_names::clips(), Change::Clipping, always));
+    all.extend(values("Convention", &value_names::conventions(), Change::Convention, always));
+    all.extend(values("Displace", &value_names::displacements(), Change::Displacement, when::heights));
+    all.extend(values("Distances in", &value_names::deviation_units(), Change::DeviationIn, when::deviation));
+    all
+}
+
+/// The key that switches an overlay.
+fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
+    plain(match overlay {
+        Overlay::Wireframe => Key::W,
+        Overlay::Patches => Key::P,
+        Overlay::Barycentric => Key::B,
+        Overlay::Adjacency => Key::A,
+        Overlay::Cracks => Key::C,
+        Overlay::Folds => Key::O,
+        Overlay::TJunctions => Key::T,
+        Overlay::BackFaces => Key::K,
+        Overlay::Factors => Key::H,
+        Overlay::TriangleSize => Key::X,
+        Overlay::LowFactors => Key::U,
+        Overlay::Normals => Key::N,
+        Overlay::Deviation => Key::V,
+    })
+}
+
+/// Every meaning of colours, and every overlay. Each but the mesh's own colours is a switch: given again, it takes back what
+/// it did.
+fn colors_and_overlays() -> Vec<Command> {
+    let material = value_names::material_colors();
+    let mut all = vec![Command::new(
+        Action::Setting(Change::MaterialColors),
+        format!("Colours: {}", material.name),
+        material.text,
+    )];
+    let switch = |what: &str, named: Named<Overlay>| {
+        let name = format!("{what}: {}", named.name);
+        Command::new(Action::Setting(Change::Overlay(named.value)), name, named.text).keys([overlay_key(named.value)])
+    };
+    all.extend(Overlay::ALL.into_iter().filter_map(value_names::overlay_colors).map(|named| switch("Colours", named)));
+    all.extend(Overlay::ALL.into_iter().filter_map(value_names::overlay).map(|named| switch("Overlay", named)));
+    all
+}
+
+/// What is made of the mesh when it is loaded, which loads it again.
+fn mesh() -> Vec<Command> {
+    let exact = "Joins corners whose positions are exactly equal.";
+    let mut all =
+        vec![Command::new(Action::Prepare(Preparing::Weld(0.0)), "Weld: Exact", exact).unless(when::document)];
+    all.extend(TOLERANCES.map(|tolerance| {
+        let text = format!("Joins positions within {tolerance:e} of the bounding diagonal.");
+        Command::new(Action::Prepare(Preparing::Weld(tolerance)), format!("Weld: {tolerance:e}"), text)
+            .unless(when::document)
+    }));
+    let on = format!("Makes a band of small triangles along creases, {CREASE_BAND} of the bounding diagonal wide.");
+    all.extend([
+        Command::new(Action::Prepare(Preparing::CreaseBand(CREASE_BAND)), "Rim: On", on).unless(when::document),
+        Command::new(Action::Prepare(Preparing::CreaseBand(0.0)), "Rim: Off", "Leaves creases as the mesh has them.")
+            .unless(when::document),
+        Command::new(Action::Prepare(Preparing::NoHeights), "Heights: None", "Displaces the mesh by nothing.")
+            .unless(when::document),
+        Command::new(
+            Action::Prepare(Preparing::HeightsFromMaterials),
+            "Heights: Material",
+            "Displaces the mesh by the brightness of each material's base colour image.",
+        )
+        .unless(when::document),
+    ]);
+    all
+}
+
+fn clips(now: &Availability) -> Vec<Command> {
+    let rest = "Shows the mesh as it is without any clip.";
+    let mut all = vec![Command::new(Action::AnimationClip(None), "Animation: Rest pose", rest).unless(when::clips)];
+    all.extend(now.clips.iter().take(CLIPS).enumerate().map(|(i, clip)| {
+        let name = format!("Animation: {}", shortened(clip, 40));
+        Command::new(Action::AnimationClip(Some(i)), name, "Shows this clip from its start.").unless(when::clips)
+    }));
+    all
+}
+
+fn recent(now: &Availability) -> Vec<Command> {
+    let open = |path: &PathBuf| {
+        let name = format!("Recent: {}", path.file_name().unwrap_or_default().to_string_lossy());
+        let text = format!("Opens {}.", path.display());
+        Command::new(Action::File(FileAction::OpenRecent(path.clone())), name, text).submenu(Submenu::OpenRecent)
+    };
+    now.recent.iter().map(open).collect()
+}

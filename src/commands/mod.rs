@@ -1,0 +1,332 @@
+//! Everything that a person can do in the window, in one table. Menus, keys, the search for commands, Help > Keys and the
+//! manual's page of keys are made from it; the window performs an [`Action`].
+
+mod availability;
+mod change;
+mod fixed;
+mod generated;
+#[cfg(test)]
+mod page;
+pub mod value_names;
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::mesh::Shape;
+use crate::render::Standpoint;
+
+pub use availability::Availability;
+pub use change::Change;
+
+/// What the window does when a command is given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    File(FileAction),
+    Camera(CameraAction),
+    Setting(Change),
+    Prepare(Preparing),
+    Undo,
+    Redo,
+    CopyAsCommand,
+    ResetSettings,
+    ForgetEverything,
+    SplitView,
+    FreezeLodCamera,
+    Background,
+    Chart,
+    MeasureChart,
+    Theme(egui::ThemePreference),
+    LargerText,
+    SmallerText,
+    UsualText,
+    ToggleDisplacement,
+    PlayOrPause,
+    /// None is the mesh at rest; otherwise an index into the mesh's clips.
+    AnimationClip(Option<usize>),
+    Deselect,
+    Cancel,
+    SearchCommands,
+    Keys,
+    WhitePaper,
+}
+
+/// What reads or writes files.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileAction {
+    Open,
+    OpenPath,
+    OpenRecent(PathBuf),
+    OpenShape(Shape),
+    Reload,
+    HeightImage,
+    Truth,
+    TruthPath,
+    ForgetTruth,
+    SavePicture,
+    SavePicturePath,
+    ExportMesh,
+    ExportMeshPath,
+    SaveChart,
+    Quit,
+}
+
+/// What moves the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CameraAction {
+    Frame,
+    FramePatch,
+    LookFrom(Standpoint),
+    Orthographic,
+    Orbit(Direction),
+    Pan(Direction),
+    ZoomIn,
+    ZoomOut,
+}
+
+/// What is made of the mesh when it is loaded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preparing {
+    NoHeights,
+    HeightsFromMaterials,
+    /// As a part of the bounding diagonal; 0 joins equal positions only.
+    Weld(f32),
+    /// The width of the crease band as a part of the bounding diagonal; 0 is none.
+    CreaseBand(f32),
+}
+
+/// Where the camera turns or moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    Left,
+    Right,
+    Up,
+    Down,
+}
+
+/// A menu of the menu bar.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    File,
+    Edit,
+    View,
+    Help,
+}
+
+impl Menu {
+    pub const ALL: [Self; 4] = [Self::File, Self::Edit, Self::View, Self::Help];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::View => "View",
+            Self::Help => "Help",
+        }
+    }
+
+    /// The lists that this menu opens, and in which group of its commands they are.
+    pub fn submenus(self) -> &'static [(u8, Submenu)] {
+        match self {
+            Self::File => &[(0, Submenu::OpenRecent), (3, Submenu::Shapes)],
+            _ => &[],
+        }
+    }
+}
+
+/// A list that a menu opens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Submenu {
+    OpenRecent,
+    Shapes,
+}
+
+impl Submenu {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OpenRecent => "Open recent",
+            Self::Shapes => "Shapes",
+        }
+    }
+}
+
+/// Where a command is in the menus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// In a menu, in its group of this number; lines separate the groups.
+    Menu(Menu, u8),
+    Submenu(Submenu),
+}
+
+/// Why a command is not possible, in a sentence; none if it is.
+type WhyNot = fn(&Availability) -> Option<&'static str>;
+
+/// Something that a person can do.
+#[derive(Clone, Debug)]
+pub struct Command {
+    pub action: Action,
+    /// What it is called in the search; one of several values has the name of what it is a value of before it ("Surface: PN").
+    pub name: Cow<'static, str>,
+    /// What it does, in a sentence.
+    pub text: Cow<'static, str>,
+    /// Keys that do the same, the usual one first.
+    pub keys: Vec<KeyboardShortcut>,
+    pub place: Option<Place>,
+    why_not: WhyNot,
+}
+
+impl Command {
+    /// A command that is always possible, without keys, and in no menu.
+    fn new(action: Action, name: impl Into<Cow<'static, str>>, text: impl Into<Cow<'static, str>>) -> Self {
+        Self { action, name: name.into(), text: text.into(), keys: Vec::new(), place: None, why_not: |_| None }
+    }
+
+    fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
+        Self { keys: keys.into(), ..self }
+    }
+
+    fn menu(self, menu: Menu, group: u8) -> Self {
+        Self { place: Some(Place::Menu(menu, group)), ..self }
+    }
+
+    fn submenu(self, submenu: Submenu) -> Self {
+        Self { place: Some(Place::Submenu(submenu)), ..self }
+    }
+
+    fn unless(self, why_not: WhyNot) -> Self {
+        Self { why_not, ..self }
+    }
+
+    /// Why it is not possible now, in a sentence; none if it is.
+    pub fn why_not(&self, now: &Availability) -> Option<&'static str> {
+        (self.why_not)(now)
+    }
+
+    /// What a list of such values calls it: the name without what it is a value of.
+    pub fn value_name(&self) -> &str {
+        self.name.split_once(": ").map_or(&self.name, |(_, value)| value)
+    }
+
+    /// Whether its keys work also while text is being typed, and while a window asks for something.
+    pub fn works_while_typing(&self) -> bool {
+        use FileAction::{Open, OpenPath, Quit};
+        match &self.action {
+            Action::File(action) => matches!(action, Open | OpenPath | Quit),
+            Action::Cancel | Action::SearchCommands => true,
+            Action::LargerText | Action::SmallerText | Action::UsualText => true,
+            _ => false,
+        }
+    }
+
+    /// Whether its keys are left to a control that has the focus: they move or press such a control.
+    pub fn yields_to_focus(&self) -> bool {
+        use CameraAction::{Orbit, Pan, ZoomIn, ZoomOut};
+        match &self.action {
+            Action::Camera(action) => matches!(action, Orbit(_) | Pan(_) | ZoomIn | ZoomOut),
+            action => *action == Action::PlayOrPause,
+        }
+    }
+}
+
+/// The keys of an action as hover texts name them; empty without any.
+pub fn key_name(action: &Action) -> &'static str {
+    static NAMES: LazyLock<Vec<(Action, String)>> = LazyLock::new(|| {
+        let named = |command: Command| (command.action, key_names(&command.keys));
+        all(&Availability::default()).into_iter().map(named).collect()
+    });
+    NAMES.iter().find(|(known, _)| known == action).map_or("", |(_, names)| names)
+}
+
+/// A sentence, and the keys of the action that it tells of.
+pub fn with_key(sentence: &str, action: &Action) -> String {
+    match key_name(action) {
+        "" => sentence.to_owned(),
+        keys => format!("{} ({keys}).", sentence.trim_end_matches('.')),
+    }
+}
+
+/// Keys as they are called where the platform has no names of its own for them.
+pub fn key_names(keys: &[KeyboardShortcut]) -> String {
+    let name = |key: &KeyboardShortcut| key.format(&egui::ModifierNames::NAMES, false);
+    keys.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// Every command that there is now.
+pub fn all(now: &Availability) -> Vec<Command> {
+    let mut all = fixed::commands();
+    all.extend(generated::commands(now));
+    all
+}
+
+/// The shortcut that closes the window, for a screen that has no other command.
+pub const QUIT: KeyboardShortcut = ctrl(Key::Q);
+
+/// What the pointer does in the picture: no command, but listed with the keys.
+pub const GESTURES: [(&str, &str); 4] = [
+    ("Click", "Selects the triangle, its patch and its nearest edge."),
+    ("Left drag", "Orbits."),
+    ("Middle drag, Shift+left drag", "Pans."),
+    ("Wheel", "Zooms to the pointer."),
+];
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::NONE, key)
+}
+
+const fn shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::SHIFT, key)
+}
+
+const fn ctrl(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND, key)
+}
+
+const fn ctrl_shift(key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_commands_have_one_key_or_one_name() {
+        let all = all(&Availability::default());
+        for (i, command) in all.iter().enumerate() {
+            for other in &all[..i] {
+                assert_ne!(command.name, other.name);
+                assert_ne!(command.action, other.action, "{}", command.name);
+                let shared = command.keys.iter().find(|key| other.keys.contains(key));
+                assert_eq!(shared, None, "{} and {}", command.name, other.name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_command_says_what_it_does_in_a_sentence() {
+        for command in all(&Availability::default()) {
+            assert!(command.text.ends_with('.') && command.text.len() > 8, "{}: {}", command.name, command.text);
+        }
+    }
+
+    #[test]
+    fn a_sentence_names_the_keys() {
+        assert_eq!(with_key("Quits.", &Action::File(FileAction::Quit)), "Quits (Ctrl+Q).");
+        assert_eq!(with_key("Resets.", &Action::ResetSettings), "Resets.");
+    }
+
+    #[test]
+    fn a_reason_is_a_sentence_and_is_gone_once_everything_is_there() {
+        let nothing = Availability::default();
+        let everything = Availability::everything();
+        for command in all(&everything) {
+            let why_not = command.why_not(&nothing);
+            assert!(why_not.is_none_or(|why| why.ends_with('.')), "{}: {why_not:?}", command.name);
+            assert_eq!(command.why_not(&everything), None, "{}", command.name);
+        }
+        let possible = all(&nothing).iter().filter(|command| command.why_not(&nothing).is_none()).count();
+        assert!(possible > 40 && possible < all(&nothing).len(), "{possible}");
+    }
+}

@@ -1,0 +1,354 @@
+//! The table of commands: keys, menus and the search are made from it, and what it says can be done is done.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use egui::accesskit::Role;
+use egui::{Key, KeyboardShortcut, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use pnaen::app::App;
+use pnaen::commands::{Action, Change, Command, FileAction, GESTURES, Menu, Place, all};
+use pnaen::engine::Preparation;
+use pnaen::files::Limits;
+use pnaen::load::{HeightSource, Source};
+use pnaen::mesh::Shape;
+use pnaen::progress::Progress;
+use pnaen::settings::Settings;
+use pnaen::tessellate::{Edges, Lod, Surface};
+
+use crate::driver::PATIENCE;
+use crate::{choose, moving, press, settle, uniform, window};
+
+/// A folder of its own for what is written.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("pnaen-commands-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).expect("a writable temporary folder");
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn commands(harness: &Harness<App>) -> Vec<Command> {
+    all(&harness.state().availability())
+}
+
+/// Gives the command of this name.
+fn give(harness: &mut Harness<App>, name: &str) {
+    let commands = commands(harness);
+    let command = commands.iter().find(|command| command.name == name).unwrap_or_else(|| panic!("no command {name}"));
+    let context = harness.ctx.clone();
+    harness.state_mut().give(&context, command);
+    settle(harness);
+}
+
+fn press_shortcut(harness: &mut Harness<App>, key: &KeyboardShortcut) {
+    harness.key_press_modifiers(key.modifiers, key.logical_key);
+    harness.run_steps(3);
+}
+
+/// A mesh that moves and has heights, with a selected triangle, uniform LOD and a change to take back: whatever has a key is
+/// possible.
+fn full_window(folder: &Folder) -> Harness<'static, App> {
+    let path = folder.path("moving.glb");
+    std::fs::write(&path, moving::moving()).expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(path)));
+    let context = harness.ctx.clone();
+    let waves = HeightSource::File(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png").into());
+    harness.state_mut().displace(&context, Some(waves));
+    settle(&mut harness);
+    harness
+}
+
+/// Waits for the window that takes a path where the desktop has no dialog, so that it can be closed.
+fn wait_for_dialog(harness: &mut Harness<App>) {
+    let start = Instant::now();
+    while harness.state().path_asked_for().is_none() && start.elapsed().as_secs() < 5 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        harness.step();
+    }
+}
+
+#[test]
+fn every_key_of_the_table_gives_its_command() {
+    let folder = Folder::new("keys");
+    let mut harness = full_window(&folder);
+    let mut pressed = 0;
+    for command in commands(&harness).iter().filter(|command| !command.keys.is_empty()) {
+        for key in &command.keys {
+            // So that what was given last is another one.
+            let other = if command.action == Action::Cancel { Key::W } else { Key::Escape };
+            press_shortcut(&mut harness, &KeyboardShortcut::new(Modifiers::NONE, other));
+            harness.state_mut().select_triangle(Some(0));
+            assert_ne!(harness.state().last_action(), Some(&command.action), "{}", command.name);
+            let why_not = command.why_not(&harness.state().availability());
+            assert_eq!(why_not, None, "{}", command.name);
+            press_shortcut(&mut harness, key);
+            assert_eq!(harness.state().last_action(), Some(&command.action), "{}: {key:?}", command.name);
+            pressed += 1;
+            use FileAction::{ExportMesh, Open, SavePicture};
+            if matches!(&command.action, Action::File(Open | SavePicture | ExportMesh)) {
+                wait_for_dialog(&mut harness);
+            }
+            if command.action == Action::PlayOrPause {
+                assert!(harness.state().is_playing());
+                harness.state_mut().choose_clip(None);
+            }
+            if command.action == Action::File(FileAction::Reload) {
+                settle(&mut harness);
+            }
+        }
+    }
+    assert!(pressed > 45, "{pressed}");
+}
+
+#[test]
+fn a_key_does_nothing_where_its_command_is_not_possible() {
+    let mut harness = window(None);
+    assert_eq!(harness.state().settings().lod, Lod::Error);
+    let before = *harness.state().settings();
+    for key in [Key::Plus, Key::Minus, Key::D, Key::Space] {
+        press(&mut harness, key);
+        assert_eq!((harness.state().settings(), harness.state().last_action()), (&before, None), "{key:?}");
+    }
+    choose(&mut harness, "LOD", "Uniform");
+    press(&mut harness, Key::Plus);
+    assert_eq!(harness.state().last_action(), Some(&Action::Setting(Change::FactorUp)));
+    assert_eq!(harness.state().settings().factor, before.factor + 1.0);
+}
+
+/// Names of everything that can be clicked.
+fn clickable(harness: &Harness<App>) -> Vec<String> {
+    let roles = [Role::Button, Role::CheckBox, Role::RadioButton];
+    let nodes = roles.iter().flat_map(|&role| harness.query_all_by_role(role));
+    nodes.filter_map(|node| node.accesskit_node().label()).collect()
+}
+
+#[test]
+fn menus_have_the_tables_commands_and_nothing_else() {
+    let mut harness = window(None);
+    let before = clickable(&harness).len();
+    for menu in Menu::ALL {
+        harness.get_by_role_and_label(Role::Button, menu.name()).click();
+        settle(&mut harness);
+        let shown = clickable(&harness);
+        let in_menu = |command: &Command| matches!(command.place, Some(Place::Menu(of, _)) if of == menu);
+        let mut names: Vec<String> = commands(&harness)
+            .iter()
+            .filter(|command| in_menu(command))
+            .map(|command| command.name.to_string())
+            .collect();
+        names.extend(menu.submenus().iter().map(|(_, submenu)| submenu.name().to_owned()));
+        for name in &names {
+            // A button's name has its key behind it.
+            let is_it = |label: &String| {
+                label.strip_prefix(name.as_str()).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+            };
+            assert!(shown.iter().any(is_it), "{name} is not in {}: {shown:?}", menu.name());
+        }
+        assert_eq!(shown.len() - before, names.len(), "{}: {shown:?}", menu.name());
+        press(&mut harness, Key::Escape);
+        assert_eq!(clickable(&harness).len(), before);
+    }
+}
+
+#[test]
+fn the_search_says_what_is_not_possible() {
+    let mut harness = window(None);
+    give(&mut harness, "Search commands…");
+    harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("factor up");
+    settle(&mut harness);
+    let row = harness.get_by_label_contains("Factor up");
+    assert!(row.accesskit_node().is_disabled());
+    let place = row.rect().center();
+    harness.hover_at(place);
+    harness.run_steps(60);
+    assert!(harness.query_by_label_contains("Adaptive LOD computes a factor for every edge.").is_some());
+    let factor = harness.state().settings().factor;
+    press(&mut harness, Key::Enter);
+    assert_eq!(harness.state().settings().factor, factor);
+    assert!(harness.query_by_label("Search commands").is_some(), "it stays open");
+}
+
+#[test]
+fn values_tolerances_and_resets_are_commands() {
+    let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
+    let opening = *harness.state().settings();
+    for name in ["Surface: Nagata AEN", "LOD: Distance", "Edges: As published", "Colours: Factors", "Cull back faces"] {
+        give(&mut harness, name);
+    }
+    let settings = *harness.state().settings();
+    assert_eq!(
+        (settings.surface, settings.lod, settings.edges),
+        (Surface::NagataAen, Lod::Distance, Edges::AsPublished)
+    );
+    assert_eq!(settings.cull_back_faces, !opening.cull_back_faces);
+    give(&mut harness, "Reset settings");
+    assert_eq!(*harness.state().settings(), Settings::opening());
+    give(&mut harness, "Undo");
+    assert_eq!(*harness.state().settings(), settings);
+    let preparation = |harness: &Harness<App>| harness.state().loaded().expect("a cube").preparation.clone();
+    give(&mut harness, "Weld: 1e-4");
+    give(&mut harness, "Rim: On");
+    assert_eq!((preparation(&harness).weld, preparation(&harness).rim), (1e-4, 0.02));
+    give(&mut harness, "Weld: Exact");
+    give(&mut harness, "Rim: Off");
+    assert_eq!((preparation(&harness).weld, preparation(&harness).rim), (0.0, 0.0));
+}
+
+#[test]
+fn clips_are_commands_by_their_names() {
+    let folder = Folder::new("clips");
+    let mut harness = full_window(&folder);
+    for (i, clip) in moving::CLIPS.iter().enumerate() {
+        give(&mut harness, &format!("Animation: {clip}"));
+        assert_eq!(harness.state().moment().map(|moment| moment.clip), Some(i));
+    }
+    give(&mut harness, "Animation: Rest pose");
+    assert_eq!(harness.state().moment(), None);
+}
+
+#[test]
+fn the_background_is_chosen_in_a_window_of_its_own() {
+    let mut harness = window(None);
+    give(&mut harness, "Background colour…");
+    assert!(harness.query_by_role_and_label(Role::Window, "Background colour").is_some());
+    let [red, _, blue] = harness.state().settings().background;
+    harness.get_by_role_and_label(Role::Slider, "Green").set_value_accesskit(200.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().background, [red, 200, blue]);
+    press(&mut harness, Key::Escape);
+    assert!(harness.query_by_role_and_label(Role::Window, "Background colour").is_none());
+}
+
+#[test]
+fn the_keys_fit_a_small_screen_and_are_scrolled() {
+    let mut harness = Harness::builder().with_size([1280.0, 720.0]).wgpu().build_eframe(|context| {
+        App::new(context, None, Limits::default()).expect("these tests need a graphics adapter")
+    });
+    settle(&mut harness);
+    give(&mut harness, "Keys…");
+    let list = harness.get_by_role_and_label(Role::Window, "Keys").rect();
+    assert!(list.top() >= 0.0 && list.bottom() <= 720.0, "{list:?}");
+    let (gesture, _) = GESTURES[0];
+    assert!(list.contains(harness.get_by_label(gesture).rect().center()));
+    let last = commands(&harness).into_iter().rfind(|command| !command.keys.is_empty()).expect("a command with a key");
+    let row = |harness: &Harness<App>| {
+        let rows: Vec<_> = harness.query_all_by_label(&last.name).map(|node| node.rect()).collect();
+        rows.into_iter().find(|row| list.contains(row.center()))
+    };
+    assert!(row(&harness).is_none(), "it is below what is in sight");
+    harness.hover_at(list.center());
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::vec2(0.0, -5000.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(60);
+    assert!(row(&harness).is_some(), "{}", last.name);
+}
+
+/// Gives a command that asks for a path, and types it.
+fn write_as(harness: &mut Harness<App>, command: &str, path: &Path) {
+    give(harness, command);
+    harness.run_steps(2);
+    // What is typed takes the place of what is proposed.
+    harness.get_by_role(Role::TextInput).type_text(&path.display().to_string());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    wait(harness, |app| !app.is_writing());
+    settle(harness);
+}
+
+fn wait(harness: &mut Harness<App>, until: impl Fn(&App) -> bool) {
+    let start = Instant::now();
+    while !until(harness.state()) {
+        assert!(start.elapsed() < PATIENCE, "it takes too long");
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        harness.step();
+    }
+}
+
+#[test]
+fn the_picture_is_saved_as_it_is_shown() {
+    let folder = Folder::new("picture");
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let path = folder.path("torus.png");
+    write_as(&mut harness, "Save picture path…", &path);
+    let saved = image::open(&path).expect("a picture").to_rgba8();
+    assert_eq!(saved, harness.state().read_picture().expect("a device").expect("a picture"));
+    assert!(harness.query_by_label_contains("torus.png is written.").is_some());
+    press(&mut harness, Key::Escape);
+    assert!(harness.query_by_label_contains("is written.").is_none());
+    // What is there isn't replaced by what was typed.
+    press(&mut harness, Key::W);
+    write_as(&mut harness, "Save picture path…", &path);
+    assert!(harness.query_by_label_contains("is there already: choose another name").is_some());
+    assert_eq!(image::open(&path).expect("a picture").to_rgba8(), saved);
+    press(&mut harness, Key::Escape);
+    write_as(&mut harness, "Save picture path…", &folder.path("torus.jpg"));
+    assert!(harness.query_by_label_contains("the name must end in .png").is_some());
+    assert!(!folder.path("torus.jpg").exists());
+}
+
+#[test]
+fn the_mesh_is_exported_as_it_is_emitted() {
+    let folder = Folder::new("export");
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let (_, triangles) = harness.state().totals().expect("a torus");
+    for name in ["torus.glb", "torus.obj"] {
+        let path = folder.path(name);
+        write_as(&mut harness, "Export mesh path…", &path);
+        assert!(harness.query_by_label_contains(&format!("{name} is written.")).is_some());
+        press(&mut harness, Key::Escape);
+        let written = pnaen::engine::load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
+            .expect("what was written");
+        assert_eq!(written.mesh.triangles.len() as u64, triangles, "{name}");
+        let command = folder.path(&format!("command-{name}"));
+        let settings = ["--factor", "8", "--partitioning", "fractional-odd"];
+        let output = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
+            .args(["tessellate", "shape:torus", "-o"])
+            .arg(&command)
+            .args(settings)
+            .output()
+            .expect("the program starts");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        assert!(
+            std::fs::read(&command).expect("a file") == std::fs::read(&path).expect("a file"),
+            "{name}: as the command writes it"
+        );
+    }
+    write_as(&mut harness, "Export mesh path…", &folder.path("torus.ply"));
+    assert!(harness.query_by_label_contains("the name must end in .glb or .obj").is_some());
+}
+
+#[test]
+fn an_export_that_is_cancelled_writes_nothing() {
+    let folder = Folder::new("cancelled");
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let (context, path) = (harness.ctx.clone(), folder.path("torus.obj"));
+    harness.state_mut().export_mesh(&context, path.clone()).expect("an .obj file");
+    harness.step();
+    assert!(harness.query_by_label_contains("Exporting torus.obj").is_some());
+    press(&mut harness, Key::Escape);
+    assert!(!harness.state().is_writing());
+    // Long enough for it to have been written.
+    harness.state_mut().export_mesh(&context, folder.path("second.obj")).expect("an .obj file");
+    wait(&mut harness, |app| !app.is_writing());
+    assert!(folder.path("second.obj").exists() && !path.exists());
+}
