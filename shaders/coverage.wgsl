@@ -18,7 +18,8 @@ struct CoverageView {
 struct ScreenCorner {
     // Px from the upper left.
     at: vec2<f32>,
-    // How far from there it may be rasterised along x and along y, in px. Below 0 where it may be nearer than the near plane.
+    // How far from there it may be rasterised along x and along y, in px. Below 0 where it may be nearer than the near
+    // plane.
     reach: f32,
 }
 

@@ -1,4 +1,4 @@
-// Front faces add 1, back faces take 1 away: what is closed sums to 0 in every pixel.
+// Front faces add 1 and back faces subtract 1, so that a closed surface sums to 0 in every pixel.
 
 @group(0) @binding(0) var<uniform> clip_from_object: mat4x4<f32>;
 

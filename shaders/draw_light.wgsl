@@ -7,8 +7,9 @@ struct Lights {
     to_eye: vec3<f32>,
 }
 
-// The unit direction towards the eye from what is seen at a place of the picture, in px. All of that ray has one x / w and
-// one y / w: it lies in two planes, whose normals are these rows. So vertices need not hand on where they are.
+// The unit direction towards the eye from what is seen at a place of the picture, in px. All points on that line of sight
+// have one x / w and one y / w, so it lies in two planes, whose normals come from rows of the matrix. This needs no
+// position from the vertex shader.
 fn toward_eye(clip_from_object: mat4x4<f32>, viewport: vec2<f32>, px: vec2<f32>) -> vec3<f32> {
     let at = vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0);
     let rows = transpose(clip_from_object);

@@ -1,7 +1,7 @@
-// Thick lines, faint where something is in front of them: one instance a segment, or a vertex whose normal is drawn; a
-// quad facing the screen.
+// Thick lines, faint where something is in front of them. An instance is a line segment, or a vertex whose normal is drawn;
+// each becomes a quad that faces the screen.
 
-// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> frame: Frame;
 // Only for normals.
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
@@ -9,15 +9,17 @@
 @group(2) @binding(0) var<uniform> slab: Slab;
 @group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
+// Lines lie on surfaces: their depth is moved nearer by this factor.
 const NEARER: f32 = 1.003;
 
-// What is left of a line behind something.
+// Opacity of a line that is behind something.
 const HIDDEN: f32 = 0.3;
 
 // As NORMAL_COLOR in src/render/layout.rs, in linear light.
 const NORMAL_COLOR: vec3<f32> = vec3<f32>(0.045, 0.680, 1.0);
 
-// How long a normal is across the view, how wide to either side, and how far from the next one if there are many, in px.
+// Of drawn normals, in px: their length if seen from the side, half their width, and their average distance where vertices
+// are closer.
 const NORMAL_LENGTH: f32 = 18.0;
 const NORMAL_HALF_WIDTH: f32 = 0.6;
 const NORMAL_SPACING: f32 = 24.0;
@@ -28,7 +30,7 @@ struct LineVaryings {
     @location(0) @interpolate(linear) across: f32,
     @location(1) @interpolate(flat) color: vec3<f32>,
     @location(2) @interpolate(flat) half_width: f32,
-    // How many times the line is drawn, as far as is known.
+    // How many times the line is drawn, about.
     @location(3) @interpolate(flat) times: f32,
 }
 
@@ -81,7 +83,7 @@ fn px_per_unit(w: f32) -> f32 {
     return 0.5 * frame.viewport.y * length(upwards) / w;
 }
 
-// About how much of a patch there is for each of its vertices, in square object units.
+// The area of a patch for each of its vertices, about, in square object units.
 fn area_per_vertex(patch_index: u32) -> f32 {
     let at = patches[patch_index].points;
     let a = points[at[0]].xyz;
@@ -97,8 +99,8 @@ fn permuted(x: u32) -> u32 {
     return (word >> 22u) ^ word;
 }
 
-// A number from 0 to 1 that is the same for a vertex whichever patch emits it, wherever it moves to: it goes by the mesh's
-// points and how near to each the vertex is. Who adds them up in another order gets the same.
+// A pseudo-random number from 0 to 1 for a vertex. It depends on the mesh's points and the vertex's weight at each, not on
+// positions; and since the sum is of integers, all patches that emit the vertex get the same.
 fn chance(patch_index: u32, domain: vec2<u32>) -> f32 {
     let at = patches[patch_index].points;
     let near = array<u32, 3>(domain.x, domain.y, FIXED_ONE - domain.x - domain.y);
@@ -109,7 +111,7 @@ fn chance(patch_index: u32, domain: vec2<u32>) -> f32 {
     return f32(permuted(sum) >> 8u) / 16777216.0;
 }
 
-// How many patches emit a vertex: as many as are usual around a corner, on an edge, inside.
+// How many patches emit a vertex: 6 at a corner and 2 on an edge, as in most meshes, and 1 inside.
 fn usual_times(domain: vec2<u32>) -> f32 {
     let last = FIXED_ONE - domain.x - domain.y;
     let zeros = u32(domain.x == 0u) + u32(domain.y == 0u) + u32(last == 0u);
@@ -132,7 +134,8 @@ fn normal_vertex(
     let px = px_per_unit(max(w, 1e-30));
     let direction = unpack_normal(normal);
     let to_eye = normalize(frame.eye.xyz - position * frame.eye.w);
-    // Where vertices are closer than normals may be, some have none; at the outline, where all stand out, at least some do.
+    // Where vertices are closer than NORMAL_SPACING, only some get a normal. At silhouettes, where patches look small, the
+    // least factor keeps enough of them.
     let area = area_per_vertex(key_patch(key)) * px * px * max(abs(dot(direction, to_eye)), 0.2);
     if w <= 0.0 || chance(key_patch(key), key_uv(key)) * NORMAL_SPACING * NORMAL_SPACING >= area {
         return LineVaryings();
@@ -152,6 +155,6 @@ fn line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
 
 @fragment
 fn hidden_line_fragment(in: LineVaryings) -> @location(0) vec4<f32> {
-    // One on top of another, they come to what one line leaves.
+    // So many blended over each other have the opacity HIDDEN.
     return vec4<f32>(in.color, (1.0 - pow(1.0 - HIDDEN, 1.0 / in.times)) * line_coverage(in));
 }

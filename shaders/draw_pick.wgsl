@@ -1,4 +1,4 @@
-// What lies under one pixel: the target is that pixel alone.
+// Finds what is in front at one pixel. The render target is that pixel alone.
 
 @group(0) @binding(0) var<uniform> pixel_from_object: mat4x4<f32>;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
@@ -38,7 +38,7 @@ fn pick_source_vertex(@builtin(vertex_index) index: u32) -> PickVaryings {
     return PickVaryings(clip, vec3<f32>(f32(k == 0u), f32(k == 1u), f32(k == 2u)), index / 3u);
 }
 
-// 1 and the number, so that 0 is nothing; and the weight that is fewest px from 0.
+// 1 plus the number (so that 0 means nothing), and the weight (0 u, 1 v, 2 w) that is the fewest px from 0.
 @fragment
 fn pick_fragment(in: PickVaryings) -> @location(0) vec4<u32> {
     let dx = dpdx(in.weights);
@@ -79,7 +79,8 @@ fn first_triangle(triangle: u32) -> u32 {
     return low;
 }
 
-// Takes what a chunk has drawn, while the arena still holds it. What is drawn after it and nearer replaces it.
+// Takes the result of drawing a chunk, while the arena still holds that chunk. A nearer result of a later chunk replaces
+// it.
 @compute @workgroup_size(1)
 fn pick_emitted_main() {
     let found = textureLoad(drawn, vec2<u32>(0u), 0);

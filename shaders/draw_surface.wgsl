@@ -1,7 +1,8 @@
-// Draws patches: the emitted triangles (indexed, or pulled one corner at a time so that each knows its own
-// barycentric coordinates), or the input triangles as they are.
+// Draws the surface with overlays: the emitted triangles, or the input triangles. Emitted triangles are drawn indexed; or,
+// where an overlay looks at whole triangles, without an index buffer, so that the shader fetches each corner itself and
+// knows the barycentric coordinates.
 
-// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
@@ -11,12 +12,12 @@
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
-// Only for what was emitted.
+// Only for emitted triangles.
 @group(2) @binding(0) var<uniform> slab: Slab;
 @group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
-// How far triangles are from the truth, from src/measure/field.rs: into how many steps their edges are cut, then the samples
-// of triangle after triangle. Below 0 where nothing is known.
+// How far triangles are from the true surface, from src/measure/field.rs: the number of steps that each edge is divided
+// into, then the samples of one triangle after another. A sample below 0 is unknown.
 @group(3) @binding(0) var<storage, read> deviations: array<f32>;
 
 struct Varyings {
@@ -28,15 +29,15 @@ struct Varyings {
     // Barycentric coordinates in the drawn triangle; all 1 where they are not known.
     @location(4) corner: vec3<f32>,
     @location(5) @interpolate(flat) edge_kinds: vec3<u32>,
-    // 1 where the drawn triangle faces away from the side that its patch faces.
+    // 1 if the drawn triangle faces away from where its patch faces.
     @location(6) @interpolate(flat) folded: u32,
-    // Factors on the edges where u, v, w is 0, and inside; 0 where the patch is drawn as it came.
+    // Factors of the edges where u, v and w is 0, and inside; 0 for input triangles.
     @location(7) @interpolate(flat) factors: vec4<f32>,
-    // 1 where they are all below 2.
+    // 1 if they are all below 2.
     @location(8) @interpolate(flat) low: u32,
     // Size of the drawn triangle in px.
     @location(9) @interpolate(flat) size: f32,
-    // Number of the drawn triangle in its chunk, or of the patch that is drawn as it came.
+    // Number of the emitted triangle in its chunk, or of the input triangle.
     @location(10) @interpolate(flat) triangle: u32,
 }
 
@@ -75,7 +76,7 @@ fn is_folded(patch_index: u32, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool
     return dot(own, patch_facing) < 0.0 && length(own) > 8.0 * frame.ulp * longest;
 }
 
-// Whether the pattern runs back here, so that it is not the surface that turns this triangle over.
+// Whether the triangle is already turned over in the patch's domain, so that the surface is not what turns it over.
 fn runs_back(a: vec2<u32>, b: vec2<u32>, c: vec2<u32>) -> bool {
     let ab = vec2<f32>(vec2<i32>(b) - vec2<i32>(a));
     let ac = vec2<f32>(vec2<i32>(c) - vec2<i32>(a));
@@ -114,7 +115,7 @@ fn with_factors(varyings: Varyings, patch_index: u32) -> Varyings {
     return out;
 }
 
-// As in src/measure/sizes.rs, in f32; as large as any where the near plane cuts.
+// As in src/measure/sizes.rs, in f32. The largest size if the triangle crosses the near plane.
 fn size_px(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> f32 {
     let corners = array<vec3<f32>, 3>(a, b, c);
     var places: array<vec2<f32>, 3>;
@@ -212,19 +213,19 @@ fn edge_color(kind: u32) -> vec3<f32> {
     return color;
 }
 
-// How far one has to go, in px, for each coordinate to change by 1: a triangle's heights.
+// The distance in px over which each barycentric coordinate changes by 1: the triangle's heights.
 fn heights(coordinates: vec3<f32>) -> vec3<f32> {
     let dx = dpdx(coordinates);
     let dy = dpdy(coordinates);
     return 1.0 / max(sqrt(dx * dx + dy * dy), vec3<f32>(1e-12));
 }
 
-// How much of a line `half_width` px to either side covers a pixel `distance` px away.
+// How much of a pixel, `distance` px from the middle of a line, the line covers.
 fn line_coverage(distance: f32, half_width: f32) -> f32 {
     return 1.0 - smoothstep(half_width - 0.5, half_width + 0.5, distance);
 }
 
-// Barely lit, so that colours can be read against a legend: as they are where the surface faces the eye.
+// Lit very little, so that colours can be compared with a legend: unchanged where the surface faces the eye.
 fn shade_flat(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     return base * (0.7 + 0.3 * abs(dot(normal, to_eye)));
 }
@@ -241,8 +242,8 @@ fn scale_color(number: f32) -> vec3<f32> {
     return from_srgb(mix(frame.scale[below].rgb, frame.scale[below + 1u].rgb, at - f32(below)));
 }
 
-// The inside of a patch by its inside factor, a band along each edge by that edge's. Bands are some px wide: more in large
-// patches, and less in small ones, which would be nothing but bands.
+// The inside of a patch in the colour of its inside factor, and a band along each edge in the colour of that edge's factor.
+// Bands are about 5 px wide, wider in large patches and narrower in small ones, which bands would otherwise fill.
 fn factor_color(factors: vec4<f32>, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec3<f32> {
     var nearest = 0u;
     for (var k = 1u; k < 3u; k++) {
@@ -253,7 +254,7 @@ fn factor_color(factors: vec4<f32>, to_edges: vec3<f32>, edge_heights: vec3<f32>
     return mix(scale_color(factors.w), scale_color(factors[nearest]), on_edge);
 }
 
-// Linear between the samples around a place. Below 0 where nothing is known.
+// The deviation at a place of a triangle, linear between the samples around it. Below 0 if it is unknown.
 fn deviation_at(triangle: u32, corner: vec3<f32>) -> f32 {
     let steps = u32(deviations[0]);
     let count = (steps + 1u) * (steps + 2u) / 2u;
@@ -264,7 +265,7 @@ fn deviation_at(triangle: u32, corner: vec3<f32>) -> f32 {
     if steps == 0u {
         return deviations[first];
     }
-    // At a triangle's rim a pixel's middle may lie beyond it.
+    // At a triangle's border the middle of a pixel may lie outside the triangle.
     let inside = max(corner, vec3<f32>(0.0));
     let at = inside.yz / (inside.x + inside.y + inside.z) * f32(steps);
     let i = min(u32(at.x), steps - 1u);
@@ -284,12 +285,12 @@ fn deviation_at(triangle: u32, corner: vec3<f32>) -> f32 {
 
 fn deviation_color(in: Varyings) -> vec4<f32> {
     let distance = deviation_at(in.triangle, in.corner);
-    // A fragment has 1 / w where a vertex has w.
+    // The position of a fragment has 1 / w as its fourth component.
     let number = select(distance, distance * frame.px_per_unit * in.clip.w, frame.px_per_unit > 0.0);
     return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
 }
 
-// What the surface's colours mean, where they aren't the material's: the colour, and 1 where there is one.
+// The colour that an overlay gives the surface in place of the material's, and 1 if there is one.
 fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
         return vec4<f32>(factor_color(in.factors, to_edges, edge_heights), 1.0);
@@ -313,7 +314,7 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     let texel = textureSample(base_texture, base_sampler, in.uv);
     var base = material.base_color.rgb * texel.rgb;
     if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_DEVIATION)) != 0u {
-        // The mesh's own colours could be the mark's.
+        // Grey, since the mesh's own colours could be mistaken for the overlay's.
         base = vec3<f32>(0.5);
     }
     let marked_back = (frame.overlays & OVERLAY_BACK_FACES) != 0u && !front;
@@ -331,12 +332,13 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
         color = shade_flat(meant.rgb, normal, to_eye);
     }
     if in.folded != 0u {
-        // Unlit: folds mostly face away from the light.
+        // Unlit, since folds mostly face away from the light.
         color = FOLD_COLOR;
     }
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let nearest = min(min(to_sides.x, to_sides.y), to_sides.z);
-        // Triangles of a px or two would be nothing but lines: those fade, and the surface stays readable.
+        // Triangles of a px or two would be covered by their lines. Their lines are fainter, so that the surface stays
+        // visible.
         let height = max(max(side_heights.x, side_heights.y), side_heights.z);
         let strength = mix(0.25, 0.75, smoothstep(2.0, 10.0, height));
         color = mix(color, vec3<f32>(0.008, 0.010, 0.014), strength * line_coverage(nearest, 0.5));
@@ -352,7 +354,7 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
         } else if to_edges.y <= nearest_edge {
             kind = in.edge_kinds.y;
         }
-        // Smooth edges are most of a mesh and least of its news.
+        // Smooth edges are the most frequent and the least interesting, so their lines are thin.
         color = mix(color, edge_color(kind), line_coverage(nearest_edge, select(1.75, 0.75, kind == EDGE_SMOOTH)));
     }
     return vec4<f32>(color, 1.0);

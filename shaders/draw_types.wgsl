@@ -1,4 +1,4 @@
-// What the draws share. Twin: src/render/layout.rs.
+// Structs and constants that draws share. src/render/layout.rs has the same; tests compare them.
 
 // Colours that a scale runs through.
 const SCALE_STOPS: u32 = 7u;
@@ -6,7 +6,7 @@ const SCALE_STOPS: u32 = 7u;
 // What all draws of one picture read.
 struct Frame {
     clip_from_object: mat4x4<f32>,
-    // Unit directions in object space, towards the lights that travel with the camera.
+    // Unit directions in object space towards the two lights, which move with the camera.
     key_light: vec4<f32>,
     fill_light: vec4<f32>,
     // The eye's position (w = 1), or the direction towards it when the projection is orthographic (w = 0).
@@ -19,10 +19,10 @@ struct Frame {
     ulp: f32,
     // Which side each of a patch's factors lies on: CONVENTION_*.
     convention: u32,
-    // The scale that the surface's colours are read against, if they are numbers.
+    // The ends of the colour scale, if the surface's colours stand for numbers.
     scale_least: f32,
     scale_most: f32,
-    // How many px a unit takes where w is 1, if distances are counted in px; else 0.
+    // Px of an object unit where w is 1, if deviations are shown in px; else 0.
     px_per_unit: f32,
     // The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     scale: array<vec4<f32>, SCALE_STOPS>,
@@ -33,7 +33,7 @@ struct Material {
     base_color: vec4<f32>,
 }
 
-// What lies under a pixel.
+// What is in front at a pixel.
 struct Pick {
     // As emitted; zero for an input triangle.
     vertices: array<Vertex, 3>,

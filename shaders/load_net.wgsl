@@ -1,6 +1,6 @@
-// A patch's control net from the buffer `points` of the module that includes this, and its patch_at and curve_net_at.
-// Its centre is what `centers_main` of the nets pass has put behind the points.
-// Written out side by side: where loops stay loops, arrays that they index live in memory.
+// A patch's control net. The module declares the buffers `params` and `points` and the functions patch_at and curve_net_at.
+//
+// The loops are unrolled by hand, since some compilers keep loops, and then keep the arrays that they index in memory.
 
 fn load_net(patch_index: u32) -> ControlNet {
     let own = patch_at(patch_index);
@@ -20,6 +20,7 @@ fn load_net(patch_index: u32) -> ControlNet {
     net.edges[3] = select(curves[1].ba, curves[1].ab, reversed.y);
     net.edges[4] = select(curves[2].ab, curves[2].ba, reversed.z);
     net.edges[5] = select(curves[2].ba, curves[2].ab, reversed.z);
+    // centers_main in pass_nets.wgsl writes the centres behind the points.
     net.center = points[params.point_count + patch_index].xyz;
     return net;
 }

@@ -1,4 +1,4 @@
-// What load_net.wgsl reads, where the module that includes this has patches and curve_nets.
+// Functions that load_net.wgsl calls, for modules whose buffers are called `patches` and `curve_nets`.
 
 fn patch_at(index: u32) -> Patch {
     return patches[index];

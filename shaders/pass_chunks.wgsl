@@ -1,4 +1,4 @@
-// Cuts a slab into chunks of patches that fit the arena, and writes the indirect arguments of every later pass.
+// Divides a slab into chunks of patches that fit the arena, and writes the indirect arguments of emission and draws.
 
 @group(0) @binding(0) var<uniform> slab: Slab;
 @group(0) @binding(1) var<storage, read> offsets: array<vec2<u32>>;
@@ -12,9 +12,9 @@ fn fits(first: u32, end: u32) -> bool {
     return size.x <= slab.vertex_capacity && size.y <= slab.triangle_capacity;
 }
 
-// The last patch boundary (from the slab's start) up to which everything from `first` on fits the arena.
+// The end of the longest run of patches from `first` on that fits the arena. Patches are counted from the slab's start.
 fn chunk_end(first: u32) -> u32 {
-    // Mostly there is room for all.
+    // Usually all of them fit.
     if fits(first, slab.patch_count) {
         return slab.patch_count;
     }

@@ -1,21 +1,21 @@
-// What every patch of a slab will emit: its processed factors, and its numbers of vertices and triangles.
+// For every patch of a slab: the factors that the tessellator works with, and how many vertices and triangles it will emit.
 
-// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
-// Of edges; then where images are mixed what heights ask for inside patches.
+// Of edges; then, if Params.mixed is 1, the factor that the heights of each patch need inside it.
 @group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
 @group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;
-// Bits of what was given in place of LOD's factors, for every patch: three factors of edges and the one inside.
+// For every patch the bits of the factors that were given in place of LOD's: of its three edges, and inside.
 @group(0) @binding(8) var<storage, read> given_factors: array<vec4<u32>>;
-// What hull_factors_main writes, patch by patch.
+// Written by hull_factors_main, for every patch.
 @group(0) @binding(9) var<storage, read_write> written_factors: array<vec4<f32>>;
 
-// A patch's net, where anything looks at it.
+// A patch's control net, or nothing if the settings have no use for it.
 fn needed_net(patch_index: u32) -> ControlNet {
     var net: ControlNet;
     let by_error = params.lod == LOD_ERROR && params.surface != SURFACE_FLAT;
@@ -25,7 +25,7 @@ fn needed_net(patch_index: u32) -> ControlNet {
     return net;
 }
 
-// What the hull shader writes for a patch: three factors of edges in the order of the convention, and the one inside.
+// What a hull shader would write for a patch: the factors of its edges in the order of the convention, and the one inside.
 fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     if params.lod == LOD_GIVEN {
         var given = bitcast<vec4<f32>>(given_factors[patch_index]);
@@ -40,7 +40,7 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     for (var k = 0u; k < 3u; k++) {
         sides[k] = edge_factors[patches[patch_index].factors[k] >> 3u];
     }
-    // Heights are as fine inside as on the edges, where the patch's own image alone speaks for them.
+    // If all edges have one height image on their sides, the inside needs no higher factor than the edges.
     var inside = max(max(sides.x, sides.y), sides.z);
     if params.mixed == 1u {
         inside = edge_factors[params.factor_count + patch_index];
@@ -58,7 +58,7 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     );
 }
 
-// Vertices and triangles of a patch, whose factors it keeps.
+// Stores a patch's factors, and returns how many vertices and triangles they give.
 fn counted(index: u32) -> vec2<u32> {
     let patch_index = slab.first_patch + index;
     let net = needed_net(patch_index);
@@ -73,7 +73,8 @@ fn counted(index: u32) -> vec2<u32> {
     return vec2<u32>(point_count(factors), triangle_count(factors));
 }
 
-// Leaves offsets within a block of patches, and behind them all the sum of every block: what pass_scan.wgsl makes offsets of.
+// Writes, for every patch, the sums over the patches before it in its block (one workgroup), and behind all those the sum
+// of every block. pass_scan.wgsl turns both into offsets within the slab.
 @compute @workgroup_size(256)
 fn counts_main(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     let index = workgroup.x * WORKGROUP + local;
@@ -91,7 +92,7 @@ fn counts_main(@builtin(workgroup_id) workgroup: vec3<u32>, @builtin(local_invoc
     }
 }
 
-// Every patch of the mesh, for those who want to see them.
+// The same factors for every patch of the mesh, for reading them back.
 @compute @workgroup_size(256)
 fn hull_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,

@@ -1,23 +1,23 @@
-// Leaves out of a chunk the triangles that cover no sample: marks the others, finds where each comes to stand, and copies
+// Removes from a chunk the triangles that cover no sample: marks the others, counts how many come before each, and copies
 // their indices, in their order.
 
 @group(0) @binding(0) var<storage, read> sieve: Sieve;
 @group(0) @binding(1) var<storage, read> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(2) var<storage, read> indices: array<u32>;
-// A bit a triangle: 1 where it is kept.
+// One bit for each triangle: 1 if it is kept.
 @group(0) @binding(3) var<storage, read_write> marks: array<u32>;
-// How many triangles each tile keeps; then how many those before it do.
+// First how many triangles are kept of each tile, then how many are kept of all tiles before it.
 @group(0) @binding(4) var<storage, read_write> tile_starts: array<u32>;
 @group(0) @binding(5) var<storage, read> draw_args: array<DrawArgs>;
 @group(0) @binding(6) var<storage, read_write> kept_args: array<DrawArgs>;
 @group(0) @binding(7) var<storage, read_write> kept_indices: array<u32>;
 
-// One chunk's.
+// The chunk that is looked at.
 struct Sieve {
     view: CoverageView,
     triangle_count: u32,
     material_count: u32,
-    // Which of the slab's arguments are the chunk's first.
+    // Index of the chunk's first draw arguments among those of its slab.
     first_draw: u32,
 }
 
@@ -27,7 +27,7 @@ const TILE_WORDS: u32 = TILE / 32u;
 // Triangles that each invocation looks at.
 const ROUNDS: u32 = TILE / WORKGROUP;
 
-// An invocation's marks, a bit a round.
+// The marks that each invocation made, one bit for each round.
 var<workgroup> kept_in_rounds: array<u32, 256>;
 
 fn corner_of(index: u32) -> ScreenCorner {
@@ -58,7 +58,7 @@ fn coverage_marks_main(
     }
     kept_in_rounds[local] = own;
     workgroupBarrier();
-    // A word is of 32 invocations side by side, in one round.
+    // A word of marks comes from 32 neighbouring invocations, in one round.
     var word = 0u;
     if local < TILE_WORDS {
         let first = local % 8u * 32u;
@@ -76,7 +76,7 @@ fn coverage_marks_main(
     }
 }
 
-// How many triangles are kept before one of them, or of all.
+// How many triangles are kept of those before this one. It may be one past the last.
 fn kept_before(triangle: u32) -> u32 {
     let tile = triangle / TILE;
     let words = triangle % TILE / 32u;

@@ -1,5 +1,5 @@
-// Once a pose, before the nets: every corner's normal, then every point's position, from what they are before they are
-// deformed. A point is computed once, from its lowest corner: whatever moves, it stays one point.
+// Deforms the mesh into a pose: every corner's normal, then every point's position, both from the mesh at rest. A point is
+// computed once, from the first of its corners, so that it stays one point in every pose.
 
 @group(0) @binding(0) var<storage, read> bindings: array<Binding>;
 @group(0) @binding(1) var<storage, read> deltas: array<Delta>;
@@ -7,7 +7,7 @@
 @group(0) @binding(3) var<storage, read> morph_weights: array<f32>;
 @group(0) @binding(4) var<storage, read> point_corners: array<u32>;
 @group(0) @binding(5) var<storage, read_write> corners: array<Corner>;
-// Points, then every patch's centre.
+// Points, then the control point at every patch's centre.
 @group(0) @binding(6) var<storage, read_write> points: array<vec4<f32>>;
 
 // Morph targets come first, then joints (glTF 2.0, section 3.7.2.2).

@@ -1,4 +1,4 @@
-// Moves the vertices that `emit` has made of one chunk, and their normals: a vertex an invocation. Twin:
+// Displaces the vertices of one chunk after they were emitted, and turns their normals: one invocation a vertex. Twin:
 // src/tessellate/relief.rs.
 
 @group(0) @binding(0) var<uniform> params: Params;
@@ -84,7 +84,7 @@ fn own_lookup(patch_index: u32, u: u32, v: u32, at: Spot, segments: f32) -> Look
     return Lookup(patch_index, u, v, inside_level(patch_index, segments));
 }
 
-// And where it does if patches agree.
+// Where all patches that meet at the point look up its height, so that they agree.
 fn shared_lookup(own: Lookup, at: Spot) -> Lookup {
     if at.kind == AT_CORNER {
         let dominant = shares[patches[own.patch_index].points[at.index]].dominant;
@@ -101,7 +101,7 @@ fn shared_lookup(own: Lookup, at: Spot) -> Lookup {
     return own;
 }
 
-// What a patch's corners move along: their points' own directions, or as published their own normals.
+// The directions in which a patch's corners move: those of their points, or as published the corners' own normals.
 fn corner_directions(patch_index: u32) -> array<vec3<f32>, 3> {
     let own = patches[patch_index];
     if params.displacement == DISPLACEMENT_ON {
@@ -148,7 +148,7 @@ fn offset_at(at: Lookup) -> f32 {
     return params.height_scale * (height_at(own, lookup_level(own, at), uv) - params.midlevel);
 }
 
-// Where heights rise, and how steeply, by the frames of a patch's corners.
+// The gradient of the height in object space, from the gradients of texture coordinates at the patch's corners.
 fn uphill_at(at: Lookup) -> vec3<f32> {
     let map = map_of(at.patch_index);
     if map == 0u {
@@ -170,7 +170,7 @@ fn uphill_at(at: Lookup) -> vec3<f32> {
     return along_u * rises.x + along_v * rises.y;
 }
 
-// How a patch's height changes with u and with v, and its tangents, moved by `offset` as a whole.
+// The slopes of a patch's height along u and v, and the tangents of the patch moved outwards by `offset`.
 struct Rise {
     slopes: vec2<f32>,
     tangents: array<vec3<f32>, 2>,

@@ -1,11 +1,11 @@
-// The bare tessellator, for `pnaen domain`: sets of factors in, domain points and triangles out, no mesh.
+// The tessellator alone, without a mesh: sets of factors in, domain points and triangles out.
 
 struct DomainParams {
     partitioning: u32,
     set_count: u32,
 }
 
-// Room for one set's output: the most that factor 64 gives.
+// Room for the output of one set of factors: the most points and triangles that there are, at factor 64.
 const DOMAIN_POINTS: u32 = 3169u;
 const DOMAIN_TRIANGLES: u32 = 6144u;
 

@@ -1,5 +1,6 @@
-// The domain shader and the tessellator's output of one chunk. A workgroup makes thousands of vertices, or triangles, that
-// follow each other, and each of its invocations several: finding out once which patches they are of is then little work.
+// The vertices and triangles of one chunk: what the tessellator and the domain shader would output. Each workgroup makes
+// thousands of consecutive vertices (or triangles) and each invocation several, so that finding their patches is little
+// work.
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
@@ -7,7 +8,7 @@
 @group(0) @binding(3) var<storage, read> offsets: array<vec2<u32>>;
 @group(0) @binding(4) var<storage, read> patch_factors: array<PatchFactors>;
 @group(0) @binding(5) var<storage, read> points: array<vec4<f32>>;
-// Patches, curve nets and corners, 16 bytes at a time: every vertex reads some, and a word at a time that takes longer.
+// Patches, curve nets and corners as vectors: every vertex reads some, and reading 16 bytes at a time is faster.
 @group(0) @binding(6) var<storage, read> patch_words: array<vec4<u32>>;
 @group(0) @binding(7) var<storage, read> curve_net_words: array<vec4<f32>>;
 @group(0) @binding(8) var<storage, read> corner_words: array<vec4<f32>>;
@@ -18,14 +19,14 @@
 @group(0) @binding(11) var<storage, read> patterns: array<u32>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
 
-// Normals that vertices get, NORMALS_*: a pipeline each, in which what the others need takes no registers.
+// How normals are made, NORMALS_*. Each way has a pipeline of its own, without the registers that the others need.
 override EMIT_NORMALS: u32 = 0u;
 
 const NO_PATCH: u32 = 0xffffffffu;
-// Invocations of a workgroup. Those that make vertices keep control nets, and have the longer runs for it.
+// Invocations of a workgroup. Vertices have fewer, each with more to do, since loading a control net takes long.
 const VERTEX_WORKGROUP: u32 = 128u;
 const TRIANGLE_WORKGROUP: u32 = 256u;
-// Invocations that run in step on most devices: these have items side by side, and mostly of one patch.
+// Invocations that run in lockstep on most GPUs. They work on neighbouring items, which are mostly of one patch.
 const LANES: u32 = 32u;
 
 fn emit_first(workgroup: vec3<u32>, workgroups: vec3<u32>, items: u32) -> u32 {
@@ -66,8 +67,8 @@ fn later_patch(component: u32, item: u32, before: u32, end: u32) -> u32 {
 
 var<workgroup> first_found: u32;
 
-// The same of a workgroup's first item, for which all its `width` invocations look together: each round leaves one part of so
-// many.
+// The same of a workgroup's first item, for which all its `width` invocations look together: each round leaves one part of
+// so many.
 fn find_together(component: u32, item: u32, first: u32, end: u32, local: u32, width: u32) -> u32 {
     var low = first;
     var high = end;
@@ -84,8 +85,8 @@ fn find_together(component: u32, item: u32, first: u32, end: u32, local: u32, wi
     return low;
 }
 
-// Whether the patches of `items` items, of which the last is `last`, have so many each that 32 invocations are worth one patch
-// at a time. They then read it once, and take one path all.
+// Whether the patches of `items` items, of which the last is `last`, have so many each that 32 invocations are worth one
+// patch at a time. They then read it once, and take one path all.
 fn is_of_large_patches(component: u32, items: u32, last: u32, first: u32, end: u32) -> bool {
     let few = first + items / (2u * LANES);
     return few >= end || offsets[few][component] > last;
@@ -111,7 +112,7 @@ fn corner_at(index: u32) -> Corner {
     return Corner(corner_words[2u * index].xyz, corner_words[2u * index + 1u].xy);
 }
 
-// An array that is indexed by what only runs know lives in memory; three values needn't.
+// values[k]. Compilers put an array that is indexed dynamically in memory; selecting keeps three values in registers.
 fn of_three(values: array<u32, 3>, k: u32) -> u32 {
     return select(select(values[0], values[1], k == 1u), values[2], k == 2u);
 }
@@ -123,7 +124,7 @@ struct DomainVertex {
     uv: vec2<f32>,
 }
 
-// Computed in the edge's own direction.
+// A vertex on a side, computed in the direction of the edge, so that both patches at the edge compute the same.
 fn rim_vertex(patch_index: u32, side: u32, side_t: u32) -> DomainVertex {
     let own = patch_at(patch_index);
     let curve = of_three(own.curves, side);
@@ -188,7 +189,7 @@ fn store_vertex(index: u32, patch_index: u32, hull: HullPatch, uv: vec2<u32>) {
         made = rim_vertex(patch_index, at.side, at.t);
     }
     if EMIT_NORMALS == NORMALS_SURFACE {
-        // Every patch's own, also on its rim, where its neighbours' differ.
+        // Each patch's own normal, also on its sides, where neighbours have other normals.
         made.normal = surface_normal(params.surface, hull.net, uv.x, uv.y, made.normal);
     }
     let key = pack_key(patch_index, uv.x, uv.y);
@@ -196,7 +197,7 @@ fn store_vertex(index: u32, patch_index: u32, hull: HullPatch, uv: vec2<u32>) {
     vertex_halves[arrayLength(&vertex_halves) / 2u + index] = vertex_detail(key, made.uv);
 }
 
-// Vertices `first` to `end` of a patch, whose first is `start`, in turns of all lanes.
+// Emits vertices `first`, `first + LANES` and so on up to `end` of the patch whose first vertex is `start`.
 fn emit_patch_vertices(plan: DomainPlan, hull: HullPatch, patch_index: u32, start: u32, first: u32, end: u32) {
     for (var index = first; index < end; index += LANES) {
         let uv = corner_weights(params.convention, domain_point(plan, index - start));
@@ -225,7 +226,7 @@ fn emit_vertices_main(
     }
 }
 
-// From the workgroup's first vertex on, whose patch is at `first_entry`.
+// The workgroup's vertices from `first` on, whose patch is at `first_entry`: all lanes work on one patch at a time.
 fn vertices_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, local: u32) {
     var at = first + emit_start(local, turns);
     let end = min(at + LANES * turns, chunk.vertex_count);
@@ -238,7 +239,7 @@ fn vertices_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loc
         let plan = domain_plan(factors);
         let stop = min(start + point_count(factors), end);
         let hull = load_hull(patch_index);
-        // The outline first, and then the inside, which takes another path.
+        // The outline first, then the inside: each takes another path through domain_point.
         let inside = clamp(start + plan.outer, at, stop);
         emit_patch_vertices(plan, hull, patch_index, start, at + local % LANES, inside);
         emit_patch_vertices(plan, hull, patch_index, start, inside + local % LANES, stop);
@@ -247,7 +248,7 @@ fn vertices_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, loc
     }
 }
 
-// The same, an item an invocation.
+// The same, with each invocation finding the patch of its own vertex.
 fn vertices_by_item(chunk: Chunk, first_entry: u32, first: u32, turns: u32, local: u32) {
     var known = NO_PATCH;
     var entry = first_entry;
@@ -277,7 +278,8 @@ fn store_triangle(index: u32, corners: vec3<u32>) {
     indices[3u * index + 2u] = corners.z;
 }
 
-// Triangles `first` to `end` of a patch, whose first is `start` and whose vertices start at `base`, in turns of all lanes.
+// Emits triangles `first`, `first + LANES` and so on up to `end` of the patch whose first triangle is `start` and whose
+// first vertex is `base`.
 fn emit_patch_triangles(plan: DomainPlan, base: u32, start: u32, first: u32, end: u32) {
     for (var index = first; index < end; index += LANES) {
         store_triangle(index, base + domain_triangle(plan, index - start));
@@ -314,7 +316,7 @@ fn triangles_by_patch(chunk: Chunk, first_entry: u32, first: u32, turns: u32, lo
         let factors = patch_factors[entry];
         let plan = domain_plan(factors);
         let stop = min(starts.y + triangle_count(factors), end);
-        // Those at the outline first, and then the others, which take another path.
+        // Those at the outline first, then the others: each takes another path through domain_triangle.
         let inside = clamp(starts.y + plan.outer + 3u * (plan.n - 2u), at, stop);
         emit_patch_triangles(plan, starts.x, starts.y, at + local % LANES, inside);
         emit_patch_triangles(plan, starts.x, starts.y, inside + local % LANES, stop);

@@ -1,20 +1,20 @@
-// One factor an edge, or as published one a curve. An edge whose sides do not all share one curve takes the largest that
-// any of its curves asks for.
+// LOD's factor of every edge. An edge whose sides don't all share one curve takes the largest factor of its curves. (As
+// published, every side has a factor of its own, that of its one curve.)
 
-// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<f32>;
-// Of what is displaced.
+// Only of meshes with heights: see Share in types.wgsl.
 @group(0) @binding(6) var<storage, read> shares: array<Share>;
 @group(0) @binding(7) var<storage, read> patches: array<Patch>;
-// How far level l of each height image is from its level 0 at most, four levels an element.
+// How far each mip level of each height image is at most from its level 0: four levels in each vector.
 @group(0) @binding(22) var<uniform> details: array<array<vec4<f32>, 4>, MAX_MAPS>;
 
-// In place of one image.
+// In place of the number of one height image: all of them.
 const ALL_MAPS: u32 = 0xffffffffu;
 
 fn curve_factor(index: u32) -> f32 {
@@ -38,7 +38,7 @@ fn curve_factor(index: u32) -> f32 {
     return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
 }
 
-// What the heights over a curve ask for: one image's, or those of all its edge's sides.
+// The factor that the heights along a curve need: those of one height image, or of all images on its edge's sides.
 fn relief_of(index: u32, curve_index: u32, map: u32) -> f32 {
     let curve = curves[curve_index];
     let a = points[curve.points[0]].xyz;
@@ -63,7 +63,8 @@ fn relief_of(index: u32, curve_index: u32, map: u32) -> f32 {
     return factor;
 }
 
-// What LOD makes of an edge, where it is displaced by error: by one image, or by those of all its sides.
+// LOD's factor of an edge. If LOD is by error and the mesh is displaced, heights count too: those of one height image, or
+// of all.
 fn lod_factor(index: u32, map: u32) -> f32 {
     var factor = params.factor;
     if params.lod != LOD_UNIFORM {
@@ -94,13 +95,14 @@ fn edge_factors_main(
     edge_factors[index] = lod_factor(index, ALL_MAPS);
 }
 
-// Whether other images than a patch's own speak for an edge.
+// Whether an edge has a side with another height image than this one.
 fn has_others(index: u32, own: u32) -> bool {
     let first = shares[params.point_count + index];
     return first.next > 0u || first.map != own;
 }
 
-// Where edges' sides have different images: what a patch's own asks for inside it, behind the edges' factors.
+// The factor that the heights of every patch need inside it, from its own height image alone. Needed if the sides of some
+// edge have different images.
 @compute @workgroup_size(256)
 fn heights_inside_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,

@@ -1,8 +1,8 @@
-// What points, edges and corners share where a mesh is displaced. Once a mesh (or pose): the direction of every point, and
-// how texture coordinates change at every corner. Then, with the
-// factors: the level of the height image that fits the segments of every edge, and for a point the finest of its edges'.
+// What points, edges and corners share where a mesh is displaced. When the mesh or its pose changes: the direction in which
+// every point moves, and the gradients of the texture coordinates at every corner. When factors change: the level of the
+// height image whose px are about as long as the segments of an edge, and for every point the finest level of its edges.
 
-// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
@@ -10,9 +10,9 @@
 @group(0) @binding(4) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(5) var<storage, read> given_factors: array<vec4<u32>>;
 @group(0) @binding(6) var<storage, read_write> shares: array<Share>;
-// Where each point's run of what follows starts, and where the last ends.
+// Where the list of each point (or corner) starts in one of the next two buffers, then where the last list ends.
 @group(0) @binding(7) var<storage, read> starts: array<u32>;
-// A corner and the bits of its part.
+// A corner of the point, and the bits of its weight in the point's direction.
 @group(0) @binding(8) var<storage, read> parts: array<vec2<u32>>;
 @group(0) @binding(9) var<storage, read> point_factors: array<u32>;
 
@@ -37,7 +37,7 @@ fn directions_main(
     shares[point].direction = unit_or(sum, dominant);
 }
 
-// A corner's patches are in `point_factors`, from `starts` on.
+// Here `starts` and `point_factors` hold the patches of each corner.
 @compute @workgroup_size(256)
 fn frames_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -65,8 +65,8 @@ fn frames_main(
     shares[first + 1u].direction = v * share;
 }
 
-// An edge's factor, 1 to 64; of given ones, that of its dominant side, which may be no number: told by its bits, as those
-// of numbers that are not negative are in their order.
+// An edge's factor, clamped to 1 to 64. Of given factors it is that of the dominant side, and may be NaN; NaN is found by
+// its bits, which as integers are in the order of the numbers if those aren't negative.
 fn segments_of(index: u32, dominant: u32) -> f32 {
     var bits = bitcast<u32>(1.0);
     if params.lod != LOD_GIVEN {

@@ -1,8 +1,8 @@
-// Once a mesh and surface: the control points of every curve, then of every patch's centre.
+// The control points of every curve, then the one at the centre of every patch.
 
-// Not a uniform: some software drivers build a shader anew for every value of one that a branch depends on.
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
-// Points, then every patch's centre, with its height map as w.
+// Points; then, for every patch, the control point at its centre, with the number of its height image as w.
 @group(0) @binding(1) var<storage, read_write> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> curves: array<Curve>;

@@ -1,5 +1,5 @@
-// Makes exclusive prefix sums of (vertices, triangles), in place, of those that counts left within blocks. All in u32, without
-// atomics: the same sums in the same order on every run.
+// Makes exclusive prefix sums of (vertices, triangles), in place, of those that counts left within blocks. All in u32,
+// without atomics: the same sums in the same order on every run.
 
 @group(0) @binding(0) var<uniform> slab: Slab;
 @group(0) @binding(1) var<storage, read_write> offsets: array<vec2<u32>>;

@@ -1,4 +1,4 @@
-// What connectivity.wgsl computes, looked up: `patterns` is a storage buffer of the module that includes this.
+// The functions of connectivity.wgsl as look-ups in a table, the storage buffer `patterns` that the module declares.
 // Twin of src/tessellate/patterns.rs, which says what each function means.
 
 const PATTERN_HALVES: u32 = 33u;

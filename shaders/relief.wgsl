@@ -1,16 +1,16 @@
-// What displacement makes patches agree on, from the buffers of the module that includes this: params, points, patches,
-// corners, shares.
+// Reads what patches share where they are displaced. The module declares the buffers `params`, `points`, `patches`,
+// `corners` and `shares`; see Share in types.wgsl.
 
 fn share_of_factor(index: u32) -> Share {
     return shares[params.point_count + index];
 }
 
-// How a texture coordinate (0 or 1) changes at a corner.
+// The gradient of texture coordinate 0 or 1 at a corner.
 fn corner_gradient(corner: u32, coordinate: u32) -> vec3<f32> {
     return shares[params.point_count + params.factor_count + 2u * corner + coordinate].direction;
 }
 
-// A patch's map, as behind its centre: none is 0.
+// The number of a patch's height image: 1 for the first, 0 for none.
 fn map_of(patch_index: u32) -> u32 {
     return u32(points[params.point_count + patch_index].w);
 }

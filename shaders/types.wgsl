@@ -1,4 +1,4 @@
-// What the passes share. Twin: src/gpu/layout.rs, field by field; a test compares sizes and offsets.
+// Structs and helpers that passes share. src/gpu/layout.rs has the same structs, field by field; a test compares them.
 
 // Settings and view of one tessellation.
 struct Params {
@@ -17,24 +17,25 @@ struct Params {
     tolerance: f32,
     near: f32,
     far: f32,
-    // 1 where patches that face away are left out.
+    // 1 if patches that face away from the eye are left out.
     culls_back: u32,
     convention: u32,
     // How strong Phong tessellation is, 0 to 1.
     alpha: f32,
     normals: u32,
     displacement: u32,
-    // Object units.
+    // In object units: how far white is above black.
     height_scale: f32,
     midlevel: f32,
-    // 1 where some edge's sides have different height images, and factors are by error: patches have factors of their own.
+    // 1 if the sides of some edge have different height images and LOD is by error: then every patch has an inside factor
+    // of its own.
     mixed: u32,
 }
 
-// In place of a LOD: factors are given patch by patch.
+// A value of Params.lod that no LOD has: the factors of every patch were given.
 const LOD_GIVEN: u32 = 5u;
 
-// The run of patches that one scan covers, and what the arena holds.
+// The run of patches that one scan covers, and how much fits the arena.
 struct Slab {
     first_patch: u32,
     patch_count: u32,
@@ -48,9 +49,9 @@ struct Slab {
 struct Patch {
     points: array<u32, 3>,
     corners: array<u32, 3>,
-    // Curve of side k, times 2, plus 1 where the side runs against its edge's direction.
+    // For side k: twice the index of its curve, plus 1 if the side runs against its edge's direction.
     curves: array<u32, 3>,
-    // Factor of side k, times 8, plus the kind of its edge.
+    // For side k: 8 times the index of its factor, plus the kind of its edge.
     factors: array<u32, 3>,
 }
 
@@ -59,29 +60,31 @@ struct Corner {
     uv: vec2<f32>,
 }
 
-// What a set of an edge's sides share: end points in the edge's direction, and those sides.
+// A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of `curve_sides`.
 struct Curve {
     points: array<u32, 2>,
     first_side: u32,
     side_count: u32,
 }
 
-// Control points of a curve: near its start and near its end.
+// The two inner control points of a curve: the one near its start, and the one near its end.
 struct CurveNet {
     ab: vec3<f32>,
     ba: vec3<f32>,
 }
 
-// What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
-// corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, and its dominant
-// side likewise, and one of its sides' images. Of a corner, behind the factors: how its texture coordinates change, one
-// after the other, as directions. Behind the corners: further images of edges' sides.
+// What patches share where they meet, so that displacement doesn't tear them apart. One buffer holds, one after another:
+// - for each point, the direction in which it moves, the level at which its height is looked up, and its dominant corner;
+// - for each factor's edge, the level, the dominant side, and the height image of one of its sides;
+// - for each corner, two elements whose directions are the gradients of its two texture coordinates;
+// - further height images of edges' sides, which `next` leads to.
 struct Share {
     direction: vec3<f32>,
     level: f32,
+    // 4 times a patch, plus which of its corners or sides.
     dominant: u32,
-    // How long the edge is at most in a height image, in px of level 0; that image, 1 for the first, 0 for none; and where
-    // the next of its sides' images stands here, 0 for nowhere.
+    // The length of the edge in that height image in px of level 0, the longest if several sides have it; the image's
+    // number, 1 for the first and 0 for none; and the index of the element with the next image, 0 if there is none.
     texels: f32,
     map: u32,
     next: u32,
@@ -93,20 +96,22 @@ const MAX_LEVELS: u32 = 13u;
 // The most height images that a mesh has.
 const MAX_MAPS: u32 = 256u;
 
-// One of the height images: width and height of level 0 in px, and where it starts among all heights.
+// One of the height images: width and height of its level 0 in px, its number of mip levels, and where its heights start
+// among those of all images.
 struct HeightMap {
     @align(16) size: vec2<u32>,
     levels: u32,
     start: u32,
-    // 1 where it starts again where it ends.
+    // 1 if it repeats, 0 if the px at its border go on for ever.
     repeats: u32,
 }
 
-// A vertex as it is drawn: position, normal packed in 32 bits, patch and domain coordinates packed in 64, uv.
+// A vertex as it is drawn: position, a normal packed in 32 bits, patch and domain coordinates packed in 64 (the key), and
+// texture coordinates.
 //
-// The arena holds the first half of every vertex, its place, and behind them all the second of every vertex, its detail:
-// invocations side by side then fill whole lines of memory (where halves take turns, storing takes twice as long), and who
-// needs no more than places reads no more.
+// The arena holds the first half (the place) of every vertex, and then the second half (the detail) of every vertex. So
+// neighbouring invocations fill whole cache lines, where alternating halves take twice as long to store; and a draw that
+// needs only places reads only places.
 struct Vertex {
     x: f32,
     y: f32,
@@ -140,14 +145,16 @@ struct Chunk {
     triangle_count: u32,
 }
 
-// Indirect arguments of a chunk's two emit dispatches, and of displacement, which takes a vertex an invocation.
+// Indirect arguments of the two dispatches that emit a chunk, and of the one that displaces it with one invocation a
+// vertex.
 struct EmitArgs {
     vertices: array<u32, 3>,
     triangles: array<u32, 3>,
     displaced: array<u32, 3>,
 }
 
-// Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices one corner at a time.
+// Indirect arguments of the draw of one material's triangles of a chunk: for an indexed draw, and for one without an index
+// buffer whose shader fetches (pulls) each corner's vertex itself.
 struct DrawArgs {
     index_count: u32,
     instance_count: u32,
@@ -160,11 +167,11 @@ struct DrawArgs {
     pull_first_instance: u32,
 }
 
-// Whether what an edge's sides agree on is computed by the edge, or by every patch for itself.
+// Whether what patches share at an edge is computed once for the edge, or by every patch on its own.
 const EDGES_PER_EDGE: u32 = 0u;
 const EDGES_AS_PUBLISHED: u32 = 1u;
 
-// U and V need 17 bits each; the patch gets the other 30.
+// A key: u and v take 17 bits each, the patch the other 30.
 fn pack_key(patch_index: u32, u: u32, v: u32) -> vec2<u32> {
     return vec2<u32>(u | (v << 17u), (v >> 15u) | (patch_index << 2u));
 }
@@ -177,9 +184,10 @@ fn key_uv(key: vec2<u32>) -> vec2<u32> {
     return vec2<u32>(key.x & 0x1ffffu, (key.x >> 17u) | ((key.y & 3u) << 15u));
 }
 
+// Invocations of a workgroup of most passes.
 const WORKGROUP: u32 = 256u;
 
-// Of so many vertices, or triangles, those that a workgroup of emission makes: as many as leave work for every processor.
+// How many of a chunk's vertices (or triangles) each workgroup emits. Few enough that all processors of a GPU have work.
 fn emit_items(count: u32) -> u32 {
     return select(2048u, 4096u, count >= 0x700000u);
 }
@@ -187,7 +195,7 @@ fn emit_items(count: u32) -> u32 {
 // The workgroups along the first dimension of a grid. WebGPU allows 65,535 in each.
 const GRID_WIDTH: u32 = 32768u;
 
-// Work of any size as a grid within 65,535 workgroups a dimension; the index of an invocation in such a grid.
+// The workgroups in each dimension for so many invocations.
 fn grid(items: u32) -> array<u32, 3> {
     return workgroup_grid((items + WORKGROUP - 1u) / WORKGROUP);
 }
@@ -197,6 +205,7 @@ fn workgroup_grid(workgroups: u32) -> array<u32, 3> {
     return array<u32, 3>(x, (workgroups + GRID_WIDTH - 1u) / GRID_WIDTH, 1u);
 }
 
+// The index of an invocation in such a grid.
 fn grid_index(workgroup: vec3<u32>, workgroups: vec3<u32>, local: u32) -> u32 {
     return (workgroup.y * workgroups.x + workgroup.x) * WORKGROUP + local;
 }

@@ -1,12 +1,12 @@
-//! What host and shaders share. Twin: `shaders/types.wgsl` and `shaders/draw_types.wgsl`, field by field; a test
-//! compares sizes and offsets. Padding is spelled out, so that every byte written is known.
+//! Structs that passes read and write. `shaders/types.wgsl` has the same, field by field; a test compares sizes and offsets.
+//! Padding is spelled out, so that every byte that is written is known.
 
 use bytemuck::{Pod, Zeroable};
 
 pub use crate::mesh::rig::{Binding, Delta, JointMatrix};
 pub use crate::tessellate::{PatchFactors, Vertex};
 
-/// View that factors are computed for; `LodView` in WGSL.
+/// The view that factors are computed for.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct LodView {
@@ -19,7 +19,7 @@ pub struct LodView {
     pub radius: f32,
 }
 
-/// In place of [`crate::tessellate::Lod`] in [`Params::lod`]: factors are given patch by patch, and LOD has no say.
+/// A value of [`Params::lod`] that no [`crate::tessellate::Lod`] has: the factors of every patch were given.
 pub const LOD_GIVEN: u32 = 5;
 
 /// Settings and view of one tessellation.
@@ -43,22 +43,23 @@ pub struct Params {
     /// Bounding radii.
     pub near: f32,
     pub far: f32,
-    /// 1 where patches that face away are left out.
+    /// 1 if patches that face away from the eye are left out.
     pub culls_back: u32,
     pub convention: u32,
     /// How strong Phong tessellation is, 0 to 1.
     pub alpha: f32,
     pub normals: u32,
     pub displacement: u32,
-    /// Object units.
+    /// In object units: how far white is above black.
     pub height_scale: f32,
     pub midlevel: f32,
-    /// 1 where some edge's sides have different height images, and factors are by error: patches have factors of their own.
+    /// 1 if the sides of some edge have different height images and LOD is by error: then every patch has an inside factor of
+    /// its own.
     pub mixed: u32,
     pub _pad: [u32; 2],
 }
 
-/// The run of patches that one scan covers, and what the arena holds.
+/// The run of patches that one scan covers, and how much fits the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Slab {
@@ -77,9 +78,9 @@ pub struct Slab {
 pub struct Patch {
     pub points: [u32; 3],
     pub corners: [u32; 3],
-    /// Curve of side k, times 2, plus 1 where the side runs against its edge's direction.
+    /// For side k: twice the index of its curve, plus 1 if the side runs against its edge's direction.
     pub curves: [u32; 3],
-    /// Factor of side k, times 8, plus the kind of its edge.
+    /// For side k: 8 times the index of its factor, plus the kind of its edge.
     pub factors: [u32; 3],
 }
 
@@ -93,7 +94,7 @@ pub struct Corner {
     pub _pad2: [f32; 2],
 }
 
-/// What a set of an edge's sides share.
+/// A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of sides.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Curve {
@@ -102,7 +103,7 @@ pub struct Curve {
     pub side_count: u32,
 }
 
-/// Control points of a curve: near its start and near its end.
+/// The two inner control points of a curve: the one near its start, and the one near its end.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CurveNet {
@@ -112,31 +113,35 @@ pub struct CurveNet {
     pub _pad2: f32,
 }
 
-/// What displacement shares. Of a point: the direction in which it moves, and the level of the height image; its dominant
-/// corner, as a patch times 4, plus which of its corners. Of a factor's edge, behind the points: the level, its dominant
-/// side likewise, and one of its sides' images. Of a corner, behind the factors: how its texture coordinates change, one
-/// after the other, as directions. Behind the corners: further images of edges' sides.
+/// What patches share where they meet, so that displacement doesn't tear them apart. One buffer holds, one after another:
+/// - for each point, the direction in which it moves, the level at which its height is looked up, and its dominant corner;
+/// - for each factor's edge, the level, the dominant side, and the height image of one of its sides;
+/// - for each corner, two elements whose directions are the gradients of its two texture coordinates;
+/// - further height images of edges' sides, which `next` leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Share {
     pub direction: [f32; 3],
     pub level: f32,
+    /// 4 times a patch, plus which of its corners or sides.
     pub dominant: u32,
-    /// How long the edge is at most in a height image, in px of level 0; that image, 1 for the first, 0 for none; and where
-    /// the next of its sides' images stands here, 0 for nowhere.
+    /// The length of the edge in that height image in px of level 0; the longest if several sides have the image.
     pub texels: f32,
+    /// The number of that height image: 1 for the first, 0 for none.
     pub map: u32,
+    /// The index of the element with the next image of the edge's sides, 0 if there is none.
     pub next: u32,
 }
 
-/// One of the height images: width and height of level 0 in px, and where it starts among all heights.
+/// One of the height images: width and height of its level 0 in px, its number of mip levels, and where its heights start among
+/// those of all images.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct HeightMap {
     pub size: [u32; 2],
     pub levels: u32,
     pub start: u32,
-    /// 1 where it starts again where it ends.
+    /// 1 if it repeats, 0 if the px at its border go on for ever.
     pub repeats: u32,
     pub _pad: [u32; 3],
 }
@@ -153,7 +158,7 @@ pub struct Chunk {
     pub triangle_count: u32,
 }
 
-/// Indirect arguments of a chunk's two emit dispatches.
+/// Indirect arguments of the two dispatches that emit a chunk, and of the one that displaces it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct EmitArgs {
@@ -162,7 +167,8 @@ pub struct EmitArgs {
     pub displaced: [u32; 3],
 }
 
-/// Indirect arguments of one material's draw within a chunk: indexed, and by pulling vertices.
+/// Indirect arguments of the draw of one material's triangles of a chunk: for an indexed draw, and for one without an index buffer
+/// whose shader fetches (pulls) each corner's vertex itself.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct DrawArgs {

@@ -1,4 +1,4 @@
-//! What host and draws share. Twin: `shaders/draw_types.wgsl`, field by field; a test compares sizes and offsets.
+//! Structs and constants that draws share. `shaders/draw_types.wgsl` has the same; tests compare them.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -12,7 +12,7 @@ use crate::settings::{Colors, Overlays};
 #[repr(C)]
 pub struct Frame {
     pub clip_from_object: [[f32; 4]; 4],
-    /// Unit directions in object space, towards the lights that travel with the camera.
+    /// Unit directions in object space towards the two lights, which move with the camera.
     pub key_light: [f32; 4],
     pub fill_light: [f32; 4],
     /// The eye's position (w = 1), or the direction towards it when the projection is orthographic (w = 0).
@@ -25,12 +25,12 @@ pub struct Frame {
     pub ulp: f32,
     /// Which side each of a patch's factors lies on: a [`crate::tessellate::Convention`].
     pub convention: u32,
-    /// The scale that the surface's colours are read against, if they are numbers.
+    /// The ends of the colour scale, if the surface's colours stand for numbers.
     pub scale_least: f32,
     pub scale_most: f32,
-    /// How many px a unit takes where w is 1, if distances are counted in px; else 0.
+    /// Px of an object unit where w is 1, if deviations are shown in px; else 0.
     pub px_per_unit: f32,
-    /// sRGB, 0 to 1; the fourth is nothing.
+    /// The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     pub scale: [[f32; 4]; Scale::STOPS],
 }
 
@@ -42,7 +42,7 @@ pub struct Material {
     pub base_color: [f32; 4],
 }
 
-/// What lies under a pixel.
+/// What is in front at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Pick {
