@@ -5,6 +5,10 @@ use std::collections::HashSet;
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
 use crate::mesh::MemoryAccount;
@@ -166,53 +170,42 @@ fn percent_decoded(text: &str) -> Vec<u8> {
     decoded
 }
 
-/// RFC 4648, section 4; line breaks and missing padding are forgiven.
-fn base64(text: &str) -> Result<Vec<u8>, String> {
-    let mut decoded = Vec::with_capacity(text.len() / 4 * 3);
-    let (mut bits, mut held) = (0_u32, 0);
-    let digits = text.bytes().filter(|byte| !byte.is_ascii_whitespace());
-    for byte in digits.take_while(|&byte| byte != b'=') {
-        let digit = match byte {
-            b'A'..=b'Z' => byte - b'A',
-            b'a'..=b'z' => byte - b'a' + 26,
-            b'0'..=b'9' => byte - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => {
-                return Err(format!(
-                    "the data URI has a character that isn't base64, {:?}; export the model again",
-                    char::from(byte)
-                ));
-            }
-        };
-        // Six bits in, eight out whenever there are enough; what was given out is shifted out of sight.
-        bits = (bits << 6) | u32::from(digit);
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            decoded.push((bits >> held) as u8);
-        }
-    }
-    Ok(decoded)
-}
+/// RFC 4648, section 4, without the checks of how the text ends.
+const FORGIVING: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new()
+        .with_decode_allow_trailing_bits(true)
+        .with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
 
-/// Base64 of some bytes, for documents made in tests.
-#[cfg(test)]
-pub fn to_base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for chunk in bytes.chunks(3) {
-        let bits = chunk.iter().fold(0_u32, |bits, &byte| (bits << 8) | u32::from(byte)) << (8 * (3 - chunk.len()));
-        for k in 0..4 {
-            let digit = char::from(DIGITS[(bits >> (18 - 6 * k)) as usize & 63]);
-            text.push(if k <= chunk.len() { digit } else { '=' });
+/// Digits that are decoded at once, a multiple of 4: so much more memory than the bytes is used, and no more.
+const DIGITS: usize = 4096;
+
+/// Base64 as bytes; line breaks and missing padding are forgiven, and what follows the padding is left out.
+fn base64(text: &str) -> Result<Vec<u8>, String> {
+    let wrong = |byte| format!("the data URI has a character that isn't base64, {byte:?}; export the model again");
+    let mut decoded = Vec::with_capacity(text.len() / 4 * 3);
+    let mut digits = text.bytes().filter(|byte| !byte.is_ascii_whitespace()).take_while(|&byte| byte != b'=');
+    loop {
+        let mut block: Vec<u8> = digits.by_ref().take(DIGITS).collect();
+        if block.is_empty() {
+            return Ok(decoded);
         }
+        if let Some(&byte) = block.iter().find(|&&byte| !STANDARD.as_str().as_bytes().contains(&byte)) {
+            return Err(wrong(char::from(byte)));
+        }
+        // A last digit alone is no byte yet.
+        if block.len() % 4 == 1 {
+            block.pop();
+        }
+        FORGIVING.decode_vec(&block, &mut decoded).map_err(|error| error.to_string())?;
     }
-    text
 }
 
 #[cfg(test)]
 mod tests {
+    use base64::prelude::BASE64_STANDARD;
+
     use super::*;
     use proptest::prelude::*;
 
@@ -270,10 +263,23 @@ mod tests {
         assert!(read_data(";base64Zm9v", 5).unwrap_err().contains("no comma"));
     }
 
+    #[test]
+    fn long_data_is_decoded_in_blocks_and_its_line_breaks_and_end_are_forgiven() {
+        let bytes: Vec<u8> = (0..10_000_u32).map(|i| (i * i >> 3) as u8).collect();
+        let text = BASE64_STANDARD.encode(&bytes);
+        let lines: Vec<&str> = text.as_bytes().chunks(76).map(|line| std::str::from_utf8(line).unwrap()).collect();
+        assert_eq!(base64(&lines.join("\r\n")), Ok(bytes.clone()));
+        assert_eq!(base64(text.trim_end_matches('=')), Ok(bytes.clone()));
+        assert_eq!(base64("Zm9vY"), Ok(b"foo".to_vec()), "a digit alone is no byte");
+        assert_eq!(base64("Zm9=Zm9v"), Ok(b"fo".to_vec()), "what follows the padding is left out");
+        let said = base64(&format!("{text}*").replace('=', "")).unwrap_err();
+        assert!(said.contains("isn't base64, '*'"), "{said}");
+    }
+
     proptest! {
         #[test]
         fn base64_there_and_back(bytes in prop::collection::vec(any::<u8>(), 0..50)) {
-            prop_assert_eq!(base64(&to_base64(&bytes)), Ok(bytes));
+            prop_assert_eq!(base64(&BASE64_STANDARD.encode(&bytes)), Ok(bytes));
         }
     }
 }

@@ -6,6 +6,7 @@ mod mutations;
 mod packed;
 pub use mutations::seeds;
 
+use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
@@ -79,7 +80,7 @@ impl Draft {
     }
 
     fn document(&self) -> Value {
-        let uri = format!("data:application/octet-stream;base64,{}", uri::to_base64(&self.bytes));
+        let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&self.bytes));
         let mut root = self.root.clone();
         // A test may have said something of its own.
         let mut buffer = root["buffers"].get(0).cloned().unwrap_or(json!({ "byteLength": self.bytes.len() }));

@@ -3,6 +3,7 @@
 use super::*;
 use crate::load::gltf::schema::MESHOPT;
 use crate::load::uri;
+use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// A folder with a document's folder in it, and things around it that are none of a document's business.
 pub struct Folder(PathBuf);
@@ -67,7 +68,7 @@ fn textured(image: &[u8]) -> String {
     draft.root["meshes"][0]["primitives"][0]["material"] = json!(0);
     draft.root["materials"] = json!([{ "name": "m", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
     draft.root["textures"] = json!([{ "source": 0 }]);
-    draft.root["images"] = json!([{ "uri": format!("data:image/png;base64,{}", uri::to_base64(image)) }]);
+    draft.root["images"] = json!([{ "uri": format!("data:image/png;base64,{}", BASE64_STANDARD.encode(image)) }]);
     draft.document().to_string()
 }
 
