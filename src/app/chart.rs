@@ -9,6 +9,7 @@ use super::typed::Purpose;
 use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 use crate::names::shown_path;
 use crate::settings::Settings;
+use crate::tessellate::Tessellation;
 
 /// What the chart's panel is about.
 #[derive(Default)]
@@ -122,7 +123,7 @@ impl App {
 
     /// What is tried, in order.
     pub(super) fn chart_settings(&self) -> Vec<Setting> {
-        let plan = Plan { normals: vec![self.settings.normals], ..self.chart.plan.clone() };
+        let plan = Plan { normals: vec![self.settings.tessellation.normals], ..self.chart.plan.clone() };
         coarse_first(plan.settings())
     }
 
@@ -229,7 +230,20 @@ impl Of {
 
 /// What settings that are tried have in common: all but what they change.
 fn base(settings: &Settings) -> Settings {
-    let Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
-        Settings::default();
-    Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, ..whole(settings) }
+    let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
+        Tessellation::default();
+    let whole = whole(settings);
+    let tried = Tessellation {
+        surface,
+        normals,
+        partitioning,
+        lod,
+        factor,
+        pixels,
+        tolerance,
+        near,
+        far,
+        ..whole.tessellation
+    };
+    whole.with(tried)
 }

@@ -4,14 +4,13 @@ use std::time::{Duration, Instant};
 
 use super::App;
 use super::beside::Beside;
-use super::choices::surface_name;
 use super::deviating::Deviating;
 use super::document::arena_bytes;
 use super::measuring::{Measuring, Trouble};
 use crate::engine::Engine;
 use crate::gpu::GpuError;
 use crate::render::Scene;
-use crate::settings::Half;
+use crate::settings::{Choice, SplitSide};
 use crate::view::ScreenView;
 
 /// What takes longer to make than this is said to be made.
@@ -61,11 +60,11 @@ impl App {
     pub(super) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.is_free()) else { return Ok(()) };
         let scene = &mut document.scene;
-        let is_wanted = self.settings.half(Half::Left).is_some();
+        let is_wanted = self.settings.half(SplitSide::Left).is_some();
         if !is_wanted {
             self.left.making = None;
         }
-        if is_wanted == scene.half(Half::Left).is_some() {
+        if is_wanted == scene.half(SplitSide::Left).is_some() {
             return Ok(());
         }
         if !is_wanted {
@@ -98,9 +97,9 @@ impl App {
     /// Measures the left half's cracks and the points of its edges as long as they are shown.
     pub(super) fn measure_left(&mut self, view: ScreenView) -> Result<(), Trouble> {
         let is_selected = self.selected_edge.is_some() || self.selected_triangle().is_some();
-        let is_wanted = self.settings.half(Half::Left).is_some() && (self.settings.overlays.cracks || is_selected);
+        let is_wanted = self.settings.half(SplitSide::Left).is_some() && (self.settings.overlays.cracks || is_selected);
         let Some(document) = self.document.as_mut() else { return Ok(()) };
-        let left = document.scene.half_mut(Half::Left).filter(|left| is_wanted && left.tessellator.is_counted());
+        let left = document.scene.half_mut(SplitSide::Left).filter(|left| is_wanted && left.tessellator.is_counted());
         let Some(scene) = left else {
             if self.left.measuring.is_busy() {
                 self.left.measuring.forget();
@@ -112,16 +111,16 @@ impl App {
     }
 
     /// What is known of a half.
-    pub(super) fn measured(&self, half: Half) -> &Measuring {
+    pub(super) fn measured(&self, half: SplitSide) -> &Measuring {
         match half {
-            Half::Left => &self.left.measuring,
-            Half::Right => &self.measuring,
+            SplitSide::Left => &self.left.measuring,
+            SplitSide::Right => &self.measuring,
         }
     }
 
     /// What is written over a half of two surfaces: the method, and while that is shown how far off it is.
-    pub(super) fn half_title(&self, half: Half) -> Option<String> {
-        let name = surface_name(self.settings.half(half)?.surface);
+    pub(super) fn half_title(&self, half: SplitSide) -> Option<String> {
+        let name = self.settings.half(half)?.tessellation.surface.label();
         Some(match self.largest_text(half) {
             Some(largest) => format!("{name}: {largest}"),
             None => name.to_owned(),

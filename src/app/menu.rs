@@ -8,7 +8,8 @@ use super::typed::{Purpose, taken_at};
 use crate::load::Source;
 use crate::mesh::Shape;
 use crate::render::{Camera, Standpoint};
-use crate::settings::{FACTOR_RANGE, Overlay};
+use crate::settings::Overlay;
+use crate::settings::options::FACTOR_RANGE;
 use crate::tessellate::{Edges, Lod};
 
 const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
@@ -272,9 +273,9 @@ impl App {
         self.overlay_keys(context);
         self.camera_keys(context);
         let steps = presses(context, Key::Plus) + presses(context, Key::Equals) - presses(context, Key::Minus);
-        if steps != 0.0 && matches!(self.settings.used_lod(), Lod::Uniform | Lod::Distance) {
-            let factor = self.settings.factor + steps;
-            self.settings.factor = factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
+        if steps != 0.0 && matches!(self.settings.tessellation.used_lod(), Lod::Uniform | Lod::Distance) {
+            let factor = self.settings.tessellation.factor + steps;
+            self.settings.tessellation.factor = factor.clamp(FACTOR_RANGE.least, FACTOR_RANGE.most);
         }
         // What has the focus takes it.
         if pressed(context, Key::Space) && context.memory(|memory| memory.focused().is_none()) {
@@ -296,7 +297,7 @@ impl App {
             self.toggle_frozen();
         }
         if pressed(context, Key::E) {
-            let published = self.settings.edges == Edges::AsPublished;
+            let published = self.settings.tessellation.edges == Edges::AsPublished;
             self.settings.set_edges(if published { Edges::PerEdge } else { Edges::AsPublished });
         }
     }

@@ -26,6 +26,7 @@ mod marked;
 mod measuring;
 mod menu;
 mod names;
+mod option_rows;
 mod palette;
 mod panels;
 mod patch;

@@ -3,12 +3,13 @@
 use egui::{Button, Context, Key, TextEdit, ThemePreference};
 
 use super::App;
-use super::choices::{CLIPS, COLORS, CONVENTIONS, EDGES, LODS, NORMALS, OVERLAYS, PARTITIONINGS, SURFACES};
+use super::choices::switched_overlays;
 use super::typed::Purpose;
 use crate::load::Source;
 use crate::mesh::Shape;
 use crate::render::Standpoint;
-use crate::settings::Settings;
+use crate::settings::{Choice, Colors, Declaration, Settings, Value, options};
+use crate::tessellate::Edges;
 
 /// Commands that are listed at once.
 const LISTED: usize = 14;
@@ -52,7 +53,9 @@ const PLAIN: [Plain; 30] = [
     ("Top", "7", |app, _| app.camera.look_from(Standpoint::Top)),
     ("Orthographic", "5", |app, _| app.camera.orthographic = !app.camera.orthographic),
     ("Adaptive LOD", "L", |app, _| app.toggle_lod()),
-    ("Cull back faces", "", |app, _| app.settings.cull_back_faces = !app.settings.cull_back_faces),
+    ("Cull back faces", "", |app, _| {
+        app.settings.tessellation.cull_back_faces = !app.settings.tessellation.cull_back_faces
+    }),
     ("Freeze LOD camera", "Z", |app, _| app.toggle_frozen()),
     ("Displacement", "D", |app, _| app.toggle_displacement()),
     ("Split view", "S", |app, _| app.toggle_split()),
@@ -68,15 +71,24 @@ const PLAIN: [Plain; 30] = [
 ];
 
 /// A command for each value of a setting.
-fn choices<T: Copy + 'static>(
+fn choices<T: Choice>(
     what: &'static str,
-    values: impl IntoIterator<Item = (T, &'static str)>,
+    values: impl IntoIterator<Item = T>,
     set: fn(&mut Settings, T),
 ) -> impl Iterator<Item = Command> {
-    values.into_iter().map(move |(value, name)| Command {
-        title: format!("{what}: {name}"),
+    values.into_iter().map(move |value| Command {
+        title: format!("{what}: {}", value.label()),
         key: "",
         run: Box::new(move |app, _| set(&mut app.settings, value)),
+    })
+}
+
+/// A command for each value of an option.
+fn option_choices(option: &'static Declaration) -> impl Iterator<Item = Command> {
+    option.kind.descriptions().into_iter().map(move |value| Command {
+        title: format!("{}: {}", option.label, value.label),
+        key: "",
+        run: Box::new(move |app, _| _ = option.set(&mut app.settings, Value::Name(value.name))),
     })
 }
 
@@ -84,18 +96,15 @@ fn choices<T: Copy + 'static>(
 fn commands(app: &App) -> Vec<Command> {
     let plain = |(title, key, run): Plain| Command { title: title.to_owned(), key, run: Box::new(run) };
     let mut all: Vec<Command> = PLAIN.into_iter().map(plain).collect();
-    all.extend(choices("Surface", SURFACES, |settings, surface| settings.surface = surface));
-    all.extend(choices("Shading", NORMALS, |settings, normals| settings.normals = normals));
-    let partitionings = PARTITIONINGS.map(|(value, name, _)| (value, name));
-    all.extend(choices("Partitioning", partitionings, |settings, value| settings.partitioning = value));
-    all.extend(choices("Edges", EDGES, Settings::set_edges));
-    all.extend(choices("LOD", LODS, |settings, lod| settings.lod = lod));
-    all.extend(choices("Clipping", CLIPS, |settings, clip| settings.clip = clip));
-    all.extend(choices("Convention", CONVENTIONS, |settings, convention| settings.convention = convention));
-    let colors = COLORS.map(|(value, name, _)| (value, name));
-    all.extend(choices("Colours", colors, |settings, colors| settings.overlays.colors = colors));
-    let overlays = OVERLAYS.map(|(overlay, name, _)| (overlay, name));
-    all.extend(choices("Overlay", overlays, |settings, overlay| settings.overlays.toggle(overlay)));
+    all.extend(option_choices(&options::SURFACE));
+    all.extend(option_choices(&options::NORMALS));
+    all.extend(option_choices(&options::PARTITIONING));
+    all.extend(choices(options::EDGES.label, Edges::ALL.iter().copied(), Settings::set_edges));
+    all.extend(option_choices(&options::LOD));
+    all.extend(option_choices(&options::CLIP));
+    all.extend(option_choices(&options::CONVENTION));
+    all.extend(choices("Colours", Colors::ALL.iter().copied(), |settings, colors| settings.overlays.colors = colors));
+    all.extend(choices("Overlay", switched_overlays(), |settings, overlay| settings.overlays.toggle(overlay)));
     let opens = |title: String, source: Source| Command {
         title,
         key: "",

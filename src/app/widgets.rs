@@ -1,6 +1,5 @@
 //! Pieces that the panels share.
 
-use clap::ValueEnum;
 use egui::RichText;
 
 /// A section's name, and a line under it.
@@ -8,12 +7,6 @@ pub fn heading(ui: &mut egui::Ui, text: &str) {
     ui.add_space(8.0);
     ui.label(RichText::new(text).strong());
     ui.separator();
-}
-
-/// What the commands say of a value.
-pub fn explanation(value: impl ValueEnum) -> String {
-    let help = value.to_possible_value().and_then(|value| value.get_help().map(ToString::to_string));
-    format!("{}.", help.unwrap_or_default())
 }
 
 /// A row with a name and a list to choose from.
@@ -34,20 +27,6 @@ pub fn chooser<T: Copy + PartialEq>(
     });
     combo.response.labelled_by(label.id).on_hover_text(hover);
     ui.end_row();
-}
-
-/// The same for values that commands take too: their explanations are the commands'.
-pub fn value_chooser<T: ValueEnum + PartialEq + Copy>(
-    ui: &mut egui::Ui,
-    name: &str,
-    hover: &str,
-    value: &mut T,
-    choices: &[(T, &str)],
-) {
-    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(*choice)).collect();
-    let all: Vec<_> =
-        choices.iter().zip(&explanations).map(|(&(choice, text), help)| (choice, text, help.as_str())).collect();
-    chooser(ui, name, hover, value, &all);
 }
 
 /// The same where there is nothing to choose, and why.

@@ -6,7 +6,7 @@ use super::beside::Beside;
 use super::menu::KEYS;
 use super::typed::{Dialog, Purpose};
 use super::{App, desktop};
-use crate::cli::Shown;
+use crate::cli::CopiedCommand;
 use crate::load::{HeightSource, Source};
 
 /// Ends of names of files that hold meshes.
@@ -77,7 +77,7 @@ impl App {
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
             *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
         }
-        let shown = Shown {
+        let shown = CopiedCommand {
             source: &source,
             preparation: &preparation,
             settings: &self.settings,
@@ -88,7 +88,7 @@ impl App {
             truth: truth.as_ref(),
             triangle: self.selected_triangle(),
         };
-        let command = shown.command();
+        let command = shown.line();
         context.copy_text(command.clone());
         self.command = Some(command);
     }

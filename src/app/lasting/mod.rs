@@ -15,7 +15,7 @@ use super::beside::Beside;
 use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::Settings;
-
+use crate::tessellate::Tessellation;
 use kept::{Kept, KeptFile, MAX_FILES, Seen};
 
 pub use kept::{Frame, LEAST_SIZE};
@@ -247,7 +247,10 @@ impl App {
     /// Goes back to how the window first opened; the mesh stays, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = Frame::default();
-        self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
+        self.settings = Settings::opening().with(Tessellation {
+            displacement: self.settings.tessellation.displacement,
+            ..Settings::opening().tessellation
+        });
         self.history = Default::default();
         self.last_split = 0.5;
         self.frozen = None;
