@@ -3,7 +3,6 @@
 use std::fmt;
 use std::path::Path;
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -11,7 +10,7 @@ use crate::mesh::adjacency::Layout;
 use crate::mesh::{Mesh, Topology};
 
 /// What a file of indices is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Indices, the corners that they speak of, and the triangle of each patch
     Json,

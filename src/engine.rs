@@ -18,7 +18,7 @@ use crate::measure::{AskedFactors, EmittedChunk, Visitor};
 use crate::mesh::{BuildError, Mesh, Moment, Rim, Topology, with_rim};
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
-use crate::settings::{Half, Settings};
+use crate::settings::{Settings, SplitSide};
 use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated};
 
 pub use measurements::{MeasurementResults, Measurements};
@@ -195,7 +195,7 @@ impl Engine {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
-        scene.tessellator.prepare(settings.normals, settings.displacement)?;
+        scene.tessellator.prepare(settings.tessellation.normals, settings.tessellation.displacement)?;
         self.renderer.prepare(scene, settings)
     }
 
@@ -235,7 +235,7 @@ impl Engine {
         timing: &mut Timing,
     ) -> Result<(), GpuError> {
         let view = camera.lod_view(target.viewport(), &scene.bounds);
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             if let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) {
                 self.count(scene, &settings.inputs(view), timing)?;
             }

@@ -59,7 +59,7 @@ fn uniform(source: Option<Source>) -> Harness<'static, App> {
     choose(&mut harness, "Partitioning", "Fractional odd");
     choose(&mut harness, "LOD", "Uniform");
     choose(&mut harness, "Clipping", "Off");
-    if harness.state().settings().cull_back_faces {
+    if harness.state().settings().tessellation.cull_back_faces {
         harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
     }
     settle(&mut harness);
@@ -92,7 +92,7 @@ fn it_opens_on_a_cube_without_cracks() {
     let mut harness = window(None);
     let app = harness.state();
     assert_eq!(app.source(), Some(&Source::Shape(Shape::CubeSplit)));
-    assert_eq!((app.settings().surface, app.settings().lod), (Surface::PnAen, Lod::Error));
+    assert_eq!((app.settings().tessellation.surface, app.settings().tessellation.lod), (Surface::PnAen, Lod::Error));
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(0));
     harness.get_by_label("cracks 0");
     harness.get_by_label("6 of 12 patches");
@@ -107,12 +107,12 @@ fn the_factor_can_be_slid_typed_and_stepped() {
     let before = harness.state().totals();
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(12.0);
     settle(&mut harness);
-    let slid = harness.state().settings().factor;
+    let slid = harness.state().settings().tessellation.factor;
     press(&mut harness, egui::Key::Plus);
-    assert_eq!(harness.state().settings().factor, slid + 1.0);
+    assert_eq!(harness.state().settings().tessellation.factor, slid + 1.0);
     assert_ne!(harness.state().totals(), before);
     press(&mut harness, egui::Key::Minus);
-    assert_eq!(harness.state().settings().factor, slid);
+    assert_eq!(harness.state().settings().tessellation.factor, slid);
 }
 
 #[test]
@@ -136,32 +136,38 @@ fn every_switch_does_what_it_says() {
     press(&mut harness, egui::Key::W);
     assert!(!harness.state().settings().overlays.wireframe);
     choose(&mut harness, "Partitioning", "Power of two");
-    assert_eq!(harness.state().settings().partitioning, Partitioning::Pow2);
+    assert_eq!(harness.state().settings().tessellation.partitioning, Partitioning::Pow2);
     choose(&mut harness, "LOD", "Edge length");
-    assert_eq!(harness.state().settings().lod, Lod::EdgeLength);
+    assert_eq!(harness.state().settings().tessellation.lod, Lod::EdgeLength);
     choose(&mut harness, "LOD", "Distance");
-    assert_eq!(harness.state().settings().lod, Lod::Distance);
+    assert_eq!(harness.state().settings().tessellation.lod, Lod::Distance);
     harness.get_by_role_and_label(Role::SpinButton, "Near");
     harness.get_by_role_and_label(Role::SpinButton, "far");
     choose(&mut harness, "LOD", "Error");
-    assert_eq!(harness.state().settings().lod, Lod::Error);
+    assert_eq!(harness.state().settings().tessellation.lod, Lod::Error);
     harness.get_by_role_and_label(Role::Slider, "Tolerance");
     choose(&mut harness, "LOD", "Edge length");
     choose(&mut harness, "Clipping", "Frustum");
-    assert_eq!(harness.state().settings().clip, Clip::Frustum);
-    choose(&mut harness, "Edges", "As published");
+    assert_eq!(harness.state().settings().tessellation.clip, Clip::Frustum);
+    choose(&mut harness, "Shared edges", "By each patch");
     let settings = *harness.state().settings();
-    assert_eq!((settings.edges, settings.lod, settings.clip), (Edges::AsPublished, Lod::Paper, Clip::Paper));
+    assert_eq!(
+        (settings.tessellation.edges, settings.tessellation.lod, settings.tessellation.clip),
+        (Edges::AsPublished, Lod::Paper, Clip::Paper)
+    );
 }
 
 #[test]
 fn subtriangulation_is_uniform_and_gives_the_lod_back() {
     let mut harness = window(None);
     let opening = *harness.state().settings();
-    assert_eq!(opening.used_lod(), Lod::Error);
+    assert_eq!(opening.tessellation.used_lod(), Lod::Error);
     choose(&mut harness, "Partitioning", "Subtriangulation");
     let settings = *harness.state().settings();
-    assert_eq!((settings.partitioning, settings.used_lod()), (Partitioning::Subtriangulation, Lod::Uniform));
+    assert_eq!(
+        (settings.tessellation.partitioning, settings.tessellation.used_lod()),
+        (Partitioning::Subtriangulation, Lod::Uniform)
+    );
     // Half of the cube shows its back; the factor is 8.
     assert_eq!(harness.state().totals(), Some((6 * 45, 6 * 64)));
     let lod = harness.get_by_role_and_label(Role::ComboBox, "LOD");
@@ -174,7 +180,10 @@ fn subtriangulation_is_uniform_and_gives_the_lod_back() {
     assert_eq!(harness.state().totals(), Some((6 * 21, 6 * 25)));
     assert_eq!(harness.state().cracks().map(|cracks| cracks.different_bits), Some(0));
     choose(&mut harness, "Partitioning", "Integer");
-    assert_eq!((harness.state().settings().used_lod(), harness.state().settings().factor), (opening.lod, 4.5));
+    assert_eq!(
+        (harness.state().settings().tessellation.used_lod(), harness.state().settings().tessellation.factor),
+        (opening.tessellation.lod, 4.5)
+    );
     assert!(!harness.get_by_role_and_label(Role::ComboBox, "LOD").accesskit_node().is_disabled());
 }
 

@@ -33,7 +33,7 @@ impl History {
     /// All of them are displaced like this: what the mesh does is no step.
     pub(super) fn displace(&mut self, displacement: Displacement) {
         let all = self.now.iter_mut().chain(&mut self.past).chain(&mut self.future);
-        all.for_each(|settings| settings.displacement = displacement);
+        all.for_each(|settings| settings.tessellation.displacement = displacement);
     }
 
     fn undo(&mut self, settings: &Settings) -> Option<Settings> {
@@ -87,9 +87,10 @@ impl App {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tessellate::Tessellation;
 
     fn of(factor: f32) -> Settings {
-        Settings { factor, ..Settings::default() }
+        Settings::from(Tessellation { factor, ..Tessellation::default() })
     }
 
     #[test]

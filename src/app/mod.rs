@@ -4,6 +4,7 @@ mod commands;
 mod dialogs;
 mod history;
 mod jobs;
+mod option_rows;
 mod panels;
 mod patch_names;
 mod persistence;

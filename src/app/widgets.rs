@@ -1,9 +1,6 @@
 //! Pieces that the panels share.
 
-use clap::ValueEnum;
 use egui::RichText;
-
-use crate::commands::value_names::explanation;
 
 /// A section's name, and a line under it.
 pub fn heading(ui: &mut egui::Ui, text: &str) {
@@ -30,20 +27,6 @@ pub fn chooser<T: Copy + PartialEq>(
     });
     combo.response.labelled_by(label.id).on_hover_text(hover);
     ui.end_row();
-}
-
-/// The same for values that commands take too: their explanations are the commands'.
-pub fn value_chooser<T: ValueEnum + PartialEq + Copy>(
-    ui: &mut egui::Ui,
-    name: &str,
-    hover: &str,
-    value: &mut T,
-    choices: &[(T, &str)],
-) {
-    let explanations: Vec<_> = choices.iter().map(|(choice, _)| explanation(*choice)).collect();
-    let all: Vec<_> =
-        choices.iter().zip(&explanations).map(|(&(choice, text), help)| (choice, text, help.as_str())).collect();
-    chooser(ui, name, hover, value, &all);
 }
 
 /// The same where there is nothing to choose, and why.

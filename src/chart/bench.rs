@@ -8,7 +8,7 @@ use crate::gpu::{GpuError, Timing};
 use crate::measure::AccuracyOptions;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::Settings;
-use crate::tessellate::Clip;
+use crate::tessellate::{Clip, Tessellation};
 use crate::truth::Truth;
 
 /// How much is spent on a setting.
@@ -105,5 +105,12 @@ impl Bench<'_> {
 /// What is measured of settings: the surface alone, all of it.
 pub fn whole(settings: &Settings) -> Settings {
     let Settings { overlays, deviation_in, split, background, .. } = Settings::default();
-    Settings { clip: Clip::Off, cull_back_faces: false, overlays, deviation_in, split, background, ..*settings }
+    Settings {
+        tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },
+        overlays,
+        deviation_in,
+        split,
+        background,
+        ..*settings
+    }
 }

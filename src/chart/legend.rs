@@ -6,7 +6,7 @@ use super::look::{Fill, Look, Shape, dash};
 use super::pen::{Drawn, FRONT, LEFT, Pen};
 use super::{LodKind, Method, Subject};
 use crate::plot::INK;
-use crate::settings::option_name;
+use crate::settings::Choice;
 
 /// What something looks like, and what it is.
 pub struct Entry {
@@ -54,14 +54,14 @@ pub fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
     let variants = variants(&subject.methods());
     let (mut surfaces, mut lods) = (Vec::new(), Vec::new());
     for (method, look) in looks(subject) {
-        add(&mut surfaces, Sample::Marker(Look { fill: Fill::Full, ..look }), option_name(method.surface));
+        add(&mut surfaces, Sample::Marker(Look { fill: Fill::Full, ..look }), method.surface.name().to_owned());
         let mut name = match method.lod {
             LodKind::Uniform => "uniform factor".to_owned(),
             LodKind::Paper => "white paper's LOD, px a segment".to_owned(),
             LodKind::Error => "LOD by error, px".to_owned(),
         };
         if variants.is_empty() {
-            name += &format!(" ({})", method.partitioning);
+            name += &format!(" ({})", method.partitioning.name());
         }
         add(&mut lods, Sample::Line(dash(method.lod)), name);
     }
@@ -72,7 +72,7 @@ pub fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
             lines.push(Vec::new());
         }
         let look = Look { color: INK, shape: Shape::Disc, ..Look::of(*method, index) };
-        let name = format!("{}, {} normals", method.partitioning, option_name(method.normals));
+        let name = format!("{}, {} normals", method.partitioning.name(), method.normals.name());
         lines.last_mut().into_iter().for_each(|line| add(line, Sample::Marker(look), name.clone()));
     }
     lines

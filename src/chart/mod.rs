@@ -26,7 +26,7 @@ pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use crate::gpu::{DRAWING, PassTime};
-use crate::settings::option_name;
+use crate::settings::Choice;
 use crate::tessellate::Vertex;
 
 /// The columns of a row written as CSV.
@@ -112,10 +112,10 @@ impl Row {
         [
             self.mesh.clone(),
             self.adapter.clone(),
-            option_name(surface),
-            option_name(normals),
+            surface.name().to_owned(),
+            normals.name().to_owned(),
             partitioning.name().to_owned(),
-            option_name(lod),
+            lod.name().to_owned(),
             self.setting.to_string(),
             self.triangles.to_string(),
             self.vertices.to_string(),

@@ -2,13 +2,11 @@
 
 use std::fmt;
 
-use clap::ValueEnum;
-
-use crate::settings::{Settings, option_name};
-use crate::tessellate::{Lod, Normals, Partitioning, Surface};
+use crate::settings::{Choice, Description, Settings};
+use crate::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
 
 /// Where factors come from, and what it is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LodKind {
     /// One factor everywhere
     Uniform,
@@ -43,6 +41,22 @@ impl LodKind {
     }
 }
 
+impl Choice for LodKind {
+    const ALL: &'static [Self] = &LodKind::ALL;
+
+    fn description(self) -> Description {
+        match self {
+            Self::Uniform => Description::new("uniform", "Uniform", "All edges have the same factor."),
+            Self::Paper => Description::new(
+                "paper",
+                "White paper",
+                "The white paper's length of an edge on screen, divided by the length of a segment in px.",
+            ),
+            Self::Error => Description::new("error", "Error", "The error on screen, in px."),
+        }
+    }
+}
+
 /// A way to tessellate, but for how fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Method {
@@ -54,7 +68,7 @@ pub struct Method {
 
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} by {} LOD", option_name(self.surface), option_name(self.lod))
+        write!(f, "{} by {} LOD", self.surface.name(), self.lod.name())
     }
 }
 
@@ -68,8 +82,8 @@ pub struct Setting {
 impl Setting {
     /// The one that these settings have; none under an LOD that isn't tried.
     pub fn of(settings: &Settings) -> Option<Self> {
-        let &Settings { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings;
-        let lod = LodKind::of(settings.used_lod())?;
+        let Tessellation { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings.tessellation;
+        let lod = LodKind::of(settings.tessellation.used_lod())?;
         let value = match lod {
             LodKind::Uniform => factor,
             LodKind::Paper => pixels,
@@ -81,12 +95,12 @@ impl Setting {
     /// These settings, but with this one for their own.
     pub fn applied(&self, settings: &Settings) -> Settings {
         let Method { surface, normals, partitioning, lod } = self.method;
-        let plain = Settings { surface, normals, partitioning, lod: lod.lod(), ..*settings };
-        match lod {
-            LodKind::Uniform => Settings { factor: self.value, ..plain },
-            LodKind::Paper => Settings { pixels: self.value, ..plain },
-            LodKind::Error => Settings { tolerance: self.value, ..plain },
-        }
+        let plain = Tessellation { surface, normals, partitioning, lod: lod.lod(), ..settings.tessellation };
+        settings.with(match lod {
+            LodKind::Uniform => Tessellation { factor: self.value, ..plain },
+            LodKind::Paper => Tessellation { pixels: self.value, ..plain },
+            LodKind::Error => Tessellation { tolerance: self.value, ..plain },
+        })
     }
 
     /// Whether it is the same method, but finer.

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use super::labels::{Rect, Wanted, place};
 use super::*;
 use crate::settings::Settings;
-use crate::tessellate::{Clip, Lod, Normals, Partitioning, Surface};
+use crate::tessellate::{Clip, Lod, Normals, Partitioning, Surface, Tessellation};
 
 fn method(surface: Surface, lod: LodKind) -> Method {
     Method { surface, normals: Normals::Linear, partitioning: Partitioning::Integer, lod }
@@ -204,32 +204,63 @@ fn everything_listed_is_tried_once() {
     let by_error = plan.settings()[3];
     assert_eq!(by_error.method.partitioning, Partitioning::Integer);
     let applied = |setting: Setting| setting.applied(&Settings::default());
-    assert_eq!((applied(by_error).tolerance, applied(plan.settings()[2]).pixels), (0.25, 4.0));
+    assert_eq!(
+        (applied(by_error).tessellation.tolerance, applied(plan.settings()[2]).tessellation.pixels),
+        (0.25, 4.0)
+    );
     let only = Plan { partitionings: vec![Partitioning::Subtriangulation], ..plan };
     assert_eq!(names(&only), ["factor 1", "factor 2", "factor 1", "factor 2"], "it is uniform only");
 }
 
 #[test]
 fn a_setting_is_applied_and_found_again_and_touches_nothing_else() {
-    let own = Settings { alpha: 0.5, midlevel: 0.25, factor: 7.0, ..Settings::opening() };
+    let own = Settings::opening().with(Tessellation {
+        alpha: 0.5,
+        midlevel: 0.25,
+        factor: 7.0,
+        ..Settings::opening().tessellation
+    });
     for setting in Plan::default().settings() {
         let applied = setting.applied(&own);
         assert_eq!(Setting::of(&applied), Some(setting));
-        let Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, .. } = applied;
-        assert_eq!(applied, Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, ..own });
+        let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, .. } = applied.tessellation;
+        assert_eq!(
+            applied,
+            own.with(Tessellation {
+                surface,
+                normals,
+                partitioning,
+                lod,
+                factor,
+                pixels,
+                tolerance,
+                ..own.tessellation
+            })
+        );
     }
-    assert_eq!(Setting::of(&Settings { lod: Lod::Distance, ..own }), None, "not tried");
-    let equal = Settings { lod: Lod::Distance, partitioning: Partitioning::Subtriangulation, ..own };
+    assert_eq!(Setting::of(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })), None, "not tried");
+    let equal =
+        own.with(Tessellation { lod: Lod::Distance, partitioning: Partitioning::Subtriangulation, ..own.tessellation });
     assert_eq!(Setting::of(&equal).map(|setting| setting.to_string()), Some("factor 7".into()), "uniform all the same");
 }
 
 #[test]
 fn what_is_measured_leaves_nothing_out_and_keeps_the_surface() {
-    let own = Settings { alpha: 0.5, split: Some(0.5), ..Settings::opening() };
+    let own = Settings {
+        tessellation: Tessellation { alpha: 0.5, ..Settings::opening().tessellation },
+        split: Some(0.5),
+        ..Settings::opening()
+    };
     let measured = whole(&own);
-    assert_eq!((measured.clip, measured.cull_back_faces, measured.split), (Clip::Off, false, None));
+    assert_eq!(
+        (measured.tessellation.clip, measured.tessellation.cull_back_faces, measured.split),
+        (Clip::Off, false, None)
+    );
     assert!(!measured.overlays.wireframe, "drawn without what one looks at");
-    assert_eq!((measured.alpha, measured.lod, measured.tolerance), (0.5, own.lod, own.tolerance));
+    assert_eq!(
+        (measured.tessellation.alpha, measured.tessellation.lod, measured.tessellation.tolerance),
+        (0.5, own.tessellation.lod, own.tessellation.tolerance)
+    );
 }
 
 #[test]

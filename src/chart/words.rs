@@ -2,7 +2,7 @@
 
 use super::{Method, Race, Row, Subject, Win};
 use crate::numbers::{grouped, short};
-use crate::settings::option_name;
+use crate::settings::Choice;
 
 /// Errors that winners are named for.
 const LEVELS: usize = 3;
@@ -84,10 +84,10 @@ impl Subject {
         let mut name = method.to_string();
         let others = self.methods();
         if others.iter().any(|other| other.lod == method.lod && other.partitioning != method.partitioning) {
-            name += &format!(", {}", method.partitioning);
+            name += &format!(", {}", method.partitioning.name());
         }
         if others.iter().any(|other| other.normals != method.normals) {
-            name += &format!(", {} normals", option_name(method.normals));
+            name += &format!(", {} normals", method.normals.name());
         }
         name
     }

@@ -3,13 +3,14 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{CliError, WeldOption, file_of, keep_apart, load_apart, read_bytes, write_bytes};
+use super::{CliError, WeldOption, file_of, keep_apart, load_apart, options, read_bytes, write_bytes};
 use crate::adjacency_file::{Format, read, to_bin, to_json};
 use crate::engine::Loaded;
 use crate::load::Source;
 use crate::measure::{IndexDifference, Meaning, index_differences};
 use crate::mesh::adjacency::{Layout, Part};
 use crate::names::shown_path;
+use crate::settings::{Choice, Description};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -19,18 +20,53 @@ pub struct Args {
     #[command(flatten)]
     pub weld: WeldOption,
     /// Indices a patch
-    #[arg(long, value_enum, default_value_t = Layout::Nine)]
+    #[arg(long, value_parser = options::choice::<Layout>(), default_value = Layout::Nine.name())]
     pub indices: Layout,
     /// File to write (- for standard output); may be left out with --against
     #[arg(short, long, value_name = "OUT.json|OUT.bin")]
     pub output: Option<PathBuf>,
     /// What to write; by default bin if the output's name ends in .bin, and otherwise json
-    #[arg(long, value_enum, requires = "output")]
+    #[arg(long, value_parser = options::choice::<Format>(), requires = "output")]
     pub format: Option<Format>,
     /// Hold this file against what is computed (- for standard input): JSON as this command writes it, or bare indices as in
     /// a .bin file. Says on standard error which patches differ and what that means, and fails if there are any
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
+}
+
+impl Choice for Layout {
+    const ALL: &'static [Self] = &Layout::ALL;
+
+    fn description(self) -> Description {
+        match self {
+            Self::Six => Description::new(
+                "6",
+                "6",
+                "What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0.",
+            ),
+            Self::Nine => Description::new("9", "9", "The triangle's corners 0, 1, 2, then the six."),
+            Self::Twelve => {
+                Description::new("12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.")
+            }
+        }
+    }
+}
+
+impl Choice for Format {
+    const ALL: &'static [Self] = &[Self::Json, Self::Bin];
+
+    fn description(self) -> Description {
+        match self {
+            Self::Json => Description::new(
+                "json",
+                "JSON",
+                "The indices, the corners that they refer to, and the triangle of each patch.",
+            ),
+            Self::Bin => {
+                Description::new("bin", "Binary", "Only the indices: 32-bit unsigned integers, little-endian.")
+            }
+        }
+    }
 }
 
 /// Differences that are said one by one.

@@ -23,6 +23,7 @@ use crate::load::Source;
 use crate::measure::AccuracyOptions;
 use crate::progress::Progress;
 use crate::render::Target;
+use crate::settings::options::{FACTOR, PIXELS, TOLERANCE};
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Normals, Partitioning, Surface};
 use crate::truth::Truth;
@@ -40,25 +41,25 @@ pub struct Args {
     #[command(flatten)]
     pub weld: WeldOption,
     /// Surfaces to try
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "SURFACE,..", default_values = ["flat", "pn-aen", "phong-aen", "nagata-aen"])]
+    #[arg(long, value_parser = options::choice::<Surface>(), value_delimiter = ',', value_name = "SURFACE,..", default_values = ["flat", "pn-aen", "phong-aen", "nagata-aen"])]
     pub surfaces: Vec<Surface>,
     /// Normals to shade with
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "NORMALS,..", default_values = ["linear"])]
+    #[arg(long, value_parser = options::choice::<Normals>(), value_delimiter = ',', value_name = "NORMALS,..", default_values = ["linear"])]
     pub normals: Vec<Normals>,
     /// Partitionings to try with every LOD; by default fractional-odd, and integer by error. Subtriangulation is uniform only
-    #[arg(long, value_delimiter = ',', value_name = "P,..", value_parser = options::partitioning())]
+    #[arg(long, value_delimiter = ',', value_name = "P,..", value_parser = options::choice::<Partitioning>())]
     pub partitionings: Vec<Partitioning>,
     /// Where factors come from: the same everywhere; the white paper's projected length of an edge; or the error on screen
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error"])]
+    #[arg(long, value_parser = options::choice::<LodKind>(), value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error"])]
     pub lods: Vec<LodKind>,
     /// Factors to try under uniform LOD, each 1 to 64
-    #[arg(long, value_delimiter = ',', value_name = "F,..", default_value = "1,2,3,4,6,8,12,16,24,32,48,64", value_parser = options::factor)]
+    #[arg(long, value_delimiter = ',', value_name = "F,..", default_value = "1,2,3,4,6,8,12,16,24,32,48,64", value_parser = options::number_of(&FACTOR))]
     pub factors: Vec<f32>,
     /// Lengths of a segment on screen to try under the white paper's LOD, in px, each 1 to 256
-    #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "32,16,8,4,2,1", value_parser = options::pixels)]
+    #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "32,16,8,4,2,1", value_parser = options::number_of(&PIXELS))]
     pub pixels: Vec<f32>,
     /// Tolerances to try under LOD by error, in px, each 0.01 to 100
-    #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "8,4,2,1,0.5,0.25,0.125", value_parser = options::tolerance)]
+    #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "8,4,2,1,0.5,0.25,0.125", value_parser = options::number_of(&TOLERANCE))]
     pub tolerances: Vec<f32>,
     /// Try every setting, also those finer than a method takes to come as close as it gets
     #[arg(long)]

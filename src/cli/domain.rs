@@ -14,7 +14,7 @@ use crate::tessellate::{
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// How factors become segments; subtriangulation takes four equal ones
-    #[arg(long, value_name = "P", value_parser = super::options::partitioning())]
+    #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]
     pub partitioning: Partitioning,
     /// Factors of the edges where u, v and w are 0, and inside; also nan, inf, 0 and negatives
     #[arg(

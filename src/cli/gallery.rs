@@ -9,6 +9,7 @@ use crate::engine::{Engine, Preparation};
 use crate::files::file_reason;
 use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
 use crate::load::{HeightSource, Source};
+use crate::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -24,14 +25,14 @@ pub struct Args {
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
     /// How far white is above black in that exhibit, in bounding radii, -1 to 1
-    #[arg(long, value_name = "S", default_value_t = 0.15, value_parser = options::height_scale, allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", default_value_t = 0.15, value_parser = options::number_of(&HEIGHT_SCALE), allow_hyphen_values = true)]
     pub height_scale: f32,
     /// The height that stays where it is, 0 to 1
-    #[arg(long, value_name = "H", default_value_t = 0.5, value_parser = options::fraction)]
+    #[arg(long, value_name = "H", default_value_t = 0.5, value_parser = options::number_of(&MIDLEVEL))]
     pub midlevel: f32,
     /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64; lower where a tile would have more than
     /// about 2,000,000 triangles
-    #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::factor)]
+    #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::number_of(&FACTOR))]
     pub factor: f32,
     /// Degrees from the front to the right, and degrees upwards
     #[arg(long, value_name = "AZIMUTH,ELEVATION", default_value = "30,20", allow_hyphen_values = true)]

@@ -3,24 +3,23 @@
 mod adapters;
 mod adjacency;
 mod animation;
-mod apart;
 mod chart;
+mod copied_command;
 mod domain;
 mod factors;
+mod factors_option;
 mod gallery;
-mod given;
 mod info;
 mod mesh_report;
 mod options;
+mod output_guard;
 mod picture_comparison;
 mod reference;
 mod render;
-mod split;
 mod stability;
 mod stats;
 mod tessellate;
 mod truth;
-mod written;
 
 use std::io::{Read, Write};
 use std::path::Path;
@@ -33,16 +32,15 @@ use thiserror::Error;
 
 pub use adapters::AdapterOption;
 pub use animation::AnimationOption;
-use apart::{file_of, file_of_heights, keep_apart};
-pub use given::GivenOption;
+pub use factors_option::FactorsOption;
+use output_guard::{file_of, file_of_heights, keep_apart};
 
+pub use copied_command::CopiedCommand;
 pub use options::{LimitOption, SurfaceOptions, WeldOption};
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use render::run_with as render_with;
-pub use split::SplitOption;
 pub use tessellate::run_with as tessellate_with;
 pub use truth::TruthOption;
-pub use written::Shown;
 
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;

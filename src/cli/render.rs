@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::split::LeftStats;
-use super::stats::{AnimationStats, Stats};
+use super::options::{PictureOptions, TessellationOptions};
+use super::stats::{AnimationStats, LeftStats, Stats};
 use super::truth::{AccuracyStats, DeviationStats, Held};
 use super::{
-    AdapterOption, CliError, GivenOption, LimitOption, SplitOption, SurfaceOptions, TruthOption, WeldOption, file_of,
+    AdapterOption, CliError, FactorsOption, LimitOption, SurfaceOptions, TruthOption, WeldOption, file_of,
     file_of_heights, keep_apart, load_apart, options, reference, to_json, write_picture, write_text,
 };
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::render::{
     Camera, LineSegment, Scale, Scene, Target, crack_lines, deviation_scale, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{Colors, Half, Overlay, Overlays, Settings};
+use crate::settings::{Colors, Settings, SplitSide};
 use crate::tessellate::{HullFactors, Inputs, Lod};
 use crate::view::ScreenView;
 
@@ -33,25 +33,19 @@ pub struct Args {
     #[command(flatten)]
     pub surface: SurfaceOptions,
     #[command(flatten)]
-    pub given: GivenOption,
-    /// What is drawn over the surface
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "OVERLAY,..")]
-    pub overlay: Vec<Overlay>,
+    pub given: FactorsOption,
+    #[command(flatten)]
+    pub picture: PictureOptions,
     #[command(flatten)]
     pub truth: TruthOption,
-    #[command(flatten)]
-    pub split: SplitOption,
-    /// Outline this triangle (its number in the mesh, from 0), its edges in the colours of factors 0, 1 and 2: red, green,
+    /// Outline this triangle (its number in the mesh, from 0); its edges have the colours of factors 0, 1 and 2: red, green,
     /// blue
     #[arg(long, value_name = "TRIANGLE")]
     pub select: Option<u32>,
-    /// sRGB colour behind the mesh
-    #[arg(long, value_name = "RRGGBB", default_value = "2b2e33", value_parser = options::color)]
-    pub background: [u8; 3],
-    /// Write what was done, and how long it took, as JSON (- for standard output)
+    /// Write statistics and timings as JSON (- for standard output)
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
-    /// Whether stats have the largest distance on screen between what is emitted and its surface, sampled on the CPU
+    /// Whether stats include the largest distance on screen between the triangles and the surface, sampled on the CPU
     #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
     pub measure_error: bool,
     /// Fail if the picture differs from this one by more than the threshold, and write the difference beside it
@@ -67,32 +61,23 @@ pub struct Args {
 impl Args {
     /// What the window shows when it opens.
     pub fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
-        let Settings { lod, partitioning, clip, cull_back_faces, background, .. } = Settings::opening();
+        let opening = Settings::opening();
+        let tessellation = TessellationOptions { tessellation: opening.tessellation, displacement: None };
         let weld = WeldOption { limit, ..WeldOption::default() };
         Self {
             file,
             output: output.to_owned(),
-            surface: SurfaceOptions { lod, partitioning, clip, cull_back_faces, weld, ..SurfaceOptions::default() },
-            given: GivenOption::default(),
-            overlay: vec![Overlay::Wireframe],
+            surface: SurfaceOptions { tessellation, weld, ..SurfaceOptions::default() },
+            given: FactorsOption::default(),
+            picture: PictureOptions(opening),
             truth: TruthOption::default(),
-            split: SplitOption::default(),
             select: None,
-            background,
             stats: None,
             measure_error: true,
             reference: None,
             threshold: 0.01,
             adapter,
         }
-    }
-
-    /// # Errors
-    /// Two overlays colour the surface.
-    fn overlays(&self) -> Result<Overlays, CliError> {
-        Overlays::of(&self.overlay).ok_or(CliError::Usage(
-            "--overlay takes one of barycentric, factors, triangle-size, low-factors and deviation: each colours the whole surface",
-        ))
     }
 }
 
@@ -115,17 +100,17 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 /// # Errors
 /// As the command's.
 pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
-    args.surface.check_with(args.split.split_surface)?;
-    let overlays = args.overlays()?;
+    let PictureOptions(Settings { overlays, split_surface, .. }) = args.picture;
+    args.surface.check_with(split_surface)?;
     args.keep_apart()?;
     let reference = args.reference.as_deref().map(reference::read).transpose()?;
     let written = [Some(&*args.output), args.stats.as_deref()];
     let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
-    let given = args.given.read(&loaded.mesh, &loaded.topology, args.surface.convention, args.surface.partitioning)?;
+    let given = args.given.read(&loaded.mesh, &loaded.topology, &args.surface.tessellation())?;
     let held = args.truth.held(&loaded, &args.surface, overlays.colors == Colors::Deviation)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
-    let mut shot = Shot::new(args, loaded, overlays, given, engine)?;
+    let mut shot = Shot::new(args, loaded, given, engine)?;
     shot.measure(args, held, selected.is_some())?;
     shot.mark(selected)?;
     shot.engine.draw(&mut shot.scene, &shot.target, &shot.camera, &shot.settings, &mut Timing::Off)?;
@@ -168,7 +153,6 @@ impl Shot {
     fn new(
         args: &Args,
         at_rest: Loaded,
-        overlays: Overlays,
         given: Option<Vec<HullFactors>>,
         engine: impl FnOnce() -> Result<Engine, GpuError>,
     ) -> Result<Self, CliError> {
@@ -185,15 +169,13 @@ impl Shot {
             engine.count(&mut scene, &settings.inputs(view), &mut Timing::Off)?;
             Ok(scene.tessellator.totals().1)
         })?;
-        let (SplitOption { split, split_surface }, background) = (args.split, args.background);
-        let deviation_in = args.truth.deviation_in;
-        let settings = Settings { overlays, split, split_surface, background, deviation_in, ..surface };
-        if settings.half(Half::Left).is_some() {
+        let settings = args.picture.0.with(surface.tessellation);
+        if settings.half(SplitSide::Left).is_some() {
             engine.split(&mut scene, args.surface.arena_bytes())?;
         }
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) else { continue };
-            if half == Half::Left {
+            if half == SplitSide::Left {
                 scene.tessellator.give(given.clone())?;
             }
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
@@ -204,7 +186,7 @@ impl Shot {
     }
 
     /// What a half is tessellated with, if there is one.
-    fn inputs(&self, half: Half) -> Option<Inputs> {
+    fn inputs(&self, half: SplitSide) -> Option<Inputs> {
         let view = self.camera.lod_view(self.target.viewport(), &self.scene.bounds);
         Some(self.settings.half(half)?.inputs(view))
     }
@@ -221,9 +203,9 @@ impl Shot {
         let is_shown = self.settings.overlays.colors == Colors::Deviation;
         let held = self.held.as_ref();
         // Both halves are held against one thing.
-        let target = held.filter(|_| is_shown).zip(self.inputs(Half::Right));
+        let target = held.filter(|_| is_shown).zip(self.inputs(SplitSide::Right));
         let target = target.map(|(held, inputs)| held.target(&inputs));
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             let inputs = self.inputs(half);
             let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
             let truth = held.and_then(Held::truth).filter(|_| has_stats);
@@ -232,7 +214,7 @@ impl Shot {
                 screen_error: (has_stats && args.measure_error).then_some(inputs),
                 deviation: target.as_ref(),
                 accuracy: truth.map(|(_, truth)| (truth, &inputs.view, AccuracyOptions::default())),
-                sizes: (has_stats && half == Half::Right).then_some(view),
+                sizes: (has_stats && half == SplitSide::Right).then_some(view),
             };
             self.results[half as usize] = Some(self.engine.measure_all(scene, &wanted)?);
         }
@@ -248,7 +230,7 @@ impl Shot {
             return;
         }
         self.scale = deviation_scale(largest, self.scene.ulp());
-        for (half, results) in Half::BOTH.into_iter().zip(&self.results) {
+        for (half, results) in SplitSide::BOTH.into_iter().zip(&self.results) {
             let field = results.as_ref().and_then(|results| results.deviation.as_ref());
             if let Some((scene, field)) = self.scene.half_mut(half).zip(field) {
                 scene.set_deviation(&self.engine.gpu, Some((field, self.scale)));
@@ -256,13 +238,13 @@ impl Shot {
         }
     }
 
-    fn results(&self, half: Half) -> Option<&MeasurementResults> {
+    fn results(&self, half: SplitSide) -> Option<&MeasurementResults> {
         self.results[half as usize].as_ref()
     }
 
     /// Puts lines over each half: the overlays that are lines, and the outline of the selected patch.
     fn mark(&mut self, selected: Option<u32>) -> Result<(), CliError> {
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             let lines = self.lines(half, selected)?;
             if let Some(scene) = self.scene.half_mut(half) {
                 scene.set_lines(&self.engine.gpu, &lines);
@@ -271,7 +253,7 @@ impl Shot {
         Ok(())
     }
 
-    fn lines(&self, half: Half, selected: Option<u32>) -> Result<Vec<LineSegment>, CliError> {
+    fn lines(&self, half: SplitSide, selected: Option<u32>) -> Result<Vec<LineSegment>, CliError> {
         let topology = &self.loaded.topology;
         let results = self.results(half);
         let measured = results.and_then(|results| results.survey.as_ref());
@@ -288,13 +270,13 @@ impl Shot {
         }
         if let Some(patch) = selected {
             let outlines = measured.map(|measured| &measured.outlines);
-            lines.extend(patch_lines(&patch_edges(topology, patch, outlines, self.settings.convention)));
+            lines.extend(patch_lines(&patch_edges(topology, patch, outlines, self.settings.tessellation.convention)));
         }
         Ok(lines)
     }
 
     /// How far a half is from the truth, if that was measured.
-    fn accuracy(&self, half: Half) -> Option<AccuracyStats> {
+    fn accuracy(&self, half: SplitSide) -> Option<AccuracyStats> {
         let (name, _) = self.held.as_ref().and_then(Held::truth)?;
         let results = self.results(half)?;
         let is_whole = results.survey.as_ref()?.culled.total() == 0;
@@ -302,22 +284,22 @@ impl Shot {
     }
 
     /// What the overlay shows of a half, if it is on.
-    fn deviation(&self, half: Half) -> Option<DeviationStats> {
+    fn deviation(&self, half: SplitSide) -> Option<DeviationStats> {
         self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
     }
 
     /// What is known of the picture; none if nothing was measured.
     fn stats(&mut self, args: &Args) -> Result<Option<Stats>, CliError> {
-        let (view, accuracy) = (self.view(), self.accuracy(Half::Right));
+        let (view, accuracy) = (self.view(), self.accuracy(SplitSide::Right));
         let Self { engine, scene, target, camera, settings, results, .. } = self;
-        let Some(results) = &results[Half::Right as usize] else { return Ok(None) };
+        let Some(results) = &results[SplitSide::Right as usize] else { return Ok(None) };
         let Some(measured) = &results.survey else { return Ok(None) };
         // What is left of the split isn't what is timed.
         let alone = Settings { split_surface: None, ..*settings };
         let passes = engine.time(scene, target, camera, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
-        let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.partitioning);
-        if settings.used_lod() == Lod::Error {
+        let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.tessellation.partitioning);
+        if settings.tessellation.used_lod() == Lod::Error {
             let written = scene.tessellator.hull_factors()?;
             factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
         }
@@ -329,7 +311,7 @@ impl Shot {
         stats.max_error_px = results.screen_error.map(|worst| worst.px);
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
-        stats.deviation = self.deviation(Half::Right);
+        stats.deviation = self.deviation(SplitSide::Right);
         stats.left = self.left_stats();
         stats.animation = self.moment.zip(name).map(|(moment, name)| AnimationStats { name, time: moment.time });
         Ok(Some(stats))
@@ -337,12 +319,12 @@ impl Shot {
 
     /// What is known of another surface left of the split.
     fn left_stats(&self) -> Option<LeftStats> {
-        let (scene, settings) = self.scene.half(Half::Left).zip(self.settings.half(Half::Left))?;
-        let results = self.results(Half::Left)?;
+        let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.settings.half(SplitSide::Left))?;
+        let results = self.results(SplitSide::Left)?;
         let mut stats = LeftStats::new(scene, results.survey.as_ref()?, &settings, self.view());
         stats.max_error_px = results.screen_error.map(|worst| worst.px);
-        stats.accuracy = self.accuracy(Half::Left);
-        stats.deviation = self.deviation(Half::Left);
+        stats.accuracy = self.accuracy(SplitSide::Left);
+        stats.deviation = self.deviation(SplitSide::Left);
         Some(stats)
     }
 }

@@ -4,15 +4,14 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::given::FactorsFile;
-use super::split::LeftStats;
+use super::factors_option::FactorsFile;
 use super::truth::{AccuracyStats, DeviationStats};
 use crate::engine::{Engine, Loaded};
 use crate::gpu::PassTime;
 use crate::measure::Measured;
 use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
-use crate::settings::{Settings, option_name};
+use crate::settings::{Choice, Settings};
 use crate::tessellate::Displacement;
 use crate::view::{ScreenView, ulp};
 
@@ -70,18 +69,18 @@ pub struct Stats {
 /// What was drawn, in the options' names.
 #[derive(Debug, Serialize)]
 struct SettingsStats {
-    surface: String,
+    surface: &'static str,
     /// Of Phong tessellation alone.
     alpha: Option<f32>,
-    normals: String,
-    edges: String,
+    normals: &'static str,
+    edges: &'static str,
     partitioning: &'static str,
-    lod: String,
+    lod: &'static str,
     /// Under uniform LOD, and the largest by distance.
     factor: f32,
-    clip: String,
-    convention: String,
-    displacement: String,
+    clip: &'static str,
+    convention: &'static str,
+    displacement: &'static str,
     /// In bounding radii, and from 0 to 1; of what is displaced.
     height_scale: Option<f32>,
     midlevel: Option<f32>,
@@ -89,20 +88,21 @@ struct SettingsStats {
 
 impl SettingsStats {
     fn new(settings: &Settings) -> Self {
-        let is_displaced = settings.displacement != Displacement::Off;
+        let own = &settings.tessellation;
+        let is_displaced = own.displacement != Displacement::Off;
         Self {
-            surface: option_name(settings.surface),
-            alpha: settings.surface.is_phong().then_some(settings.alpha),
-            normals: option_name(settings.normals),
-            edges: option_name(settings.edges),
-            partitioning: settings.partitioning.name(),
-            lod: option_name(settings.used_lod()),
-            factor: settings.factor,
-            clip: option_name(settings.clip),
-            convention: option_name(settings.convention),
-            displacement: option_name(settings.displacement),
-            height_scale: is_displaced.then_some(settings.height_scale),
-            midlevel: is_displaced.then_some(settings.midlevel),
+            surface: own.surface.name(),
+            alpha: own.surface.is_phong().then_some(own.alpha),
+            normals: own.normals.name(),
+            edges: own.edges.name(),
+            partitioning: own.partitioning.name(),
+            lod: own.used_lod().name(),
+            factor: own.factor,
+            clip: own.clip.name(),
+            convention: own.convention.name(),
+            displacement: own.displacement.name(),
+            height_scale: is_displaced.then_some(own.height_scale),
+            midlevel: is_displaced.then_some(own.midlevel),
         }
     }
 }
@@ -207,6 +207,36 @@ impl Stats {
             left: None,
             animation: None,
             ms,
+        }
+    }
+}
+
+/// The other surface, left of the split.
+#[derive(Debug, Serialize)]
+pub struct LeftStats {
+    surface: &'static str,
+    triangles_out: u64,
+    vertices_out: u64,
+    cracks: CrackStats,
+    folds: u64,
+    pub max_error_px: Option<f64>,
+    pub accuracy: Option<AccuracyStats>,
+    pub deviation: Option<DeviationStats>,
+}
+
+impl LeftStats {
+    /// Tessellated with these settings, and seen from `view`.
+    pub fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
+        let (vertices_out, triangles_out) = scene.tessellator.totals();
+        Self {
+            surface: settings.tessellation.surface.name(),
+            triangles_out,
+            vertices_out,
+            cracks: CrackStats::new(measured, scene.tessellator.topology(), view),
+            folds: measured.folds,
+            max_error_px: None,
+            accuracy: None,
+            deviation: None,
         }
     }
 }

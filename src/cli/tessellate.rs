@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 
 use super::{
-    AdapterOption, CliError, GivenOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
+    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, load_apart, options,
 };
 use crate::engine::Engine;
 use crate::export::Exported;
@@ -25,7 +25,7 @@ pub struct Args {
     #[command(flatten)]
     pub surface: SurfaceOptions,
     #[command(flatten)]
-    pub given: GivenOption,
+    pub given: FactorsOption,
     /// Where to tessellate; the CPU needs no graphics driver
     #[arg(long, value_enum, default_value_t = Device::Gpu)]
     pub device: Device,
@@ -58,8 +58,7 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     let moment = args.surface.animation.moment(&loaded)?;
     let posed = loaded.posed(moment);
     let (mesh, topology) = (&posed.mesh, &posed.topology);
-    let given =
-        args.given.read(mesh, topology, args.surface.convention, args.surface.partitioning)?.map(|given| given.factors);
+    let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|given| given.factors);
     let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
     let view = args.surface.camera(mesh, &bounds).lod_view(args.surface.viewport(), &bounds);
     let tessellated = match args.device {

@@ -12,20 +12,16 @@ use crate::load::Source;
 use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances};
 use crate::progress::Progress;
 use crate::render::Scale;
-use crate::settings::DeviationUnit;
 use crate::tessellate::{Displacement, Inputs};
 use crate::truth::Truth;
 
 #[derive(Clone, Debug, Default, Args)]
 pub struct TruthOption {
-    /// What the mesh should have been, for the deviation overlay and the stats: a .gltf, .glb, .obj, .stl or .ply file, such as
-    /// the high-poly original, or a shape. By default the surface that a shape is sampled from; else, for the overlay, the surface that
-    /// the tessellation converges to
+    /// Reference surface for the deviation overlay and the stats: a .gltf, .glb, .obj, .stl or .ply file, such as the
+    /// high-poly original, or a shape. By default the exact surface of a shape; for other meshes the overlay takes the
+    /// surface that the tessellation converges to
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub truth: Option<Source>,
-    /// What the deviation overlay counts distances in
-    #[arg(long, value_name = "UNIT", value_enum, default_value_t = DeviationUnit::Units)]
-    pub deviation_in: DeviationUnit,
 }
 
 /// What a picture is held against.
@@ -54,7 +50,7 @@ impl TruthOption {
         if !is_shown {
             return Ok(None);
         }
-        let is_plain = !moves && surface.settings().displacement == Displacement::Off;
+        let is_plain = !moves && surface.tessellation().displacement == Displacement::Off;
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(Truth::of_shape);
         let held = exact.map(|truth| Held::Truth(loaded.source.to_string(), Arc::new(truth)));
         Ok(Some(held.unwrap_or(Held::Limit)))

@@ -93,6 +93,12 @@ pub fn redo(now: &Availability) -> Option<&'static str> {
     unless(now.can_redo, "No change was undone.")
 }
 
+/// Why patches that show their backs can't be left out.
+pub const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen: it is open, a part of it is wound inward, a material is \
+                                  double-sided, it is displaced, or it moves.";
+const LOD_IS_FIXED: &str =
+    "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD that was chosen.";
+
 pub fn selection(now: &Availability) -> Option<&'static str> {
     unless(now.has_selection, "Nothing is selected.")
 }
@@ -110,11 +116,11 @@ pub fn factor(now: &Availability) -> Option<&'static str> {
 }
 
 pub fn lod(now: &Availability) -> Option<&'static str> {
-    unless(now.takes_lod, super::value_names::LOD_FIXED)
+    unless(now.takes_lod, LOD_IS_FIXED)
 }
 
 pub fn culling(now: &Availability) -> Option<&'static str> {
-    unless(now.can_cull_back_faces, super::value_names::BACKS_ARE_SEEN)
+    unless(now.can_cull_back_faces, BACKS_ARE_SEEN)
 }
 
 pub fn split(now: &Availability) -> Option<&'static str> {

@@ -1,6 +1,7 @@
 //! Changes of settings that are commands.
 
-use crate::settings::{Colors, DeviationUnit, FACTOR_RANGE, Overlay, Settings};
+use crate::settings::options::FACTOR_RANGE;
+use crate::settings::{Colors, DeviationUnit, Overlay, Settings};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// A change of the settings, which are a function of nothing else.
@@ -29,25 +30,25 @@ pub enum Change {
 
 impl Change {
     pub fn apply(self, settings: &mut Settings) {
-        let factor = |factor: f32| factor.clamp(*FACTOR_RANGE.start(), *FACTOR_RANGE.end());
+        let factor = |factor: f32| factor.clamp(FACTOR_RANGE.least, FACTOR_RANGE.most);
         match self {
-            Self::FactorUp => settings.factor = factor(settings.factor + 1.0),
-            Self::FactorDown => settings.factor = factor(settings.factor - 1.0),
-            Self::AdaptiveLod => settings.lod = switched_lod(settings),
-            Self::ToggleEdges => settings.set_edges(match settings.edges {
+            Self::FactorUp => settings.tessellation.factor = factor(settings.tessellation.factor + 1.0),
+            Self::FactorDown => settings.tessellation.factor = factor(settings.tessellation.factor - 1.0),
+            Self::AdaptiveLod => settings.tessellation.lod = switched_lod(settings),
+            Self::ToggleEdges => settings.set_edges(match settings.tessellation.edges {
                 Edges::AsPublished => Edges::PerEdge,
                 Edges::PerEdge => Edges::AsPublished,
             }),
-            Self::CullBackFaces => settings.cull_back_faces = !settings.cull_back_faces,
-            Self::Surface(surface) => settings.surface = surface,
+            Self::CullBackFaces => settings.tessellation.cull_back_faces = !settings.tessellation.cull_back_faces,
+            Self::Surface(surface) => settings.tessellation.surface = surface,
             Self::LeftSurface(surface) => settings.split_surface = surface,
-            Self::Shading(normals) => settings.normals = normals,
-            Self::Partitioning(partitioning) => settings.partitioning = partitioning,
+            Self::Shading(normals) => settings.tessellation.normals = normals,
+            Self::Partitioning(partitioning) => settings.tessellation.partitioning = partitioning,
             Self::Edges(edges) => settings.set_edges(edges),
-            Self::Lod(lod) => settings.lod = lod,
-            Self::Clipping(clip) => settings.clip = clip,
-            Self::Convention(convention) => settings.convention = convention,
-            Self::Displacement(displacement) => settings.displacement = displacement,
+            Self::Lod(lod) => settings.tessellation.lod = lod,
+            Self::Clipping(clip) => settings.tessellation.clip = clip,
+            Self::Convention(convention) => settings.tessellation.convention = convention,
+            Self::Displacement(displacement) => settings.tessellation.displacement = displacement,
             Self::MaterialColors => settings.overlays.colors = Colors::Material,
             Self::DeviationIn(unit) => settings.deviation_in = unit,
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
@@ -57,7 +58,7 @@ impl Change {
 
 /// The LOD that follows when adaptive LOD is switched.
 fn switched_lod(settings: &Settings) -> Lod {
-    match (settings.lod, settings.edges) {
+    match (settings.tessellation.lod, settings.tessellation.edges) {
         (Lod::Uniform, Edges::AsPublished) => Lod::Paper,
         (Lod::Uniform, Edges::PerEdge) => Lod::Error,
         _ => Lod::Uniform,
@@ -67,6 +68,7 @@ fn switched_lod(settings: &Settings) -> Lod {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tessellate::Tessellation;
 
     fn changed(settings: Settings, change: Change) -> Settings {
         let mut settings = settings;
@@ -76,20 +78,20 @@ mod tests {
 
     #[test]
     fn the_factor_stays_in_its_range() {
-        let of = |factor| Settings { factor, ..Settings::default() };
-        assert_eq!(changed(of(3.5), Change::FactorUp).factor, 4.5);
-        assert_eq!(changed(of(63.5), Change::FactorUp).factor, 64.0);
-        assert_eq!(changed(of(1.5), Change::FactorDown).factor, 1.0);
+        let of = |factor| Settings::from(Tessellation { factor, ..Tessellation::default() });
+        assert_eq!(changed(of(3.5), Change::FactorUp).tessellation.factor, 4.5);
+        assert_eq!(changed(of(63.5), Change::FactorUp).tessellation.factor, 64.0);
+        assert_eq!(changed(of(1.5), Change::FactorDown).tessellation.factor, 1.0);
     }
 
     #[test]
     fn adaptive_lod_is_the_one_that_belongs_to_the_edges() {
-        let settings = Settings { lod: Lod::Uniform, ..Settings::default() };
-        assert_eq!(changed(settings, Change::AdaptiveLod).lod, Lod::Error);
+        let settings = Settings::default();
+        assert_eq!(changed(settings, Change::AdaptiveLod).tessellation.lod, Lod::Error);
         let published = changed(settings, Change::ToggleEdges);
-        assert_eq!(published.edges, Edges::AsPublished);
+        assert_eq!(published.tessellation.edges, Edges::AsPublished);
         let adaptive = changed(published, Change::AdaptiveLod);
-        assert_eq!(adaptive.lod, Lod::Paper);
+        assert_eq!(adaptive.tessellation.lod, Lod::Paper);
         assert_eq!(changed(adaptive, Change::AdaptiveLod), published);
     }
 

@@ -5,10 +5,13 @@ use egui::{Key, ThemePreference};
 use super::availability as when;
 use super::{
     Action, CameraAction, Change, Command, Direction, FileAction, Menu, QUIT, Submenu, ctrl, ctrl_shift, plain, shift,
-    value_names,
 };
 use crate::mesh::Shape;
 use crate::render::Standpoint;
+
+/// What displacing by a height image does.
+pub const HEIGHT_IMAGE: &str =
+    "Displaces the mesh by the brightness of a PNG or JPEG image, which covers all materials.";
 
 /// All of them, in the order of the menus.
 pub fn commands() -> Vec<Command> {
@@ -30,7 +33,7 @@ fn file() -> Vec<Command> {
         )
         .keys([ctrl(Key::L)])
         .menu(File, 0),
-        Command::new(Action::File(FileAction::HeightImage), "Height image…", value_names::HEIGHT_IMAGE)
+        Command::new(Action::File(FileAction::HeightImage), "Height image…", HEIGHT_IMAGE)
             .menu(File, 1)
             .unless(when::document),
         Command::new(Action::File(FileAction::Reload), "Reload", "Loads the file again; settings and camera stay.")

@@ -5,12 +5,11 @@ use std::path::PathBuf;
 use egui::{Key, KeyboardShortcut};
 
 use super::availability as when;
-use super::value_names::{self, Named};
 use super::{Action, Availability, Change, Command, FileAction, Preparing, Submenu, plain};
 use crate::mesh::joins::TOLERANCES;
 use crate::names::shortened;
-use crate::settings::Overlay;
-use crate::tessellate::Surface;
+use crate::settings::{Choice, Colors, Control, DeviationUnit, Overlay, Overlays, options};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// Animation clips that are listed at most.
 const CLIPS: usize = 1000;
@@ -26,38 +25,32 @@ pub fn commands(now: &Availability) -> Vec<Command> {
     all
 }
 
-/// A command for each value of a setting.
-fn values<T: Copy>(
-    what: &str,
-    named: &[Named<T>],
-    change: impl Fn(T) -> Change,
-    why_not: super::WhyNot,
-) -> Vec<Command> {
-    let command = |named: &Named<T>| {
-        Command::new(Action::Setting(change(named.value)), format!("{what}: {}", named.name), named.text.clone())
+/// A command for each value of a setting, which is called as its option is.
+fn values<T: Choice>(label: &str, change: impl Fn(T) -> Change, why_not: super::WhyNot) -> Vec<Command> {
+    let command = |&value: &T| {
+        Command::new(Action::Setting(change(value)), format!("{label}: {}", value.label()), value.text())
             .unless(why_not)
     };
-    named.iter().map(command).collect()
+    T::ALL.iter().map(command).collect()
 }
 
 fn settings() -> Vec<Command> {
     let always = |_: &Availability| None;
-    let mut all = values("Surface", &value_names::surfaces(), Change::Surface, always);
-    let untessellated = "Shows the untessellated mesh left of the divider.";
-    all.push(
-        Command::new(Action::Setting(Change::LeftSurface(None)), "Left of the split: As it came", untessellated)
-            .unless(when::split),
-    );
-    let left = |surface: Surface| Change::LeftSurface(Some(surface));
-    all.extend(values("Left of the split", &value_names::surfaces(), left, when::split));
-    all.extend(values("Shading", &value_names::normals(), Change::Shading, always));
-    all.extend(values("Partitioning", &value_names::partitionings(), Change::Partitioning, always));
-    all.extend(values("Edges", &value_names::edges(), Change::Edges, always));
-    all.extend(values("LOD", &value_names::lods(), Change::Lod, when::lod));
-    all.extend(values("Clipping", &value_names::clips(), Change::Clipping, always));
-    all.extend(values("Convention", &value_names::conventions(), Change::Convention, always));
-    all.extend(values("Displace", &value_names::displacements(), Change::Displacement, when::heights));
-    all.extend(values("Distances in", &value_names::deviation_units(), Change::DeviationIn, when::deviation));
+    let mut all = values::<Surface>(options::SURFACE.label, Change::Surface, always);
+    let left = "Left of the split";
+    all.extend(options::SPLIT_SURFACE.unset.iter().map(|unset| {
+        let name = format!("{left}: {}", unset.label);
+        Command::new(Action::Setting(Change::LeftSurface(None)), name, unset.text).unless(when::split)
+    }));
+    all.extend(values::<Surface>(left, |surface| Change::LeftSurface(Some(surface)), when::split));
+    all.extend(values::<Normals>(options::NORMALS.label, Change::Shading, always));
+    all.extend(values::<Partitioning>(options::PARTITIONING.label, Change::Partitioning, always));
+    all.extend(values::<Edges>(options::EDGES.label, Change::Edges, always));
+    all.extend(values::<Lod>(options::LOD.label, Change::Lod, when::lod));
+    all.extend(values::<Clip>(options::CLIP.label, Change::Clipping, always));
+    all.extend(values::<Convention>(options::CONVENTION.label, Change::Convention, always));
+    all.extend(values::<Displacement>(options::DISPLACEMENT.label, Change::Displacement, when::heights));
+    all.extend(values::<DeviationUnit>(options::DEVIATION_IN.label, Change::DeviationIn, when::deviation));
     all
 }
 
@@ -80,21 +73,20 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     })
 }
 
-/// Every meaning of colours, and every overlay. Each but the mesh's own colours is a switch: given again, it takes back what
-/// it did.
+/// Every meaning of colours, and every overlay. Each but the material's own colours is a switch: given again, it takes back
+/// what it did.
 fn colors_and_overlays() -> Vec<Command> {
-    let material = value_names::material_colors();
-    let mut all = vec![Command::new(
-        Action::Setting(Change::MaterialColors),
-        format!("Colours: {}", material.name),
-        material.text,
-    )];
-    let switch = |what: &str, named: Named<Overlay>| {
-        let name = format!("{what}: {}", named.name);
-        Command::new(Action::Setting(Change::Overlay(named.value)), name, named.text).keys([overlay_key(named.value)])
-    };
-    all.extend(Overlay::ALL.into_iter().filter_map(value_names::overlay_colors).map(|named| switch("Colours", named)));
-    all.extend(Overlay::ALL.into_iter().filter_map(value_names::overlay).map(|named| switch("Overlay", named)));
+    let (material, colors) = (Colors::Material, "Colours");
+    let own = format!("{colors}: {}", material.label());
+    let mut all = vec![Command::new(Action::Setting(Change::MaterialColors), own, material.text())];
+    all.extend(Overlay::ALL.iter().map(|&overlay| {
+        let mut overlays = Overlays::default();
+        let name = match overlays.control(overlay) {
+            Control::Colors(_, given) => format!("{colors}: {}", given.label()),
+            Control::Switch(_) => format!("Overlay: {}", overlay.label()),
+        };
+        Command::new(Action::Setting(Change::Overlay(overlay)), name, overlay.text()).keys([overlay_key(overlay)])
+    }));
     all
 }
 

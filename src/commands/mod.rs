@@ -7,7 +7,6 @@ mod fixed;
 mod generated;
 #[cfg(test)]
 mod page;
-pub mod value_names;
 
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -18,8 +17,9 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use crate::mesh::Shape;
 use crate::render::Standpoint;
 
-pub use availability::Availability;
+pub use availability::{Availability, BACKS_ARE_SEEN};
 pub use change::Change;
+pub use fixed::HEIGHT_IMAGE;
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]

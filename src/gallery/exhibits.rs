@@ -1,10 +1,8 @@
 //! What hangs in the gallery.
 
-use clap::ValueEnum;
-
 use crate::mesh::{HeightMap, Heights, Mesh, Shape};
-use crate::settings::{Overlays, Settings};
-use crate::tessellate::{Displacement, Normals, Partitioning, Surface};
+use crate::settings::{Choice, Description, Overlays, Settings};
+use crate::tessellate::{Displacement, Normals, Partitioning, Surface, Tessellation};
 
 /// One question, and a tile for every answer.
 #[derive(Clone, Debug)]
@@ -35,11 +33,9 @@ pub struct Tile {
 
 impl Tile {
     /// A technique that is a value of an option: its name and explanation are the option's.
-    fn of(value: impl ValueEnum, settings: Settings) -> Self {
-        let value = value.to_possible_value();
-        let name = value.as_ref().map_or_else(String::new, |value| value.get_name().to_owned());
-        let about = value.as_ref().and_then(|value| value.get_help()).map(ToString::to_string);
-        Self { name, about: about.unwrap_or_default() + ".", settings, factor: None, rim: 0.0 }
+    fn of(value: impl Choice, tessellation: Tessellation) -> Self {
+        let Description { name, text, .. } = value.description();
+        Self { name: name.to_owned(), about: text.to_owned(), settings: tessellation.into(), factor: None, rim: 0.0 }
     }
 
     fn named(self, name: &str, about: &str) -> Self {
@@ -52,12 +48,12 @@ pub fn exhibits() -> [Exhibit; 5] {
     [surfaces(), creases(), normals(), patterns(), heights()]
 }
 
-fn settings() -> Settings {
-    Settings { partitioning: Partitioning::Integer, ..Settings::default() }
+fn usual() -> Tessellation {
+    Tessellation { partitioning: Partitioning::Integer, ..Tessellation::default() }
 }
 
 fn surfaces() -> Exhibit {
-    let of = |surface| Tile::of(surface, Settings { surface, ..settings() });
+    let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
     Exhibit {
         name: "surfaces",
         title: "Surfaces",
@@ -70,7 +66,7 @@ fn surfaces() -> Exhibit {
 }
 
 fn creases() -> Exhibit {
-    let of = |surface| Tile::of(surface, Settings { surface, ..settings() });
+    let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
     let rim = Tile { rim: 0.02, ..of(Surface::Pn) };
     Exhibit {
         name: "creases",
@@ -90,7 +86,7 @@ fn creases() -> Exhibit {
 }
 
 fn normals() -> Exhibit {
-    let of = |normals| Tile::of(normals, Settings { normals, ..settings() });
+    let of = |normals| Tile::of(normals, Tessellation { normals, ..usual() });
     Exhibit {
         name: "normals",
         title: "Shading normals",
@@ -99,17 +95,14 @@ fn normals() -> Exhibit {
                 don't mean a curve; linear ones say what the author said.",
         shape: Shape::CubeSmooth,
         overlays: Overlays::default(),
-        tiles: Normals::value_variants().iter().map(|&normals| of(normals)).collect(),
+        tiles: Normals::ALL.iter().map(|&normals| of(normals)).collect(),
     }
 }
 
 fn patterns() -> Exhibit {
-    let of = |partitioning: Partitioning| Tile {
-        name: partitioning.to_string(),
-        about: partitioning.about().to_owned(),
-        settings: Settings { partitioning, ..settings() },
-        factor: Some(5.4),
-        rim: 0.0,
+    let of = |partitioning| {
+        let tile = Tile::of(partitioning, Tessellation { partitioning, ..usual() });
+        Tile { factor: Some(5.4), ..tile }
     };
     Exhibit {
         name: "patterns",
@@ -123,7 +116,7 @@ fn patterns() -> Exhibit {
 
 fn heights() -> Exhibit {
     let of = |displacement| {
-        let tile = Tile::of(displacement, Settings { displacement, ..settings() });
+        let tile = Tile::of(displacement, Tessellation { displacement, ..usual() });
         Tile { factor: Some(24.0), ..tile }
     };
     Exhibit {
@@ -133,7 +126,7 @@ fn heights() -> Exhibit {
                 and vertices close seams, and one direction a point closes the rest.",
         shape: Shape::CubeSplit,
         overlays: Overlays { cracks: true, ..Overlays::default() },
-        tiles: Displacement::value_variants().iter().map(|&displacement| of(displacement)).collect(),
+        tiles: Displacement::ALL.iter().map(|&displacement| of(displacement)).collect(),
     }
 }
 

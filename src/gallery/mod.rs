@@ -22,7 +22,7 @@ use crate::plot::{ChartError, contact_sheet};
 use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Displacement, Surface, reach};
+use crate::tessellate::{Displacement, Surface, Tessellation, reach};
 use tile::{Wall, draw_tile};
 
 /// Why there is no gallery.
@@ -135,11 +135,15 @@ impl<'a> Gallery<'a> {
         for tile in &exhibit.tiles {
             let settings = self.settings(tile);
             farthest = farthest.max(reach(&loaded.mesh, &settings.inputs(view)));
-            if seen.contains(&settings.surface) {
+            if seen.contains(&settings.tessellation.surface) {
                 continue;
             }
-            seen.push(settings.surface);
-            let plain = Settings { displacement: Displacement::Off, factor: LOOK_FACTOR, ..settings };
+            seen.push(settings.tessellation.surface);
+            let plain = settings.with(Tessellation {
+                displacement: Displacement::Off,
+                factor: LOOK_FACTOR,
+                ..settings.tessellation
+            });
             places.extend(self.places(&mut scene, plain, &camera, target)?);
         }
         camera.fit(places.into_iter(), farthest, target.viewport());
@@ -170,7 +174,12 @@ impl<'a> Gallery<'a> {
     /// What a tile is drawn with.
     fn settings(&self, tile: &Tile) -> Settings {
         let Look { height_scale, midlevel, factor, .. } = self.look;
-        Settings { factor: tile.factor.unwrap_or(factor), height_scale, midlevel, ..tile.settings }
+        tile.settings.with(Tessellation {
+            factor: tile.factor.unwrap_or(factor),
+            height_scale,
+            midlevel,
+            ..tile.settings.tessellation
+        })
     }
 
     /// The exhibit's mesh; with the heights that suit a shape made in code where it is to be displaced and nobody named
@@ -178,7 +187,7 @@ impl<'a> Gallery<'a> {
     fn prepared(&mut self, exhibit: &Exhibit, rim: f32) -> Result<Loaded, LoadError> {
         let source = self.look.source.clone().unwrap_or(Source::Shape(exhibit.shape));
         let mut loaded = self.load(source, rim)?.clone();
-        let displaced = exhibit.tiles.iter().any(|tile| tile.settings.displacement != Displacement::Off);
+        let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement != Displacement::Off);
         if displaced && loaded.mesh.heights.is_none() {
             let mut mesh = (*loaded.mesh).clone();
             mesh.heights = Some(Arc::new(exhibits::waves(&mesh)));

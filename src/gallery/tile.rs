@@ -8,7 +8,7 @@ use crate::measure::{CrackedEdge, Measured};
 use crate::render::layout::{CRACK_COLOR, linear};
 use crate::render::{Camera, LineSegment, Scene, Target, crack_lines_in};
 use crate::settings::{Overlays, Settings};
-use crate::tessellate::{Displacement, Inputs, Lod};
+use crate::tessellate::{Displacement, Inputs, Lod, Tessellation};
 
 /// Triangles in a tile, about: a mesh of many gets lower factors, since no tile has px for more.
 const MOST_TRIANGLES: f32 = 2e6;
@@ -53,8 +53,14 @@ pub struct Shown {
 pub fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     // The tessellator makes about 1.5 triangles a patch for each square of the factor.
     let most = (MOST_TRIANGLES / (1.5 * scene.tessellator.topology().patches.len().max(1) as f32)).sqrt();
-    debug_assert!(inputs.lod == Lod::Uniform);
-    Inputs { factor: if inputs.factor > most { most.floor().max(1.0) } else { inputs.factor }, ..*inputs }
+    debug_assert!(inputs.tessellation.lod == Lod::Uniform);
+    Inputs {
+        tessellation: Tessellation {
+            factor: if inputs.tessellation.factor > most { most.floor().max(1.0) } else { inputs.tessellation.factor },
+            ..inputs.tessellation
+        },
+        ..*inputs
+    }
 }
 
 pub fn draw_tile(
@@ -66,11 +72,11 @@ pub fn draw_tile(
     let &Wall { engine, target, camera, overlays } = wall;
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let inputs = affordable(&settings.inputs(view), scene);
-    let settings = Settings { factor: inputs.factor, ..settings };
+    let settings = settings.with(Tessellation { factor: inputs.tessellation.factor, ..settings.tessellation });
     scene.set_lines(&engine.gpu, &[]);
     let passes = engine.time(scene, target, camera, &settings, Runs::default())?;
     // What patches agree on isn't on the surface that each has by itself, which the error is measured against.
-    let is_shared = matches!(settings.displacement, Displacement::On | Displacement::AsPublished);
+    let is_shared = matches!(settings.tessellation.displacement, Displacement::On | Displacement::AsPublished);
     let wanted =
         Measurements { survey: true, screen_error: (!is_shared).then_some(&inputs), ..Measurements::default() };
     let MeasurementResults { survey, screen_error, .. } = engine.measure_all(scene, &wanted)?;
@@ -82,7 +88,7 @@ pub fn draw_tile(
     }
     engine.draw(scene, target, camera, &Settings { overlays, ..settings }, &mut Timing::Off)?;
     let shown = Shown {
-        factor: settings.factor,
+        factor: settings.tessellation.factor,
         triangles: scene.tessellator.totals().1,
         error_px,
         different_bits: measured.cracks.different_bits,

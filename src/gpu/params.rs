@@ -8,11 +8,11 @@ use crate::tessellate::{self, Clip, Inputs, Lod};
 /// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
 /// `is_given`: factors were given in place of LOD's. `culls_back`: patches that face away are left out.
 pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: bool, culls_back: bool) -> Params {
-    let lod = if is_given { None } else { Some(inputs.lod) };
+    let lod = if is_given { None } else { Some(inputs.tessellation.lod) };
     let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
     let by_distance = lod == Some(Lod::Distance);
     let by_length = matches!(lod, Some(Lod::Paper | Lod::EdgeLength));
-    let looks = adaptive || inputs.clip != Clip::Off || culls_back;
+    let looks = adaptive || inputs.tessellation.clip != Clip::Off || culls_back;
     let view = LodView {
         clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
         half_viewport: inputs.view.half_viewport.to_array(),
@@ -24,27 +24,27 @@ pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: 
     let heights = tessellate::displacing(mesh, inputs);
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
-        factor: if by_distance || lod == Some(Lod::Uniform) { inputs.factor } else { 0.0 },
-        pixels_per_segment: if by_length { inputs.pixels } else { 0.0 },
-        surface: inputs.surface as u32,
-        partitioning: inputs.partitioning as u32,
+        factor: if by_distance || lod == Some(Lod::Uniform) { inputs.tessellation.factor } else { 0.0 },
+        pixels_per_segment: if by_length { inputs.tessellation.pixels } else { 0.0 },
+        surface: inputs.tessellation.surface as u32,
+        partitioning: inputs.tessellation.partitioning as u32,
         lod: lod.map_or(LOD_GIVEN, |lod| lod as u32),
-        clip: inputs.clip as u32,
+        clip: inputs.tessellation.clip as u32,
         point_count: buffers.point_count,
         patch_count: buffers.patch_count,
         factor_count: buffers.factor_count,
         curve_count: buffers.curve_count,
-        edges: inputs.edges as u32,
-        tolerance: if by_error { inputs.tolerance } else { 0.0 },
-        near: if by_distance { inputs.near } else { 0.0 },
-        far: if by_distance { inputs.far } else { 0.0 },
+        edges: inputs.tessellation.edges as u32,
+        tolerance: if by_error { inputs.tessellation.tolerance } else { 0.0 },
+        near: if by_distance { inputs.tessellation.near } else { 0.0 },
+        far: if by_distance { inputs.tessellation.far } else { 0.0 },
         culls_back: u32::from(culls_back),
-        convention: inputs.convention as u32,
-        alpha: if inputs.surface.is_phong() { inputs.alpha } else { 0.0 },
-        normals: inputs.normals as u32,
-        displacement: heights.map_or(0, |_| inputs.displacement as u32),
+        convention: inputs.tessellation.convention as u32,
+        alpha: if inputs.tessellation.surface.is_phong() { inputs.tessellation.alpha } else { 0.0 },
+        normals: inputs.tessellation.normals as u32,
+        displacement: heights.map_or(0, |_| inputs.tessellation.displacement as u32),
         height_scale: heights.map_or(0.0, |heights| tessellate::height_units(heights, inputs)),
-        midlevel: heights.map_or(0.0, |_| inputs.midlevel),
+        midlevel: heights.map_or(0.0, |_| inputs.tessellation.midlevel),
         mixed: u32::from(by_error && heights.is_some() && buffers.is_mixed),
         _pad: [0; 2],
     }

@@ -138,13 +138,13 @@ impl Tessellator {
     /// # Errors
     /// The mesh's curves under another surface are larger than the adapter binds.
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
-        let sharing = sharing(inputs.surface, inputs.edges);
+        let sharing = sharing(inputs.tessellation.surface, inputs.tessellation.edges);
         if sharing != self.buffers.sharing {
             self.upload(sharing)?;
         }
         self.inputs = Some(*inputs);
-        self.convention = inputs.convention;
-        let culls_back = inputs.cull_back_faces && self.hides_backs(inputs);
+        self.convention = inputs.tessellation.convention;
+        let culls_back = inputs.tessellation.cull_back_faces && self.hides_backs(inputs);
         let params = params_of(inputs, &self.mesh, &self.buffers, self.given.is_some(), culls_back);
         if params != self.params || self.nets_done.is_none() {
             self.params = params;
@@ -230,7 +230,7 @@ impl Tessellator {
     /// as nothing was left out for another view.
     pub fn shows_fronts_only(&self, clip_from_object: Mat4) -> bool {
         let Some(inputs) = self.inputs else { return false };
-        let leaves_out = inputs.cull_back_faces || inputs.clip != Clip::Off;
+        let leaves_out = inputs.tessellation.cull_back_faces || inputs.tessellation.clip != Clip::Off;
         let seen = Inputs { view: tessellate::LodView { clip_from_object, ..inputs.view }, ..inputs };
         (!leaves_out || inputs.view.clip_from_object == clip_from_object) && self.hides_backs(&seen)
     }

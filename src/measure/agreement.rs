@@ -120,7 +120,7 @@ mod tests {
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::settings::Settings;
-    use crate::tessellate::{Lod, LodView, hull_factors};
+    use crate::tessellate::{Lod, LodView, Tessellation, hull_factors};
 
     /// What a convention writes for a torus seen at an angle.
     fn written(convention: Convention) -> (Topology, Vec<HullFactors>) {
@@ -129,7 +129,7 @@ mod tests {
         let turned = glam::Mat4::from_rotation_y(0.4) * glam::Mat4::from_rotation_x(0.3) * 0.3;
         let view =
             LodView::new(glam::Mat4 { w_axis: glam::vec4(0.1, 0.0, 0.5, 1.0), ..turned }, glam::Vec2::splat(300.0));
-        let settings = Settings { lod: Lod::Paper, convention, ..Settings::default() };
+        let settings = Settings::from(Tessellation { lod: Lod::Paper, convention, ..Tessellation::default() });
         let written = hull_factors(&mesh, &topology, &settings.inputs(view));
         (topology, written)
     }

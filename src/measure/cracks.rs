@@ -198,7 +198,7 @@ mod tests {
     use crate::measure::AskedFactors;
     use crate::mesh::Shape;
     use crate::settings::Settings;
-    use crate::tessellate::{Edges, Lod, LodView, Partitioning, Surface, tessellate};
+    use crate::tessellate::{Edges, Lod, LodView, Partitioning, Surface, Tessellation, tessellate};
 
     /// A view into which every shape fits, at an angle that treats no edge as its neighbour.
     fn view() -> LodView {
@@ -210,10 +210,12 @@ mod tests {
     fn outlines(shape: Shape, settings: Settings) -> (Mesh, Topology, Outlines) {
         let mesh = shape.build();
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
-        let inputs = Settings { lod: Lod::Paper, ..settings }.inputs(view());
+        let inputs = settings.with(Tessellation { lod: Lod::Paper, ..settings.tessellation }).inputs(view());
         let out = tessellate(&mesh, &topology, &inputs, None);
-        let mut outlines =
-            Outlines::new(out.patch_factors, AskedFactors::new(settings.edges, settings.convention, out.edge_factors));
+        let mut outlines = Outlines::new(
+            out.patch_factors,
+            AskedFactors::new(settings.tessellation.edges, settings.tessellation.convention, out.edge_factors),
+        );
         outlines.take(0, &out.vertices);
         (mesh, topology, outlines)
     }
@@ -226,12 +228,13 @@ mod tests {
     #[test]
     fn averaging_over_sides_closes_what_split_normals_tear() {
         for partitioning in Partitioning::ALL {
-            let settings = Settings { surface: Surface::Pn, partitioning, ..Settings::default() };
+            let settings =
+                Settings::from(Tessellation { surface: Surface::Pn, partitioning, ..Tessellation::default() });
             let torn = cracks(Shape::CubeSplit, settings);
             assert_eq!(torn.edges.len(), 12, "the cube's own edges, not its faces' diagonals");
             assert!(torn.max_gap() > 0.01);
             for surface in [Surface::Flat, Surface::PnAen] {
-                let closed = cracks(Shape::CubeSplit, Settings { surface, ..settings });
+                let closed = cracks(Shape::CubeSplit, settings.with(Tessellation { surface, ..settings.tessellation }));
                 assert_eq!((closed.different_bits, closed.different_normals, closed.different_factors), (0, 0, 0));
                 assert!(closed.edges.is_empty() && closed.edge_points > 18 && closed.edges_compared == 18);
             }
@@ -240,7 +243,7 @@ mod tests {
 
     #[test]
     fn as_published_edges_differ_in_their_last_bits() {
-        let published = Settings { edges: Edges::AsPublished, ..Settings::default() };
+        let published = Settings::from(Tessellation { edges: Edges::AsPublished, ..Tessellation::default() });
         let found = cracks(Shape::Torus, published);
         let points = found.different_bits as f64 / found.edge_points as f64;
         let factors = found.different_factors as f64 / found.edges_compared as f64;

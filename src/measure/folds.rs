@@ -59,7 +59,7 @@ mod tests {
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::settings::Settings;
-    use crate::tessellate::{LodView, Partitioning, Surface, tessellate};
+    use crate::tessellate::{LodView, Partitioning, Surface, Tessellation, tessellate};
     use glam::{Mat4, Vec2};
 
     #[test]
@@ -77,12 +77,12 @@ mod tests {
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
         // Just above 21, the points that have just come up lie 2^-16 behind the ones that they come from.
         let factor = 21.0 + 3.0 / 65536.0;
-        let settings = Settings {
+        let settings = Settings::from(Tessellation {
             surface: Surface::Flat,
             partitioning: Partitioning::FractionalOdd,
             factor,
-            ..Settings::default()
-        };
+            ..Tessellation::default()
+        });
         let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
         let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
         let domains = out.triangles.iter().map(|triangle| triangle.map(|index| out.vertices[index as usize].domain()));

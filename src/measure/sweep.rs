@@ -13,8 +13,8 @@ use glam::{DVec3, Vec3};
 
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
-    Clip, Convention, FIXED_ONE, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Vertex, process, round_pow2,
-    tessellate,
+    Clip, Convention, FIXED_ONE, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation, Vertex, process,
+    round_pow2, tessellate,
 };
 
 /// The step that charts show.
@@ -63,7 +63,15 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
     let still = |k: u32| SweepStep { factor: first + k as f32 * step, jump: 0.0, patch: 0, place: [0, 0] };
     let mut steps: Vec<_> = (1..=count).map(still).collect();
 
-    let inputs = Inputs { lod: Lod::Uniform, clip: Clip::Off, convention: Convention::D3d11, ..*inputs };
+    let inputs = Inputs {
+        tessellation: Tessellation {
+            lod: Lod::Uniform,
+            clip: Clip::Off,
+            convention: Convention::D3d11,
+            ..inputs.tessellation
+        },
+        ..*inputs
+    };
     let places = Places::new(places());
     let states = States { mesh, topology, inputs, places: &places };
     // Small pieces, as high factors take far longer than low ones.
@@ -78,7 +86,7 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
             });
         }
     });
-    Sweep { partitioning: inputs.partitioning, step, steps }
+    Sweep { partitioning: inputs.tessellation.partitioning, step, steps }
 }
 
 /// Segments of a patch's side in the grid of places: it has mid-edges and the centre, and is coarser than the finest
@@ -208,13 +216,18 @@ impl States<'_> {
 
     /// What every patch's factors become.
     fn factors(&self, factor: f32) -> PatchFactors {
-        let partitioning = self.inputs.partitioning;
+        let partitioning = self.inputs.tessellation.partitioning;
         let factor = if partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor };
         process(partitioning, [factor; 3], factor)
     }
 
     fn at(&self, factor: f32) -> State {
-        let out = tessellate(self.mesh, self.topology, &Inputs { factor, ..self.inputs }, None);
+        let out = tessellate(
+            self.mesh,
+            self.topology,
+            &Inputs { tessellation: Tessellation { factor, ..self.inputs.tessellation }, ..self.inputs },
+            None,
+        );
         let patches = self.topology.patches.len().max(1);
         let (points, triangles) = (out.vertices.len() / patches, out.triangles.len() / patches);
         let domain: Vec<_> = out.vertices[..points].iter().map(Vertex::domain).collect();
@@ -256,7 +269,7 @@ mod tests {
         mesh.materials[0].triangles = 0..2;
         let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
         let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
-        let settings = Settings { surface, partitioning, ..Settings::default() };
+        let settings = Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() });
         sweep(&mesh, &topology, &settings.inputs(view), factors, step)
     }
 
@@ -276,7 +289,7 @@ mod tests {
         let rounding = 2.0 * 3.0 * 3f64.sqrt() * 2f64.powi(-24) * 0.6;
         for partitioning in Partitioning::ALL {
             let largest = swept(Surface::Flat, partitioning, 1.0..=9.0, 0.25).largest().expect("it has steps");
-            assert!(largest.jump <= rounding, "{partitioning}: {largest:?}");
+            assert!(largest.jump <= rounding, "{partitioning:?}: {largest:?}");
         }
     }
 
@@ -315,8 +328,8 @@ mod tests {
         let pop = largest(Integer, 1.0..=5.0, SWEEP_STEP).jump;
         for partitioning in [FractionalOdd, FractionalEven] {
             let [whole, half] = [1.0, 0.5].map(|part| largest(partitioning, 1.0..=5.0, SWEEP_STEP * part).jump);
-            assert!(whole > 0.0 && whole < pop / 80.0, "{partitioning}: {whole} and {pop}");
-            assert!((half / whole - 0.5).abs() < 0.02, "{partitioning}: {half} and {whole}");
+            assert!(whole > 0.0 && whole < pop / 80.0, "{partitioning:?}: {whole} and {pop}");
+            assert!((half / whole - 0.5).abs() < 0.02, "{partitioning:?}: {half} and {whole}");
         }
     }
 
@@ -330,7 +343,7 @@ mod tests {
             for factor in factors.map(|n| n as f32) {
                 let pop = largest(Integer, factor..=factor + step, step).jump;
                 let jump = largest(partitioning, factor..=factor + step, step).jump;
-                assert!(jump < pop / 32.0, "{partitioning} {factor}: {jump} and {pop}");
+                assert!(jump < pop / 32.0, "{partitioning:?} {factor}: {jump} and {pop}");
             }
         }
     }
@@ -350,7 +363,7 @@ mod tests {
                     for axis in 0..2 {
                         let at = |k: usize| spot.weights[k] * f64::from(points[spot.corners[k] as usize][axis]);
                         let back = at(0) + at(1) + at(2);
-                        assert!((back - f64::from(place[axis])).abs() < 1e-9, "{partitioning} {factor}: {spot:?}");
+                        assert!((back - f64::from(place[axis])).abs() < 1e-9, "{partitioning:?} {factor}: {spot:?}");
                     }
                 }
             }

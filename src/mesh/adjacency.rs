@@ -7,21 +7,16 @@
 
 use std::ops::Range;
 
-use clap::ValueEnum;
-
 use super::topology::{Patch, Side, Topology};
 
 /// Which indices a patch has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0
-    #[value(name = "6")]
     Six,
     /// The triangle's corners 0, 1, 2, then the six
-    #[value(name = "9")]
     Nine,
     /// The nine, then the dominant corners on the points of corners 0, 1, 2
-    #[value(name = "12")]
     Twelve,
 }
 

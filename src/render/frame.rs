@@ -26,7 +26,7 @@ pub fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, setting
         viewport: viewport.to_array(),
         overlays: overlay_bits(&settings.overlays),
         ulp: scene.ulp,
-        convention: settings.convention as u32,
+        convention: settings.tessellation.convention as u32,
         scale_least: scale.least,
         scale_most: scale.most,
         px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },

@@ -13,7 +13,7 @@ use super::target::samples;
 use super::{Camera, Scene, Target};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::{ChunkBuffers, Gpu, GpuError, Recorder, bind_group};
-use crate::settings::{Colors, Half, Overlays, Settings};
+use crate::settings::{Colors, Overlays, Settings, SplitSide};
 use crate::tessellate::CoverageView;
 
 /// What draws pictures of any scene on a device. Its pipelines are made when they are first needed.
@@ -63,7 +63,11 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
-        let faces = if settings.cull_back_faces && scene.tessellator.is_solid() { Faces::Fronts } else { Faces::Both };
+        let faces = if settings.tessellation.cull_back_faces && scene.tessellator.is_solid() {
+            Faces::Fronts
+        } else {
+            Faces::Both
+        };
         let (materials, _) = surface_draws(&settings.overlays, faces);
         let mut draws: Vec<_> = scene
             .tessellator
@@ -72,7 +76,7 @@ impl Renderer {
             .iter()
             .map(|own| materials[usize::from(own.texture.is_some())])
             .collect();
-        if settings.split.is_some() && settings.half(Half::Left).is_none() {
+        if settings.split.is_some() && settings.half(SplitSide::Left).is_none() {
             draws.push(Draw::Source);
         }
         if settings.overlays.normals {
@@ -118,9 +122,9 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let rects = halves(target.size, settings.split);
         let frames =
-            Half::BOTH.map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings)));
+            SplitSide::BOTH.map(|half| scene.half(half).map(|half| frame(&self.gpu, half, target, camera, settings)));
         let steps = steps(scene, settings);
-        let has_left = settings.half(Half::Left).and(scene.half(Half::Left)).is_some();
+        let has_left = settings.half(SplitSide::Left).and(scene.half(SplitSide::Left)).is_some();
         for (index, step) in steps.iter().enumerate().take(range.end).skip(range.start) {
             let half = step.half();
             let Some(drawn) = scene.half_mut(half) else { continue };
@@ -135,18 +139,19 @@ impl Renderer {
             }
             let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { continue };
             let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
-            let source = if first && !has_left && rects[Half::Left as usize][2] > 0 {
+            let source = if first && !has_left && rects[SplitSide::Left as usize][2] > 0 {
                 Some(self.get(Draw::Source)?)
             } else {
                 None
             };
-            let has_lines = scene.lines.is_some() || scene.half(Half::Left).is_some_and(|left| left.lines.is_some());
+            let has_lines =
+                scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
             let lines = if last && has_lines { Some(self.line_pipelines(Draw::Lines)?) } else { None };
             let normals = if let Step::Normals(..) = step { Some(self.line_pipelines(Draw::Normals)?) } else { None };
             recorder.render("draw", color, target.depth(first), |pass| {
                 pass.set_bind_group(0, &group, &[]);
                 if let Some(source) = source {
-                    self.draw_source(pass, source, scene, rects[Half::Left as usize]);
+                    self.draw_source(pass, source, scene, rects[SplitSide::Left as usize]);
                 }
                 match *step {
                     Step::Surface(_, chunk) => {
@@ -160,9 +165,9 @@ impl Renderer {
                     Step::Nothing => {}
                 }
                 if let Some(lines) = lines {
-                    draw_lines(pass, lines, scene, rects[Half::Right as usize]);
-                    if let Some(left) = scene.half(Half::Left).filter(|_| has_left) {
-                        draw_lines(pass, lines, left, rects[Half::Left as usize]);
+                    draw_lines(pass, lines, scene, rects[SplitSide::Right as usize]);
+                    if let Some(left) = scene.half(SplitSide::Left).filter(|_| has_left) {
+                        draw_lines(pass, lines, left, rects[SplitSide::Left as usize]);
                     }
                 }
             });

@@ -14,7 +14,7 @@ use super::materials::Materials;
 use crate::gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 use crate::measure::DeviationField;
 use crate::mesh::{Bounds, Mesh, Moment, Topology};
-use crate::settings::{Half, Settings};
+use crate::settings::{Settings, SplitSide};
 use crate::tessellate::bounds_through;
 use crate::view::{ulp, ulp_at};
 
@@ -116,17 +116,17 @@ impl Scene {
     }
 
     /// What a half draws; none left of a split that has the mesh there as it came.
-    pub fn half(&self, half: Half) -> Option<&Self> {
+    pub fn half(&self, half: SplitSide) -> Option<&Self> {
         match half {
-            Half::Left => self.left.as_deref(),
-            Half::Right => Some(self),
+            SplitSide::Left => self.left.as_deref(),
+            SplitSide::Right => Some(self),
         }
     }
 
-    pub fn half_mut(&mut self, half: Half) -> Option<&mut Self> {
+    pub fn half_mut(&mut self, half: SplitSide) -> Option<&mut Self> {
         match half {
-            Half::Left => self.left.as_deref_mut(),
-            Half::Right => Some(self),
+            SplitSide::Left => self.left.as_deref_mut(),
+            SplitSide::Right => Some(self),
         }
     }
 

@@ -1,22 +1,22 @@
 //! A picture in steps: what each render pass adds, and to which half.
 
 use super::Scene;
-use crate::settings::{Half, Settings};
+use crate::settings::{Settings, SplitSide};
 
 /// What one render pass of a picture adds.
 pub enum Step {
     /// The background alone: nothing is emitted.
     Nothing,
     /// The triangles of a half's chunk.
-    Surface(Half, usize),
+    Surface(SplitSide, usize),
     /// The normals of a half's chunk.
-    Normals(Half, usize),
+    Normals(SplitSide, usize),
 }
 
 impl Step {
-    pub fn half(&self) -> Half {
+    pub fn half(&self) -> SplitSide {
         match self {
-            Self::Nothing => Half::Right,
+            Self::Nothing => SplitSide::Right,
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
         }
     }
@@ -35,7 +35,7 @@ pub fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
         let drawn = settings.half(half).and(scene.half(half));
         (0..drawn.map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
     };
-    let all: Vec<_> = Half::BOTH.into_iter().flat_map(chunks).collect();
+    let all: Vec<_> = SplitSide::BOTH.into_iter().flat_map(chunks).collect();
     if all.is_empty() {
         return vec![Step::Nothing];
     }

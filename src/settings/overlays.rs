@@ -1,5 +1,7 @@
 //! What is drawn over the shaded surface, or in place of its colours.
 
+use super::{Choice, Description};
+
 /// What the surface's colours mean: one thing at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colors {
@@ -41,7 +43,7 @@ pub struct Overlays {
 }
 
 /// One of [`Overlays`], by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overlay {
     Wireframe,
     Patches,
@@ -74,6 +76,86 @@ impl Overlay {
         Self::Normals,
         Self::Deviation,
     ];
+}
+
+impl Choice for Overlay {
+    const ALL: &'static [Self] = &Self::ALL;
+
+    fn description(self) -> Description {
+        let (name, label, text) = match self {
+            Self::Wireframe => ("wireframe", "Wireframe", "Edges of the tessellated triangles."),
+            Self::Patches => ("patches", "Patch borders", "Edges of the mesh's own triangles."),
+            Self::Barycentric => (
+                "barycentric",
+                "Barycentric",
+                "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2.",
+            ),
+            Self::Adjacency => {
+                ("adjacency", "Adjacency edges", "Edges of the mesh's own triangles, coloured by the kind of edge.")
+            }
+            Self::Cracks => (
+                "cracks",
+                "Cracks",
+                "Edges along which neighbouring triangles put a point at different positions; faint behind the surface.",
+            ),
+            Self::Folds => ("folds", "Folds", "Triangles that face away from the side that their patch faces."),
+            Self::TJunctions => (
+                "t-junctions",
+                "T-junctions",
+                "Open edges that a point of another triangle lies on; faint behind the surface.",
+            ),
+            Self::BackFaces => {
+                ("back-faces", "Back faces", "Triangles seen from behind: of open meshes, or wound the other way.")
+            }
+            Self::Factors => (
+                "factors",
+                "Factors",
+                "Colours the surface by tessellation factors after clamping and rounding: the inside factor inside each \
+                 patch, and along each edge the factor of that edge.",
+            ),
+            Self::TriangleSize => (
+                "triangle-size",
+                "Triangle size",
+                "Colours triangles by their size on screen: the side, in px, of the square that has twice the triangle's \
+                 area. Those below 3 px stand out: a GPU shades up to four times as many px for them as they cover.",
+            ),
+            Self::LowFactors => (
+                "low-factors",
+                "Factors below 2",
+                "Colours patches whose edge and inside factors are all below 2: without tessellation they would look almost \
+                 the same and cost less.",
+            ),
+            Self::Normals => (
+                "normals",
+                "Normals",
+                "Normals of the tessellated vertices, 18 px long across the view; faint behind the surface. Where there are \
+                 many, about one every 24 px is drawn.",
+            ),
+            Self::Deviation => (
+                "deviation",
+                "Deviation",
+                "Colours the surface by its distance to the reference: the exact surface of a shape made in code, a \
+                 reference mesh that was chosen, or else the surface that the tessellation converges to.",
+            ),
+        };
+        Description::new(name, label, text)
+    }
+}
+
+impl Choice for Colors {
+    const ALL: &'static [Self] =
+        &[Self::Material, Self::Barycentric, Self::Factors, Self::TriangleSize, Self::LowFactors, Self::Deviation];
+
+    fn description(self) -> Description {
+        match self {
+            Self::Material => Description::new("material", "Material", "The mesh's own colours."),
+            Self::Barycentric => Overlay::Barycentric.description(),
+            Self::Factors => Overlay::Factors.description(),
+            Self::TriangleSize => Overlay::TriangleSize.description(),
+            Self::LowFactors => Overlay::LowFactors.description(),
+            Self::Deviation => Overlay::Deviation.description(),
+        }
+    }
 }
 
 /// What turns an overlay on: a switch of its own, or the surface's colours, with those that it gives them.

@@ -20,7 +20,7 @@ use serde::Serialize;
 
 use crate::mesh::Mesh;
 use crate::settings::Settings;
-use crate::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface};
+use crate::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 
 /// What is run: a case, or any other mesh.
 #[derive(Clone, Debug)]
@@ -101,7 +101,7 @@ impl Method {
     /// The settings that mean this method, at one factor.
     pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
         let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
-        Settings { surface: self.surface(), edges, partitioning, factor, ..Settings::default() }
+        Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
     }
 
     /// The same for a mesh that can be displaced: without cracks, or as published by dominance alone.
@@ -111,7 +111,7 @@ impl Method {
             Self::PnAenAsPublished => Displacement::AsPublished,
             _ => Displacement::On,
         };
-        Settings { displacement, height_scale: 0.15, ..settings }
+        settings.with(Tessellation { displacement, height_scale: 0.15, ..settings.tessellation })
     }
 
     /// The same with adaptive LOD and clipping: the paper's own for what is as published. Under subtriangulation, which is
@@ -121,7 +121,12 @@ impl Method {
             Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
             _ => (Lod::EdgeLength, Clip::Frustum),
         };
-        Settings { lod, clip, pixels, ..self.settings(partitioning, 5.0) }
+        self.settings(partitioning, 5.0).with(Tessellation {
+            lod,
+            clip,
+            pixels,
+            ..self.settings(partitioning, 5.0).tessellation
+        })
     }
 }
 

@@ -16,8 +16,10 @@ use crate::measure::{AskedFactors, Measured, SWEEP_STEP, sweep};
 use crate::mesh::{Bounds, Mesh, Moment, Pose, Topology, t_junctions};
 use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
-use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, Posed, bounds_through, tessellate};
+use crate::settings::{ARENA_BYTES, Choice, Settings};
+use crate::tessellate::{
+    Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, Posed, Tessellation, bounds_through, tessellate,
+};
 
 /// How much is tried, and where.
 #[derive(Clone, Debug)]
@@ -156,7 +158,7 @@ impl<'a> Running<'a> {
             also_from: (turn as u32..effort.cameras).step_by(effort.factors.len()).map(random).collect(),
         });
         let adaptive = method.displacing(&self.mesh, method.adaptive(partitioning, PIXELS));
-        let unclipped = Settings { clip: Clip::Off, ..adaptive };
+        let unclipped = adaptive.with(Tessellation { clip: Clip::Off, ..adaptive.tessellation });
         // The paper's clip test drops whole patches, beside which nothing else would be seen: it has cases of its own.
         let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
         let seen = |settings, camera| Trial { pose: None, settings, camera, also_from: Vec::new() };
@@ -185,7 +187,11 @@ impl<'a> Running<'a> {
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let (mesh, topology) = Posed::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
             let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
-            let asked = AskedFactors::new(settings.edges, settings.convention, out.edge_factors.clone());
+            let asked = AskedFactors::new(
+                settings.tessellation.edges,
+                settings.tessellation.convention,
+                out.edge_factors.clone(),
+            );
             self.take(&mut worst, &Measured::of(&mesh, &topology, asked, &out), &settings, &view);
         }
         if self.case.probe == Probe::Sweep {
@@ -213,7 +219,7 @@ impl<'a> Running<'a> {
                 }
             }
             self.take(&mut worst, &measured, &settings, &view);
-            if self.case.probe == Probe::View && settings.clip != Clip::Off {
+            if self.case.probe == Probe::View && settings.tessellation.clip != Clip::Off {
                 let missing = self.missing(&settings, &camera)?;
                 worst.take(Quantity::Missing, missing as f64);
             }
@@ -228,7 +234,11 @@ impl<'a> Running<'a> {
         match self.case.probe {
             Probe::Folds => worst.take(Quantity::Folds, measured.folds as f64),
             // What is left out has no segments to measure, and a random view may be anywhere.
-            Probe::View if settings.used_lod() != Lod::Uniform && settings.clip == Clip::Off && is_look => {
+            Probe::View
+                if settings.tessellation.used_lod() != Lod::Uniform
+                    && settings.tessellation.clip == Clip::Off
+                    && is_look =>
+            {
                 worst.take(Quantity::Segment, longest_segment(&self.topology, measured, view) / f64::from(PIXELS));
             }
             _ => {}
@@ -243,7 +253,7 @@ impl<'a> Running<'a> {
             target.read(&engine.gpu)
         };
         let clipped = picture(settings)?;
-        let whole = picture(&Settings { clip: Clip::Off, ..*settings })?;
+        let whole = picture(&settings.with(Tessellation { clip: Clip::Off, ..settings.tessellation }))?;
         Ok(clipped.pixels().zip(whole.pixels()).filter(|(a, b)| a != b).count() as u64)
     }
 

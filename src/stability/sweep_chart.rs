@@ -12,7 +12,8 @@ use plotters::prelude::*;
 
 use crate::measure::{Sweep, SweepStep};
 use crate::plot::{self, BLUE, BLUISH_GREEN, CHART_RANGE, ChartError, DENSITY, INK, REDDISH_PURPLE, VERMILION};
-use crate::settings::FACTOR_RANGE;
+use crate::settings::Choice;
+use crate::settings::options::FACTOR_RANGE;
 use crate::tessellate::Partitioning;
 
 type Picture<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
@@ -45,7 +46,7 @@ fn font(size: i32) -> TextStyle<'static> {
 
 fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     picture.fill(&WHITE)?;
-    let (low, high) = (f64::from(*FACTOR_RANGE.start()), f64::from(*FACTOR_RANGE.end()));
+    let (low, high) = (f64::from(FACTOR_RANGE.least), f64::from(FACTOR_RANGE.most));
     let decades = decades(sweeps, diagonal);
     // Room at the ends, so that rounding loses no tick.
     let mut chart = ChartBuilder::on(picture)
@@ -119,8 +120,8 @@ fn parts(sweep: &Sweep, diagonal: f64, bottom: f64) -> Vec<(f64, f64)> {
 
 fn legend_text(sweep: &Sweep, diagonal: f64) -> String {
     match sweep.largest() {
-        Some(step) if step.jump > 0.0 => format!("{}, up to {:.1e}", sweep.partitioning, step.jump / diagonal),
-        _ => format!("{}, no jump", sweep.partitioning),
+        Some(step) if step.jump > 0.0 => format!("{}, up to {:.1e}", sweep.partitioning.name(), step.jump / diagonal),
+        _ => format!("{}, no jump", sweep.partitioning.name()),
     }
 }
 
@@ -258,7 +259,7 @@ mod tests {
         for shown in Partitioning::ALL {
             let picture = sweep_chart(&[sweep(shown, &jumps)], 1.0, [640, 400]).expect("it draws");
             for partitioning in Partitioning::ALL {
-                assert_eq!(has(&picture, Look::of(partitioning).color), partitioning == shown, "{partitioning}");
+                assert_eq!(has(&picture, Look::of(partitioning).color), partitioning == shown, "{partitioning:?}");
             }
         }
     }

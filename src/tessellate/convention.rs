@@ -4,31 +4,24 @@
 //! shader decides which side's factor it writes as factor i, and a domain shader which corner it weighs with weight i. Any
 //! order will do if both mean the same; if they don't, edges get the factors of other edges, and crack.
 
-use clap::ValueEnum;
-
 /// What a hull shader and a domain shader take factors and weights for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Convention {
     /// Direct3D 11's, Vulkan's and the white paper's: weights u, v, w are on corners 0, 1, 2, and TessFactor[0..2] are those
     /// of the edges opposite them.
     #[default]
-    #[value(name = "d3d11")]
     D3d11 = 0,
     /// AMD's PN triangles sample for Direct3D 11: weights w, u, v are on corners 0, 1, 2, and TessFactor[0..2] are those of
     /// the edges opposite u, v and w.
-    #[value(name = "amd-pn")]
     AmdPn = 1,
     /// TessFactor[0..2] are those of the edges (0, 1), (1, 2), (2, 0), and weights v, w, u are on corners 0, 1, 2.
-    #[value(name = "edge-order")]
     EdgeOrder = 2,
     /// A mistake: factors in edge order, but weights as in Direct3D 11, so that every edge gets the factor of another, and
     /// adaptive LOD cracks.
-    #[value(name = "rotated")]
     Rotated = 3,
     /// A mistake: as Direct3D 11, but the first two factors are exchanged, as if patches were wound the other way, and
     /// adaptive LOD cracks.
-    #[value(name = "mirrored")]
     Mirrored = 4,
 }
 

@@ -1,13 +1,12 @@
 //! Which patches emit nothing. Twin: `shaders/cull.wgsl`.
 
-use clap::ValueEnum;
 use glam::{Vec3, Vec4};
 
 use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
 
 /// Whether patches that cannot be seen are left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Clip {
     /// Every patch is drawn.

@@ -4,14 +4,13 @@
 //! A point moves by scale * (height - midlevel) along a direction that all its sides share. Heights are sampled without the
 //! device's texture unit, whose filters weigh in 8 bits: so they are the same numbers everywhere.
 
-use clap::ValueEnum;
 use glam::{Vec2, Vec3, vec2};
 
 use super::normal::unit_or;
 use crate::mesh::HeightMap;
 
 /// Whether a surface is displaced by height images, and what its patches agree on where they meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Displacement {
     /// The surface as it is.

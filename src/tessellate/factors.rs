@@ -5,8 +5,6 @@
 //!
 //! Source: D3D11.3 Functional Specification, sections 10.10 and 11.7.3 to 11.7.14.
 
-use std::{fmt, str::FromStr};
-
 use bytemuck::{Pod, Zeroable};
 
 /// 1.0 in 16.16 fixed point.
@@ -55,61 +53,6 @@ impl Partitioning {
         [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven, Self::Subtriangulation];
     /// Those that Direct3D 11's tessellator has, which give every edge a factor of its own.
     pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
-
-    /// What it does, in a sentence or two.
-    pub const fn about(self) -> &'static str {
-        match self {
-            Self::Integer => {
-                "Factors are rounded up: every segment is as long, and the pattern pops (Direct3D 11.3, section 11.7)."
-            }
-            Self::Pow2 => {
-                "Factors are rounded up to 1, 2, 4, 8, 16, 32 or 64: the pattern only halves (Direct3D 11.3, section 11.7)."
-            }
-            Self::FractionalOdd => {
-                "An odd number of segments, two of which grow from nothing: no pops (Direct3D 11.3, section 11.7)."
-            }
-            Self::FractionalEven => {
-                "An even number of segments, two of which grow from nothing; at least 2 (Direct3D 11.3, section 11.7)."
-            }
-            Self::Subtriangulation => {
-                "The factor is rounded up to n, and every patch becomes n x n equal triangles: level of detail n - 1 of \
-                 Vlachos et al. 2001, figure 4. Not Direct3D's; one factor for all, so LOD is uniform."
-            }
-        }
-    }
-
-    /// The name in settings, commands and files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Integer => "integer",
-            Self::Pow2 => "pow2",
-            Self::FractionalOdd => "fractional-odd",
-            Self::FractionalEven => "fractional-even",
-            Self::Subtriangulation => "subtriangulation",
-        }
-    }
-}
-
-impl fmt::Display for Partitioning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-/// A name that is none of [`Partitioning::ALL`].
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("unknown partitioning \"{0}\": expected integer, pow2, fractional-odd, fractional-even or subtriangulation")]
-pub struct UnknownPartitioning(pub String);
-
-impl FromStr for Partitioning {
-    type Err = UnknownPartitioning;
-
-    /// Accepts HLSL's spelling with an underscore too.
-    fn from_str(name: &str) -> Result<Self, Self::Err> {
-        let kebab = name.replace('_', "-");
-        let found = Self::ALL.into_iter().find(|p| p.name() == kebab);
-        found.ok_or_else(|| UnknownPartitioning(name.to_owned()))
-    }
 }
 
 /// A patch's factors as the tessellator uses them. Each word is a factor of 1..=64 in 16.16 fixed point, clamped and

@@ -1,10 +1,9 @@
 //! How many segments an edge gets. Twin: `shaders/lod.wgsl`.
 
-use clap::ValueEnum;
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 /// Where edge factors come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Lod {
     /// The same factor everywhere.

@@ -57,7 +57,7 @@ fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
 
 /// Whether patches that face away are left out.
 fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
-    inputs.cull_back_faces && Solid::find(mesh, topology).is_some_and(|solid| solid.hides_backs(inputs))
+    inputs.tessellation.cull_back_faces && Solid::find(mesh, topology).is_some_and(|solid| solid.hides_backs(inputs))
 }
 
 /// Tessellates the mesh with what a hull shader wrote, one for each patch, in place of what LOD gives. Backs stay: given
@@ -66,10 +66,10 @@ pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = Nets::new(mesh, topology, inputs);
     let relief = Relief::new(&nets, inputs).map(|relief| {
-        let factors = relief.given_factors(inputs.convention, given);
+        let factors = relief.given_factors(inputs.tessellation.convention, given);
         relief.with_levels(&factors)
     });
-    let written = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.partitioning);
+    let written = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.tessellation.partitioning);
     nets.emit(inputs, relief.as_ref(), false, written)
 }
 
@@ -82,7 +82,7 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
     let culls_back = culls_back(mesh, topology, inputs);
     let written = |patch| {
         let net = nets.patch(patch);
-        match unseen(inputs.clip, culls_back, &inputs.view, &net) {
+        match unseen(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
             SEEN => nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &net),
             _ => HullFactors::default(),
         }
@@ -99,12 +99,16 @@ pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let patches = 0..topology.patches.len() as u32;
     let written =
         patches.map(|patch| nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &nets.patch(patch)));
-    sums(written.map(|written| written.process(inputs.partitioning)))
+    sums(written.map(|written| written.process(inputs.tessellation.partitioning)))
 }
 
 /// Vertices and triangles that [`tessellate_given`] would emit, clipping aside.
 pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
-    sums(given.iter().map(|written| written.rounded(inputs.partitioning).process(inputs.partitioning)))
+    sums(
+        given
+            .iter()
+            .map(|written| written.rounded(inputs.tessellation.partitioning).process(inputs.tessellation.partitioning)),
+    )
 }
 
 fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
@@ -131,13 +135,13 @@ impl Nets<'_> {
         let mut out = Tessellated::default();
         for patch in 0..self.topology.patches.len() as u32 {
             let net = self.patch(patch);
-            let factors = match unseen(inputs.clip, culls_back, &inputs.view, &net) {
-                SEEN => written(patch, &net).process(inputs.partitioning),
+            let factors = match unseen(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
+                SEEN => written(patch, &net).process(inputs.tessellation.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
             let plan = domain_plan(factors);
             let vertex = |i| {
-                let uv = corner_weights(inputs.convention, domain_point(&plan, i));
+                let uv = corner_weights(inputs.tessellation.convention, domain_point(&plan, i));
                 let own = self.vertex(patch, &net, uv);
                 relief.map_or(own, |relief| relief.displaced(self, factors, own))
             };

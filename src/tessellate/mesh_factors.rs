@@ -6,33 +6,31 @@ use super::nets::Nets;
 use super::relief::Relief;
 use super::spans::Maps;
 use super::{
-    ControlNet, EDGE_SHARE, HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, distance_factor,
-    edge_error_factor, edge_length_factor, inside_error_factor, level, paper_edge_factor, round_pow2,
+    ControlNet, EDGE_SHARE, HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation,
+    distance_factor, edge_error_factor, edge_length_factor, inside_error_factor, level, paper_edge_factor, round_pow2,
 };
 
 impl Nets<'_> {
     /// The largest factor that any of an edge's curves asks for; as published, what each curve asks for.
     pub(super) fn edge_factors(&self, inputs: &Inputs, relief: Option<&Relief>) -> Vec<f32> {
-        let asked = |form: &dyn Fn(&Inputs, [Vec3; 4]) -> f32, curve: u32| {
+        let asked = |form: &dyn Fn([Vec3; 4]) -> f32, curve: u32| {
             let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
             let [ab, ba] = self.curve_nets[curve as usize];
-            form(inputs, [a, ab, ba, b])
+            form([a, ab, ba, b])
         };
-        let largest = |form: fn(&Inputs, [Vec3; 4]) -> f32, curves: &[u32]| {
-            (curves[0]..curves[1]).map(|c| asked(&form, c)).fold(1.0, f32::max)
+        let largest = |form: &dyn Fn([Vec3; 4]) -> f32, curves: &[u32]| {
+            (curves[0]..curves[1]).map(|c| asked(form, c)).fold(1.0, f32::max)
         };
         let edge = |(index, curves): (u32, &[u32])| {
-            let factor = match inputs.lod {
-                Lod::Uniform => inputs.factor,
-                Lod::Paper => largest(|inputs, net| paper_edge_factor(&inputs.view, inputs.pixels, net), curves),
-                Lod::EdgeLength => largest(|inputs, net| edge_length_factor(&inputs.view, inputs.pixels, net), curves),
-                Lod::Distance => largest(
-                    |Inputs { view, factor, near, far, .. }, net| distance_factor(view, *factor, *near, *far, net),
-                    curves,
-                ),
+            let Inputs { tessellation: Tessellation { factor, pixels, near, far, .. }, ref view } = *inputs;
+            let factor = match inputs.tessellation.lod {
+                Lod::Uniform => factor,
+                Lod::Paper => largest(&|net| paper_edge_factor(view, pixels, net), curves),
+                Lod::EdgeLength => largest(&|net| edge_length_factor(view, pixels, net), curves),
+                Lod::Distance => largest(&|net| distance_factor(view, factor, near, far, net), curves),
                 Lod::Error => return self.error_factor(inputs, relief, index, Maps::All),
             };
-            if inputs.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
+            if inputs.tessellation.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
         };
         (0..).zip(self.curves.factor_curves.windows(2)).map(edge).collect()
     }
@@ -40,18 +38,18 @@ impl Nets<'_> {
     /// What the error of an edge asks for, and the heights of these maps.
     fn error_factor(&self, inputs: &Inputs, relief: Option<&Relief>, factor: u32, maps: Maps) -> f32 {
         let share = if relief.is_some() { SURFACE_SHARE } else { 1.0 };
-        let tolerance = EDGE_SHARE * (inputs.tolerance * share);
+        let tolerance = EDGE_SHARE * (inputs.tessellation.tolerance * share);
         let asked = |curve: u32| {
             let points = self.curves.curves[curve as usize].points;
             let [a, b] = points.map(|p| self.topology.points[p as usize]);
             let [ab, ba] = self.curve_nets[curve as usize];
             let net = [a, ab, ba, b];
-            let is_flat = inputs.surface == Surface::Flat;
+            let is_flat = inputs.tessellation.surface == Surface::Flat;
             let own = if is_flat { 1.0 } else { edge_error_factor(&inputs.view, tolerance, net) };
             relief.map_or(own, |relief| own.max(relief.edge_factor(inputs, factor, maps, points, net)))
         };
         let curves = &self.curves.factor_curves[factor as usize..factor as usize + 2];
-        level(inputs.partitioning, (curves[0]..curves[1]).map(asked).fold(1.0, f32::max))
+        level(inputs.tessellation.partitioning, (curves[0]..curves[1]).map(asked).fold(1.0, f32::max))
     }
 
     /// What heights ask for inside a patch: as much as on its edges, where its own map alone speaks for them.
@@ -74,18 +72,18 @@ impl Nets<'_> {
         patch: u32,
         net: &ControlNet,
     ) -> HullFactors {
-        let Inputs { view, tolerance, partitioning, .. } = inputs;
+        let Inputs { tessellation: Tessellation { lod, surface, tolerance, partitioning, .. }, ref view } = *inputs;
         let sides = self.topology.patches[patch as usize].sides;
         let sides = sides.map(|side| edge_factors[self.curves.factor(self.topology, side) as usize]);
-        let by_heights = relief.filter(|_| inputs.lod == Lod::Error);
+        let by_heights = relief.filter(|_| lod == Lod::Error);
         let by_heights = by_heights.map(|relief| self.heights_inside(inputs, relief, patch, sides));
-        let inside = if inputs.lod == Lod::Error && inputs.surface != Surface::Flat {
+        let inside = if lod == Lod::Error && surface != Surface::Flat {
             let tolerance = tolerance * if by_heights.is_some() { SURFACE_SHARE } else { 1.0 };
-            let own = inside_error_factor(view, tolerance, *partitioning, net, [sides[1], sides[2], sides[0]]);
+            let own = inside_error_factor(view, tolerance, partitioning, net, [sides[1], sides[2], sides[0]]);
             by_heights.map_or(own, |heights| own.max(heights))
         } else {
             by_heights.unwrap_or(sides[0].max(sides[1]).max(sides[2]))
         };
-        HullFactors::of_sides(inputs.convention, sides, inside)
+        HullFactors::of_sides(inputs.tessellation.convention, sides, inside)
     }
 }

@@ -48,11 +48,11 @@ pub use displace::{
 pub use domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
 pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, level};
 pub use factors::{
-    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, UnknownPartitioning, outer_count, patch_is_culled,
-    patch_is_low, point_count, process, round_pow2, segments, triangle_count,
+    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, outer_count, patch_is_culled, patch_is_low,
+    point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull::HullFactors;
-pub use inputs::{Edges, Inputs, sharing};
+pub use inputs::{Edges, Inputs, Tessellation, sharing};
 pub use limit::Limit;
 pub use lod::{
     Lod, LodView, at_least_one, beyond_near, distance_factor, edge_length_factor, near_edge_factor, paper_edge_factor,

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use super::{
-    ControlNet, Edges, Inputs, Meeting, Normals, Surface, center_control_point, crease_control_point, meet, sharing,
-    side_control_points,
+    ControlNet, Edges, Inputs, Meeting, Normals, Surface, Tessellation, center_control_point, crease_control_point,
+    meet, sharing, side_control_points,
 };
 use crate::mesh::{Curves, Mesh, Topology};
 
@@ -21,7 +21,7 @@ pub(super) struct Nets<'a> {
 
 impl<'a> Nets<'a> {
     pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        let Inputs { surface, alpha, normals, edges, .. } = *inputs;
+        let Tessellation { surface, alpha, normals, edges, .. } = inputs.tessellation;
         let curves = Curves::build(mesh, topology, sharing(surface, edges));
         let net = |curve: &crate::mesh::Curve| {
             let [a, b] = curve.points.map(|p| topology.points[p as usize]);

@@ -1,13 +1,12 @@
 //! Normals that a surface is shaded with. Twin: `shaders/normal.wgsl`.
 
-use clap::ValueEnum;
 use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::factors::FIXED_ONE;
 use super::surface::{ControlNet, Surface, UNIT, patch_tangents};
 
 /// Which normals emitted vertices get.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Normals {
     /// The corners', linearly interpolated: what the author's normals say, as Phong shading does.

@@ -17,17 +17,18 @@ use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
 /// What displaces a mesh under these inputs, if anything does.
 pub fn displacing<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
-    mesh.heights.as_deref().filter(|_| inputs.displacement != Displacement::Off)
+    mesh.heights.as_deref().filter(|_| inputs.tessellation.displacement != Displacement::Off)
 }
 
 /// How far white is above black, in object units: by the size of the mesh at rest, so that it is the same in every pose.
 pub fn height_units(heights: &Heights, inputs: &Inputs) -> f32 {
-    inputs.height_scale * heights.radius
+    inputs.tessellation.height_scale * heights.radius
 }
 
 /// How far any point is moved at most, in object units.
 pub fn reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
-    displacing(mesh, inputs).map_or(0.0, |heights| height_units(heights, inputs).abs() * heights.reach(inputs.midlevel))
+    displacing(mesh, inputs)
+        .map_or(0.0, |heights| height_units(heights, inputs).abs() * heights.reach(inputs.tessellation.midlevel))
 }
 
 /// Heights over a mesh, and what its patches agree on.
@@ -95,10 +96,10 @@ impl<'a> Relief<'a> {
             mesh,
             topology,
             heights,
-            mode: inputs.displacement,
-            normals: inputs.normals,
+            mode: inputs.tessellation.displacement,
+            normals: inputs.tessellation.normals,
             scale: height_units(heights, inputs),
-            midlevel: inputs.midlevel,
+            midlevel: inputs.tessellation.midlevel,
             directions: directions(mesh, &dominance),
             frames: frames(mesh, topology),
             spans: spans(heights, mesh, topology, &dominance),
@@ -144,7 +145,7 @@ impl<'a> Relief<'a> {
         let sight = edge_sight(view, curve);
         let asked = |span: &Span| {
             let detail = self.heights.detail[span.map as usize - 1];
-            relief_factor(view, sight, inputs.tolerance, span.texels, turn, scale, detail)
+            relief_factor(view, sight, inputs.tessellation.tolerance, span.texels, turn, scale, detail)
         };
         let counts = |span: &&Span| span.map > 0 && (maps == Maps::All || maps == Maps::Only(span.map));
         self.spans_of(factor).filter(counts).map(asked).fold(1.0, f32::max)

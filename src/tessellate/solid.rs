@@ -33,11 +33,12 @@ impl Solid {
 
     /// Whether nothing that faces away can be seen under these inputs: nothing tears, and the near plane cuts nothing open.
     pub fn hides_backs(&self, inputs: &Inputs) -> bool {
-        let tears = inputs.surface.tears() && self.has_split_normals;
+        let tears = inputs.tessellation.surface.tears() && self.has_split_normals;
         // What is displaced may show its back anywhere.
-        let whole = inputs.displacement == Displacement::Off && !tears;
-        let holds = inputs.edges == Edges::PerEdge && inputs.convention.is_consistent() && whole;
-        holds && is_beyond_near(inputs.view.clip_from_object, self.extent_of(inputs.surface))
+        let whole = inputs.tessellation.displacement == Displacement::Off && !tears;
+        let holds =
+            inputs.tessellation.edges == Edges::PerEdge && inputs.tessellation.convention.is_consistent() && whole;
+        holds && is_beyond_near(inputs.view.clip_from_object, self.extent_of(inputs.tessellation.surface))
     }
 
     /// Least and greatest coordinates of all control points of a surface, in object units.
@@ -77,7 +78,7 @@ mod tests {
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::settings::Settings;
-    use crate::tessellate::{Limit, LodView};
+    use crate::tessellate::{Limit, LodView, Tessellation};
 
     fn solid(mesh: &Mesh) -> Option<Solid> {
         Solid::find(mesh, &Topology::build(mesh, &Progress::default()).expect("nobody cancels"))
@@ -119,7 +120,7 @@ mod tests {
             let Some(solid) = Solid::find(&mesh, &topology) else { continue };
             for surface in Surface::ALL {
                 let [min, max] = solid.extent_of(surface);
-                let settings = Settings { surface, alpha: 1.0, ..Settings::default() };
+                let settings = Settings::from(Tessellation { surface, alpha: 1.0, ..Tessellation::default() });
                 let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
                 let limit = Limit::new(&mesh, &topology, &inputs);
                 for patch in 0..topology.patches.len() as u32 {

@@ -3,7 +3,6 @@
 //! Weights follow the PN-AEN white paper (McDonald and Kilgard 2010): u belongs to corner 0, v to corner 1, w to corner 2.
 //! Domain coordinates are 16.16 fixed point, `FIXED_ONE` = 65536, so `FIXED_ONE - t` is exact and so is its f32 value.
 
-use clap::ValueEnum;
 use glam::{Vec2, Vec3};
 
 use super::factors::FIXED_ONE;
@@ -13,7 +12,7 @@ pub const UNIT: f32 = 1.0 / FIXED_ONE as f32;
 
 /// Which surface a patch becomes. Those that end on AEN are the same with adjacent edge normals, as in PN-AEN: an edge's
 /// control points are the mean of what its sides propose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum Surface {
     /// Flat dicing: more triangles, the same shape.

@@ -8,7 +8,7 @@ use pnaen::mesh::Shape;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
-    Clip, Convention, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, hull_factors,
+    Clip, Convention, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, hull_factors,
     patch_is_culled, segments, tessellate, tessellate_given,
 };
 
@@ -20,18 +20,25 @@ const MISTAKES: [Convention; 2] = [Convention::Rotated, Convention::Mirrored];
 
 /// Adaptive, in every form; factors differ from edge to edge.
 fn adaptive() -> [Settings; 4] {
-    let paper = Settings { lod: Lod::Paper, pixels: 14.0, ..Settings::default() };
+    let paper = Settings::from(Tessellation { lod: Lod::Paper, pixels: 14.0, ..Tessellation::default() });
     [
         paper,
-        Settings { lod: Lod::Error, tolerance: 0.3, ..paper },
-        Settings { lod: Lod::Distance, near: 3.0, far: 4.5, factor: 12.0, surface: Surface::Pn, ..paper },
-        Settings { edges: Edges::AsPublished, ..paper },
+        paper.with(Tessellation { lod: Lod::Error, tolerance: 0.3, ..paper.tessellation }),
+        paper.with(Tessellation {
+            lod: Lod::Distance,
+            near: 3.0,
+            far: 4.5,
+            factor: 12.0,
+            surface: Surface::Pn,
+            ..paper.tessellation
+        }),
+        paper.with(Tessellation { edges: Edges::AsPublished, ..paper.tessellation }),
     ]
 }
 
 fn on_cpu(loaded: &Loaded, inputs: &Inputs) -> (Tessellated, Measured) {
     let out = tessellate(&loaded.mesh, &loaded.topology, inputs, None);
-    let asked = AskedFactors::new(inputs.edges, inputs.convention, out.edge_factors.clone());
+    let asked = AskedFactors::new(inputs.tessellation.edges, inputs.tessellation.convention, out.edge_factors.clone());
     let measured = Measured::of(&loaded.mesh, &loaded.topology, asked, &out);
     (out, measured)
 }
@@ -49,7 +56,7 @@ fn sides(loaded: &Loaded, measured: &Measured) -> Vec<Vec<EdgeSide>> {
 /// Holds every consistent convention against Direct3D 11's.
 fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inputs) -> (Tessellated, Measured)) {
     let [first, others @ ..] = CONSISTENT.map(|convention| {
-        let settings = Settings { convention, ..settings };
+        let settings = settings.with(Tessellation { convention, ..settings.tessellation });
         let (out, measured) = run(&inputs(loaded, &settings));
         (format!("{:?} {settings:?}", loaded.source), out, measured)
     });
@@ -60,7 +67,7 @@ fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inp
         assert!(sides(loaded, &measured) == sides(loaded, &first.2), "{what}: rims");
         assert_eq!(measured.cracks, first.2.cracks, "{what}");
         assert_eq!((measured.folds, measured.not_finite), (first.2.folds, 0), "{what}");
-        if settings.edges == Edges::PerEdge && settings.surface != Surface::Pn {
+        if settings.tessellation.edges == Edges::PerEdge && settings.tessellation.surface != Surface::Pn {
             assert_eq!(measured.cracks.edges.len(), 0, "{what}");
         }
     }
@@ -70,9 +77,11 @@ fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inp
 fn consistent_conventions_give_the_same_rims_on_both_devices() {
     for shape in [Shape::Torus, Shape::CubeSplit, Shape::Moebius, Shape::Cone] {
         let (loaded, mut scene) = scene(shape);
-        for settings in adaptive().into_iter().chain([Settings { factor: 5.3, ..Settings::default() }]) {
+        for settings in
+            adaptive().into_iter().chain([Settings::from(Tessellation { factor: 5.3, ..Tessellation::default() })])
+        {
             for partitioning in Partitioning::ALL {
-                let settings = Settings { partitioning, ..settings };
+                let settings = settings.with(Tessellation { partitioning, ..settings.tessellation });
                 assert_one_mesh(&loaded, settings, |inputs| on_device(&mut scene, inputs));
                 assert_one_mesh(&loaded, settings, |inputs| on_cpu(&loaded, inputs));
             }
@@ -87,8 +96,14 @@ fn mistakes_crack_as_soon_as_factors_differ() {
         for convention in MISTAKES {
             for partitioning in Partitioning::DIRECT3D {
                 for lod in [Lod::Paper, Lod::EdgeLength, Lod::Error] {
-                    let settings =
-                        Settings { convention, partitioning, lod, pixels: 5.0, tolerance: 0.05, ..adaptive()[0] };
+                    let settings = adaptive()[0].with(Tessellation {
+                        convention,
+                        partitioning,
+                        lod,
+                        pixels: 5.0,
+                        tolerance: 0.05,
+                        ..adaptive()[0].tessellation
+                    });
                     let inputs = inputs(&loaded, &settings);
                     for cracks in [on_device(&mut scene, &inputs).1.cracks, on_cpu(&loaded, &inputs).1.cracks] {
                         let found = [cracks.different_factors, cracks.different_bits];
@@ -98,7 +113,8 @@ fn mistakes_crack_as_soon_as_factors_differ() {
                 }
             }
             for partitioning in Partitioning::ALL {
-                let uniform = Settings { convention, partitioning, factor: 6.4, ..Settings::default() };
+                let uniform =
+                    Settings::from(Tessellation { convention, partitioning, factor: 6.4, ..Tessellation::default() });
                 let inputs = inputs(&loaded, &uniform);
                 for measured in [on_device(&mut scene, &inputs).1, on_cpu(&loaded, &inputs).1] {
                     assert_eq!(measured.cracks.edges.len(), 0, "{shape:?} {uniform:?}");
@@ -116,8 +132,14 @@ fn both_devices_agree_under_every_convention() {
             for partitioning in Partitioning::ALL {
                 for lod in [Lod::Paper, Lod::EdgeLength] {
                     for edges in [Edges::PerEdge, Edges::AsPublished] {
-                        let settings =
-                            Settings { convention, partitioning, lod, edges, clip: Clip::Frustum, ..adaptive()[0] };
+                        let settings = adaptive()[0].with(Tessellation {
+                            convention,
+                            partitioning,
+                            lod,
+                            edges,
+                            clip: Clip::Frustum,
+                            ..adaptive()[0].tessellation
+                        });
                         let inputs = inputs(&loaded, &settings);
                         let gpu = on_gpu(&mut scene, &inputs);
                         let factors = edge_factors(&scene);
@@ -143,14 +165,22 @@ fn what_a_hull_shader_wrote_gives_the_same_mesh_again() {
     for convention in Convention::ALL {
         for partitioning in Partitioning::ALL {
             for settings in adaptive() {
-                let settings = Settings { convention, partitioning, clip: Clip::Frustum, ..settings };
+                let settings = settings.with(Tessellation {
+                    convention,
+                    partitioning,
+                    clip: Clip::Frustum,
+                    ..settings.tessellation
+                });
                 let (inputs, what) = (close(&loaded, &settings), format!("{settings:?}"));
                 let direct = on_gpu(&mut scene, &inputs);
                 let written = scene.tessellator.hull_factors().expect("a readback");
                 let left_out = written.iter().filter(|patch| patch.culls()).count();
                 assert!(left_out > 10 && left_out < written.len() - 10, "{what}: {left_out} out of view");
                 // Under a uniform LOD nothing of the view's is left but the file's.
-                let given = Inputs { lod: Lod::Uniform, clip: Clip::Off, ..inputs };
+                let given = Inputs {
+                    tessellation: Tessellation { lod: Lod::Uniform, clip: Clip::Off, ..inputs.tessellation },
+                    ..inputs
+                };
                 scene.tessellator.give(Some(written)).expect("small");
                 let again = on_gpu(&mut scene, &given);
                 scene.tessellator.give(None).expect("small");
@@ -181,7 +211,7 @@ fn given_factors_reach_the_tessellator_as_they_are() {
         .collect();
     for convention in Convention::ALL {
         for partitioning in Partitioning::ALL {
-            let settings = Settings { convention, partitioning, ..Settings::default() };
+            let settings = Settings::from(Tessellation { convention, partitioning, ..Tessellation::default() });
             let inputs = inputs(&loaded, &settings);
             scene.tessellator.give(Some(given.clone())).expect("small");
             let (gpu, measured) = on_device(&mut scene, &inputs);
@@ -208,7 +238,8 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
         (Convention::Rotated, [4, 2, 3]),
         (Convention::Mirrored, [4, 2, 3]),
     ] {
-        let settings = Settings { convention, partitioning: Partitioning::Integer, ..Settings::default() };
+        let settings =
+            Settings::from(Tessellation { convention, partitioning: Partitioning::Integer, ..Tessellation::default() });
         let out = tessellate_given(&loaded.mesh, &loaded.topology, &inputs(&loaded, &settings), &given);
         let measured = Measured::of(&loaded.mesh, &loaded.topology, AskedFactors::given(convention, &given), &out);
         for (index, patch) in (0..).zip(&loaded.topology.patches) {
@@ -233,7 +264,7 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
 fn lod_by_error_asks_for_the_same_inside_under_consistent_conventions() {
     let (loaded, mut scene) = scene(Shape::Moebius);
     let insides = CONSISTENT.map(|convention| {
-        let inputs = inputs(&loaded, &Settings { convention, ..adaptive()[1] });
+        let inputs = inputs(&loaded, &adaptive()[1].with(Tessellation { convention, ..adaptive()[1].tessellation }));
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         let written = scene.tessellator.hull_factors().expect("a readback");
         written.iter().map(|patch| patch.inside).collect::<Vec<_>>()

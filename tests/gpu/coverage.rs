@@ -8,7 +8,7 @@ use pnaen::mesh::Shape;
 use pnaen::render::{Camera, Renderer, Scene, Target};
 use pnaen::settings::{Colors, Overlays, Settings};
 use pnaen::stability::random_camera;
-use pnaen::tessellate::{CoverageView, Lod, Surface, covers_nothing, screen_corner};
+use pnaen::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing, screen_corner};
 
 use crate::{engine, scene};
 
@@ -42,10 +42,13 @@ fn no_pixel_differs_without_the_triangles_that_cover_nothing() {
                 _ => Overlays::default(),
             };
             let settings = Settings {
-                lod: [Lod::Uniform, Lod::EdgeLength][index as usize / 7 % 2],
-                factor: [5.0, 17.0, 40.0][index as usize / 3 % 3],
-                pixels: 0.7,
-                surface: [Surface::PnAen, Surface::Pn][index as usize / 2 % 2],
+                tessellation: Tessellation {
+                    lod: [Lod::Uniform, Lod::EdgeLength][index as usize / 7 % 2],
+                    factor: [5.0, 17.0, 40.0][index as usize / 3 % 3],
+                    pixels: 0.7,
+                    surface: [Surface::PnAen, Surface::Pn][index as usize / 2 % 2],
+                    ..Tessellation::default()
+                },
                 split: [None, Some(0.4)][usize::from(index % 11 == 0)],
                 overlays,
                 ..Settings::default()
@@ -69,7 +72,7 @@ fn as_many_triangles_are_kept_as_the_reference_keeps() {
     for (shape, factor) in [(Shape::Torus, 23.0), (Shape::Bicubic, 48.0), (Shape::CubeSplit, 64.0)] {
         let (_, mut scene) = scene(shape);
         let camera = Camera::framing(&scene.bounds, target.viewport());
-        let settings = Settings { factor, ..Settings::default() };
+        let settings = Settings::from(Tessellation { factor, ..Tessellation::default() });
         seen(&engine, &mut scene, &target, &camera, &settings);
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
         let fronts_only = scene.tessellator.shows_fronts_only(clip_from_object);

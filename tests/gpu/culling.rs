@@ -7,7 +7,7 @@ use pnaen::mesh::Shape;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{Overlays, Settings};
 use pnaen::stability::random_camera;
-use pnaen::tessellate::{Clip, Edges, Lod, Surface, tessellate};
+use pnaen::tessellate::{Clip, Edges, Lod, Surface, Tessellation, tessellate};
 
 use crate::{engine, scene};
 
@@ -40,8 +40,8 @@ fn no_pixel_differs_whatever_is_left_out() {
             let camera = random_camera(&scene.bounds, index);
             let lod = [Lod::Error, Lod::Uniform][index as usize / 7 % 2];
             let surface = [Surface::PnAen, Surface::Flat][index as usize / 5 % 2];
-            let all = Settings { lod, surface, factor: 3.0, ..Settings::default() };
-            let needed = Settings { clip: Clip::Frustum, cull_back_faces: true, ..all };
+            let all = Settings::from(Tessellation { lod, surface, factor: 3.0, ..Tessellation::default() });
+            let needed = all.with(Tessellation { clip: Clip::Frustum, cull_back_faces: true, ..all.tessellation });
             if index % 10 == 0 {
                 // With backs drawn too: silhouettes alone may differ, where front and back are equally far.
                 let backs = |settings: Settings| Settings {
@@ -76,13 +76,13 @@ fn facing_away(shape: Shape, settings: &Settings) -> u32 {
 
 #[test]
 fn backs_are_kept_where_they_could_be_seen() {
-    let culling = Settings { cull_back_faces: true, ..Settings::default() };
-    let flat = Settings { surface: Surface::Flat, ..culling };
+    let culling = Settings::from(Tessellation { cull_back_faces: true, ..Tessellation::default() });
+    let flat = culling.with(Tessellation { surface: Surface::Flat, ..culling.tessellation });
     assert_eq!(facing_away(Shape::CubeSplit, &flat), 6, "three of a cube's faces, two triangles each");
     assert!(facing_away(Shape::Torus, &culling) > 90, "of 256, about half of which face away");
-    let torn = Settings { surface: Surface::Pn, ..culling };
+    let torn = culling.with(Tessellation { surface: Surface::Pn, ..culling.tessellation });
     assert_eq!(facing_away(Shape::CubeSplit, &torn), 0, "one looks in through the cracks");
-    let published = Settings { edges: Edges::AsPublished, ..culling };
+    let published = culling.with(Tessellation { edges: Edges::AsPublished, ..culling.tessellation });
     assert_eq!(facing_away(Shape::CubeSplit, &published), 0, "the same");
     assert_eq!(facing_away(Shape::Saddle, &culling), 0, "open");
     assert_eq!(facing_away(Shape::Moebius, &culling), 0, "without an outside");
@@ -96,7 +96,12 @@ fn the_device_leaves_out_what_the_cpu_does() {
         let (loaded, mut scene) = scene(shape);
         for index in 0..12 {
             let camera = random_camera(&scene.bounds, index);
-            let settings = Settings { factor: 1.0, clip: Clip::Frustum, cull_back_faces: true, ..Settings::default() };
+            let settings = Settings::from(Tessellation {
+                factor: 1.0,
+                clip: Clip::Frustum,
+                cull_back_faces: true,
+                ..Tessellation::default()
+            });
             let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));
             engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
             let device = engine().patch_factors(&scene).expect("a readback");
@@ -117,7 +122,7 @@ fn backs_that_are_not_rasterised_are_not_missed_either() {
         let (_, mut scene) = scene(shape);
         for index in (k as u32..120).step_by(SOLIDS.len()) {
             let camera = random_camera(&scene.bounds, index);
-            let usual = Settings { factor: 3.0, ..Settings::default() };
+            let usual = Settings::from(Tessellation { factor: 3.0, ..Tessellation::default() });
             // These shapes have no folds: all that this changes is that backs are rasterised.
             let both = Settings { overlays: Overlays { folds: true, ..Overlays::default() }, ..usual };
             let pictures = [usual, both].map(|settings| seen(&mut scene, &target, &camera, &settings));

@@ -9,7 +9,7 @@ use pnaen::mesh::{Mesh, Moment, Rig};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
-use pnaen::tessellate::{Edges, Lod, Partitioning, Surface, tessellate};
+use pnaen::tessellate::{Edges, Lod, Partitioning, Surface, Tessellation, tessellate};
 use pnaen::view::ulp;
 
 use crate::engine;
@@ -75,7 +75,7 @@ fn what_is_emitted_in_a_pose_is_what_the_cpu_emits() {
     let (loaded, mut scene) = scene();
     for surface in [Surface::Flat, Surface::Pn, Surface::PnAen] {
         for moment in moments(&loaded.mesh, 3) {
-            let settings = Settings { surface, factor: 5.3, ..Settings::default() };
+            let settings = Settings::from(Tessellation { surface, factor: 5.3, ..Tessellation::default() });
             scene.set_moment(Some(moment)).expect("a small rig");
             let posed = loaded.posed(Some(moment));
             let inputs = inputs(&posed, &settings);
@@ -95,7 +95,13 @@ fn nothing_cracks_however_it_moves() {
     for moment in moments(&loaded.mesh, 9) {
         for lod in [Lod::Uniform, Lod::EdgeLength, Lod::Error] {
             let partitioning = if lod == Lod::Error { Partitioning::Integer } else { Partitioning::FractionalEven };
-            let settings = Settings { surface: Surface::PnAen, lod, partitioning, factor: 6.7, ..Settings::default() };
+            let settings = Settings::from(Tessellation {
+                surface: Surface::PnAen,
+                lod,
+                partitioning,
+                factor: 6.7,
+                ..Tessellation::default()
+            });
             scene.set_moment(Some(moment)).expect("a small rig");
             let inputs = inputs(&loaded.posed(Some(moment)), &settings);
             engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
@@ -107,7 +113,7 @@ fn nothing_cracks_however_it_moves() {
         }
     }
     // What measures sees the pose: PN tears split normals in it.
-    let torn = Settings { surface: Surface::Pn, ..Settings::default() };
+    let torn = Settings::from(Tessellation { surface: Surface::Pn, ..Tessellation::default() });
     engine().count(&mut scene, &inputs(&loaded, &torn), &mut Timing::Off).expect("counts");
     assert!(engine().measure(&mut scene).expect("a readback").cracks.different_bits > 0);
 }
@@ -134,7 +140,9 @@ fn the_same_pose_recomputes_nothing_and_rest_is_as_before() {
     assert_eq!(passes(&mut scene), [""; 0], "nothing has changed");
     assert_eq!(scene.tessellator.generation(), generation);
     // Another surface makes other nets of the same pose, also where sides share other curves.
-    let pn = Settings { surface: Surface::Pn, edges: Edges::AsPublished, ..settings }.inputs(inputs.view);
+    let pn = settings
+        .with(Tessellation { surface: Surface::Pn, edges: Edges::AsPublished, ..settings.tessellation })
+        .inputs(inputs.view);
     assert!(on_gpu(&mut scene, &pn) != bent);
     assert!(on_gpu(&mut scene, &inputs) == bent, "back to the bit");
     scene.set_moment(None).expect("rest");
@@ -157,7 +165,7 @@ fn the_pass_is_timed_where_something_is_deformed() {
 fn backs_stay_in_a_pose() {
     let (loaded, mut scene) = scene();
     assert!(scene.tessellator.is_solid());
-    let settings = Settings { cull_back_faces: true, ..Settings::default() };
+    let settings = Settings::from(Tessellation { cull_back_faces: true, ..Tessellation::default() });
     let inputs = inputs(&loaded, &settings);
     engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
     assert!(engine().measure(&mut scene).expect("a readback").culled.facing_away > 0);
@@ -208,7 +216,7 @@ fn both_halves_of_a_split_are_in_one_pose() {
     scene.frame_clip(Some(0));
     let target = Target::new(&engine().gpu, [240, 160]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
-    let right = Settings { surface: Surface::Flat, ..Settings::default() };
+    let right = Settings::from(Tessellation { surface: Surface::Flat, ..Tessellation::default() });
     let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
     for moment in moments(&loaded.mesh, 3).into_iter().map(Some).chain([None]) {
         scene.set_moment(moment).expect("a small rig");

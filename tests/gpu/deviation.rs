@@ -9,8 +9,8 @@ use pnaen::gpu::Timing;
 use pnaen::measure::{DeviationField, DeviationTarget};
 use pnaen::mesh::Shape;
 use pnaen::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
-use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Half, Overlays, Settings};
-use pnaen::tessellate::{Lod, Surface};
+use pnaen::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings, SplitSide};
+use pnaen::tessellate::{Lod, Surface, Tessellation};
 use pnaen::truth::Truth;
 use pnaen::view::project;
 
@@ -19,7 +19,11 @@ use crate::pictures::{SIZE, differing};
 
 fn settings(surface: Surface, factor: f32) -> Settings {
     let overlays = Overlays { colors: Colors::Deviation, ..Overlays::default() };
-    Settings { surface, factor, overlays, ..Settings::default() }
+    Settings {
+        tessellation: Tessellation { surface, factor, ..Tessellation::default() },
+        overlays,
+        ..Settings::default()
+    }
 }
 
 /// How far what is emitted is from a surface, all over.
@@ -163,14 +167,14 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
     let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
     let truth = Arc::new(Truth::of_shape(Shape::Icosahedron).expect("a sphere"));
     let view = camera.lod_view(target.viewport(), &scene.bounds);
-    let fields = Half::BOTH.map(|half| {
+    let fields = SplitSide::BOTH.map(|half| {
         let (scene, settings) = scene.half_mut(half).zip(split.half(half)).expect("both halves");
         engine().count(scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
         deviation_from(scene, &DeviationTarget::Truth(truth.clone()))
     });
     let scale = deviation_scale(fields[0].worst().expect("something is emitted").value, scene.ulp());
     let [right_hand, _, to_eye] = camera.axes();
-    for ((half, field), aside) in Half::BOTH.into_iter().zip(&fields).zip([-0.5, 0.5]) {
+    for ((half, field), aside) in SplitSide::BOTH.into_iter().zip(&fields).zip([-0.5, 0.5]) {
         // Not its worst point: there are twenty of them, and the last bits would choose.
         let marked = (aside * right_hand + to_eye).normalize();
         let half = scene.half_mut(half).expect("both halves");
@@ -205,8 +209,12 @@ fn each_half_of_a_split_has_its_own_factors() {
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let overlays = Overlays { wireframe: true, ..Overlays::default() };
-    let right = Settings { surface: Surface::PnAen, lod: Lod::Error, overlays, ..Settings::default() };
-    let flat = Settings { surface: Surface::Flat, ..right };
+    let right = Settings {
+        tessellation: Tessellation { surface: Surface::PnAen, lod: Lod::Error, ..Tessellation::default() },
+        overlays,
+        ..Settings::default()
+    };
+    let flat = right.with(Tessellation { surface: Surface::Flat, ..right.tessellation });
     let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
     let [both, alone, flat] = [split, right, flat].map(|settings| {
         engine().draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");

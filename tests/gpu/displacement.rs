@@ -15,8 +15,8 @@ use pnaen::render::{Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::CASES;
 use pnaen::tessellate::{
-    Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Vertex, deform,
-    tessellate, tessellate_given, triangle_count, unpack_normal,
+    Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Tessellation, Vertex,
+    deform, tessellate, tessellate_given, triangle_count, unpack_normal,
 };
 use pnaen::view::ulp;
 
@@ -92,11 +92,19 @@ fn the_device_displaces_as_the_cpu_does() {
                 let normals = [Normals::Linear, Normals::Quadratic, Normals::Surface][(index + turn) % 3];
                 let edges = if turn % 4 == 3 { Edges::AsPublished } else { Edges::PerEdge };
                 let partitioning = Partitioning::ALL[turn % 4];
-                let own = Settings { surface, normals, edges, partitioning, displacement, ..Settings::default() };
-                let inputs = inputs(&loaded, &Settings { factor: 5.3, height_scale: 0.2, ..own });
+                let own = Settings::from(Tessellation {
+                    surface,
+                    normals,
+                    edges,
+                    partitioning,
+                    displacement,
+                    ..Tessellation::default()
+                });
+                let inputs =
+                    inputs(&loaded, &own.with(Tessellation { factor: 5.3, height_scale: 0.2, ..own.tessellation }));
                 let gpu = on_gpu(&mut scene, &inputs);
                 let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
-                let what = format!("{shape:?} {displacement:?} {surface:?} {normals:?} {edges:?} {partitioning}");
+                let what = format!("{shape:?} {displacement:?} {surface:?} {normals:?} {edges:?} {partitioning:?}");
                 assert_eq!(gpu.vertices.len(), cpu.vertices.len(), "{what}");
                 for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
                     // Levels are logarithms, good to some 1e-6 of one, and a level is at most the whole height.
@@ -116,12 +124,21 @@ fn no_edge_cracks_across_seams_or_split_normals() {
         let (loaded, mut scene) = wavy(shape);
         for surface in Surface::ALL.into_iter().filter(|surface| !surface.tears()) {
             for partitioning in Partitioning::ALL {
-                let own = Settings { surface, partitioning, displacement: Displacement::On, ..Settings::default() };
-                let paper = Settings { lod: Lod::EdgeLength, pixels: 6.0, ..own };
-                let error = Settings { lod: Lod::Error, tolerance: 2.0, ..own };
-                for settings in [Settings { factor: 6.4, ..own }, paper, error] {
-                    let measured = measured(&mut scene, &loaded, &Settings { height_scale: 0.3, ..settings });
-                    let what = format!("{shape:?} {surface:?} {partitioning} {:?}", settings.lod);
+                let own = Settings::from(Tessellation {
+                    surface,
+                    partitioning,
+                    displacement: Displacement::On,
+                    ..Tessellation::default()
+                });
+                let paper = own.with(Tessellation { lod: Lod::EdgeLength, pixels: 6.0, ..own.tessellation });
+                let error = own.with(Tessellation { lod: Lod::Error, tolerance: 2.0, ..own.tessellation });
+                for settings in [own.with(Tessellation { factor: 6.4, ..own.tessellation }), paper, error] {
+                    let measured = measured(
+                        &mut scene,
+                        &loaded,
+                        &settings.with(Tessellation { height_scale: 0.3, ..settings.tessellation }),
+                    );
+                    let what = format!("{shape:?} {surface:?} {partitioning:?} {:?}", settings.tessellation.lod);
                     let cracks = &measured.cracks;
                     assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{what}");
                     assert_eq!(measured.not_finite, 0, "{what}");
@@ -134,7 +151,7 @@ fn no_edge_cracks_across_seams_or_split_normals() {
 #[test]
 fn what_is_published_tears_where_it_is_said_to() {
     let bits = |(loaded, mut scene): (Loaded, Scene), displacement| {
-        let settings = Settings { displacement, factor: 6.0, ..Settings::default() };
+        let settings = Settings::from(Tessellation { displacement, factor: 6.0, ..Tessellation::default() });
         let cracks = measured(&mut scene, &loaded, &settings).cracks;
         (cracks.different_bits, cracks.max_gap() / ulp(&loaded.topology))
     };
@@ -158,9 +175,11 @@ fn heights_move_points_along_the_shared_direction_by_scale_and_midlevel() {
     mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, HeightMap::new([4, 4], vec![0.75; 16]))));
     loaded.mesh = Arc::new(mesh);
     let mut scene = engine().scene_of(loaded.mesh.clone(), loaded.topology.clone(), ARENA_BYTES).expect("a small mesh");
-    let own = Settings { factor: 3.0, height_scale: 0.1, midlevel: 0.25, ..Settings::default() };
-    let [flat, moved] = [Displacement::Off, Displacement::On]
-        .map(|displacement| on_gpu(&mut scene, &inputs(&loaded, &Settings { displacement, ..own })));
+    let own =
+        Settings::from(Tessellation { factor: 3.0, height_scale: 0.1, midlevel: 0.25, ..Tessellation::default() });
+    let [flat, moved] = [Displacement::Off, Displacement::On].map(|displacement| {
+        on_gpu(&mut scene, &inputs(&loaded, &own.with(Tessellation { displacement, ..own.tessellation })))
+    });
     let expected = 0.5 * 0.1 * loaded.mesh.bounds().radius();
     for (a, b) in flat.vertices.iter().zip(&moved.vertices) {
         let along = glam::Vec3::from(b.position) - glam::Vec3::from(a.position);
@@ -179,9 +198,11 @@ fn an_image_ends_at_its_border_where_coordinates_end_and_repeats_where_they_do_n
         mesh.corners.iter_mut().for_each(|corner| corner.uv *= times);
         mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, ramp())));
         let (loaded, mut scene) = on_device(Shape::Saddle, mesh);
-        let own = Settings { factor: 8.0, midlevel: 0.0, height_scale: 0.5, ..Settings::default() };
-        let [flat, moved] = [Displacement::Off, Displacement::On]
-            .map(|displacement| on_gpu(&mut scene, &inputs(&loaded, &Settings { displacement, ..own })));
+        let own =
+            Settings::from(Tessellation { factor: 8.0, midlevel: 0.0, height_scale: 0.5, ..Tessellation::default() });
+        let [flat, moved] = [Displacement::Off, Displacement::On].map(|displacement| {
+            on_gpu(&mut scene, &inputs(&loaded, &own.with(Tessellation { displacement, ..own.tessellation })))
+        });
         let radius = loaded.mesh.bounds().radius();
         let offset = |(a, b): (&Vertex, &Vertex)| {
             let [p, q] = [a.position, b.position].map(glam::Vec3::from);
@@ -200,7 +221,7 @@ fn factors_that_are_no_numbers_leave_no_hole_in_the_neighbours() {
         |patch: usize| HullFactors { edges: [if patch.is_multiple_of(2) { f32::NAN } else { 3.0 }; 3], inside: 3.0 };
     let given: Vec<_> = (0..scene.tessellator.topology().patches.len()).map(given).collect();
     scene.tessellator.give(Some(given.clone())).expect("few patches");
-    let settings = Settings { displacement: Displacement::On, ..Settings::default() };
+    let settings = Settings::from(Tessellation { displacement: Displacement::On, ..Tessellation::default() });
     let viewport = glam::vec2(64.0, 64.0);
     let view = pnaen::render::Camera::framing(&scene.bounds, viewport).lod_view(viewport, &scene.bounds);
     engine().count(&mut scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
@@ -218,7 +239,12 @@ fn shading_is_smooth_over_the_edges_of_smooth_patches() {
     mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
     let (loaded, mut scene) = under_waves(Shape::Torus, mesh);
     let steepest = |scene: &mut Scene, factor: f32| {
-        let settings = Settings { displacement: Displacement::On, height_scale: 0.1, factor, ..Settings::default() };
+        let settings = Settings::from(Tessellation {
+            displacement: Displacement::On,
+            height_scale: 0.1,
+            factor,
+            ..Tessellation::default()
+        });
         let out = on_gpu(scene, &inputs(&loaded, &settings));
         let normals: Vec<_> = out.vertices.iter().map(|vertex| unpack_normal(vertex.normal)).collect();
         let angle = |a: u32, b: u32| normals[a as usize].angle_between(normals[b as usize]).to_degrees();
@@ -239,19 +265,19 @@ fn culling_takes_the_amplitude_into_account() {
         let target = Target::new(&engine().gpu, size).expect("a small picture");
         for index in 0..24 {
             let camera = pnaen::stability::random_camera(&scene.bounds, index);
-            let whole = Settings {
+            let whole = Settings::from(Tessellation {
                 displacement: Displacement::On,
                 height_scale: 0.5,
                 factor: 8.0,
                 cull_back_faces: true,
-                ..Settings::default()
-            };
+                ..Tessellation::default()
+            });
             let mut picture = |settings: &Settings| {
                 engine().draw(&mut scene, &target, &camera, settings, &mut Timing::Off).expect("a picture");
                 (target.read(&engine().gpu).expect("a picture"), scene.tessellator.totals().1)
             };
             let (all, triangles) = picture(&whole);
-            let (clipped, fewer) = picture(&Settings { clip: Clip::Frustum, ..whole });
+            let (clipped, fewer) = picture(&whole.with(Tessellation { clip: Clip::Frustum, ..whole.tessellation }));
             assert!(all == clipped, "{shape:?}, camera {index}: clipping shows");
             culled += triangles - fewer;
         }
@@ -266,21 +292,21 @@ fn lod_by_error_holds_with_gentle_heights() {
         let mut mesh = shape.build();
         mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
         let (loaded, mut scene) = under_waves(shape, mesh);
-        let settings = Settings {
+        let settings = Settings::from(Tessellation {
             displacement: Displacement::On,
             height_scale: 0.05,
             lod: Lod::Error,
             tolerance: 1.0,
             partitioning: Partitioning::Integer,
-            ..Settings::default()
-        };
+            ..Tessellation::default()
+        });
         let inputs = inputs(&loaded, &settings);
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
         let results = engine().measure_all(&mut scene, &wanted).expect("a readback");
         let worst = results.screen_error.expect("it is in view");
         assert!(worst.px <= 1.0, "{shape:?}: {} px", worst.px);
-        let without = Settings { displacement: Displacement::Off, ..settings };
+        let without = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
         let plain = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &without)).triangles.len() as u64;
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         assert!(scene.tessellator.totals().1 > plain, "{shape:?}: heights cost triangles");
@@ -294,7 +320,12 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
     mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves(32))));
     let (loaded, mut scene) = on_device(Shape::Cylinder, mesh);
     let rig = loaded.mesh.rig.clone().expect("a rig");
-    let settings = Settings { displacement: Displacement::On, factor: 5.0, height_scale: 0.1, ..Settings::default() };
+    let settings = Settings::from(Tessellation {
+        displacement: Displacement::On,
+        factor: 5.0,
+        height_scale: 0.1,
+        ..Tessellation::default()
+    });
     let inputs = inputs(&loaded, &settings);
     let mut passes = Vec::new();
     for time in [0.3, 0.9, 1.6] {
@@ -342,9 +373,14 @@ fn a_noisy_image_refines_its_own_patches_alone() {
     };
     let slope = image(&|i| i % 256);
     let noise = image(&|i| if i < 256 { i } else { i.wrapping_mul(2_654_435_769) >> 24 });
-    let own = Settings { displacement: Displacement::On, height_scale: 0.1, lod: Lod::Error, ..Settings::default() };
+    let own = Settings::from(Tessellation {
+        displacement: Displacement::On,
+        height_scale: 0.1,
+        lod: Lod::Error,
+        ..Tessellation::default()
+    });
     for (surface, edges) in [(Surface::PnAen, Edges::PerEdge), (Surface::Flat, Edges::AsPublished)] {
-        let settings = Settings { surface, edges, tolerance: 2.0, ..own };
+        let settings = own.with(Tessellation { surface, edges, tolerance: 2.0, ..own.tessellation });
         let [(loaded, both), (_, smooth), (_, noisy)] =
             [[&noise, &slope], [&slope, &slope], [&noise, &noise]].map(|images| {
                 let (loaded, mut scene) = halves(images);

@@ -7,7 +7,9 @@ use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{self, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, hull_factors, tessellate};
+use pnaen::tessellate::{
+    self, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, hull_factors, tessellate,
+};
 use proptest::prelude::*;
 
 use crate::passes::edge_factors;
@@ -41,7 +43,7 @@ fn rounding_px(mesh: &Mesh, inputs: &Inputs) -> f64 {
 }
 
 fn by_error(settings: Settings, tolerance: f32) -> Settings {
-    Settings { lod: Lod::Error, tolerance, ..settings }
+    settings.with(Tessellation { lod: Lod::Error, tolerance, ..settings.tessellation })
 }
 
 proptest! {
@@ -52,15 +54,15 @@ proptest! {
         let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
         let settings = by_error(settings, 10f32.powf(magnitude));
         // Subtriangulation keeps no tolerance.
-        prop_assume!(settings.used_lod() == Lod::Error);
+        prop_assume!(settings.tessellation.used_lod() == Lod::Error);
         let inputs = settings.inputs(camera.lod_view(VIEWPORT, &mesh.bounds()));
         // An eye nearer than f32 can tell has no view.
         prop_assume!(inputs.view.clip_from_object.is_finite());
         let out = tessellate(&mesh, &topology, &inputs, None);
         if !is_capped(&hull_factors(&mesh, &topology, &inputs)) {
             let px = deviation_px(&mesh, &topology, &inputs, &out);
-            let most = f64::from(settings.tolerance) + rounding_px(&mesh, &inputs);
-            prop_assert!(px <= most, "{px} px of {} under {:?}", settings.tolerance, settings);
+            let most = f64::from(settings.tessellation.tolerance) + rounding_px(&mesh, &inputs);
+            prop_assert!(px <= most, "{px} px of {} under {:?}", settings.tessellation.tolerance, settings);
         }
     }
 }
@@ -90,14 +92,15 @@ fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
             let surface = Surface::ALL[1 + (2 * index + shape as usize) % 7];
             let tolerance = if index % 2 == 0 { 0.5 } else { 2.0 };
             let partitioning = Partitioning::DIRECT3D[(index + shape as usize) % 4];
-            let settings = by_error(Settings { surface, partitioning, ..Settings::default() }, tolerance);
+            let settings =
+                by_error(Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() }), tolerance);
             let (inputs, out) = on_device(&mut scene, &settings, &camera);
             if is_capped(&scene.tessellator.hull_factors().expect("a readback")) {
                 continue;
             }
             let px = deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out);
             let share = px / (f64::from(tolerance) + rounding_px(&loaded.mesh, &inputs));
-            assert!(share <= 1.0, "{shape:?} {surface:?} {partitioning}, camera {index}: {px} px of {tolerance}");
+            assert!(share <= 1.0, "{shape:?} {surface:?} {partitioning:?}, camera {index}: {px} px of {tolerance}");
             closest = closest.max(share);
             tried += 1;
         }
@@ -121,13 +124,14 @@ fn the_device_takes_the_factors_that_the_cpu_does() {
     for shape in Shape::ALL {
         let (loaded, mut scene) = scene(shape);
         for (camera, partitioning) in cameras(&scene).into_iter().zip(Partitioning::DIRECT3D) {
-            let settings = by_error(Settings { partitioning, ..Settings::default() }, 0.5);
+            let settings = by_error(Settings::from(Tessellation { partitioning, ..Tessellation::default() }), 0.5);
             let (inputs, out) = on_device(&mut scene, &settings, &camera);
             // Where a bound falls on a level to the last bits, either level may be taken: that is the one of a tolerance
             // that differs by no more than rounding.
+            let own = inputs.tessellation;
             let near = [1.0, 1.0 - ROUNDING, 1.0 + ROUNDING]
-                .map(|part| Inputs { tolerance: inputs.tolerance * part, ..inputs });
-            let what = format!("{shape:?} {partitioning}");
+                .map(|part| Inputs { tessellation: Tessellation { tolerance: own.tolerance * part, ..own }, ..inputs });
+            let what = format!("{shape:?} {partitioning:?}");
             let on_edges = edge_factors(&scene);
             let edges = near.each_ref().map(|inputs| tessellate::edge_factors(&loaded.mesh, &loaded.topology, inputs));
             for (edge, &factor) in on_edges.iter().enumerate() {
@@ -158,10 +162,11 @@ fn what_is_flat_costs_one_triangle_a_patch() {
     for (shape, surface) in [(Shape::Torus, Surface::Flat), (Shape::Icosahedron, Surface::Flat)] {
         let (loaded, mut scene) = scene(shape);
         for partitioning in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
-            let settings = by_error(Settings { surface, partitioning, ..Settings::default() }, 0.01);
+            let settings =
+                by_error(Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() }), 0.01);
             let [camera, ..] = cameras(&scene);
             let (_, out) = on_device(&mut scene, &settings, &camera);
-            assert_eq!(out.triangles.len(), loaded.mesh.triangles.len(), "{shape:?} {partitioning}");
+            assert_eq!(out.triangles.len(), loaded.mesh.triangles.len(), "{shape:?} {partitioning:?}");
         }
     }
 }

@@ -9,7 +9,7 @@ use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
-use pnaen::tessellate::{Clip, Displacement, Lod, Normals, Surface};
+use pnaen::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
 
 use crate::{engine, loaded};
 
@@ -46,12 +46,27 @@ fn the_defaults_of_webgpu_are_enough_for_everything() {
     let factors = Overlays { patches: true, adjacency: true, colors: Colors::Factors, ..Overlays::default() };
     let cases = [
         (Shape::Torus, Settings::opening()),
-        (Shape::Torus, Settings { lod: Lod::Error, clip: Clip::Frustum, overlays: wireframe, ..Settings::default() }),
+        (
+            Shape::Torus,
+            Settings {
+                tessellation: Tessellation { lod: Lod::Error, clip: Clip::Frustum, ..Tessellation::default() },
+                overlays: wireframe,
+                ..Settings::default()
+            },
+        ),
         (
             Shape::CubeSplit,
-            Settings { surface: Surface::Pn, overlays: factors, split: Some(0.5), ..Settings::default() },
+            Settings {
+                tessellation: Tessellation { surface: Surface::Pn, ..Tessellation::default() },
+                overlays: factors,
+                split: Some(0.5),
+                ..Settings::default()
+            },
         ),
-        (Shape::Bicubic, Settings { factor: 64.0, normals: Normals::Surface, ..Settings::default() }),
+        (
+            Shape::Bicubic,
+            Settings::from(Tessellation { factor: 64.0, normals: Normals::Surface, ..Tessellation::default() }),
+        ),
     ];
     for (shape, settings) in cases {
         let mesh = loaded(shape);
@@ -75,7 +90,8 @@ fn heights_need_no_more_either() {
     own.materials.iter_mut().for_each(|material| material.texture = Some(Arc::new(texture.clone())));
     let heights = HeightSource::Materials.load(own, &[], &Budget::unlimited(), &Progress::new()).expect("images");
     own.heights = Some(Arc::new(heights));
-    let settings = Settings { displacement: Displacement::On, lod: Lod::Error, ..Settings::default() };
+    let settings =
+        Settings::from(Tessellation { displacement: Displacement::On, lod: Lod::Error, ..Tessellation::default() });
     let [expected, found] = [engine(), &small].map(|engine| {
         let mut scene = engine.scene(&mesh, ARENA_BYTES).expect("shapes are small");
         seen(engine, &mut scene, &settings).expect("a picture")
@@ -120,7 +136,8 @@ fn a_lost_device_is_an_error_and_another_goes_on() {
     let mut scene = lost.scene(&mesh, ARENA_BYTES).expect("shapes are small");
     let expected = seen(&lost, &mut scene, &Settings::default()).expect("a picture");
     lost.gpu.device.destroy();
-    let error = seen(&lost, &mut scene, &Settings { factor: 7.0, ..Settings::default() }).expect_err("it is lost");
+    let error = seen(&lost, &mut scene, &Settings::from(Tessellation { factor: 7.0, ..Tessellation::default() }))
+        .expect_err("it is lost");
     assert!(matches!(error, GpuError::Lost(_)) && lost.gpu.lost().is_some(), "{error}");
     assert!(matches!(lost.gpu.check(), Err(GpuError::Lost(_))), "for good");
     assert!(matches!(lost.gpu.attempt(|| ()), Err(GpuError::Lost(_))));

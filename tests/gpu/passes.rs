@@ -11,8 +11,8 @@ use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::tessellate::{
-    Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, beyond_near, patch_is_culled, point_count,
-    process, tessellate, totals, triangle_count, unpack_normal,
+    Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, Tessellation, beyond_near, patch_is_culled,
+    point_count, process, tessellate, totals, triangle_count, unpack_normal,
 };
 use pnaen::view::{ScreenView, ulp};
 
@@ -72,11 +72,12 @@ fn uniform_factors_agree_with_the_cpu() {
             for partitioning in Partitioning::ALL {
                 for (edges, factor) in [(Edges::PerEdge, 1.0), (Edges::PerEdge, 5.3), (Edges::AsPublished, 5.3)] {
                     let normals = NORMALS[(surface as usize + partitioning as usize) % 3];
-                    let base = Settings { surface, normals, alpha: 0.6, ..Settings::default() };
-                    let inputs = inputs(&loaded, &Settings { edges, partitioning, factor, ..base });
+                    let base = Settings::from(Tessellation { surface, normals, alpha: 0.6, ..Tessellation::default() });
+                    let inputs =
+                        inputs(&loaded, &base.with(Tessellation { edges, partitioning, factor, ..base.tessellation }));
                     let gpu = on_gpu(&mut scene, &inputs);
                     let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
-                    let what = format!("{shape:?} {surface:?} {normals:?} {edges:?} {partitioning} {factor}");
+                    let what = format!("{shape:?} {surface:?} {normals:?} {edges:?} {partitioning:?} {factor}");
                     assert_agree(&loaded, &gpu, &cpu, &what);
                     let counted = totals(&loaded.mesh, &loaded.topology, &inputs);
                     assert_eq!(scene.tessellator.totals(), counted, "known before anything is emitted");
@@ -88,9 +89,9 @@ fn uniform_factors_agree_with_the_cpu() {
 
 #[test]
 fn adaptive_factors_agree_with_the_cpu() {
-    let paper = Settings { lod: Lod::Paper, clip: Clip::Paper, ..Settings::default() };
-    let published = Settings { edges: Edges::AsPublished, ..paper };
-    let robust = Settings { lod: Lod::EdgeLength, clip: Clip::Frustum, ..paper };
+    let paper = Settings::from(Tessellation { lod: Lod::Paper, clip: Clip::Paper, ..Tessellation::default() });
+    let published = paper.with(Tessellation { edges: Edges::AsPublished, ..paper.tessellation });
+    let robust = paper.with(Tessellation { lod: Lod::EdgeLength, clip: Clip::Frustum, ..paper.tessellation });
     let tried = [
         (Shape::CubeSplit, paper),
         (Shape::CubeSplit, published),
@@ -104,11 +105,14 @@ fn adaptive_factors_agree_with_the_cpu() {
         let (loaded, mut scene) = scene(shape);
         for surface in SURFACES {
             for partitioning in Partitioning::DIRECT3D {
-                let settings = Settings { surface, partitioning, ..settings };
+                let settings = settings.with(Tessellation { surface, partitioning, ..settings.tessellation });
                 let inputs = inputs(&loaded, &settings);
                 let gpu = on_gpu(&mut scene, &inputs);
                 let factors = edge_factors(&scene);
-                let what = format!("{shape:?} {surface:?} {partitioning} {:?} {:?}", settings.edges, settings.lod);
+                let what = format!(
+                    "{shape:?} {surface:?} {partitioning:?} {:?} {:?}",
+                    settings.tessellation.edges, settings.tessellation.lod
+                );
                 // Division and square root may differ in the last bits, and a factor's rounding with them: the
                 // tessellation is compared at the GPU's factors; those are held against the formula below.
                 let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, Some(&factors));
@@ -122,15 +126,26 @@ fn adaptive_factors_agree_with_the_cpu() {
 #[test]
 fn adaptive_factors_are_those_of_the_formula() {
     let (loaded, mut scene) = scene(Shape::Torus);
-    let distance = Settings { lod: Lod::Distance, near: 3.0, far: 4.5, factor: 20.0, ..Settings::default() };
-    for settings in [Settings { lod: Lod::Paper, pixels: 6.0, ..Settings::default() }, distance] {
+    let distance = Settings::from(Tessellation {
+        lod: Lod::Distance,
+        near: 3.0,
+        far: 4.5,
+        factor: 20.0,
+        ..Tessellation::default()
+    });
+    for settings in [Settings::from(Tessellation { lod: Lod::Paper, pixels: 6.0, ..Tessellation::default() }), distance]
+    {
         let inputs = inputs(&loaded, &settings);
         on_gpu(&mut scene, &inputs);
         let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
-        assert!(own.iter().any(|&factor| factor > own[0] + 1.0 || factor < own[0] - 1.0), "{:?}", settings.lod);
+        assert!(
+            own.iter().any(|&factor| factor > own[0] + 1.0 || factor < own[0] - 1.0),
+            "{:?}",
+            settings.tessellation.lod
+        );
         for (gpu, cpu) in edge_factors(&scene).into_iter().zip(own) {
             // A few divisions, a matrix and a square root, each to within a few ULP.
-            assert!((gpu - cpu).abs() <= 1e-5 * cpu, "{:?}: {gpu} {cpu}", settings.lod);
+            assert!((gpu - cpu).abs() <= 1e-5 * cpu, "{:?}: {gpu} {cpu}", settings.tessellation.lod);
         }
     }
 }
@@ -152,7 +167,8 @@ fn factors_by_edge_length_are_those_of_the_formula_behind_the_eye_too() {
         "edges with no, one and two ends beyond the near plane: {kinds:?}"
     );
     for edges in [Edges::PerEdge, Edges::AsPublished] {
-        let settings = Settings { lod: Lod::EdgeLength, edges, pixels: 6.0, ..Settings::default() };
+        let settings =
+            Settings::from(Tessellation { lod: Lod::EdgeLength, edges, pixels: 6.0, ..Tessellation::default() });
         let inputs = settings.inputs(view);
         on_gpu(&mut scene, &inputs);
         let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
@@ -172,14 +188,14 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
     let view = ScreenView { clip_from_object: camera.clip_from_object(VIEWPORT, &scene.bounds), viewport: VIEWPORT };
     for partitioning in Partitioning::ALL {
         for factor in [1.0, 1.9, 12.0] {
-            let settings = Settings { partitioning, factor, ..Settings::default() };
+            let settings = Settings::from(Tessellation { partitioning, factor, ..Tessellation::default() });
             let inputs = inputs(&loaded, &settings);
             let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
             engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
             let asked = engine().asked_factors(&scene).expect("a readback");
             let on_cpu = Measured::of(&loaded.mesh, &loaded.topology, asked, &cpu);
             let on_gpu = engine().measure(&mut scene).expect("a readback");
-            let what = format!("{partitioning} {factor}");
+            let what = format!("{partitioning:?} {factor}");
             assert_eq!(on_gpu.patches_low, on_cpu.patches_low, "{what}");
             // 1.9 is rounded up where it becomes a whole number, and an even number of segments is at least 2.
             let low = match partitioning {
@@ -207,10 +223,16 @@ fn every_shared_point_has_the_same_bits_from_all_sides() {
         for surface in [Surface::Flat, Surface::PnAen] {
             for partitioning in Partitioning::ALL {
                 for lod in [Lod::Uniform, Lod::Paper] {
-                    let settings = Settings { surface, partitioning, lod, factor: 6.7, ..Settings::default() };
+                    let settings = Settings::from(Tessellation {
+                        surface,
+                        partitioning,
+                        lod,
+                        factor: 6.7,
+                        ..Tessellation::default()
+                    });
                     engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
                     let cracks = engine().measure(&mut scene).expect("a readback").cracks;
-                    assert_eq!(cracks.different_bits, 0, "{shape:?} {surface:?} {partitioning} {lod:?}");
+                    assert_eq!(cracks.different_bits, 0, "{shape:?} {surface:?} {partitioning:?} {lod:?}");
                     let inner = loaded.topology.edges.iter().filter(|edge| edge.kind != EdgeKind::Boundary).count();
                     assert!(cracks.edge_points >= 2 * inner as u64, "both ends of every inner edge");
                 }
@@ -224,8 +246,11 @@ fn subtriangulation_is_watertight_at_every_factor() {
     for shape in Shape::ALL {
         let (loaded, mut scene) = scene(shape);
         for n in 1..=64 {
-            let settings =
-                Settings { partitioning: Partitioning::Subtriangulation, factor: n as f32, ..Settings::default() };
+            let settings = Settings::from(Tessellation {
+                partitioning: Partitioning::Subtriangulation,
+                factor: n as f32,
+                ..Tessellation::default()
+            });
             engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
             let patches = loaded.topology.patches.len() as u64;
             assert_eq!(
@@ -245,7 +270,7 @@ fn subtriangulation_is_watertight_at_every_factor() {
 fn pn_tears_where_normals_are_split_and_nowhere_else() {
     for (shape, torn) in [(Shape::CubeSplit, 12), (Shape::CubeSmooth, 0), (Shape::Torus, 0)] {
         let (loaded, mut scene) = scene(shape);
-        let settings = Settings { surface: Surface::Pn, ..Settings::default() };
+        let settings = Settings::from(Tessellation { surface: Surface::Pn, ..Tessellation::default() });
         engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
         let cracks = engine().measure(&mut scene).expect("a readback").cracks;
         assert_eq!(cracks.edges.len(), torn, "{shape:?}");
@@ -259,7 +284,7 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
     // Room for a little more than one patch at the largest factor: 3169 vertices of 32 bytes, 6144 triangles of 12.
     let mut cut = engine().scene(&loaded, 2 * 110_000).expect("small");
     for (lod, factor) in [(Lod::Uniform, 17.0), (Lod::Uniform, 64.0), (Lod::Paper, 1.0)] {
-        let settings = Settings { lod, factor, pixels: 2.0, ..Settings::default() };
+        let settings = Settings::from(Tessellation { lod, factor, pixels: 2.0, ..Tessellation::default() });
         let inputs = inputs(&loaded, &settings);
         let (a, b) = (on_gpu(&mut whole, &inputs), on_gpu(&mut cut, &inputs));
         assert_eq!(whole.tessellator.chunk_count(), 1);
@@ -310,7 +335,8 @@ fn more_patches_than_one_scan_covers_are_one_mesh() {
     let loaded = sheet(600, 500);
     assert!(loaded.topology.patches.len() > 1 << 19, "more than one slab");
     let mut scene = engine().scene(&loaded, 1 << 28).expect("it fits");
-    let settings = Settings { factor: 1.7, partitioning: Partitioning::Integer, ..Settings::default() };
+    let settings =
+        Settings::from(Tessellation { factor: 1.7, partitioning: Partitioning::Integer, ..Tessellation::default() });
     let inputs = inputs(&loaded, &settings);
     let gpu = on_gpu(&mut scene, &inputs);
     assert_agree(&loaded, &gpu, &tessellate(&loaded.mesh, &loaded.topology, &inputs, None), "two slabs");
@@ -322,9 +348,10 @@ fn many_triangles_are_emitted_as_few_are() {
     // From 7,340,032 on, a workgroup makes more of them.
     let loaded = sheet(25, 24);
     let mut scene = engine().scene(&loaded, 1 << 28).expect("it fits");
-    let settings = Settings { factor: 64.0, partitioning: Partitioning::Integer, ..Settings::default() };
+    let settings =
+        Settings::from(Tessellation { factor: 64.0, partitioning: Partitioning::Integer, ..Tessellation::default() });
     let gpu = on_gpu(&mut scene, &inputs(&loaded, &settings));
-    let factors = process(settings.partitioning, [64.0; 3], 64.0);
+    let factors = process(settings.tessellation.partitioning, [64.0; 3], 64.0);
     let (points, triangles) = (point_count(factors), triangle_count(factors) as usize);
     assert_eq!((scene.tessellator.chunk_count(), gpu.triangles.len()), (1, 1200 * triangles));
     assert!(gpu.triangles.len() >= 7_340_032);
@@ -344,7 +371,7 @@ fn an_eye_inside_the_mesh_gives_factors_and_no_cracks() {
     camera.target = glam::vec3(0.7, 0.0, 0.0);
     camera.distance = 1e-3;
     for clip in [Clip::Off, Clip::Paper] {
-        let settings = Settings { lod: Lod::Paper, clip, ..Settings::default() };
+        let settings = Settings::from(Tessellation { lod: Lod::Paper, clip, ..Tessellation::default() });
         let inputs = settings.inputs(camera.lod_view(VIEWPORT, &bounds));
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         assert!(edge_factors(&scene).iter().all(|&factor| factor >= 1.0), "{clip:?}");
@@ -355,7 +382,7 @@ fn an_eye_inside_the_mesh_gives_factors_and_no_cracks() {
 #[test]
 fn output_is_the_same_on_every_run() {
     let (loaded, mut scene) = scene(Shape::Cylinder);
-    let settings = Settings { lod: Lod::Paper, pixels: 3.0, ..Settings::default() };
+    let settings = Settings::from(Tessellation { lod: Lod::Paper, pixels: 3.0, ..Tessellation::default() });
     let inputs = inputs(&loaded, &settings);
     let first = on_gpu(&mut scene, &inputs);
     for _ in 0..3 {
@@ -383,15 +410,15 @@ fn only_what_changed_is_recomputed() {
     assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "nothing changed");
     camera.azimuth += 10.0;
     assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "the camera moved under uniform LOD");
-    settings.pixels = 3.0;
+    settings.tessellation.pixels = 3.0;
     assert_eq!(passes(&mut scene, &camera, &settings), ["draw"], "px a segment mean nothing under uniform LOD");
-    settings.factor = 3.0;
+    settings.tessellation.factor = 3.0;
     assert_eq!(passes(&mut scene, &camera, &settings), counts, "the factor changed");
-    settings.lod = Lod::Paper;
+    settings.tessellation.lod = Lod::Paper;
     assert_eq!(passes(&mut scene, &camera, &settings), counts, "LOD changed");
     camera.azimuth += 10.0;
     assert_eq!(passes(&mut scene, &camera, &settings), counts, "the camera moved under adaptive LOD");
-    settings.surface = Surface::Flat;
+    settings.tessellation.surface = Surface::Flat;
     assert_eq!(passes(&mut scene, &camera, &settings), all, "the surface changed");
 }
 
@@ -403,7 +430,7 @@ fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
     let camera = Camera { distance: bounds.radius() * 0.9, ..Camera::framing(&bounds, VIEWPORT) };
     let view = camera.lod_view(VIEWPORT, &bounds);
     let off = Settings::default();
-    let on = Settings { clip: Clip::Paper, ..off };
+    let on = off.with(Tessellation { clip: Clip::Paper, ..off.tessellation });
     let whole = on_gpu(&mut scene, &off.inputs(view));
     let clipped = on_gpu(&mut scene, &on.inputs(view));
     let kept: Vec<_> =
@@ -433,7 +460,11 @@ fn an_empty_view_emits_nothing_and_draws_the_background() {
     let target = Target::new(&engine.gpu, [32, 32]).expect("a small picture");
     let mut camera = Camera::framing(&scene.bounds, target.viewport());
     camera.target -= camera.axes()[2] * camera.distance * 3.0;
-    let settings = Settings { clip: Clip::Paper, background: [10, 200, 30], ..Settings::default() };
+    let settings = Settings {
+        tessellation: Tessellation { clip: Clip::Paper, ..Tessellation::default() },
+        background: [10, 200, 30],
+        ..Settings::default()
+    };
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
     assert_eq!(scene.tessellator.totals(), (0, 0));
     let picture = target.read(&engine.gpu).expect("a readback");

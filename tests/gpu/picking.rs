@@ -6,7 +6,7 @@ use pnaen::gpu::Timing;
 use pnaen::mesh::Shape;
 use pnaen::render::{Camera, Picked, Pixel, Scene};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellated, tessellate};
+use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellated, Tessellation, tessellate};
 use pnaen::view::project;
 
 use crate::{engine, loaded, scene};
@@ -111,11 +111,28 @@ fn assert_picks(loaded: &Loaded, scene: &mut Scene, settings: &Settings, count: 
 #[test]
 fn a_pixel_gives_the_triangle_that_a_ray_meets_first() {
     let settings = [
-        (Shape::CubeSplit, Settings { surface: Surface::Pn, ..Settings::default() }),
-        (Shape::Torus, Settings { factor: 5.3, ..Settings::default() }),
-        (Shape::Moebius, Settings { edges: Edges::AsPublished, factor: 3.0, ..Settings::default() }),
-        (Shape::Saddle, Settings { surface: Surface::Flat, partitioning: Partitioning::Pow2, ..Settings::default() }),
-        (Shape::Cone, Settings { partitioning: Partitioning::FractionalEven, factor: 6.5, ..Settings::default() }),
+        (Shape::CubeSplit, Settings::from(Tessellation { surface: Surface::Pn, ..Tessellation::default() })),
+        (Shape::Torus, Settings::from(Tessellation { factor: 5.3, ..Tessellation::default() })),
+        (
+            Shape::Moebius,
+            Settings::from(Tessellation { edges: Edges::AsPublished, factor: 3.0, ..Tessellation::default() }),
+        ),
+        (
+            Shape::Saddle,
+            Settings::from(Tessellation {
+                surface: Surface::Flat,
+                partitioning: Partitioning::Pow2,
+                ..Tessellation::default()
+            }),
+        ),
+        (
+            Shape::Cone,
+            Settings::from(Tessellation {
+                partitioning: Partitioning::FractionalEven,
+                factor: 6.5,
+                ..Tessellation::default()
+            }),
+        ),
     ];
     for (shape, settings) in settings {
         let (loaded, mut scene) = scene(shape);
@@ -128,7 +145,7 @@ fn a_pixel_gives_the_triangle_that_a_ray_meets_first() {
 #[test]
 fn an_arena_of_many_chunks_gives_the_same_triangles() {
     let loaded = loaded(Shape::Torus);
-    let settings = Settings { factor: 8.0, ..Settings::default() };
+    let settings = Settings::from(Tessellation { factor: 8.0, ..Tessellation::default() });
     let mut scene = engine().scene(&loaded, 1 << 18).expect("a small mesh");
     count(&loaded, &mut scene, &settings);
     assert!(scene.tessellator.chunk_count() > 3, "{} chunks", scene.tessellator.chunk_count());
@@ -139,7 +156,7 @@ fn an_arena_of_many_chunks_gives_the_same_triangles() {
 #[test]
 fn the_nearest_edge_is_the_one_whose_weight_is_least() {
     let (loaded, mut scene) = scene(Shape::CubeSmooth);
-    let settings = Settings { surface: Surface::Flat, ..Settings::default() };
+    let settings = Settings::from(Tessellation { surface: Surface::Flat, ..Tessellation::default() });
     count(&loaded, &mut scene, &settings);
     let mut picked_sides = 0;
     for (index, patch) in (0..).zip(&loaded.topology.patches) {

@@ -3,7 +3,6 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use image::RgbaImage;
 use pnaen::cli::compare;
 use pnaen::engine::{Preparation, load};
@@ -12,9 +11,9 @@ use pnaen::mesh::{EdgeKind, Shape, t_junctions};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
 use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, t_junction_lines};
-use pnaen::settings::{ARENA_BYTES, Colors, Overlay, Overlays, Settings};
+use pnaen::settings::{ARENA_BYTES, Choice, Colors, Overlay, Overlays, Settings};
 use pnaen::tessellate::{
-    Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, domain_side,
+    Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, Tessellation, domain_side,
 };
 use pnaen::view::project;
 
@@ -59,9 +58,8 @@ pub fn differing(pictures: Vec<(String, RgbaImage)>) -> Vec<String> {
 fn surfaces_look_as_they_did() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     let pictures = Surface::ALL.map(|surface| {
-        let settings = Settings { surface, factor: 12.0, ..Settings::default() };
-        let name = surface.to_possible_value().expect("a surface that can be chosen");
-        (format!("surface-{}", name.get_name()), picture(&mut scene, &settings, SIZE))
+        let settings = Settings::from(Tessellation { surface, factor: 12.0, ..Tessellation::default() });
+        (format!("surface-{}", surface.name()), picture(&mut scene, &settings, SIZE))
     });
     assert_eq!(differing(pictures.into()), Vec::<String>::new());
 }
@@ -71,7 +69,7 @@ fn normals_look_as_they_did() {
     let (_, mut scene) = scene(Shape::CubeSmooth);
     let all = [("linear", Normals::Linear), ("quadratic", Normals::Quadratic), ("surface", Normals::Surface)];
     let pictures = all.map(|(name, normals)| {
-        let settings = Settings { normals, factor: 16.0, ..Settings::default() };
+        let settings = Settings::from(Tessellation { normals, factor: 16.0, ..Tessellation::default() });
         (format!("normals-{name}"), picture(&mut scene, &settings, SIZE))
     });
     assert_eq!(differing(pictures.into()), Vec::<String>::new());
@@ -84,7 +82,7 @@ fn a_rim_looks_as_it_did() {
         load(&Source::Shape(Shape::CubeSplit), &Preparation { rim: 0.04, ..Preparation::default() }, &Progress::new())
             .expect("shapes always load");
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("shapes are small");
-    let settings = Settings { surface: Surface::Pn, factor: 12.0, ..Settings::default() };
+    let settings = Settings::from(Tessellation { surface: Surface::Pn, factor: 12.0, ..Tessellation::default() });
     let picture = picture(&mut scene, &settings, SIZE);
     assert_eq!(differing(vec![("surface-pn-rim".to_owned(), picture)]), Vec::<String>::new());
 }
@@ -94,7 +92,8 @@ fn displaced_surfaces_look_as_they_did() {
     let (_, mut scene) = wavy(Shape::CubeSplit);
     let all = [("on", Displacement::On), ("as-published", Displacement::AsPublished)];
     let pictures = all.map(|(name, displacement)| {
-        let settings = Settings { displacement, height_scale: 0.15, factor: 32.0, ..Settings::default() };
+        let settings =
+            Settings::from(Tessellation { displacement, height_scale: 0.15, factor: 32.0, ..Tessellation::default() });
         (format!("displacement-{name}"), picture(&mut scene, &settings, SIZE))
     });
     assert_eq!(differing(pictures.into()), Vec::<String>::new());
@@ -105,8 +104,12 @@ fn partitionings_look_as_they_did() {
     let (_, mut scene) = scene(Shape::Icosahedron);
     let overlays = Overlays { wireframe: true, patches: true, ..Overlays::default() };
     let pictures = Partitioning::ALL.map(|partitioning| {
-        let settings = Settings { partitioning, factor: 4.6, overlays, ..Settings::default() };
-        (format!("partitioning-{partitioning}"), picture(&mut scene, &settings, SIZE))
+        let settings = Settings {
+            tessellation: Tessellation { partitioning, factor: 4.6, ..Tessellation::default() },
+            overlays,
+            ..Settings::default()
+        };
+        (format!("partitioning-{}", partitioning.name()), picture(&mut scene, &settings, SIZE))
     });
     assert_eq!(differing(pictures.into()), Vec::<String>::new());
 }
@@ -125,7 +128,11 @@ fn overlays_look_as_they_did() {
     ] {
         let (_, mut scene) = scene(shape);
         let overlays = Overlays::of(&[overlay]).expect("one overlay");
-        let settings = Settings { surface: Surface::Pn, overlays, ..Settings::default() };
+        let settings = Settings {
+            tessellation: Tessellation { surface: Surface::Pn, ..Tessellation::default() },
+            overlays,
+            ..Settings::default()
+        };
         pictures.push((format!("overlay-{name}"), picture(&mut scene, &settings, SIZE)));
     }
     assert_eq!(differing(pictures), Vec::<String>::new());
@@ -135,12 +142,31 @@ fn overlays_look_as_they_did() {
 fn colours_look_as_they_did() {
     let mut pictures = Vec::new();
     for (name, shape, colors, settings) in [
-        ("factors", Shape::Torus, Colors::Factors, Settings { lod: Lod::Error, ..Settings::default() }),
-        ("triangle-size", Shape::Torus, Colors::TriangleSize, Settings { lod: Lod::EdgeLength, ..Settings::default() }),
-        ("low-factors", Shape::Torus, Colors::LowFactors, Settings { lod: Lod::EdgeLength, ..Settings::default() }),
+        (
+            "factors",
+            Shape::Torus,
+            Colors::Factors,
+            Settings::from(Tessellation { lod: Lod::Error, ..Tessellation::default() }),
+        ),
+        (
+            "triangle-size",
+            Shape::Torus,
+            Colors::TriangleSize,
+            Settings::from(Tessellation { lod: Lod::EdgeLength, ..Tessellation::default() }),
+        ),
+        (
+            "low-factors",
+            Shape::Torus,
+            Colors::LowFactors,
+            Settings::from(Tessellation { lod: Lod::EdgeLength, ..Tessellation::default() }),
+        ),
     ] {
         let (_, mut scene) = scene(shape);
-        let settings = Settings { overlays: Overlays { colors, ..Overlays::default() }, pixels: 12.0, ..settings };
+        let settings = Settings {
+            tessellation: Tessellation { pixels: 12.0, ..settings.tessellation },
+            overlays: Overlays { colors, ..Overlays::default() },
+            ..settings
+        };
         pictures.push((format!("colours-{name}"), picture(&mut scene, &settings, SIZE)));
     }
     assert_eq!(differing(pictures), Vec::<String>::new());
@@ -150,7 +176,11 @@ fn colours_look_as_they_did() {
 fn adaptive_lod_and_the_split_look_as_they_did() {
     let (_, mut scene) = scene(Shape::Cone);
     let overlays = Overlays { wireframe: true, ..Overlays::default() };
-    let adaptive = Settings { lod: Lod::Paper, pixels: 12.0, overlays, ..Settings::default() };
+    let adaptive = Settings {
+        tessellation: Tessellation { lod: Lod::Paper, pixels: 12.0, ..Tessellation::default() },
+        overlays,
+        ..Settings::default()
+    };
     let split = Settings { split: Some(0.5), overlays, ..Settings::default() };
     let pictures = [("lod-paper", adaptive), ("split", split)];
     let pictures = pictures.map(|(name, settings)| (name.to_owned(), picture(&mut scene, &settings, SIZE)));
@@ -160,11 +190,11 @@ fn adaptive_lod_and_the_split_look_as_they_did() {
 #[test]
 fn the_tolerance_is_far_below_a_change_that_matters() {
     let (_, mut scene) = scene(Shape::CubeSplit);
-    let base = Settings { factor: 12.0, ..Settings::default() };
+    let base = Settings::from(Tessellation { factor: 12.0, ..Tessellation::default() });
     let wireframe = Overlays { wireframe: true, ..Overlays::default() };
     let expected = picture(&mut scene, &base, SIZE);
     for changed in [
-        Settings { surface: Surface::Pn, ..base },
+        base.with(Tessellation { surface: Surface::Pn, ..base.tessellation }),
         Settings { overlays: wireframe, ..base },
         Settings { split: Some(0.4), ..base },
     ] {
@@ -185,7 +215,11 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
         ..pnaen::render::Camera::framing(&scene.bounds, target.viewport())
     };
     let overlays = Overlays { colors: Colors::Barycentric, ..Overlays::default() };
-    let settings = Settings { surface: Surface::Flat, overlays, ..Settings::default() };
+    let settings = Settings {
+        tessellation: Tessellation { surface: Surface::Flat, ..Tessellation::default() },
+        overlays,
+        ..Settings::default()
+    };
     let mut timing = pnaen::gpu::Timing::Off;
     engine.draw(&mut scene, &target, &camera, &settings, &mut timing).expect("a draw");
     let picture = target.read(&engine.gpu).expect("a readback");
@@ -224,7 +258,11 @@ fn lines_have_the_colours_of_their_legend() {
     for (shape, overlay, color) in legend {
         let (_, mut scene) = scene(shape);
         let overlays = Overlays::of(&[overlay]).expect("one overlay");
-        let settings = Settings { surface: Surface::Pn, overlays, ..Settings::default() };
+        let settings = Settings {
+            tessellation: Tessellation { surface: Surface::Pn, ..Tessellation::default() },
+            overlays,
+            ..Settings::default()
+        };
         let found = pixels_of(&picture(&mut scene, &settings, [640, 480]), color);
         assert!(found > 50, "{shape:?} {overlay:?}: {found} px of {color:?}");
     }
@@ -255,8 +293,12 @@ fn factors_have_the_colours_of_their_scale_on_edges_and_inside() {
     let camera = Camera { orthographic: true, ..in_front(&cube, &target) };
     let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
     for (stop, factor) in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0].into_iter().enumerate() {
-        let flat = Settings { surface: Surface::Flat, partitioning: Partitioning::Integer, ..Settings::default() };
-        let settings = Settings { factor, overlays, ..flat };
+        let flat = Settings::from(Tessellation {
+            surface: Surface::Flat,
+            partitioning: Partitioning::Integer,
+            ..Tessellation::default()
+        });
+        let settings = Settings { tessellation: Tessellation { factor, ..flat.tessellation }, overlays, ..flat };
         let found = pixels_of(&seen(&mut cube, &target, &settings, &camera), FACTOR_SCALE.colors[stop]);
         assert!(found > 10_000, "{factor}: {found} px");
     }
@@ -268,7 +310,11 @@ fn every_edge_has_the_colour_of_its_own_factor() {
     let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
     let camera = Camera { elevation: 70.0, ..Camera::framing(&saddle.bounds, target.viewport()) };
     let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
-    let settings = Settings { surface: Surface::Flat, lod: Lod::EdgeLength, overlays, ..Settings::default() };
+    let settings = Settings {
+        tessellation: Tessellation { surface: Surface::Flat, lod: Lod::EdgeLength, ..Tessellation::default() },
+        overlays,
+        ..Settings::default()
+    };
     let picture = seen(&mut saddle, &target, &settings, &camera);
     let factors = engine().patch_factors(&saddle).expect("a readback");
     let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
@@ -300,9 +346,16 @@ fn patches_of_every_slab_have_the_colours_of_their_own_factors() {
     let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
     let camera = Camera { elevation: 40.0, azimuth: 90.0, ..Camera::framing(&scene.bounds, target.viewport()) };
     let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
-    let by_distance =
-        Settings { lod: Lod::Distance, factor: 4.0, near: 2.0, far: 3.5, overlays, ..Settings::default() };
-    let settings = Settings { partitioning: Partitioning::Integer, surface: Surface::Flat, ..by_distance };
+    let by_distance = Settings {
+        tessellation: Tessellation { lod: Lod::Distance, factor: 4.0, near: 2.0, far: 3.5, ..Tessellation::default() },
+        overlays,
+        ..Settings::default()
+    };
+    let settings = by_distance.with(Tessellation {
+        partitioning: Partitioning::Integer,
+        surface: Surface::Flat,
+        ..by_distance.tessellation
+    });
     let picture = seen(&mut scene, &target, &settings, &camera);
     let factors = engine().patch_factors(&scene).expect("a readback");
     let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
@@ -326,8 +379,17 @@ fn small_triangles_and_low_factors_are_marked_and_others_are_not() {
     let camera = Camera { orthographic: true, ..in_front(&cube, &target) };
     let mut marked = |colors, factor| {
         let overlays = Overlays { colors, ..Overlays::default() };
-        let flat = Settings { surface: Surface::Flat, partitioning: Partitioning::Integer, ..Settings::default() };
-        let picture = seen(&mut cube, &target, &Settings { factor, overlays, ..flat }, &camera);
+        let flat = Settings::from(Tessellation {
+            surface: Surface::Flat,
+            partitioning: Partitioning::Integer,
+            ..Tessellation::default()
+        });
+        let picture = seen(
+            &mut cube,
+            &target,
+            &Settings { tessellation: Tessellation { factor, ..flat.tessellation }, overlays, ..flat },
+            &camera,
+        );
         pixels_of(&picture, WASTE_COLOR)
     };
     // The face is some 230 px wide, and its rings of triangles are smaller than a square grid's.
@@ -340,8 +402,11 @@ fn small_triangles_and_low_factors_are_marked_and_others_are_not() {
 #[test]
 fn normals_are_drawn_chunk_by_chunk_and_not_hidden_by_later_chunks() {
     let loaded = crate::loaded(Shape::Torus);
-    let settings =
-        Settings { factor: 63.0, overlays: Overlays { normals: true, ..Overlays::default() }, ..Settings::default() };
+    let settings = Settings {
+        tessellation: Tessellation { factor: 63.0, ..Tessellation::default() },
+        overlays: Overlays { normals: true, ..Overlays::default() },
+        ..Settings::default()
+    };
     let [whole, pieces] = [ARENA_BYTES, 4 << 20].map(|arena| {
         let mut scene = engine().scene(&loaded, arena).expect("shapes are small");
         let drawn = picture(&mut scene, &settings, SIZE);
@@ -358,7 +423,11 @@ fn the_same_vertices_show_their_normals_when_they_move_a_little() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     let overlays = Overlays { normals: true, ..Overlays::default() };
     let [shown, moved, coarser] = [(0.75, 16.0), (0.7501, 16.0), (0.75, 15.0)].map(|(alpha, factor)| {
-        let settings = Settings { surface: Surface::Phong, alpha, factor, overlays, ..Settings::default() };
+        let settings = Settings {
+            tessellation: Tessellation { surface: Surface::Phong, alpha, factor, ..Tessellation::default() },
+            overlays,
+            ..Settings::default()
+        };
         picture(&mut scene, &settings, SIZE)
     });
     let difference = compare(&shown, &moved).expect("one size").difference;
@@ -373,7 +442,11 @@ fn folds_are_marked_and_nothing_else_is() {
     let (mut star, camera) = case("folds");
     let marked = |scene: &mut Scene, camera: &Camera, surface, folds| {
         let overlays = Overlays { folds, ..Overlays::default() };
-        let settings = Settings { surface, overlays, factor: 14.0, ..Settings::default() };
+        let settings = Settings {
+            tessellation: Tessellation { surface, factor: 14.0, ..Tessellation::default() },
+            overlays,
+            ..Settings::default()
+        };
         pixels_of(&seen(scene, &target, &settings, camera), FOLD_COLOR)
     };
     for surface in [Surface::Pn, Surface::PnAen] {

@@ -8,7 +8,7 @@ use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::{CASES, soup};
-use pnaen::tessellate::{Edges, Partitioning, Surface};
+use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellation};
 
 use crate::engine;
 use crate::stability::{measured, scene_of};
@@ -33,7 +33,12 @@ fn leaks(scene: &mut Scene, measured: &Measured, camera: &Camera) -> u64 {
 fn pn_tears_without_a_rim_and_is_whole_with_one() {
     for shape in [Shape::CubeSplit, Shape::Cylinder, Shape::Cone] {
         for partitioning in Partitioning::ALL {
-            let pn = Settings { surface: Surface::Pn, partitioning, factor: 5.3, ..Settings::default() };
+            let pn = Settings::from(Tessellation {
+                surface: Surface::Pn,
+                partitioning,
+                factor: 5.3,
+                ..Tessellation::default()
+            });
             for (rim, is_whole) in [(0.0, false), (1e-3, true), (0.02, true)] {
                 let mut scene = rimmed(shape, rim);
                 let camera = camera(&scene);
@@ -44,9 +49,9 @@ fn pn_tears_without_a_rim_and_is_whole_with_one() {
                 assert_eq!(
                     (cracks.different_bits == 0, leaking == 0),
                     (is_whole, is_whole),
-                    "{shape} {partitioning} {rim}"
+                    "{shape} {partitioning:?} {rim}"
                 );
-                assert!(!is_whole || cracks.different_normals == 0, "{shape} {partitioning} {rim}");
+                assert!(!is_whole || cracks.different_normals == 0, "{shape} {partitioning:?} {rim}");
             }
         }
     }
@@ -62,7 +67,8 @@ fn with_a_rim_pn_is_whole_on_whatever_breaks_tessellators() {
         let mut scene = scene_of(mesh, 0.0);
         let camera = camera(&scene);
         for edges in [Edges::PerEdge, Edges::AsPublished] {
-            let pn = Settings { surface: Surface::Pn, factor: 3.0, edges, ..Settings::default() };
+            let pn =
+                Settings::from(Tessellation { surface: Surface::Pn, factor: 3.0, edges, ..Tessellation::default() });
             let cracks = measured(&mut scene, &pn, &camera).cracks;
             assert!(cracks.edges_compared > 0 || name == "borders", "{name}");
             match edges {

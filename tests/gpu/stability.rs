@@ -12,7 +12,7 @@ use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
 use pnaen::stability::{CASES, Effort, Look, Method, Quantity, Row, Verdict, lines, run};
-use pnaen::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, tessellate};
+use pnaen::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -227,7 +227,7 @@ pub struct Trial {
 
 /// Nagata's curves can be a thousand times as long as their edges: of vast meshes, beyond what f32 has.
 fn is_nagata(settings: &Settings) -> bool {
-    matches!(settings.surface, Surface::Nagata | Surface::NagataAen)
+    matches!(settings.tessellation.surface, Surface::Nagata | Surface::NagataAen)
 }
 
 pub fn any_trial() -> impl Strategy<Value = Trial> {
@@ -239,7 +239,8 @@ pub fn any_trial() -> impl Strategy<Value = Trial> {
     let rest = (clip, normals, 0f32..=1.0);
     let settings =
         (any_factor(), lod, 2f32..64.0, rest).prop_flat_map(|(factor, lod, pixels, (clip, normals, alpha))| {
-            let settings = Settings { factor, lod, pixels, clip, normals, alpha, ..Settings::default() };
+            let settings =
+                Settings::from(Tessellation { factor, lod, pixels, clip, normals, alpha, ..Tessellation::default() });
             prop::sample::select(every_method(settings))
         });
     (any_soup(), scale, settings, any_camera()).prop_map(|(soup, scale, settings, camera)| {
@@ -260,7 +261,8 @@ fn every_method(settings: Settings) -> Vec<Settings> {
     let edges = [Edges::PerEdge, Edges::AsPublished];
     let pairs = SURFACES.into_iter().flat_map(|surface| edges.map(|edges| (surface, edges)));
     let all = pairs.flat_map(|(surface, edges)| {
-        Partitioning::ALL.map(|partitioning| Settings { surface, edges, partitioning, ..settings })
+        Partitioning::ALL
+            .map(|partitioning| settings.with(Tessellation { surface, edges, partitioning, ..settings.tessellation }))
     });
     all.collect()
 }
@@ -269,12 +271,16 @@ fn every_method(settings: Settings) -> Vec<Settings> {
 fn judge(settings: &Settings, measured: &Measured) -> Result<(), TestCaseError> {
     let cracks = &measured.cracks;
     prop_assert_eq!(measured.not_finite, 0, "{:?}", settings);
-    if settings.edges == Edges::PerEdge {
+    if settings.tessellation.edges == Edges::PerEdge {
         prop_assert_eq!(cracks.different_factors, 0, "{:?}", settings);
         // The surface's own normals have a step wherever the surface has a crease.
-        prop_assert!(cracks.different_normals == 0 || settings.normals == Normals::Surface, "{:?}", settings);
+        prop_assert!(
+            cracks.different_normals == 0 || settings.tessellation.normals == Normals::Surface,
+            "{:?}",
+            settings
+        );
         // Surfaces that go by each side's own normals tear where those are split: that is what they are.
-        prop_assert!(cracks.different_bits == 0 || settings.surface.tears(), "{:?}", settings);
+        prop_assert!(cracks.different_bits == 0 || settings.tessellation.surface.tears(), "{:?}", settings);
     }
     Ok(())
 }
@@ -284,7 +290,8 @@ impl Trial {
         let topology = Topology::build(&self.mesh, &Progress::default()).expect("nobody cancels");
         let inputs = settings.inputs(self.camera.lod_view(VIEWPORT, &self.mesh.bounds()));
         let out = tessellate(&self.mesh, &topology, &inputs, None);
-        let asked = AskedFactors::new(settings.edges, settings.convention, out.edge_factors.clone());
+        let asked =
+            AskedFactors::new(settings.tessellation.edges, settings.tessellation.convention, out.edge_factors.clone());
         Measured::of(&self.mesh, &topology, asked, &out)
     }
 }
@@ -321,8 +328,15 @@ fn soups_tear_where_nothing_holds_them_together() {
     let (mut pn, mut published, mut factors) = (0, 0, 0);
     for _ in 0..30 {
         let trial = any_trial().new_tree(&mut runner).expect("a strategy that rejects nothing").current();
-        let own = Settings { partitioning: Partitioning::Integer, factor: 3.0, clip: Clip::Off, ..trial.settings };
-        let cracks = |surface, edges, lod| trial.on_cpu(&Settings { surface, edges, lod, ..own }).cracks;
+        let own = trial.settings.with(Tessellation {
+            partitioning: Partitioning::Integer,
+            factor: 3.0,
+            clip: Clip::Off,
+            ..trial.settings.tessellation
+        });
+        let cracks = |surface, edges, lod| {
+            trial.on_cpu(&own.with(Tessellation { surface, edges, lod, ..own.tessellation })).cracks
+        };
         pn += cracks(Surface::Pn, Edges::PerEdge, Lod::Uniform).different_bits;
         published += cracks(Surface::PnAen, Edges::AsPublished, Lod::Uniform).different_bits;
         factors += cracks(Surface::PnAen, Edges::AsPublished, Lod::Paper).different_factors;
@@ -361,15 +375,20 @@ fn clipping_by_each_plane_changes_no_picture_and_the_papers_does() {
         let (_, mut scene) = scene(shape);
         for (index, camera) in cameras(&scene).into_iter().enumerate() {
             for surface in [Surface::Flat, Surface::PnAen] {
-                let off = Settings { surface, factor: 5.0, ..Settings::default() };
+                let off = Settings::from(Tessellation { surface, factor: 5.0, ..Tessellation::default() });
                 let whole = seen(&mut scene, &target, &off, &camera);
-                let by_plane = Settings { clip: Clip::Frustum, ..off };
+                let by_plane = off.with(Tessellation { clip: Clip::Frustum, ..off.tessellation });
                 assert!(
                     seen(&mut scene, &target, &by_plane, &camera) == whole,
                     "{shape:?} {surface:?}, camera {index}"
                 );
                 left_out += measured(&mut scene, &by_plane, &camera).culled.total();
-                let paper = seen(&mut scene, &target, &Settings { clip: Clip::Paper, ..off }, &camera);
+                let paper = seen(
+                    &mut scene,
+                    &target,
+                    &off.with(Tessellation { clip: Clip::Paper, ..off.tessellation }),
+                    &camera,
+                );
                 changed += u32::from(paper != whole);
             }
         }
@@ -385,7 +404,7 @@ fn leaks(scene: &mut Scene, settings: &Settings, camera: &Camera) -> Option<u64>
 
 #[test]
 fn what_is_closed_leaks_nowhere_by_edge() {
-    let base = Settings { pixels: 5.0, ..Settings::default() };
+    let base = Settings::from(Tessellation { pixels: 5.0, ..Tessellation::default() });
     let lods = [(Lod::Uniform, 1.0), (Lod::Uniform, 6.7), (Lod::Paper, 1.0), (Lod::EdgeLength, 1.0)];
     let mut closed = 0;
     for shape in Shape::ALL {
@@ -398,13 +417,13 @@ fn what_is_closed_leaks_nowhere_by_edge() {
         for surface in [Surface::Flat, Surface::PnAen] {
             for partitioning in Partitioning::ALL {
                 for (lod, factor) in lods {
-                    let settings = Settings { surface, partitioning, lod, factor, ..base };
+                    let settings = base.with(Tessellation { surface, partitioning, lod, factor, ..base.tessellation });
                     for camera in [far, near] {
                         let leaks = leaks(&mut scene, &settings, &camera);
                         assert_eq!(
                             leaks,
                             is_closed.then_some(0),
-                            "{shape:?} {surface:?} {partitioning} {lod:?} {factor}"
+                            "{shape:?} {surface:?} {partitioning:?} {lod:?} {factor}"
                         );
                     }
                 }
@@ -419,9 +438,9 @@ fn torn_edges_leak() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     let [framing, ..] = cameras(&scene);
     for partitioning in Partitioning::ALL {
-        let torn = Settings { surface: Surface::Pn, partitioning, ..Settings::default() };
+        let torn = Settings::from(Tessellation { surface: Surface::Pn, partitioning, ..Tessellation::default() });
         let leaks = leaks(&mut scene, &torn, &framing);
-        assert!(leaks > Some(100), "{partitioning}: {leaks:?} px of {SIZE:?}");
+        assert!(leaks > Some(100), "{partitioning:?}: {leaks:?} px of {SIZE:?}");
     }
 }
 
@@ -442,6 +461,11 @@ fn leaks_say_nothing_where_what_is_behind_the_eye_was_left_out() {
     // Inside the tube: all that is emitted lies beyond the near plane, the rest of the torus does not.
     let (target, azimuth, elevation) = (Vec3::new(0.424, -0.136, -0.498), 267.0, 62.0);
     let inside = Camera { target, azimuth, elevation, distance: 0.25, orthographic: false };
-    let clipped = Settings { surface: Surface::Flat, clip: Clip::Frustum, factor: 2.0, ..Settings::default() };
+    let clipped = Settings::from(Tessellation {
+        surface: Surface::Flat,
+        clip: Clip::Frustum,
+        factor: 2.0,
+        ..Tessellation::default()
+    });
     assert_eq!(leaks(&mut torus, &clipped, &inside), None);
 }

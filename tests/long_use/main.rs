@@ -27,7 +27,7 @@ use figures::Part;
 /// Width and height of the window, in points.
 const SIZE: [f32; 2] = [1000.0, 700.0];
 /// Switches and lists that are bound to the mesh or the moment: a window that opens has them as they came.
-const NOT_KEPT: [&str; 3] = ["Freeze LOD camera", "Weld", "Heights"];
+const NOT_KEPT: [&str; 3] = ["Freeze LOD camera", "Weld", "Height map"];
 
 /// How often each is done, and how often a window is opened beside it to compare.
 struct Effort {

@@ -120,7 +120,7 @@ fn a_click_on_a_point_applies_its_setting() {
     settle(&mut harness);
     let settings = harness.state().settings();
     assert_eq!(Setting::of(settings), Some(harness.state().chart_rows()[0].setting));
-    assert_eq!(settings.clip, Clip::Frustum, "it stays what it was");
+    assert_eq!(settings.tessellation.clip, Clip::Frustum, "it stays what it was");
     assert!(harness.query_by_label("Measure again").is_some(), "it is still of what is shown");
 }
 

@@ -117,7 +117,7 @@ fn every_key_of_the_table_gives_its_command() {
 #[test]
 fn a_key_does_nothing_where_its_command_is_not_possible() {
     let mut harness = window(None);
-    assert_eq!(harness.state().settings().lod, Lod::Error);
+    assert_eq!(harness.state().settings().tessellation.lod, Lod::Error);
     let before = *harness.state().settings();
     for key in [Key::Plus, Key::Minus, Key::D, Key::Space] {
         press(&mut harness, key);
@@ -126,7 +126,7 @@ fn a_key_does_nothing_where_its_command_is_not_possible() {
     choose(&mut harness, "LOD", "Uniform");
     press(&mut harness, Key::Plus);
     assert_eq!(harness.state().last_action(), Some(&Action::Setting(Change::FactorUp)));
-    assert_eq!(harness.state().settings().factor, before.factor + 1.0);
+    assert_eq!(harness.state().settings().tessellation.factor, before.tessellation.factor + 1.0);
 }
 
 /// Names of everything that can be clicked.
@@ -176,9 +176,9 @@ fn the_search_says_what_is_not_possible() {
     harness.hover_at(place);
     harness.run_steps(60);
     assert!(harness.query_by_label_contains("Adaptive LOD computes a factor for every edge.").is_some());
-    let factor = harness.state().settings().factor;
+    let factor = harness.state().settings().tessellation.factor;
     press(&mut harness, Key::Enter);
-    assert_eq!(harness.state().settings().factor, factor);
+    assert_eq!(harness.state().settings().tessellation.factor, factor);
     assert!(harness.query_by_label("Search commands").is_some(), "it stays open");
 }
 
@@ -186,15 +186,17 @@ fn the_search_says_what_is_not_possible() {
 fn values_tolerances_and_resets_are_commands() {
     let mut harness = window(Some(Source::Shape(Shape::CubeSplit)));
     let opening = *harness.state().settings();
-    for name in ["Surface: Nagata AEN", "LOD: Distance", "Edges: As published", "Colours: Factors", "Cull back faces"] {
+    for name in
+        ["Surface: Nagata AEN", "LOD: Distance", "Shared edges: By each patch", "Colours: Factors", "Cull back faces"]
+    {
         give(&mut harness, name);
     }
     let settings = *harness.state().settings();
     assert_eq!(
-        (settings.surface, settings.lod, settings.edges),
+        (settings.tessellation.surface, settings.tessellation.lod, settings.tessellation.edges),
         (Surface::NagataAen, Lod::Distance, Edges::AsPublished)
     );
-    assert_eq!(settings.cull_back_faces, !opening.cull_back_faces);
+    assert_eq!(settings.tessellation.cull_back_faces, !opening.tessellation.cull_back_faces);
     give(&mut harness, "Reset settings");
     assert_eq!(*harness.state().settings(), Settings::opening());
     give(&mut harness, "Undo");

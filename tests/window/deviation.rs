@@ -8,7 +8,7 @@ use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::render::layout::CRACK_COLOR;
-use pnaen::settings::{Colors, DeviationUnit, Half};
+use pnaen::settings::{Colors, DeviationUnit, SplitSide};
 use pnaen::tessellate::Surface;
 
 use crate::{choose, click, press, settle, uniform, window};
@@ -22,7 +22,7 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
     assert_eq!(harness.state().settings().overlays.colors, Colors::Deviation);
     assert!(harness.query_by_label("Legend: Deviation, units").is_some());
     // What the inscribed sphere leaves of the circumscribed one.
-    let largest = harness.state().deviation(Half::Right).expect("measured");
+    let largest = harness.state().deviation(SplitSide::Right).expect("measured");
     assert!((largest - 0.205_345_5).abs() < 1e-6, "{largest}");
     for text in ["exact icosahedron", "0.205 units"] {
         assert!(harness.query_by_label(text).is_some(), "{text}");
@@ -35,7 +35,7 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
     // The middle of a face, seen from above it.
     assert!((after.target.length() - 0.794_654_5).abs() < 1e-5, "{}", after.target);
     assert!(after.axes()[2].distance(after.target.normalize()) < 1e-3);
-    assert_eq!(harness.state().deviation(Half::Right), Some(largest), "the same tessellation");
+    assert_eq!(harness.state().deviation(SplitSide::Right), Some(largest), "the same tessellation");
     choose(&mut harness, "Distances in", "Px");
     assert_eq!(harness.state().settings().deviation_in, DeviationUnit::Px);
     assert!(harness.query_by_label("Legend: Deviation, px").is_some());
@@ -48,12 +48,12 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
 fn another_tessellation_is_measured_anew_and_the_worst_point_stays_the_worst_when_framed() {
     let mut harness = window(Some(Source::Shape(Shape::Icosahedron)));
     press(&mut harness, egui::Key::V);
-    let adaptive = harness.state().deviation(Half::Right).expect("measured");
+    let adaptive = harness.state().deviation(SplitSide::Right).expect("measured");
     harness.get_by_label_contains("Worst point in patch").click();
     settle(&mut harness);
-    assert_eq!(harness.state().deviation(Half::Right), Some(adaptive), "LOD and clipping stay as they are");
+    assert_eq!(harness.state().deviation(SplitSide::Right), Some(adaptive), "LOD and clipping stay as they are");
     choose(&mut harness, "Surface", "Flat");
-    let flat = harness.state().deviation(Half::Right).expect("measured anew");
+    let flat = harness.state().deviation(SplitSide::Right).expect("measured anew");
     assert!(flat > 1.2 * adaptive, "{flat} and {adaptive}");
 }
 
@@ -62,22 +62,22 @@ fn a_truth_is_loaded_beside_the_window_and_the_old_one_stays_where_it_fails() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSmooth)));
     press(&mut harness, egui::Key::V);
     assert!(harness.query_by_label("its own limit").is_some());
-    let limit = harness.state().deviation(Half::Right).expect("measured");
+    let limit = harness.state().deviation(SplitSide::Right).expect("measured");
     let context = harness.ctx.clone();
     harness.state_mut().open_truth(&context, Source::Shape(Shape::CubeSplit));
     settle(&mut harness);
     // The cube that it is made from: rounded, its corners stay and its faces bulge.
     assert_eq!(harness.state().truth(), Some(&Source::Shape(Shape::CubeSplit)));
-    let bulge = harness.state().deviation(Half::Right).expect("measured");
+    let bulge = harness.state().deviation(SplitSide::Right).expect("measured");
     assert!(bulge > 10.0 * limit && bulge < Vec3::ONE.length().into(), "{bulge} and {limit}");
     harness.state_mut().open_truth(&context, Source::File("nowhere.glb".into()));
     settle(&mut harness);
     assert!(harness.query_by_label_contains("nowhere.glb").is_some(), "a problem");
-    assert_eq!(harness.state().deviation(Half::Right), Some(bulge), "the old one stays");
+    assert_eq!(harness.state().deviation(SplitSide::Right), Some(bulge), "the old one stays");
     click(&mut harness, "Close");
     click(&mut harness, "File");
     click(&mut harness, "No truth");
-    assert_eq!((harness.state().truth(), harness.state().deviation(Half::Right)), (None, Some(limit)));
+    assert_eq!((harness.state().truth(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
 }
 
 /// What the inscribed sphere of an icosahedron leaves of the circumscribed one.
@@ -100,7 +100,7 @@ fn two_surfaces_stand_beside_each_other_with_a_number_each() {
     assert!(harness.query_by_label("Left: Flat").is_some() && harness.query_by_label("Right: PN-AEN").is_some());
     assert_ne!(memory(&harness), alone, "memory of its own");
     press(&mut harness, egui::Key::V);
-    let [flat, curved] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
+    let [flat, curved] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert!((flat - GAP).abs() < 1e-6 && curved < 0.35 * GAP, "{flat} and {curved}");
     assert!(harness.query_by_label("Left: Flat: 0.205 units").is_some());
     assert!(harness.query_by_label_contains("Right: PN-AEN: 0.06").is_some());
@@ -115,21 +115,21 @@ fn two_surfaces_stand_beside_each_other_with_a_number_each() {
     harness.run_steps(20);
     assert_eq!(harness.state().pictures(), pictures, "nothing is drawn when nothing changed");
     choose(&mut harness, "Surface", "PN");
-    assert_eq!(harness.state().deviation(Half::Left), Some(flat), "the other half stays as it is");
+    assert_eq!(harness.state().deviation(SplitSide::Left), Some(flat), "the other half stays as it is");
     harness.get_by_role_and_label(Role::ComboBox, "Left").click();
     settle(&mut harness);
     // The section on the right names it too.
     harness.get_by_role_and_label(Role::Button, "PN").click();
     settle(&mut harness);
-    let [left, right] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
+    let [left, right] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert_eq!(left, right, "the same surface");
     press(&mut harness, egui::Key::S);
-    assert_eq!(harness.state().deviation(Half::Left), None);
+    assert_eq!(harness.state().deviation(SplitSide::Left), None);
     assert_eq!(memory(&harness), alone, "it is let go");
     assert!(harness.query_by_label_contains("Left: PN").is_none());
     press(&mut harness, egui::Key::S);
-    assert_eq!(harness.state().deviation(Half::Left), Some(right), "and made again");
-    choose(&mut harness, "Left", "As it came");
+    assert_eq!(harness.state().deviation(SplitSide::Left), Some(right), "and made again");
+    choose(&mut harness, "Left", "Untessellated");
     assert!(harness.query_by_label("Left: untessellated").is_some());
 }
 
@@ -175,7 +175,7 @@ fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
     press(&mut harness, egui::Key::V);
     // No truth is known of this one.
     assert!(harness.query_by_label("PN-AEN's limit").is_some());
-    let against = |harness: &Harness<App>| harness.state().deviation(Half::Left).expect("measured");
+    let against = |harness: &Harness<App>| harness.state().deviation(SplitSide::Left).expect("measured");
     let other = against(&harness);
     choose(&mut harness, "Surface", "Flat");
     assert!(harness.query_by_label("Flat's limit").is_some() && against(&harness) != other, "measured anew");
@@ -185,6 +185,6 @@ fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::Icosahedron));
     settle(&mut harness);
-    let [left, right] = Half::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
+    let [left, right] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert!((left - right).abs() < 1e-6 && left > 0.01, "{left} and {right}: no normals are split there");
 }

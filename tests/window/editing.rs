@@ -10,8 +10,7 @@ use pnaen::app::App;
 use pnaen::cli::compare;
 use pnaen::load::{HeightSource, Source};
 use pnaen::mesh::Shape;
-use pnaen::settings::Settings;
-use pnaen::tessellate::{Displacement, Lod, Surface};
+use pnaen::tessellate::{Displacement, Lod, Surface, Tessellation};
 
 use crate::{choose, click, press, settle, uniform, vase, window};
 
@@ -28,11 +27,17 @@ fn settings_go_back_and_forward() {
     press(&mut harness, Key::W);
     choose(&mut harness, "LOD", "Uniform");
     let last = *harness.state().settings();
-    assert_eq!((last.surface, last.lod, last.overlays.wireframe), (Surface::Pn, Lod::Uniform, false));
+    assert_eq!(
+        (last.tessellation.surface, last.tessellation.lod, last.overlays.wireframe),
+        (Surface::Pn, Lod::Uniform, false)
+    );
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     let between = *harness.state().settings();
-    assert_eq!((between.surface, between.lod, between.overlays.wireframe), (Surface::Pn, first.lod, true));
+    assert_eq!(
+        (between.tessellation.surface, between.tessellation.lod, between.overlays.wireframe),
+        (Surface::Pn, first.tessellation.lod, true)
+    );
     click(&mut harness, "Edit");
     harness.get_by_label_contains("Undo").click();
     settle(&mut harness);
@@ -59,7 +64,7 @@ fn settings_go_back_and_forward() {
 #[test]
 fn a_drag_is_one_step() {
     let mut harness = uniform(None);
-    let before = harness.state().settings().factor;
+    let before = harness.state().settings().tessellation.factor;
     let slider = harness.get_by_role_and_label(Role::Slider, "Factor").rect();
     harness.drag_at(slider.center());
     for x in [10.0, 20.0, 25.0] {
@@ -69,9 +74,9 @@ fn a_drag_is_one_step() {
     harness.run_steps(2);
     harness.drop_at(slider.center() + egui::vec2(25.0, 0.0));
     settle(&mut harness);
-    assert_ne!(harness.state().settings().factor, before);
+    assert_ne!(harness.state().settings().tessellation.factor, before);
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(harness.state().settings().factor, before);
+    assert_eq!(harness.state().settings().tessellation.factor, before);
 }
 
 /// The command that the menu copies, which is shown.
@@ -137,7 +142,7 @@ fn commands_are_found_by_typing_a_part_of_them() {
     for key in [Key::ArrowDown, Key::ArrowDown, Key::ArrowUp, Key::Enter] {
         press(&mut harness, key);
     }
-    assert_eq!(harness.state().settings().surface, Surface::PhongAen);
+    assert_eq!(harness.state().settings().tessellation.surface, Surface::PhongAen);
     assert!(harness.query_by_label("Search commands").is_none(), "it closes");
     // From the menu, with a click; letters that are keys are letters here.
     click(&mut harness, "Help");
@@ -173,10 +178,13 @@ fn what_isnt_displaced_has_no_displacement() {
     let waves = HeightSource::File(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png").into());
     harness.state_mut().displace(&context, Some(waves));
     settle(&mut harness);
-    assert_eq!(harness.state().settings().displacement, Displacement::On);
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::On);
     // Nobody set that, so it isn't undone: what was set before is.
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(*harness.state().settings(), Settings { displacement: Displacement::On, ..settings });
+    assert_eq!(
+        *harness.state().settings(),
+        settings.with(Tessellation { displacement: Displacement::On, ..settings.tessellation })
+    );
     press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     harness.state_mut().displace(&context, None);
     settle(&mut harness);

@@ -94,7 +94,7 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
     open(&mut harness, &second);
     assert_ne!(*harness.state().camera(), looked, "another file is framed");
     let settings = *harness.state().settings();
-    assert_eq!((settings.surface, settings.overlays.cracks), (Surface::PhongAen, true));
+    assert_eq!((settings.tessellation.surface, settings.overlays.cracks), (Surface::PhongAen, true));
     close(harness);
 
     let mut harness = window(&folder, None);
@@ -121,7 +121,7 @@ fn what_changed_is_written_after_a_while_and_the_picture_stays() {
     let mut harness = window(&folder, Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "Surface", "Nagata");
     let (pictures, start) = (harness.state().pictures(), std::time::Instant::now());
-    let written = || Persistence::read(folder.file().parent()).settings().surface;
+    let written = || Persistence::read(folder.file().parent()).settings().tessellation.surface;
     while written() != Surface::Nagata {
         assert!(start.elapsed() < crate::PATIENCE, "it isn't written");
         harness.step();
@@ -256,10 +256,10 @@ fn forgetting_is_reached_by_keys_and_let_be() {
         press(&mut harness, egui::Key::Enter);
         harness.get_by_label_contains("Forget all settings").focus();
         press(&mut harness, egui::Key::Enter);
-        assert_eq!(harness.state().settings().surface, Surface::Pn, "it asks first");
+        assert_eq!(harness.state().settings().tessellation.surface, Surface::Pn, "it asks first");
         harness.get_by_label("Forget them").focus();
         press(&mut harness, if forgets { egui::Key::Enter } else { egui::Key::Escape });
-        assert_eq!(harness.state().settings().surface == Surface::Pn, !forgets);
+        assert_eq!(harness.state().settings().tessellation.surface == Surface::Pn, !forgets);
     }
 }
 
@@ -275,7 +275,11 @@ fn damaged_settings_are_set_aside_and_the_window_opens() {
     click(&mut harness, "Close");
     choose(&mut harness, "Surface", "Flat");
     close(harness);
-    assert_eq!(window(&folder, None).state().settings().surface, Surface::Flat, "and keeps settings as before");
+    assert_eq!(
+        window(&folder, None).state().settings().tessellation.surface,
+        Surface::Flat,
+        "and keeps settings as before"
+    );
 }
 
 #[test]
@@ -286,12 +290,12 @@ fn what_is_bound_to_a_mesh_is_not_kept() {
     let context = harness.ctx.clone();
     harness.state_mut().open_path(&context, waves);
     settle(&mut harness);
-    assert_eq!(harness.state().settings().displacement, Displacement::On);
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::On);
     harness.state_mut().select_edge(3);
     press(&mut harness, egui::Key::Z);
     close(harness);
     let harness = window(&folder, Some(vase()));
     let app = harness.state();
-    assert_eq!((app.settings().displacement, app.selected_edge()), (Displacement::Off, None));
+    assert_eq!((app.settings().tessellation.displacement, app.selected_edge()), (Displacement::Off, None));
     assert_eq!(app.loaded().and_then(|loaded| loaded.preparation.heights.clone()), None);
 }

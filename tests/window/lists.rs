@@ -20,7 +20,7 @@ fn choosing_pn_lights_up_the_cracks() {
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
     settle(&mut harness);
     let app = harness.state();
-    assert_eq!(app.settings().surface, Surface::Pn);
+    assert_eq!(app.settings().tessellation.surface, Surface::Pn);
     assert!(app.settings().overlays.cracks);
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(12));
     harness.get_by_label_contains("cracks 12, ");

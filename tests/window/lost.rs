@@ -12,7 +12,7 @@ use pnaen::files::Limits;
 use pnaen::load::{Source, load};
 use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
-use pnaen::settings::Half;
+use pnaen::settings::SplitSide;
 
 use crate::{choose, click, press, settle, uniform, window};
 
@@ -75,7 +75,7 @@ fn everything_stays_and_the_picture_is_the_same_to_the_bit() {
     let app = harness.state();
     let (settings, camera, loaded) = (*app.settings(), *app.camera(), app.loaded().cloned().expect("a torus"));
     let (totals, cracks) = (app.totals(), app.cracks().cloned());
-    assert!(settings.half(Half::Left).is_some() && cracks.is_some());
+    assert!(settings.half(SplitSide::Left).is_some() && cracks.is_some());
 
     lose(&mut harness);
     let mut harness = anew(harness);
@@ -109,7 +109,7 @@ fn what_was_under_way_goes_on_and_nothing_is_said_twice() {
     settle(&mut harness);
     let app = harness.state();
     assert_eq!(app.source(), Some(&wanted));
-    assert!(app.deviation(Half::Right).is_some() && app.deviation(Half::Left).is_some());
+    assert!(app.deviation(SplitSide::Right).is_some() && app.deviation(SplitSide::Left).is_some());
     assert!(
         harness.query_by_label_contains("stopped").is_none() && harness.query_by_label_contains("failed").is_none()
     );

@@ -116,7 +116,7 @@ fn settings_keep_the_patch_and_let_go_of_what_is_no_longer_emitted() {
     assert!(harness.state().hit().is_none());
     harness.get_by_label("[0] 1-2    9.000   9.000     9");
     choose(&mut harness, "Surface", "PN");
-    assert_eq!((selected(harness.state()), harness.state().settings().surface), (before, Surface::Pn));
+    assert_eq!((selected(harness.state()), harness.state().settings().tessellation.surface), (before, Surface::Pn));
     press(&mut harness, egui::Key::R);
     assert_eq!(selected(harness.state()), (None, None), "loaded again");
 }

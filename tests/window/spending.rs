@@ -74,7 +74,7 @@ fn a_mistaken_convention_cracks_and_shows_both_factors() {
     let cracked = |harness: &Harness<App>| harness.state().cracks().map(|cracks| cracks.different_factors);
     for (entry, convention) in [("AMD PN sample", Convention::AmdPn), ("Edge order", Convention::EdgeOrder)] {
         choose(&mut harness, "Convention", entry);
-        assert_eq!((harness.state().settings().convention, cracked(&harness)), (convention, Some(0)));
+        assert_eq!((harness.state().settings().tessellation.convention, cracked(&harness)), (convention, Some(0)));
     }
     choose(&mut harness, "Convention", "Mirrored, a mistake");
     assert!(cracked(&harness) > Some(100), "{:?}", cracked(&harness));
@@ -83,7 +83,7 @@ fn a_mistaken_convention_cracks_and_shows_both_factors() {
     choose(&mut harness, "LOD", "Uniform");
     assert_eq!(cracked(&harness), Some(0));
     choose(&mut harness, "Convention", "Direct3D 11");
-    assert_eq!(harness.state().settings().convention, Convention::D3d11);
+    assert_eq!(harness.state().settings().tessellation.convention, Convention::D3d11);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
         harness.step();
     }
     click(&mut harness, "Cancel");
-    assert_eq!((harness.state().pictures(), harness.state().settings().factor), (pictures, 64.0));
+    assert_eq!((harness.state().pictures(), harness.state().settings().tessellation.factor), (pictures, 64.0));
     assert!(!harness.state().is_busy());
     harness.get_by_label("cracks not measured");
     // To select something is no reason to draw after all.

@@ -16,25 +16,25 @@ fn every_surface_can_be_chosen_and_those_that_agree_have_no_cracks() {
     for name in names {
         choose(&mut harness, "Surface", name);
         let app = harness.state();
-        let surface = app.settings().surface;
+        let surface = app.settings().tessellation.surface;
         assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(if surface.tears() { 12 } else { 0 }), "{name}");
     }
-    assert_eq!(harness.state().settings().surface, Surface::PnAen);
+    assert_eq!(harness.state().settings().tessellation.surface, Surface::PnAen);
 }
 
 #[test]
 fn only_phong_has_a_strength() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     let is_disabled = |harness: &egui_kittest::Harness<pnaen::app::App>| {
-        harness.get_by_role_and_label(Role::Slider, "Alpha").accesskit_node().is_disabled()
+        harness.get_by_role_and_label(Role::Slider, "Phong strength").accesskit_node().is_disabled()
     };
     assert!(is_disabled(&harness));
     choose(&mut harness, "Surface", "Phong AEN");
     assert!(!is_disabled(&harness));
     let pictures = harness.state().pictures();
-    harness.get_by_role_and_label(Role::Slider, "Alpha").set_value_accesskit(0.25);
+    harness.get_by_role_and_label(Role::Slider, "Phong strength").set_value_accesskit(0.25);
     settle(&mut harness);
-    assert_eq!(harness.state().settings().alpha, 0.25);
+    assert_eq!(harness.state().settings().tessellation.alpha, 0.25);
     assert!(harness.state().pictures() > pictures, "another surface, another picture");
 }
 
@@ -44,7 +44,7 @@ fn normals_of_the_surface_differ_across_edges_and_are_counted() {
     for (name, normals) in [("Quadratic normals", Normals::Quadratic), ("Surface normals", Normals::Surface)] {
         choose(&mut harness, "Shading", name);
         let app = harness.state();
-        assert_eq!(app.settings().normals, normals);
+        assert_eq!(app.settings().tessellation.normals, normals);
         let differing = app.cracks().expect("measured").different_normals;
         assert_eq!(differing > 0, normals == Normals::Surface, "{name}");
     }
@@ -57,13 +57,13 @@ fn an_image_displaces_the_mesh_and_settings_stay() {
     image.save(&path).expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(), 0, "nothing to displace by");
-    let (camera, factor) = (*harness.state().camera(), harness.state().settings().factor);
+    let (camera, factor) = (*harness.state().camera(), harness.state().settings().tessellation.factor);
     let context = harness.ctx.clone();
     harness.state_mut().open_path(&context, path.clone());
     settle(&mut harness);
     let app = harness.state();
-    assert_eq!(app.settings().displacement, Displacement::On);
-    assert_eq!((*app.camera(), app.settings().factor), (camera, factor));
+    assert_eq!(app.settings().tessellation.displacement, Displacement::On);
+    assert_eq!((*app.camera(), app.settings().tessellation.factor), (camera, factor));
     let loaded = app.loaded().expect("a mesh");
     assert_eq!(loaded.preparation.heights, Some(HeightSource::File(path.clone())));
     assert_eq!(app.cracks().map(|cracks| cracks.different_bits), Some(0));
@@ -74,10 +74,10 @@ fn an_image_displaces_the_mesh_and_settings_stay() {
     settle(&mut harness);
     assert!(harness.state().pictures() > pictures);
     press(&mut harness, Key::D);
-    assert_eq!(harness.state().settings().displacement, Displacement::Off);
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::Off);
     press(&mut harness, Key::D);
-    assert_eq!(harness.state().settings().displacement, Displacement::AsPublished, "what it was before");
-    choose(&mut harness, "Heights", "None");
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::AsPublished, "what it was before");
+    choose(&mut harness, "Height map", "None");
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(), 0);
     let _ = std::fs::remove_file(path);
 }
@@ -86,10 +86,10 @@ fn an_image_displaces_the_mesh_and_settings_stay() {
 fn heights_that_are_not_there_are_a_sentence_and_change_nothing() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
-    choose(&mut harness, "Heights", "Material");
+    choose(&mut harness, "Height map", "Material");
     harness.get_by_label_contains("no material has a base colour image");
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
-    assert_eq!(harness.state().settings().displacement, Displacement::Off, "every setting as it was");
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::Off, "every setting as it was");
     assert_eq!(harness.state().pictures(), pictures, "nothing is drawn anew");
 }
 

@@ -1,7 +1,7 @@
 //! The command line that draws what the window shows.
 
 use crate::app::App;
-use crate::cli::Shown;
+use crate::cli::CopiedCommand;
 use crate::load::{HeightSource, Source};
 
 impl App {
@@ -16,7 +16,7 @@ impl App {
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
             *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
         }
-        let shown = Shown {
+        let shown = CopiedCommand {
             source: &source,
             preparation: &preparation,
             settings: &self.settings,
@@ -27,7 +27,7 @@ impl App {
             truth: truth.as_ref(),
             triangle: self.selected_triangle(),
         };
-        let command = shown.command();
+        let command = shown.line();
         context.copy_text(command.clone());
         self.commands.copied = Some(command);
     }

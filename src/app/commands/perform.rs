@@ -7,7 +7,7 @@ use crate::app::dialogs::typed_path::Purpose;
 use crate::commands::{Action, Availability, Command, FileAction, Preparing};
 use crate::load::{HeightSource, Source};
 use crate::settings::{Colors, Settings};
-use crate::tessellate::{Lod, Partitioning};
+use crate::tessellate::{Lod, Partitioning, Tessellation};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
@@ -19,7 +19,7 @@ impl App {
 
     /// What there is now, on which it depends which commands are possible.
     pub fn availability(&self) -> Availability {
-        let lod = self.settings.used_lod();
+        let lod = self.settings.tessellation.used_lod();
         Availability {
             has_document: self.document.is_some(),
             has_picture: self.viewport.picture.drawn.is_some(),
@@ -30,7 +30,7 @@ impl App {
             has_selected_patch: self.selected_patch().is_some(),
             has_heights: self.has_heights(),
             takes_factor: matches!(lod, Lod::Uniform | Lod::Distance),
-            takes_lod: self.settings.partitioning != Partitioning::Subtriangulation,
+            takes_lod: self.settings.tessellation.partitioning != Partitioning::Subtriangulation,
             can_cull_back_faces: self.can_cull_back_faces(),
             is_split: self.settings.split.is_some(),
             shows_deviation: self.settings.overlays.colors == Colors::Deviation,
@@ -118,7 +118,10 @@ impl App {
 
     /// Sets what the window first opened with; whether the mesh is displaced is the mesh's.
     fn reset_settings(&mut self) {
-        self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
+        self.settings = Settings::opening().with(Tessellation {
+            displacement: self.settings.tessellation.displacement,
+            ..Settings::opening().tessellation
+        });
     }
 
     /// Stops or closes what is most in the way: what was just opened, or else a long drawing, or else everything that is

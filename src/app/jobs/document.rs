@@ -12,7 +12,7 @@ use crate::load::{LoadError, Source};
 use crate::mesh::{EdgeCounts, Moment};
 use crate::progress::Progress;
 use crate::render::Scene;
-use crate::settings::{ARENA_BYTES, Half, Settings};
+use crate::settings::{ARENA_BYTES, Settings, SplitSide};
 use crate::tessellate::Deformed;
 use crate::truth::Truth;
 
@@ -49,7 +49,7 @@ impl Document {
             let tessellator = &scene.tessellator;
             tessellator.buffers().bytes() + scene.work_bytes() + tessellator.arena_bytes()
         };
-        Half::BOTH.into_iter().filter_map(|half| self.scene.half(half)).map(of).sum()
+        SplitSide::BOTH.into_iter().filter_map(|half| self.scene.half(half)).map(of).sum()
     }
 }
 

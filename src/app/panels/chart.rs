@@ -8,6 +8,7 @@ use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::chart_job::{ChartJob, Charted, Job, Of};
 use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 use crate::settings::Settings;
+use crate::tessellate::Tessellation;
 
 /// What the chart's panel is about.
 #[derive(Default)]
@@ -121,7 +122,7 @@ impl App {
 
     /// What is tried, in order.
     pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
-        let plan = Plan { normals: vec![self.settings.normals], ..self.panels.chart.plan.clone() };
+        let plan = Plan { normals: vec![self.settings.tessellation.normals], ..self.panels.chart.plan.clone() };
         coarse_first(plan.settings())
     }
 
@@ -216,7 +217,20 @@ impl Of {
 
 /// What settings that are tried have in common: all but what they change.
 fn base(settings: &Settings) -> Settings {
-    let Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
-        Settings::default();
-    Settings { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, ..whole(settings) }
+    let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
+        Tessellation::default();
+    let whole = whole(settings);
+    let tried = Tessellation {
+        surface,
+        normals,
+        partitioning,
+        lod,
+        factor,
+        pixels,
+        tolerance,
+        near,
+        far,
+        ..whole.tessellation
+    };
+    whole.with(tried)
 }

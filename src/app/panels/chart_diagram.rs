@@ -173,7 +173,7 @@ impl<'a> Diagram<'a> {
                 Spot::Row(_) => {}
                 Spot::Current => {
                     let Some((settings, _)) = &self.charted.current else { continue };
-                    marker(&canvas.painter, place, &Look::of_surface(settings.surface), &inks);
+                    marker(&canvas.painter, place, &Look::of_surface(settings.tessellation.surface), &inks);
                     self.ring(ui, canvas, place);
                 }
             }

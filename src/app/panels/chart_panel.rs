@@ -8,7 +8,7 @@ use crate::app::jobs::chart_job::Charted;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, list};
 use crate::chart::{Cost, LodKind, Look, Probe, Row, Setting, dash, looks};
-use crate::settings::option_name;
+use crate::settings::Choice;
 use crate::tessellate::Surface;
 
 /// Heights of the panel, and the width of the list in it, in points.
@@ -143,7 +143,7 @@ impl App {
         let plan = &mut self.panels.chart.plan;
         let (response, _) = button.ui(ui, |ui| {
             ui.weak("Surfaces");
-            Surface::ALL.into_iter().for_each(|surface| switch(ui, &mut plan.surfaces, surface, &option_name(surface)));
+            Surface::ALL.into_iter().for_each(|surface| switch(ui, &mut plan.surfaces, surface, surface.name()));
             ui.weak("Level of detail");
             LodKind::ALL.into_iter().for_each(|lod| switch(ui, &mut plan.lods, lod, lod_name(lod)));
         });
@@ -231,7 +231,7 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, is_stale: bool) {
         for surface in surfaces {
             let rect = sample(ui, 10.0);
             marker(ui.painter(), rect.center(), &Look::of_surface(surface), &inks);
-            ui.label(option_name(surface));
+            ui.label(surface.name());
         }
         for lod in lods {
             let rect = sample(ui, 30.0);
@@ -265,7 +265,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
             Cost::Ms => (short(row.time.total()), "ms"),
             Cost::Triangles => (grouped(row.triangles), "triangles"),
         };
-        let name = format!("{} {}", option_name(row.setting.method.surface), row.setting);
+        let name = format!("{} {}", row.setting.method.surface.name(), row.setting);
         let text = RichText::new(format!("{error:>8} {cost:>8}  {name}")).monospace();
         let response = ui.add(egui::Button::selectable(diagram.own == Some(row.setting), text));
         let said = format!("Apply {}: {error} {unit}, {cost} {cost_unit}", subject.named(row));

@@ -11,7 +11,7 @@ use crate::measure::{CrackedEdge, EdgeSide};
 use crate::mesh::{EdgeKind, TJunction, Topology};
 use crate::render::LineSegment;
 use crate::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
-use crate::settings::Half;
+use crate::settings::SplitSide;
 use crate::view::ulp;
 use glam::Vec3;
 
@@ -79,7 +79,7 @@ impl App {
         let sides = self.jobs.measure.found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Kind", kind, "What the edge's sides have in common.");
-            if let Some(crack) = self.crack_of(edge, Half::Right) {
+            if let Some(crack) = self.crack_of(edge, SplitSide::Right) {
                 let (px, ulps) = (self.viewport.picture.gap_of_edge_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
                 fact(
@@ -144,13 +144,13 @@ impl App {
     }
 
     /// The crack along an edge in a half, if there is one.
-    fn crack_of(&self, edge: u32, half: Half) -> Option<&CrackedEdge> {
+    fn crack_of(&self, edge: u32, half: SplitSide) -> Option<&CrackedEdge> {
         self.measured(half).cracks()?.edges.iter().find(|crack| crack.edge == edge)
     }
 
     /// What marks the selected edge: each of its sides in a colour of its own, the later ones thinner, so that sides in
     /// one place both show; and where they are farthest apart. If its patches emit nothing, the straight line.
-    pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
+    pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(edge) = self.viewport.selected_edge else { return Vec::new() };
         let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();

@@ -9,26 +9,25 @@ use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::viewport::legend::Distances;
 use crate::app::widgets::{fact, heading, number, swatch};
-use crate::commands::value_names::surface_name;
 use crate::measure::{DeviationTarget, MOST_TRIANGLES};
 use crate::render::layout::WORST_COLOR;
 use crate::render::{DEVIATION_PX_SCALE, LineSegment, Scale, deviation_scale, worst_lines};
-use crate::settings::{Colors, DeviationUnit, Half, Settings};
+use crate::settings::{Choice, Colors, DeviationUnit, Settings, SplitSide};
 use crate::tessellate::{Clip, Inputs, Lod};
 use crate::view::project;
 
 impl App {
-    fn deviating(&self, half: Half) -> &DeviationJob {
+    fn deviating(&self, half: SplitSide) -> &DeviationJob {
         match half {
-            Half::Left => &self.viewport.left.deviating,
-            Half::Right => &self.jobs.deviation,
+            SplitSide::Left => &self.viewport.left.deviating,
+            SplitSide::Right => &self.jobs.deviation,
         }
     }
 
-    fn deviation_of(&self, half: Half) -> Option<Of> {
+    fn deviation_of(&self, half: SplitSide) -> Option<Of> {
         let document = self.document.as_ref()?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
-        let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.surface);
+        let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.tessellation.surface);
         Some(Of { document, tessellation, truth, limit })
     }
 
@@ -46,11 +45,11 @@ impl App {
     }
 
     /// How far what is shown is from the truth, once that is known.
-    pub fn deviation(&self, half: Half) -> Option<f64> {
+    pub fn deviation(&self, half: SplitSide) -> Option<f64> {
         Some(self.known_deviation(half)?.worst?.value)
     }
 
-    fn known_deviation(&self, half: Half) -> Option<&Found> {
+    fn known_deviation(&self, half: SplitSide) -> Option<&Found> {
         self.settings.half(half)?;
         self.deviating(half).found_of(self.deviation_of(half)?)
     }
@@ -66,7 +65,7 @@ impl App {
         if !self.viewport.picture.is_free() || self.viewport.picture.cancelled.is_some() {
             return Ok(());
         }
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             let Some(of) = self.deviation_of(half).filter(|_| self.settings.half(half).is_some()) else { continue };
             let truth = self.yardstick().1;
             let Some(document) = self.document.as_mut() else { continue };
@@ -75,8 +74,8 @@ impl App {
             let Some(scene) = scene else { continue };
             let target = || truth.map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::Truth);
             let deviating = match half {
-                Half::Left => &mut self.viewport.left.deviating,
-                Half::Right => &mut self.jobs.deviation,
+                SplitSide::Left => &mut self.viewport.left.deviating,
+                SplitSide::Right => &mut self.jobs.deviation,
             };
             deviating.go_on(&self.engine.gpu, scene, of, target)?;
         }
@@ -87,14 +86,14 @@ impl App {
     /// In object units, for the half that is farther off by what was last known of each.
     fn deviation_scale(&self) -> Option<Scale> {
         let scene = &self.document.as_ref()?.scene;
-        let shown = Half::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
+        let shown = SplitSide::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
         let largest = shown.filter_map(|half| self.deviating(half).found()).map(Found::largest).reduce(f64::max)?;
         Some(deviation_scale(largest, scene.ulp()))
     }
 
     fn scale_deviation(&mut self) {
         let (Some(scale), Some(document)) = (self.deviation_scale(), self.document.as_mut()) else { return };
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             if let Some(scene) = document.scene.half_mut(half) {
                 scene.scale_deviation(scale);
             }
@@ -102,7 +101,7 @@ impl App {
     }
 
     /// The mark on the place of a half that is farthest from the truth.
-    pub(in crate::app) fn worst_mark(&self, half: Half) -> Vec<LineSegment> {
+    pub(in crate::app) fn worst_mark(&self, half: SplitSide) -> Vec<LineSegment> {
         let shown = self.known_deviation(half).filter(|_| self.shows_deviation());
         let worst = shown.and_then(|found| found.worst);
         worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()))
@@ -111,7 +110,7 @@ impl App {
     /// What the marks are a function of: the result that each is of, 0 for none.
     pub(in crate::app) fn worst_marked(&self) -> [u64; 2] {
         let is_marked = |half| self.shows_deviation() && self.known_deviation(half).is_some();
-        Half::BOTH.map(|half| if is_marked(half) { self.deviating(half).generation } else { 0 })
+        SplitSide::BOTH.map(|half| if is_marked(half) { self.deviating(half).generation } else { 0 })
     }
 
     /// What the legend says of distances.
@@ -122,13 +121,13 @@ impl App {
             DeviationUnit::Px => Some(DEVIATION_PX_SCALE),
         };
         let known = |half| self.known_deviation(half);
-        let is_partial = Half::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
-        let measured = Half::BOTH.into_iter().filter_map(|half| self.deviating(half).fraction()).reduce(f32::min);
+        let is_partial = SplitSide::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
+        let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half).fraction()).reduce(f32::min);
         Distances { unit, scale, is_partial, measured }
     }
 
     /// The largest distance of a half in the unit that is coloured, while that is shown; it keeps its place until it is known.
-    pub(in crate::app) fn largest_text(&self, half: Half) -> Option<String> {
+    pub(in crate::app) fn largest_text(&self, half: SplitSide) -> Option<String> {
         if !self.shows_deviation() {
             return None;
         }
@@ -146,22 +145,22 @@ impl App {
         }
         heading(ui, "Deviation");
         let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
-        let is_split = self.settings.half(Half::Left).is_some();
+        let is_split = self.settings.half(SplitSide::Left).is_some();
         if is_split && truth.is_none() {
-            name = format!("{}'s limit", surface_name(self.settings.surface));
+            name = format!("{}'s limit", self.settings.tessellation.surface.label());
         }
         let mut clicked = None;
         egui::Grid::new("deviation").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "What the mesh should have been: the surface that a shape is sampled from, a file chosen under File, or \
-                         else the surface that the tessellation converges to.";
-            fact(ui, "Truth", &shortened(&name, 20), hover);
-            for half in Half::BOTH {
+            let hover = "The surface that distances are measured to: the exact surface of a shape made in code, a file chosen \
+                         under File, or else the surface that the tessellation converges to.";
+            fact(ui, "Reference", &shortened(&name, 20), hover);
+            for half in SplitSide::BOTH {
                 let Some(settings) = self.settings.half(half) else { continue };
-                let place = if half == Half::Left { "Left" } else { "Right" };
+                let place = if half == SplitSide::Left { "Left" } else { "Right" };
                 if is_split {
                     let hover = "What is shown in this half of the split.";
                     ui.label(RichText::new(place).strong()).on_hover_text(hover);
-                    number(ui, surface_name(settings.surface));
+                    number(ui, settings.tessellation.surface.label());
                     ui.end_row();
                 }
                 if self.deviation_rows(ui, half, if is_split { place } else { "" }) {
@@ -169,7 +168,7 @@ impl App {
                 }
             }
         });
-        let known = Half::BOTH.into_iter().filter_map(|half| self.known_deviation(half));
+        let known = SplitSide::BOTH.into_iter().filter_map(|half| self.known_deviation(half));
         let left_out: u64 = known.map(|found| found.left_out).sum();
         if left_out > 0 {
             let most = grouped(MOST_TRIANGLES);
@@ -182,7 +181,7 @@ impl App {
     }
 
     /// How far off a half is; true if its worst point was clicked. Until it is measured the rows keep their places.
-    fn deviation_rows(&self, ui: &mut egui::Ui, half: Half, place: &str) -> bool {
+    fn deviation_rows(&self, ui: &mut egui::Ui, half: SplitSide, place: &str) -> bool {
         let found = self.known_deviation(half);
         let text = |number: Option<f64>, unit| format!("{} {unit}", number.map_or_else(|| "…".into(), short));
         let hover = "The largest distance from what is shown to the truth, in object units.";
@@ -210,14 +209,14 @@ impl App {
     }
 
     /// The largest distance of a half in px, seen as the last picture was.
-    fn deviation_px(&self, half: Half) -> Option<f64> {
+    fn deviation_px(&self, half: SplitSide) -> Option<f64> {
         let (worst, view) = (self.known_deviation(half)?.worst?, self.viewport.picture.seen_from()?);
         let at = |place: glam::DVec3| project(view.clip_from_object, view.viewport, place.as_vec3());
         Some(f64::from(at(worst.emitted)?.distance(at(worst.truth)?)))
     }
 
     /// Turns the camera so that a half's worst point is in the middle of that half, seen from where its patch faces.
-    fn frame_worst(&mut self, half: Half) {
+    fn frame_worst(&mut self, half: SplitSide) {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };
         let (mesh, topology) = document.shown();
@@ -230,7 +229,7 @@ impl App {
         self.viewport.camera.frame_triangle(corners, &document.scene.bounds);
         self.viewport.camera.target = worst.emitted.as_vec3();
         if let Some(split) = self.settings.split {
-            let middle = if half == Half::Left { split / 2.0 } else { (1.0 + split) / 2.0 };
+            let middle = if half == SplitSide::Left { split / 2.0 } else { (1.0 + split) / 2.0 };
             let size = self.viewport.picture.size();
             self.viewport.camera.pan(Vec2::new((middle - 0.5) * size.x, 0.0), size);
         }
@@ -239,5 +238,7 @@ impl App {
 
 /// Whether what is emitted depends on where one looks from.
 fn follows_view(settings: &Settings) -> bool {
-    settings.used_lod() != Lod::Uniform || settings.clip != Clip::Off || settings.cull_back_faces
+    settings.tessellation.used_lod() != Lod::Uniform
+        || settings.tessellation.clip != Clip::Off
+        || settings.tessellation.cull_back_faces
 }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
+use crate::app::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::text::short;
-use crate::app::widgets::value_chooser;
-use crate::commands::{Action, key_name, value_names};
+use crate::commands::{Action, HEIGHT_IMAGE, key_name};
 use crate::load::{HeightSource, Source};
-use crate::settings::{HEIGHT_RANGE, MIDLEVEL_RANGE};
+use crate::settings::options;
 use crate::tessellate::Displacement;
 
 /// Whether a path names an image rather than a mesh.
@@ -42,13 +42,13 @@ impl App {
 
     /// Another mesh is shown, or the same with other heights: first ones displace it, and without any nothing does.
     pub(in crate::app) fn take_heights(&mut self, before: Option<&HeightSource>) {
-        self.settings.displacement = match (self.has_heights(), before) {
+        self.settings.tessellation.displacement = match (self.has_heights(), before) {
             (true, None) => Displacement::On,
             (true, Some(_)) => return,
             (false, _) => Displacement::Off,
         };
         // Nobody set it, so nobody takes it back.
-        self.history.displace(self.settings.displacement);
+        self.history.displace(self.settings.tessellation.displacement);
     }
 
     pub(in crate::app) fn has_heights(&self) -> bool {
@@ -58,10 +58,10 @@ impl App {
     /// The image's row; and while there is one, what is done with it.
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
-        let label = ui.label("Heights");
+        let label = ui.label("Height map");
         let shown = heights.as_ref().map_or("None".to_owned(), HeightSource::title);
         let mut chosen = None;
-        let combo = egui::ComboBox::from_id_salt("Heights").selected_text(shown).truncate();
+        let combo = egui::ComboBox::from_id_salt("Height map").selected_text(shown).truncate();
         let combo = combo.show_ui(ui, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
@@ -74,13 +74,13 @@ impl App {
                 chosen = Some(Some(HeightSource::Materials));
             }
             let is_file = matches!(heights, Some(HeightSource::File(_)));
-            if entry("Image file…", is_file, value_names::HEIGHT_IMAGE) {
+            if entry("Image file…", is_file, HEIGHT_IMAGE) {
                 self.height_dialog(ui.ctx());
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(
-            "What the surface is displaced by: black is 0 and white is 1. An image that is dropped on the window is taken too \
-             (--height).",
+            "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
+             height map (--height).",
         );
         ui.end_row();
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
@@ -95,8 +95,8 @@ impl App {
         if !self.has_heights() {
             return;
         }
-        let last = std::mem::replace(&mut self.panels.last_displacement, self.settings.displacement);
-        self.settings.displacement = match self.settings.displacement {
+        let last = std::mem::replace(&mut self.panels.last_displacement, self.settings.tessellation.displacement);
+        self.settings.tessellation.displacement = match self.settings.tessellation.displacement {
             Displacement::Off if last == Displacement::Off => Displacement::On,
             Displacement::Off => last,
             _ => Displacement::Off,
@@ -107,23 +107,10 @@ impl App {
         let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
         let radius = heights.map_or(0.0, |heights| heights.radius);
         let settings = &mut self.settings;
-        let hover = format!(
-            "Whether the surface is displaced, and what its patches agree on where they meet ({}; --displacement).",
-            key_name(&Action::ToggleDisplacement)
-        );
-        value_chooser(ui, "Displace", &hover, &mut settings.displacement, &value_names::DISPLACEMENTS);
-        let is_on = settings.displacement != Displacement::Off;
-        let units = short(f64::from(settings.height_scale * radius));
-        let hover =
-            format!("How far white is above black, in bounding radii (r) of the mesh at rest: {units} units here.");
-        let label = ui.label("Scale").on_hover_text(&hover);
-        let slider = egui::Slider::new(&mut settings.height_scale, HEIGHT_RANGE).max_decimals(3).suffix(" r");
-        ui.add_enabled(is_on, slider.update_while_editing(false)).labelled_by(label.id).on_hover_text(&hover);
-        ui.end_row();
-        let hover = "The height that stays where it is, from 0, black, to 1, white.";
-        let label = ui.label("Midlevel").on_hover_text(hover);
-        let slider = egui::Slider::new(&mut settings.midlevel, MIDLEVEL_RANGE).max_decimals(2);
-        ui.add_enabled(is_on, slider.update_while_editing(false)).labelled_by(label.id).on_hover_text(hover);
-        ui.end_row();
+        option_row(ui, &options::DISPLACEMENT, settings, &key_name(&Action::ToggleDisplacement));
+        let units = short(f64::from(settings.tessellation.height_scale * radius));
+        let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
+        option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
+        option_row(ui, &options::MIDLEVEL, settings, "");
     }
 }

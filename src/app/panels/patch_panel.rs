@@ -62,7 +62,7 @@ impl App {
                     triangle,
                     patch,
                     convention: self.convention(),
-                    lod: self.settings.used_lod(),
+                    lod: self.settings.tessellation.used_lod(),
                     selected_edge: self.viewport.selected_edge,
                     factors: found.map(|found| found.outlines.factors(patch)),
                     sides: found.and_then(|found| found.outlines.patch(topology, patch)),

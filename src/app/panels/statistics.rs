@@ -108,10 +108,11 @@ impl App {
             fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
             let hover = "Patches left out because their surface shows its back everywhere, to the LOD camera.";
             fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
-            let limit = self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
-            let hover = "Patches with a factor that is the largest there is, 63 or 64: what asked for more didn't get it, so \
-                         that LOD by error may not keep its tolerance there.";
-            fact(ui, "At the limit", &limit, hover);
+            let limit =
+                self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
+            let hover = "Patches with a factor at the tessellator's maximum, 63 or 64. They may need more segments than they \
+                         have, so that LOD by error may miss its tolerance there.";
+            fact(ui, "At maximum factor", &limit, hover);
         });
     }
 

@@ -15,6 +15,7 @@ use crate::app::jobs::background_job::BackgroundJob;
 use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::Settings;
+use crate::tessellate::Tessellation;
 
 use saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState};
 
@@ -239,7 +240,10 @@ impl App {
     /// Goes back to how the window first opened; the mesh stays, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
-        self.settings = Settings { displacement: self.settings.displacement, ..Settings::opening() };
+        self.settings = Settings::opening().with(Tessellation {
+            displacement: self.settings.tessellation.displacement,
+            ..Settings::opening().tessellation
+        });
         self.history = Default::default();
         self.viewport.last_split = 0.5;
         self.viewport.frozen = None;

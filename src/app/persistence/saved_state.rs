@@ -4,7 +4,6 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use clap::ValueEnum;
 use egui::ThemePreference;
 use glam::Vec3;
 use serde_json::{Value, json};
@@ -12,7 +11,7 @@ use serde_json::{Value, json};
 use super::saved_settings::{read_settings, written_settings};
 use crate::render::Camera;
 use crate::settings::Settings;
-use crate::tessellate::Displacement;
+use crate::tessellate::{Displacement, Tessellation};
 
 /// Files whose cameras are kept, at most.
 pub const MAX_FILES: usize = 50;
@@ -107,7 +106,7 @@ impl SavedState {
 
     /// Settings without what is bound to a mesh: heights displace it once it has some.
     pub fn take_settings(&mut self, settings: &Settings) {
-        self.settings = Settings { displacement: Displacement::Off, ..*settings };
+        self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
     }
 }
 
@@ -176,26 +175,15 @@ impl SavedCamera {
 }
 
 /// The members of an object, or of anything else, which has none.
-pub struct Fields<'a>(pub &'a Value);
+struct Fields<'a>(&'a Value);
 
 impl Fields<'_> {
-    pub fn switch(&self, name: &str, otherwise: bool) -> bool {
+    fn switch(&self, name: &str, otherwise: bool) -> bool {
         self.0[name].as_bool().unwrap_or(otherwise)
     }
 
-    pub fn number(&self, name: &str, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
-        self.number_in(name, range).unwrap_or(otherwise)
-    }
-
-    pub fn number_in(&self, name: &str, range: RangeInclusive<f32>) -> Option<f32> {
-        self.0[name].as_f64().map(|number| number as f32).filter(|number| range.contains(number))
-    }
-
-    pub fn choice<T: ValueEnum>(&self, name: &str, otherwise: T) -> T {
-        self.choice_of(name).unwrap_or(otherwise)
-    }
-
-    pub fn choice_of<T: ValueEnum>(&self, name: &str) -> Option<T> {
-        T::from_str(self.0[name].as_str()?, false).ok()
+    fn number(&self, name: &str, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
+        let number = self.0[name].as_f64().map(|number| number as f32);
+        number.filter(|number| range.contains(number)).unwrap_or(otherwise)
     }
 }

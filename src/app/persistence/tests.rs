@@ -12,7 +12,7 @@ use crate::load::Source;
 use crate::render::Camera;
 use crate::settings::random::settings;
 use crate::settings::{Overlays, Settings};
-use crate::tessellate::Surface;
+use crate::tessellate::{Surface, Tessellation};
 
 /// A folder of this test's own, removed at the end.
 struct Folder(PathBuf);
@@ -74,7 +74,10 @@ prop_compose! {
         let absolute = |name: String| std::env::temp_dir().join(name).to_str().unwrap().to_owned();
         let file = |(name, (seen, is_gone))| SavedFile { path: absolute(name), seen, is_gone };
         let files = files.into_iter().map(file).collect();
-        SavedState { settings, frame: WindowGeometry { size: [width, height], is_maximized, theme, zoom }, files }
+        let frame = WindowGeometry { size: [width, height], is_maximized, theme, zoom };
+        let mut saved = SavedState { frame, files, ..SavedState::default() };
+        saved.take_settings(&settings);
+        saved
     }
 }
 
@@ -140,7 +143,8 @@ proptest! {
 fn unknown_and_missing_fields_are_no_fault() {
     let text = r#"{"version": 7, "settings": {"surface": "phong", "shadows": true}, "window": [], "files": "none"}"#;
     let read = SavedState::read(text.as_bytes()).unwrap();
-    let settings = Settings { surface: Surface::Phong, ..Settings::opening() };
+    let settings =
+        Settings::opening().with(Tessellation { surface: Surface::Phong, ..Settings::opening().tessellation });
     assert_eq!(read, SavedState { settings, ..SavedState::default() });
     assert_eq!(SavedState::read(b"{}"), Some(SavedState::default()));
     for text in ["", "[]", "null", "7", "{\"settings\": {\"alpha\": NaN}}"] {
@@ -259,7 +263,8 @@ fn what_is_no_file_is_left_alone() {
 fn a_folder_is_made_for_what_is_kept() {
     let folder = Folder::new("made");
     let below = folder.0.join("config/pnaen");
-    let settings = Settings { surface: Surface::Nagata, ..Settings::opening() };
+    let settings =
+        Settings::opening().with(Tessellation { surface: Surface::Nagata, ..Settings::opening().tessellation });
     let kept = SavedState { settings, ..SavedState::default() };
     state_file::write(&below.join("window.json"), &kept).unwrap();
     let found = state_file::read(&below);

@@ -5,7 +5,7 @@ use crate::app::App;
 use crate::app::jobs::document::Document;
 use crate::mesh::{Moment, Topology};
 use crate::render::{LineSegment, crack_lines, t_junction_lines};
-use crate::settings::Half;
+use crate::settings::SplitSide;
 
 /// What the lines over the mesh are a function of.
 #[derive(Clone, Copy, PartialEq)]
@@ -38,8 +38,8 @@ impl App {
         let measured = |half| if overlays.cracks || is_selected { self.measured(half).generation } else { 0 };
         let wanted = Highlight {
             document: document.generation,
-            measured: Half::BOTH.map(measured),
-            left: document.scene.half(Half::Left).map_or(0, |_| self.viewport.left.made),
+            measured: SplitSide::BOTH.map(measured),
+            left: document.scene.half(SplitSide::Left).map_or(0, |_| self.viewport.left.made),
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
             selected_edge: self.viewport.selected_edge,
@@ -51,10 +51,11 @@ impl App {
         if self.viewport.highlight == Some(wanted) {
             return;
         }
-        let lines = Half::BOTH.map(|half| self.marks(half, document, posed.as_ref().map(|(_, topology)| &**topology)));
+        let lines =
+            SplitSide::BOTH.map(|half| self.marks(half, document, posed.as_ref().map(|(_, topology)| &**topology)));
         self.viewport.highlight = Some(Highlight { generation: wanted.generation + 1, ..wanted });
         if let Some(document) = &mut self.document {
-            for (half, lines) in Half::BOTH.into_iter().zip(lines) {
+            for (half, lines) in SplitSide::BOTH.into_iter().zip(lines) {
                 if let Some(scene) = document.scene.half_mut(half) {
                     scene.set_lines(&self.engine.gpu, &lines);
                 }
@@ -63,7 +64,7 @@ impl App {
     }
 
     /// The lines over a half, in the pose that it is shown in if that is known.
-    fn marks(&self, half: Half, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
+    fn marks(&self, half: SplitSide, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
         let overlays = self.settings.overlays;
         let mut lines = Vec::new();
         if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {

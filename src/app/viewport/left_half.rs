@@ -7,11 +7,10 @@ use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::deviation_job::DeviationJob;
 use crate::app::jobs::document::arena_bytes;
 use crate::app::jobs::measure_job::{MeasureJob, Trouble};
-use crate::commands::value_names::surface_name;
 use crate::engine::Engine;
 use crate::gpu::GpuError;
 use crate::render::Scene;
-use crate::settings::Half;
+use crate::settings::{Choice, SplitSide};
 use crate::view::ScreenView;
 
 /// What takes longer to make than this is said to be made.
@@ -61,11 +60,11 @@ impl App {
     pub(in crate::app) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
         let scene = &mut document.scene;
-        let is_wanted = self.settings.half(Half::Left).is_some();
+        let is_wanted = self.settings.half(SplitSide::Left).is_some();
         if !is_wanted {
             self.viewport.left.making = None;
         }
-        if is_wanted == scene.half(Half::Left).is_some() {
+        if is_wanted == scene.half(SplitSide::Left).is_some() {
             return Ok(());
         }
         if !is_wanted {
@@ -98,9 +97,9 @@ impl App {
     /// Measures the left half's cracks and the points of its edges as long as they are shown.
     pub(in crate::app) fn measure_left(&mut self, view: ScreenView) -> Result<(), Trouble> {
         let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
-        let is_wanted = self.settings.half(Half::Left).is_some() && (self.settings.overlays.cracks || is_selected);
+        let is_wanted = self.settings.half(SplitSide::Left).is_some() && (self.settings.overlays.cracks || is_selected);
         let Some(document) = self.document.as_mut() else { return Ok(()) };
-        let left = document.scene.half_mut(Half::Left).filter(|left| is_wanted && left.tessellator.is_counted());
+        let left = document.scene.half_mut(SplitSide::Left).filter(|left| is_wanted && left.tessellator.is_counted());
         let Some(scene) = left else {
             if self.viewport.left.measuring.is_busy() {
                 self.viewport.left.measuring.forget();
@@ -112,16 +111,16 @@ impl App {
     }
 
     /// What is known of a half.
-    pub(in crate::app) fn measured(&self, half: Half) -> &MeasureJob {
+    pub(in crate::app) fn measured(&self, half: SplitSide) -> &MeasureJob {
         match half {
-            Half::Left => &self.viewport.left.measuring,
-            Half::Right => &self.jobs.measure,
+            SplitSide::Left => &self.viewport.left.measuring,
+            SplitSide::Right => &self.jobs.measure,
         }
     }
 
     /// What is written over a half of two surfaces: the method, and while that is shown how far off it is.
-    pub(in crate::app) fn half_title(&self, half: Half) -> Option<String> {
-        let name = surface_name(self.settings.half(half)?.surface);
+    pub(in crate::app) fn half_title(&self, half: SplitSide) -> Option<String> {
+        let name = self.settings.half(half)?.tessellation.surface.label();
         Some(match self.largest_text(half) {
             Some(largest) => format!("{name}: {largest}"),
             None => name.to_owned(),

@@ -14,12 +14,12 @@ use crate::commands::{Action, with_key};
 use crate::gpu::GpuError;
 use crate::progress::Stage;
 use crate::render::Scene;
-use crate::settings::{Colors, Half};
+use crate::settings::{Colors, SplitSide};
 use crate::view::ScreenView;
 
 /// Degrees that the camera turns for a point of dragging.
 const DEGREES_PER_POINT: f32 = 0.4;
-/// Half the width in points in which the divider can be grabbed.
+/// SplitSide the width in points in which the divider can be grabbed.
 const DIVIDER_REACH: f32 = 5.0;
 
 /// Where the halves of a split have their names: beside the divider.
@@ -84,7 +84,7 @@ impl App {
             return Err(problem.into());
         }
         self.jobs.measure.keep_only(document.generation, document.scene.tessellator.generation());
-        if let Some(left) = document.scene.half(Half::Left) {
+        if let Some(left) = document.scene.half(SplitSide::Left) {
             self.viewport.left.measuring.keep_only(document.generation, left.tessellator.generation());
         }
         let is_posed = document.moment == moment;
@@ -159,7 +159,7 @@ impl App {
 
     /// The split's divider, which can be dragged.
     fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
-        let [left, right] = Half::BOTH.map(|half| self.half_title(half));
+        let [left, right] = SplitSide::BOTH.map(|half| self.half_title(half));
         let Some(split) = &mut self.settings.split else { return };
         let at = rect.left() + rect.width() * *split;
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
@@ -194,7 +194,7 @@ impl App {
         let of = |scene: &Scene| scene.tessellator.totals().1;
         let triangles = self.document.as_ref().map_or(0, |document| {
             let halves =
-                Half::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
+                SplitSide::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
             halves.map(of).sum()
         });
         format!("{} triangles", grouped(triangles))

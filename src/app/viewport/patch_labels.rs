@@ -8,7 +8,7 @@ use crate::app::patch_names::letter;
 use crate::app::text::factor;
 use crate::app::widgets::rgb;
 use crate::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
-use crate::settings::Half;
+use crate::settings::SplitSide;
 use crate::tessellate::{domain_side, factor_side, segments};
 use crate::view::{ScreenView, project};
 
@@ -29,7 +29,7 @@ impl App {
             Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
         };
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
-        if let Some(split) = self.settings.split.filter(|_| self.settings.half(Half::Left).is_none()) {
+        if let Some(split) = self.settings.split.filter(|_| self.settings.half(SplitSide::Left).is_none()) {
             let source = rect.with_max_x(rect.left() + rect.width() * split);
             self.source_outline(&ui.painter_at(source), [a, b, c]);
         }
@@ -43,7 +43,7 @@ impl App {
             (place, text, Color32::from_gray(235))
         });
         let corners: Vec<_> = corners.collect();
-        let edges = (0..).zip(self.patch_edges(topology, patch, Half::Right)).filter_map(|(i, points)| {
+        let edges = (0..).zip(self.patch_edges(topology, patch, SplitSide::Right)).filter_map(|(i, points)| {
             let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
             let place = at((*before + *after) / 2.0)?;
             Some((i, place, self.factor_text(patch, i), rgb(FACTOR_COLORS[i as usize])))

@@ -12,8 +12,8 @@ use crate::gpu::{GpuError, PassTime, Recorder, Timing, take_times};
 use crate::measure::{CrackedEdge, Cracks};
 use crate::mesh::Moment;
 use crate::render::{Camera, Pixel, Renderer, Scene, Target};
-use crate::settings::{Colors, Half, Settings};
-use crate::tessellate::{Inputs, LodView};
+use crate::settings::{Colors, Settings, SplitSide};
+use crate::tessellate::{Inputs, LodView, Tessellation};
 use crate::view::ScreenView;
 
 /// Everything that the picture is a function of.
@@ -34,8 +34,14 @@ pub struct Wanted {
 
 impl Wanted {
     /// What a half is tessellated with, if there is such a half.
-    fn inputs_of(&self, half: Half) -> Option<Inputs> {
-        Some(Inputs { surface: self.settings.half(half)?.surface, ..self.inputs })
+    fn inputs_of(&self, half: SplitSide) -> Option<Inputs> {
+        Some(Inputs {
+            tessellation: Tessellation {
+                surface: self.settings.half(half)?.tessellation.surface,
+                ..self.inputs.tessellation
+            },
+            ..self.inputs
+        })
     }
 }
 
@@ -129,14 +135,14 @@ impl Picture {
 
     /// A pixel (from the left and the top) of the last picture, and which half's surface is there: the right one's also where
     /// the mesh is as it came.
-    pub fn pixel(&self, at: [u32; 2]) -> Option<(Half, Pixel)> {
+    pub fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let Wanted { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let pixel = Pixel { clip_from_object, size, at, split: settings.split };
-        if settings.half(Half::Left).is_none() {
-            return Some((Half::Right, pixel));
+        if settings.half(SplitSide::Left).is_none() {
+            return Some((SplitSide::Right, pixel));
         }
-        let half = if pixel.is_left() { Half::Left } else { Half::Right };
+        let half = if pixel.is_left() { SplitSide::Left } else { SplitSide::Right };
         Some((half, Pixel { split: None, ..pixel }))
     }
 
@@ -239,7 +245,7 @@ impl Picture {
     /// left half is still being made, it isn't.
     fn count(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, anew: bool) -> Result<bool, GpuError> {
         let mut is_counted = true;
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             let Some(inputs) = wanted.inputs_of(half) else { continue };
             let Some(scene) = scene.half_mut(half) else { return Ok(false) };
             let tessellator = &mut scene.tessellator;
@@ -265,7 +271,8 @@ impl Picture {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
         let shows = wanted.settings.overlays.colors == Colors::Deviation;
-        let mut halves = Half::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
+        let mut halves =
+            SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
         let is_known = halves.all(Scene::knows_deviation);
         shows && self.drawing.is_none() && !is_known && self.drawn.as_ref().is_some_and(from_here)
     }
@@ -284,7 +291,7 @@ impl Picture {
     pub fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
         (self.drawn, self.drawing, self.counting) = (None, None, None);
         self.cancelled = Some(*wanted);
-        for half in Half::BOTH {
+        for half in SplitSide::BOTH {
             if let Some(scene) = scene.half_mut(half) {
                 scene.tessellator.forget();
             }

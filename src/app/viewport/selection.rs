@@ -9,7 +9,7 @@ use crate::gpu::GpuError;
 use crate::measure::patch_edges;
 use crate::mesh::Topology;
 use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_lines};
-use crate::settings::Half;
+use crate::settings::SplitSide;
 use crate::tessellate::Convention;
 
 /// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
@@ -20,7 +20,7 @@ pub struct Selection {
     /// With the tessellation that it belongs to.
     hit: Option<(u64, PickedTriangle)>,
     /// A click on a picture whose tessellation isn't known yet.
-    clicked: Option<(Half, Pixel)>,
+    clicked: Option<(SplitSide, Pixel)>,
     /// With the tessellation that is searched; none for the left half's, of which nothing more is said.
     picking: Option<(Option<u64>, Picking)>,
 }
@@ -64,7 +64,7 @@ impl App {
 
     /// What factors and weights are taken for.
     pub(in crate::app) fn convention(&self) -> Convention {
-        self.settings.convention
+        self.settings.tessellation.convention
     }
 
     /// Selects a triangle. The selected edge stays if it is one of its edges.
@@ -118,7 +118,7 @@ impl App {
             let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
             let pixel = Pixel { split, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
-            let emitted = (half == Half::Right).then(|| scene.tessellator.generation());
+            let emitted = (half == SplitSide::Right).then(|| scene.tessellator.generation());
             self.viewport.selection.picking = Some((emitted, picking));
         }
         let Some((emitted, mut picking)) = self.viewport.selection.picking.take() else { return Ok(false) };
@@ -152,15 +152,15 @@ impl App {
     }
 
     /// See [`patch_edges`].
-    pub(in crate::app) fn patch_edges(&self, topology: &Topology, patch: u32, half: Half) -> [Vec<Vec3>; 3] {
+    pub(in crate::app) fn patch_edges(&self, topology: &Topology, patch: u32, half: SplitSide) -> [Vec<Vec3>; 3] {
         patch_edges(topology, patch, self.measured(half).found().map(|found| &found.outlines), self.convention())
     }
 
     /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.
-    pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: Half) -> Vec<LineSegment> {
+    pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(patch) = self.selected_patch() else { return Vec::new() };
         let mut lines = patch_lines(&self.patch_edges(topology, patch, half));
-        if let Some(hit) = self.hit().filter(|_| half == Half::Right) {
+        if let Some(hit) = self.hit().filter(|_| half == SplitSide::Right) {
             let corners = hit.vertices.map(|vertex| Vec3::from(vertex.position));
             let edges = [0, 1, 2].map(|k| (corners[k], corners[(k + 1) % 3]));
             let edge = |(a, b)| LineSegment { half_width: 1.25, ..LineSegment::new(a, b, [255; 3]) };

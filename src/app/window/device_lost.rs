@@ -198,7 +198,7 @@ mod tests {
         let pictures = harness.state().pictures();
         let document = harness.state().document.as_ref().expect("a torus");
         document.scene.tessellator.edge_factors().0.destroy();
-        harness.state_mut().settings.tolerance = 3.0;
+        harness.state_mut().settings.tessellation.tolerance = 3.0;
         let refused = |harness: &mut Harness<App>| {
             settle(harness);
             harness.get_by_label_contains("the graphics device refused a command");

@@ -4,7 +4,7 @@ use super::Part;
 use crate::chart::{Cost, Method, Row};
 use crate::markdown;
 use crate::numbers::grouped;
-use crate::settings::option_name;
+use crate::settings::Choice;
 
 /// Where a method is on the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +87,7 @@ pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     for method in methods {
         let mut own = tried.iter().filter(|other| other.surface == method.surface);
         let name = match own.all(|other| methods.contains(other)) {
-            true => format!("{} by any LOD", option_name(method.surface)),
+            true => format!("{} by any LOD", method.surface.name()),
             false => name(parts, *method),
         };
         if !names.contains(&name) {

@@ -6,7 +6,7 @@ use super::lods::Range;
 use crate::chart::{Race, has_converged};
 use crate::markdown;
 use crate::numbers::short;
-use crate::settings::{Settings, option_name};
+use crate::settings::{Choice, Settings};
 use crate::tessellate::Surface;
 
 /// How close a surface gets on a mesh.
@@ -55,7 +55,7 @@ pub fn table_of(parts: &[Part]) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let names = surfaces.iter().map(|surface| format!("{}, %", option_name(*surface)));
+    let names = surfaces.iter().map(|surface| format!("{}, %", surface.name()));
     let columns: Vec<String> = ["mesh".to_owned()].into_iter().chain(names).collect();
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     format!(
@@ -96,7 +96,7 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
         1 => at(least, near),
         _ => format!("{} to {}", at(least, near), at(most, far)),
     };
-    let name = option_name(surface);
+    let name = surface.name();
     let against =
         Range::of(&ratios).map_or_else(String::new, |range| format!(" That is {} flat.", closer(&range, ratios.len())));
     let on = reached.len();
@@ -136,7 +136,7 @@ fn reason(surface: Surface) -> String {
                 .into()
         }
         Surface::Phong | Surface::PhongAen => {
-            let alpha = Settings::default().alpha;
+            let alpha = Settings::default().tessellation.alpha;
             let rises = 2.0 * alpha;
             format!(
                 "to the second order it rises 2 alpha times as high over its triangles as a smooth surface does, which at {alpha} \
@@ -170,6 +170,6 @@ fn rounds(parts: &[Part], surface: Surface) -> Option<String> {
         "On {} `flat` comes closer than `{}`: creases are there (edges whose sides' normals differ), and the mean of both \
          sides rounds them.",
         markdown::listed(&meshes),
-        option_name(surface)
+        surface.name()
     ))
 }

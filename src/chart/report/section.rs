@@ -9,6 +9,7 @@ use crate::chart::words::plain;
 use crate::chart::{Cost, Race, Row};
 use crate::markdown;
 use crate::numbers::{grouped, short};
+use crate::settings::Choice;
 
 /// A section with its picture and tables.
 pub fn section(part: &Part) -> String {
@@ -16,9 +17,8 @@ pub fn section(part: &Part) -> String {
     let mut text = format!("\n## {title}\n\n{}\n\n", facts(part));
     let _ = writeln!(text, "![Largest error of {title} over ms and over triangles]({})", part.picture);
     for race in part.subject.races() {
-        let of = race.surface.map_or_else(String::new, |surface| {
-            format!(" (`{}`, against its own limit)", crate::settings::option_name(surface))
-        });
+        let of =
+            race.surface.map_or_else(String::new, |surface| format!(" (`{}`, against its own limit)", surface.name()));
         let _ = write!(text, "\nWhat nothing beats, in triangles or in ms{of}:\n\n{}", front(part, &race));
         let (table, missing) = best(part, &race);
         if !table.is_empty() {

@@ -3,22 +3,11 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
 use crate::load::Source;
 use crate::mesh::rim::WIDEST;
-use crate::settings::{ALPHA_RANGE, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, PIXELS_RANGE, TOLERANCE_RANGE};
-use crate::tessellate::Partitioning;
-
-/// Reads a partitioning, and says what each is; HLSL's spelling with an underscore is one too.
-pub fn partitioning() -> impl TypedValueParser<Value = Partitioning> {
-    let value = |partitioning: Partitioning| {
-        let about = partitioning.about().trim_end_matches('.');
-        PossibleValue::new(partitioning.name()).help(about).alias(partitioning.name().replace('-', "_"))
-    };
-    PossibleValuesParser::new(Partitioning::ALL.map(value)).try_map(|name| name.parse::<Partitioning>())
-}
 
 /// Reads where to write a picture: not a name that says it is no PNG file.
 pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
@@ -54,25 +43,6 @@ impl FromStr for Size {
         let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
         let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
         sides.map(Self).ok_or_else(|| "expected WIDTHxHEIGHT in px, each from 1 to 16384, such as 1280x720".into())
-    }
-}
-
-/// Near and far, in bounding radii.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distances {
-    pub near: f32,
-    pub far: f32,
-}
-
-impl FromStr for Distances {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse().ok().filter(|number| DISTANCE_RANGE.contains(number));
-        let both = text.split_once(',').and_then(|(near, far)| Some(Self { near: number(near)?, far: number(far)? }));
-        both.filter(|both| both.near < both.far).ok_or_else(|| {
-            "expected NEAR,FAR in bounding radii, from 0.1 to 1000 and far the larger, such as 2,10".into()
-        })
     }
 }
 
@@ -122,16 +92,6 @@ pub fn source() -> impl TypedValueParser<Value = Source> {
     OsStringValueParser::new().try_map(Source::try_from)
 }
 
-/// An sRGB colour as RRGGBB.
-pub fn color(text: &str) -> Result<[u8; 3], String> {
-    let digits = text.strip_prefix('#').unwrap_or(text);
-    let value = (digits.len() == 6 && digits.bytes().all(|b| b.is_ascii_hexdigit()))
-        .then(|| u32::from_str_radix(digits, 16).ok())
-        .flatten();
-    let [_, r, g, b] = value.ok_or("expected six hexadecimal digits, such as 2b2e33")?.to_be_bytes();
-    Ok([r, g, b])
-}
-
 /// A number of bytes, with a unit or without.
 pub fn bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
@@ -153,11 +113,6 @@ pub fn threshold(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
-/// A fraction from 0 to 1.
-pub fn fraction(text: &str) -> Result<f32, String> {
-    within(text, 0.0..=1.0)
-}
-
 /// A weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
 pub fn weld(text: &str) -> Result<f32, String> {
     within(text, 0.0..=0.1)
@@ -166,26 +121,6 @@ pub fn weld(text: &str) -> Result<f32, String> {
 /// The width of a rim, relative to the bounding diagonal.
 pub fn rim(text: &str) -> Result<f32, String> {
     within(text, 0.0..=WIDEST)
-}
-
-pub fn factor(text: &str) -> Result<f32, String> {
-    within(text, FACTOR_RANGE)
-}
-
-pub fn alpha(text: &str) -> Result<f32, String> {
-    within(text, ALPHA_RANGE)
-}
-
-pub fn height_scale(text: &str) -> Result<f32, String> {
-    within(text, HEIGHT_RANGE)
-}
-
-pub fn pixels(text: &str) -> Result<f32, String> {
-    within(text, PIXELS_RANGE)
-}
-
-pub fn tolerance(text: &str) -> Result<f32, String> {
-    within(text, TOLERANCE_RANGE)
 }
 
 fn within(text: &str, range: std::ops::RangeInclusive<f32>) -> Result<f32, String> {
@@ -199,23 +134,15 @@ mod tests {
     use crate::files::Limits;
 
     #[test]
-    fn sizes_colors_and_cameras_are_read_or_refused() {
+    fn sizes_and_cameras_are_read_or_refused() {
         assert_eq!("640x480".parse(), Ok(Size([640, 480])));
         for bad in ["640", "0x10", "640x", "-1x5", "99999x5"] {
             assert!(bad.parse::<Size>().is_err(), "{bad}");
-        }
-        assert_eq!(color("#ff8000"), Ok([255, 128, 0]));
-        for bad in ["", "12345", "1234567", "gggggg", "+12345"] {
-            assert!(color(bad).is_err(), "{bad}");
         }
         let camera = CameraOption { azimuth: -10.0, elevation: 5.5, distance: Some(2.0) };
         assert_eq!("-10, 5.5,2".parse(), Ok(camera));
         for bad in ["1", "1,2,0", "1,2,3,4", "nan,0", "a,b"] {
             assert!(bad.parse::<CameraOption>().is_err(), "{bad}");
-        }
-        assert_eq!("1.5, 8".parse(), Ok(Distances { near: 1.5, far: 8.0 }));
-        for bad in ["2", "8,2", "2,2", "0,5", "2,1001", "nan,3", "2,3,4"] {
-            assert!(bad.parse::<Distances>().is_err(), "{bad}");
         }
         assert_eq!(["1", "2KiB", "3 mib", "2GiB"].map(bytes), [1, 2 << 10, 3 << 20, 2 << 30].map(Ok));
         assert_eq!(bytes("2GiB"), Ok(Limits::default().file), "what --max-size is by default");
@@ -225,6 +152,5 @@ mod tests {
         }
         assert!(weld("0").is_ok() && weld("1e-7") == Ok(1e-7) && weld("0.1").is_ok());
         assert!(weld("0.11").is_err() && weld("-1e-7").is_err() && weld("nan").is_err() && weld("").is_err());
-        assert!(factor("nan").is_err() && factor("65").is_err() && factor("0.5").is_err() && factor("64").is_ok());
     }
 }

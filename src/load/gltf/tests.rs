@@ -11,7 +11,6 @@ use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
-use crate::load::uri;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Mesh, Repairs};
 

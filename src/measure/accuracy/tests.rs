@@ -4,7 +4,7 @@ use super::*;
 use crate::mesh::{Mesh, Shape, Topology};
 use crate::progress::Progress;
 use crate::settings::Settings;
-use crate::tessellate::{Partitioning, Surface, Tessellated, pack_key, pack_normal, tessellate};
+use crate::tessellate::{Partitioning, Surface, Tessellated, Tessellation, pack_key, pack_normal, tessellate};
 
 fn options(samples: usize) -> AccuracyOptions {
     AccuracyOptions { samples, threads: 2 }
@@ -13,7 +13,12 @@ fn options(samples: usize) -> AccuracyOptions {
 /// A mesh tessellated on the CPU with a uniform factor.
 fn emitted(mesh: &Mesh, surface: Surface, factor: f32) -> Tessellated {
     let topology = Topology::build(mesh, &Progress::new()).unwrap();
-    let settings = Settings { surface, factor, partitioning: Partitioning::Integer, ..Settings::default() };
+    let settings = Settings::from(Tessellation {
+        surface,
+        factor,
+        partitioning: Partitioning::Integer,
+        ..Tessellation::default()
+    });
     tessellate(mesh, &topology, &settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)), None)
 }
 

@@ -54,7 +54,7 @@ fn rows_lie_where_the_specification_puts_them() {
         (Even, 6.5, &[0, 10240, 20481, 30721, 32768, 34815, 45055, 55296, 65536]),
     ];
     for (p, factor, points) in rows {
-        assert_eq!(row_of(p, factor), points, "{p} {factor}");
+        assert_eq!(row_of(p, factor), points, "{p:?} {factor}");
     }
 }
 
@@ -63,8 +63,8 @@ fn rows_are_symmetric_and_never_run_back() {
     for p in Partitioning::DIRECT3D {
         for step in 0..=64 * 16 {
             let row = row_of(p, step as f32 / 16.0 + 1e-6);
-            assert!(row.is_sorted(), "{p} {step}: {row:?}");
-            assert!(row.iter().zip(row.iter().rev()).all(|(a, b)| a + b == FIXED_ONE), "{p} {step}: {row:?}");
+            assert!(row.is_sorted(), "{p:?} {step}: {row:?}");
+            assert!(row.iter().zip(row.iter().rev()).all(|(a, b)| a + b == FIXED_ONE), "{p:?} {step}: {row:?}");
         }
     }
 }
@@ -105,7 +105,7 @@ fn every_whole_factor_is_as_the_serial_tessellator_has_it() {
     for p in Partitioning::DIRECT3D {
         for factor in 1..=64 {
             let f = uniform(p, factor as f32);
-            assert_eq!(closed_form(f), serial::patch(f), "{p} {factor}");
+            assert_eq!(closed_form(f), serial::patch(f), "{p:?} {factor}");
         }
     }
 }

@@ -72,9 +72,9 @@ fn what_no_number_of_segments_suffices_for_can_be_told() {
     let twisted = ControlNet { center: net.center + Vec3::X * 0.2, ..net };
     for partitioning in Partitioning::DIRECT3D {
         let inside = |tolerance| inside_error_factor(&VIEW, tolerance, partitioning, &twisted, [1.0; 3]);
-        assert!(inside(1e-4) > 64.0 && inside(1e-9) > 64.0, "{partitioning}");
+        assert!(inside(1e-4) > 64.0 && inside(1e-9) > 64.0, "{partitioning:?}");
         let enough = inside(5.0);
-        assert!(enough > 1.0 && enough <= 64.0, "{partitioning}: {enough}");
+        assert!(enough > 1.0 && enough <= 64.0, "{partitioning:?}: {enough}");
     }
 }
 
@@ -111,7 +111,7 @@ fn levels_are_the_least_that_nest() {
     assert_eq!(of(Partitioning::FractionalEven, &asked), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
     assert_eq!(of(Partitioning::FractionalOdd, &asked), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
     for partitioning in Partitioning::DIRECT3D {
-        assert!(level(partitioning, 64.1) > 64.0 && level(partitioning, 1e9) > 64.0, "{partitioning}: one can tell");
+        assert!(level(partitioning, 64.1) > 64.0 && level(partitioning, 1e9) > 64.0, "{partitioning:?}: one can tell");
     }
 }
 
@@ -168,7 +168,7 @@ fn rows_of_levels_nest_and_others_reach_far() {
         levels.dedup();
         for (&factor, &inside) in levels.iter().flat_map(|a| levels.iter().map(move |b| (a, b))) {
             let reach = reach(partitioning, factor, inside);
-            assert!(reach < 1.0011 || inside < 5.0, "{partitioning}: {factor} beside {inside} reaches {reach}");
+            assert!(reach < 1.0011 || inside < 5.0, "{partitioning:?}: {factor} beside {inside} reaches {reach}");
         }
     }
     let masks = [5, 8, 9, 16, 17, 32, 33, 64].map(|factor| {

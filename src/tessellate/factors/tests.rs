@@ -9,15 +9,6 @@ fn whole(factor: u32) -> u32 {
 }
 
 #[test]
-fn names_go_both_ways_and_accept_hlsl_spelling() {
-    for p in Partitioning::ALL {
-        assert_eq!(p.to_string().parse(), Ok(p));
-        assert_eq!(p.name().replace('-', "_").parse(), Ok(p));
-    }
-    assert_eq!("odd".parse::<Partitioning>(), Err(UnknownPartitioning("odd".into())));
-}
-
-#[test]
 fn an_edge_that_is_not_positive_culls() {
     for bad in [0.0, -0.0, -1.0, f32::NAN, -f32::NAN, f32::NEG_INFINITY] {
         for p in Partitioning::ALL {
@@ -25,7 +16,7 @@ fn an_edge_that_is_not_positive_culls() {
                 let mut edges = [3.0; 3];
                 edges[k] = bad;
                 let f = process(p, edges, 3.0);
-                assert_eq!(f, PatchFactors::default(), "{bad} on edge {k} of {p}");
+                assert_eq!(f, PatchFactors::default(), "{bad} on edge {k} of {p:?}");
                 assert!(patch_is_culled(f));
                 assert_eq!((point_count(f), triangle_count(f)), (0, 0));
             }
@@ -45,7 +36,7 @@ fn denormals_are_positive() {
 fn the_inside_never_culls() {
     for bad in [0.0, -0.0, -7.0, f32::NAN, -f32::NAN, f32::NEG_INFINITY, 1e-40] {
         for p in Partitioning::ALL {
-            assert_eq!(process(p, [5.0; 3], bad), process(p, [5.0; 3], 1.0), "{bad} in {p}");
+            assert_eq!(process(p, [5.0; 3], bad), process(p, [5.0; 3], 1.0), "{bad} in {p:?}");
         }
     }
 }

@@ -88,7 +88,7 @@ fn words_say_which_pattern_it_is_and_edges_do_not() {
         assert!(own.inside & SUBTRIANGULATED != 0 && patch_is_subtriangulated(own));
         assert_eq!(patch_is_minimal(own), n == 1);
         for partitioning in Partitioning::DIRECT3D {
-            assert!(!patch_is_subtriangulated(process(partitioning, [n as f32; 3], n as f32)), "{partitioning} {n}");
+            assert!(!patch_is_subtriangulated(process(partitioning, [n as f32; 3], n as f32)), "{partitioning:?} {n}");
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use pnaen::engine::{Engine, Measurements};
 use pnaen::gpu::{GpuError, Timing};
-use pnaen::settings::{Settings, TOLERANCE_RANGE};
-use pnaen::tessellate::{Clip, Lod, Partitioning};
+use pnaen::settings::Settings;
+use pnaen::settings::options::TOLERANCE_RANGE;
+use pnaen::tessellate::{Clip, Lod, Partitioning, Tessellation};
 
 use super::Scale;
 use super::numbers::{ms, or_none, ratio, table, whole};
@@ -104,20 +105,25 @@ fn equal(
     subject: &mut Subject,
     (scene, paper_pixels): (String, f32),
 ) -> Result<EqualError, BenchError> {
-    subject.settings = Settings { lod: Lod::Paper, pixels: paper_pixels, clip: Clip::Paper, ..Settings::default() };
+    subject.settings = Settings::from(Tessellation {
+        lod: Lod::Paper,
+        pixels: paper_pixels,
+        clip: Clip::Paper,
+        ..Tessellation::default()
+    });
     let paper_px = deviation(engine, subject)?;
     let paper = Versus::measure(engine, peer, subject, scale.effort)?;
-    subject.settings = Settings {
+    subject.settings = Settings::from(Tessellation {
         lod: Lod::Error,
         partitioning: Partitioning::Integer,
         clip: Clip::Frustum,
         cull_back_faces: true,
-        ..Settings::default()
-    };
+        ..Tessellation::default()
+    });
     let (tolerance, px) = largest_tolerance(engine, subject, paper_px)?;
     let ours = Versus::measure(engine, None, subject, scale.effort)?;
     let error = subject.settings;
-    subject.settings = Settings { lod: Lod::Uniform, factor: 1.0, ..error };
+    subject.settings = error.with(Tessellation { lod: Lod::Uniform, factor: 1.0, ..error.tessellation });
     let least = Versus::measure(engine, None, subject, scale.effort)?.ours.draw.median;
     subject.settings = error;
     Ok(EqualError {
@@ -136,16 +142,16 @@ fn equal(
 /// The largest tolerance whose largest error is no more than `most` px, with that error; the subject then has it. (Errors
 /// need not grow with every step of the tolerance: this is one that holds, not certainly the largest that does.)
 fn largest_tolerance(engine: &Engine, subject: &mut Subject, most: f64) -> Result<(f32, f64), GpuError> {
-    let (mut low, mut high) = TOLERANCE_RANGE.into_inner();
+    let (mut low, mut high) = (TOLERANCE_RANGE.least, TOLERANCE_RANGE.most);
     for _ in 0..TRIES {
-        subject.settings.tolerance = (low * high).sqrt();
+        subject.settings.tessellation.tolerance = (low * high).sqrt();
         if deviation(engine, subject)? <= most {
-            low = subject.settings.tolerance;
+            low = subject.settings.tessellation.tolerance;
         } else {
-            high = subject.settings.tolerance;
+            high = subject.settings.tessellation.tolerance;
         }
     }
-    subject.settings.tolerance = low;
+    subject.settings.tessellation.tolerance = low;
     Ok((low, deviation(engine, subject)?))
 }
 

@@ -23,7 +23,7 @@ pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Ve
     let subject = |columns| subjects::subject(engine, subjects::tori(columns, 1), scale.size, scale.arena_bytes);
     let mut base = subject(columns)?;
     let found = factors.take_for(engine, &mut base, triangles)?;
-    let greatest = base.settings.factor;
+    let greatest = base.settings.tessellation.factor;
     let mut all = Vec::new();
     let mut time = |name: &str, subject: &mut Subject| {
         let versus = Versus::measure(engine, peer, subject, scale.effort)?;

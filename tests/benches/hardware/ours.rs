@@ -8,7 +8,7 @@ use pnaen::gpu::layout::{CurveNet, Patch, Vertex};
 use pnaen::gpu::{DRAWING, GpuError, PassTime, Timing, read_buffer, take_times};
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
-use pnaen::tessellate::Clip;
+use pnaen::tessellate::{Clip, Tessellation};
 
 use super::numbers::Spread;
 use super::peer::{Frame, NetCorner};
@@ -99,7 +99,9 @@ impl Subject {
     fn again(&mut self, engine: &Engine, run: usize, timing: &mut Timing) -> Result<(), GpuError> {
         // No picture differs by this, but every parameter of the view does. Given factors know no view.
         let nudge = if run.is_multiple_of(2) { 0.0 } else { 1e-3 };
-        if self.scene.tessellator.given().is_some() || self.settings.used_lod() == pnaen::tessellate::Lod::Uniform {
+        if self.scene.tessellator.given().is_some()
+            || self.settings.tessellation.used_lod() == pnaen::tessellate::Lod::Uniform
+        {
             self.scene.tessellator.forget();
         }
         let camera = Camera { azimuth: self.camera.azimuth + nudge, ..self.camera };
@@ -144,7 +146,7 @@ impl Subject {
         let mut timing = Timing::on(&engine.gpu);
         let beside = self.camera.target + Vec3::splat(1e3 * self.scene.bounds.radius());
         let camera = Camera { target: beside, ..self.camera };
-        let settings = Settings { clip: Clip::Frustum, ..self.settings };
+        let settings = self.settings.with(Tessellation { clip: Clip::Frustum, ..self.settings.tessellation });
         let runs = effort.repeat(|_| {
             engine.draw(&mut self.scene, &self.target, &camera, &settings, &mut timing)?;
             engine.gpu.wait();

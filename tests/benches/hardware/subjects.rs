@@ -11,7 +11,7 @@ use pnaen::mesh::{Corner, Material, Mesh, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Target};
 use pnaen::settings::Settings;
-use pnaen::tessellate::{HullFactors, Lod, Partitioning};
+use pnaen::tessellate::{HullFactors, Lod, Partitioning, Tessellation};
 
 use super::ours::Subject;
 
@@ -98,15 +98,15 @@ impl Factors {
         let radius = subject.scene.bounds.radius();
         let middle = subject.camera.distance / radius;
         let lod = if matches!(self, Self::ByDistance(_)) { Lod::Distance } else { Lod::Uniform };
-        subject.settings = Settings {
+        subject.settings = Settings::from(Tessellation {
             lod,
             factor: greatest,
             partitioning: self.partitioning(),
             near: middle - 1.0,
             // One third beyond what is farthest: there, a quarter is left.
             far: middle + 1.0 + 2.0 / 3.0,
-            ..Settings::default()
-        };
+            ..Tessellation::default()
+        });
         let given = matches!(self, Self::Hashed(_)).then(|| hashed(subject.scene.tessellator.topology(), greatest));
         subject.scene.tessellator.give(given)?;
         subject.count(engine).map(|(_, triangles)| triangles)

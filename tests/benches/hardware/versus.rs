@@ -80,7 +80,7 @@ fn time_peer(engine: &Engine, peer: &Peer, subject: &mut Subject, effort: Effort
     let frame = subject.frame();
     let fronts_only = subject.fronts_only();
     let pipeline = |nets: Nets, rasterises: bool| {
-        let partitioning = match subject.settings.partitioning {
+        let partitioning = match subject.settings.tessellation.partitioning {
             Partitioning::FractionalOdd => Partitioning::FractionalOdd,
             _ => Partitioning::Integer,
         };

@@ -4,7 +4,7 @@ use base64::prelude::{BASE64_STANDARD, Engine};
 use std::path::PathBuf;
 
 use super::*;
-use crate::load::{LoadError, load, uri};
+use crate::load::{LoadError, load};
 use crate::progress::Cancelled;
 
 /// A triangle whose material wears an image.

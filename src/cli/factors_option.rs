@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use serde::Serialize;
 
 use super::{CliError, read_text};
@@ -11,13 +10,14 @@ use crate::factors_file::from_csv;
 use crate::measure::{Agreement, Disagreement, Order};
 use crate::mesh::{Mesh, Topology};
 use crate::names::shown_path;
-use crate::tessellate::{Convention, HullFactors, Partitioning};
+use crate::settings::Choice;
+use crate::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct GivenOption {
-    /// Tessellate with the factors of a file in place of LOD's (- for standard input): CSV with the header
-    /// patch,e0,e1,e2,inside and a line a triangle, as the factors command writes it, or from another engine. Says on standard
-    /// error on which edges the sides' factors differ, and under which convention they don't
+pub struct FactorsOption {
+    /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
+    /// patch,e0,e1,e2,inside and a line for each triangle, as the factors command or another engine writes it. Standard error
+    /// tells on which edges the factors of the two sides differ, and under which convention they don't
     #[arg(
         long = "factors",
         value_name = "CSV",
@@ -38,7 +38,7 @@ const SAID: usize = 10;
 /// Edges that stats list.
 const LISTED: usize = 10_000;
 
-impl GivenOption {
+impl FactorsOption {
     /// Reads the file, if there is one, and says what it found.
     ///
     /// # Errors
@@ -47,9 +47,9 @@ impl GivenOption {
         &self,
         mesh: &Mesh,
         topology: &Topology,
-        convention: Convention,
-        partitioning: Partitioning,
+        tessellation: &Tessellation,
     ) -> Result<Option<Given>, CliError> {
+        let Tessellation { convention, partitioning, .. } = *tessellation;
         let Some(path) = &self.given else { return Ok(None) };
         let text = read_text(path)?;
         let factors = from_csv(&text, topology, mesh.triangles.len()).map_err(|error| CliError::Line {
@@ -106,7 +106,7 @@ fn end_points(topology: &Topology, edge: u32) -> [[f32; 3]; 2] {
 /// Which convention makes the file consistent.
 fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
     let named = |order: &Order| order.convention().filter(|found| found.is_consistent() && *found != convention);
-    let names: Vec<_> = agreement.consistent().filter_map(named).map(name).collect();
+    let names: Vec<_> = agreement.consistent().filter_map(named).map(Choice::name).collect();
     if agreement.edges.is_empty() {
         let others = names.join(" and ");
         return (!names.is_empty())
@@ -122,7 +122,7 @@ fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
     if let Some(order) = agreement.consistent().next() {
         let edges = order.sides.map(|side| format!("({side}, {})", (side + 1) % 3)).join(", ");
         let like =
-            order.convention().map_or(String::new(), |convention| format!(" as {} writes them", name(convention)));
+            order.convention().map_or(String::new(), |convention| format!(" as {} writes them", convention.name()));
         return Some(format!(
             "the file is consistent if e0, e1, e2 are for edges {edges}{like}: no order of weights fits that, so exchange \
              two factors where they are written"
@@ -133,7 +133,7 @@ fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
     let differ = if order.different == 1 { "edge that differs" } else { "edges that differ" };
     Some(format!(
         "no convention makes the file consistent; {} comes nearest, with {} {differ}",
-        name(nearest),
+        nearest.name(),
         order.different
     ))
 }
@@ -143,21 +143,16 @@ fn named_or_own(order: &Order) -> Option<Convention> {
     order.convention().filter(|convention| convention.is_consistent())
 }
 
-/// As one writes it after `--convention`.
-fn name(convention: Convention) -> String {
-    convention.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned())
-}
-
 /// What was found, for programs.
 #[derive(Debug, Serialize)]
 pub struct FactorsFile {
     path: String,
-    convention: String,
+    convention: &'static str,
     edges_compared: u64,
     edges_different: u64,
     patches_culled: u64,
     /// Conventions under which no edge differs.
-    consistent_as: Vec<String>,
+    consistent_as: Vec<&'static str>,
     orders: Vec<OrderStats>,
     /// The largest differences first, at most [`LISTED`].
     edges: Vec<EdgeStats>,
@@ -169,7 +164,7 @@ struct OrderStats {
     /// Side k runs from corner k to corner k + 1.
     sides: [u32; 3],
     /// The first convention, or mistake, that writes factors so.
-    written_by: Option<String>,
+    written_by: Option<&'static str>,
     edges_different: u64,
 }
 
@@ -198,7 +193,7 @@ impl FactorsFile {
     fn new(path: &Path, topology: &Topology, agreement: &Agreement, convention: Convention) -> Self {
         let order = |order: &Order| OrderStats {
             sides: order.sides,
-            written_by: order.convention().map(name),
+            written_by: order.convention().map(Choice::name),
             edges_different: order.different,
         };
         let number = |factor: f32| if factor.is_finite() { Number::Finite(factor) } else { Number::Infinite("inf") };
@@ -209,11 +204,11 @@ impl FactorsFile {
         };
         Self {
             path: shown_path(path),
-            convention: name(convention),
+            convention: convention.name(),
             edges_compared: agreement.edges_compared,
             edges_different: agreement.edges.len() as u64,
             patches_culled: agreement.patches_culled,
-            consistent_as: agreement.consistent().filter_map(named_or_own).map(name).collect(),
+            consistent_as: agreement.consistent().filter_map(named_or_own).map(Choice::name).collect(),
             orders: agreement.orders.iter().map(order).collect(),
             edges: agreement.edges.iter().take(LISTED).map(edge).collect(),
         }

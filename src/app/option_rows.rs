@@ -1,0 +1,75 @@
+//! Rows of the settings panel, made from the declarations of options.
+
+use super::widgets::{chooser, fixed};
+use crate::settings::{Declaration, Range, Settings, Value};
+
+/// A row with which an option is changed; greyed out where it has no effect. `key` is the key that changes it too.
+pub fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
+    option_row_with(ui, option, settings, &option_hover(option, key));
+}
+
+/// The same with another hover text.
+pub fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, hover: &str) {
+    match (option.get(settings), option.range()) {
+        (Value::Number(number), Some(range)) => number_row(ui, option, range, number, settings, hover),
+        (Value::Name(name), _) => choice_row(ui, option, Some(name), settings, hover),
+        (Value::Unset, None) => choice_row(ui, option, None, settings, hover),
+        // Other kinds have rows of their own.
+        _ => {}
+    }
+}
+
+/// What an option sets, the key that changes it too, and its name on the command line.
+pub fn option_hover(option: &Declaration, key: &str) -> String {
+    let name = format!("--{}", option.name);
+    with_note(option.text, &if key.is_empty() { name } else { format!("{key}; {name}") })
+}
+
+/// A text with a note in parentheses at its end, if there is one.
+pub fn with_note(text: &str, note: &str) -> String {
+    if note.is_empty() { text.to_owned() } else { format!("{} ({note}).", text.trim_end_matches('.')) }
+}
+
+fn number_row(
+    ui: &mut egui::Ui,
+    option: &Declaration,
+    range: &Range,
+    mut number: f32,
+    settings: &mut Settings,
+    hover: &str,
+) {
+    let unit = if range.unit.is_empty() { String::new() } else { format!(" {}", range.unit) };
+    let label = ui.label(option.label).on_hover_text(hover);
+    let slider = egui::Slider::new(&mut number, range.least..=range.most)
+        .max_decimals(range.decimals)
+        .logarithmic(range.is_logarithmic)
+        .suffix(unit)
+        .update_while_editing(false);
+    let idle = (option.no_effect)(settings);
+    let response = ui.add_enabled(idle.is_none(), slider).labelled_by(label.id).on_hover_text(hover);
+    if response.on_disabled_hover_text(idle.unwrap_or_default()).changed() {
+        option.set(settings, Value::Number(number));
+    }
+    ui.end_row();
+}
+
+fn choice_row(
+    ui: &mut egui::Ui,
+    option: &Declaration,
+    mut name: Option<&'static str>,
+    settings: &mut Settings,
+    hover: &str,
+) {
+    let unset = option.unset.iter().map(|value| (None, value.label, value.text));
+    let values = option.kind.descriptions();
+    let all: Vec<_> = unset.chain(values.iter().map(|value| (Some(value.name), value.label, value.text))).collect();
+    if let Some(why) = (option.no_effect)(settings) {
+        let shown = all.iter().find(|(value, ..)| *value == name).map_or("", |(_, label, _)| label);
+        return fixed(ui, option.label, shown, why);
+    }
+    let before = name;
+    chooser(ui, option.label, hover, &mut name, &all);
+    if name != before {
+        option.set(settings, name.map_or(Value::Unset, Value::Name));
+    }
+}

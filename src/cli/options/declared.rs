@@ -1,0 +1,228 @@
+//! Command line options made from the declarations of settings.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser, ValueParser};
+use clap::error::ErrorKind;
+use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
+
+use crate::settings::{Choice, Declaration, Description, Kind, Settings, Value, descriptions, options};
+use crate::tessellate::{Displacement, Tessellation};
+
+/// What is tessellated how.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TessellationOptions {
+    pub tessellation: Tessellation,
+    /// Given on the command line; without it, displacement depends on whether there are heights.
+    pub displacement: Option<Displacement>,
+}
+
+/// How a picture is drawn: settings with the usual tessellation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PictureOptions(pub Settings);
+
+const WITHOUT_DISPLACEMENT: &str =
+    "By default on with --height, else off. Without --height, the materials' images are the height map";
+
+impl clap::Args for TessellationOptions {
+    fn augment_args(command: Command) -> Command {
+        let own = |declaration: &'static Declaration| match declaration.name == options::DISPLACEMENT.name {
+            true => arg(declaration).help(format!("{} {WITHOUT_DISPLACEMENT}", declaration.text)),
+            false => with_default(arg(declaration), declaration),
+        };
+        command.args(options::TESSELLATION.map(own))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for TessellationOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut own = Self::default();
+        own.update_from_arg_matches(matches)?;
+        Ok(own)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        let mut settings = Settings::from(self.tessellation);
+        options::TESSELLATION.iter().try_for_each(|declaration| take(declaration, matches, &mut settings))?;
+        self.tessellation = settings.tessellation;
+        let is_given = matches.contains_id(options::DISPLACEMENT.name);
+        self.displacement = if is_given { Some(self.tessellation.displacement) } else { self.displacement };
+        Ok(())
+    }
+}
+
+impl clap::Args for PictureOptions {
+    fn augment_args(command: Command) -> Command {
+        let own = |declaration: &'static Declaration| with_default(arg(declaration), declaration);
+        let needs_split = |arg: Arg| arg.requires(options::SPLIT.name);
+        command.args(options::PICTURE.map(own)).mut_arg(options::SPLIT_SURFACE.name, needs_split)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for PictureOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, Error> {
+        let mut own = Self::default();
+        own.update_from_arg_matches(matches)?;
+        Ok(own)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), Error> {
+        options::PICTURE.iter().try_for_each(|declaration| take(declaration, matches, &mut self.0))
+    }
+}
+
+/// An option of the command line. Help texts have no period at their end.
+fn arg(declaration: &'static Declaration) -> Arg {
+    let arg = Arg::new(declaration.name).long(declaration.name).help(help(declaration));
+    if matches!(declaration.kind, Kind::Switch) {
+        return arg.action(ArgAction::SetTrue);
+    }
+    let takes_negative = declaration.range().is_some_and(|range| range.least < 0.0);
+    let arg =
+        arg.value_name(declaration.placeholder).allow_hyphen_values(takes_negative).value_parser(parser(declaration));
+    if matches!(declaration.kind, Kind::Several(_)) { arg.action(ArgAction::Append).value_delimiter(',') } else { arg }
+}
+
+fn with_default(arg: Arg, declaration: &Declaration) -> Arg {
+    match (&declaration.kind, declaration.default()) {
+        (Kind::Several(_) | Kind::Switch, _) | (_, Value::Unset) => arg,
+        (_, default) => arg.default_value(default.to_string()),
+    }
+}
+
+/// The text, and the numbers that the option takes.
+fn help(declaration: &Declaration) -> String {
+    let text = declaration.text.trim_end_matches('.');
+    declaration.range().map_or_else(|| text.to_owned(), |range| format!("{text} [{range}]"))
+}
+
+fn parser(declaration: &'static Declaration) -> ValueParser {
+    match &declaration.kind {
+        Kind::Choice(all) | Kind::Several(all) => {
+            let value = |name: String| declaration.kind.named(&name).map_or(Value::Unset, Value::Name);
+            ValueParser::new(PossibleValuesParser::new(all().into_iter().map(possible)).map(value))
+        }
+        kind => ValueParser::new(move |text: &str| kind.parse(text)),
+    }
+}
+
+fn possible(Description { name, text, .. }: Description) -> PossibleValue {
+    let value = PossibleValue::new(name).help(text.trim_end_matches('.'));
+    if name.contains('-') { value.alias(name.replace('-', "_")) } else { value }
+}
+
+/// Puts what was given on the command line into settings.
+fn take(declaration: &Declaration, matches: &ArgMatches, settings: &mut Settings) -> Result<(), Error> {
+    let name = declaration.name;
+    let given = || matches.get_many::<Value>(name).into_iter().flatten().cloned();
+    let value = match declaration.kind {
+        Kind::Switch => Some(Value::Switch(matches.get_flag(name))),
+        Kind::Several(_) => Some(Value::Names(given().filter_map(|value| name_of(&value)).collect())),
+        _ => given().last(),
+    };
+    match value {
+        Some(value) if !declaration.set(settings, value.clone()) => {
+            let message = format!("--{name} can't be {value}. {}\n", declaration.text);
+            Err(Error::raw(ErrorKind::ValueValidation, message))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn name_of(value: &Value) -> Option<&'static str> {
+    if let Value::Name(name) = value { Some(name) } else { None }
+}
+
+/// Reads one of several named values.
+pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    let unknown = "no such value";
+    PossibleValuesParser::new(descriptions::<T>().into_iter().map(possible))
+        .try_map(move |name| T::named(&name).ok_or(unknown))
+}
+
+/// Reads a number of an option's range.
+pub fn number_of(declaration: &'static Declaration) -> impl TypedValueParser<Value = f32> {
+    move |text: &str| match declaration.kind.parse(text)? {
+        Value::Number(number) => Ok(number),
+        _ => Err(String::from("expected a number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::{CommandFactory, Parser};
+
+    use super::*;
+    use crate::cli::Cli;
+    use crate::cli::Command as Run;
+
+    #[test]
+    fn the_help_of_render_has_every_option_with_its_text_values_range_and_default() {
+        let mut cli = Cli::command();
+        let render = cli.find_subcommand_mut("render").expect("it is a command");
+        let help = render.render_long_help().to_string();
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let help = words(&help);
+        for option in options::all() {
+            let name = option.name;
+            assert!(
+                help.contains(&words(&format!("--{name} {}", if option.placeholder.is_empty() { "" } else { "<" })))
+            );
+            assert!(help.contains(option.text.trim_end_matches('.')), "{name}");
+            assert!(option.range().is_none_or(|range| help.contains(&format!("[{range}]"))), "{name}");
+            for Description { name, text, .. } in option.kind.descriptions() {
+                assert!(help.contains(&format!("- {name}: {}", text.trim_end_matches('.'))), "{name}");
+            }
+            let default = option.default();
+            let has_default = !matches!(default, Value::Unset | Value::Switch(_) | Value::Names(_));
+            if has_default && name != options::DISPLACEMENT.name {
+                assert!(help.contains(&format!("[default: {default}]")), "{name}");
+            }
+        }
+    }
+
+    fn read(arguments: &[String]) -> Result<Settings, Error> {
+        let usual = ["pnaen", "render", "a.glb", "-o", "a.png"].map(String::from);
+        match Cli::try_parse_from(usual.iter().chain(arguments))?.command {
+            Some(Run::Render(args)) => Ok(args.picture.0.with(args.surface.tessellation.tessellation)),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn every_option_is_read_from_the_command_line() {
+        assert_eq!(read(&[]).expect("nothing is given"), Settings::default());
+        for option in options::all() {
+            let value = match &option.kind {
+                Kind::Choice(all) => all().last().map_or(Value::Unset, |value| Value::Name(value.name)),
+                Kind::Several(all) => Value::Names(all()[..2].iter().map(|value| value.name).collect()),
+                Kind::Number(range) => Value::Number(range.least),
+                Kind::Pair(range) => Value::Pair([range.least, range.most]),
+                Kind::Switch => Value::Switch(true),
+                Kind::Color => Value::Color([1, 2, 3]),
+            };
+            let mut expected = Settings::default();
+            let mut arguments = Vec::new();
+            if option.name == options::SPLIT_SURFACE.name {
+                assert!(read(&[format!("--{}={value}", option.name)]).is_err(), "it needs a split");
+                arguments.push("--split=0.5".to_owned());
+                expected.split = Some(0.5);
+            }
+            arguments.push(match value {
+                Value::Switch(_) => format!("--{}", option.name),
+                _ => format!("--{}={value}", option.name),
+            });
+            assert!(option.set(&mut expected, value));
+            assert_eq!(read(&arguments).expect("a value of the option"), expected, "{arguments:?}");
+            assert!(read(&[format!("--{}=odd", option.name)]).is_err(), "{}", option.name);
+        }
+        let clash = read(&["--overlay=factors,barycentric".to_owned()]).expect_err("both colour the surface");
+        assert_eq!((clash.kind(), clash.exit_code()), (ErrorKind::ValueValidation, 2));
+    }
+}

@@ -1,0 +1,188 @@
+//! What a picture depends on besides the mesh and the camera. The window edits it, and commands parse into it.
+//!
+//! [`options`] declares each option once. The command line, saved settings, "Copy as command", random settings in tests and
+//! the window's rows are made from these declarations.
+
+mod choice;
+pub mod options;
+mod overlays;
+#[cfg(test)]
+pub mod random;
+mod value;
+
+use glam::{Mat4, Vec2};
+
+use crate::mesh::Mesh;
+use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, reach};
+
+pub use choice::{Choice, Description, descriptions};
+pub use overlays::{Colors, Control, Overlay, Overlays};
+pub use value::{Access, Declaration, Kind, Range, Value};
+
+/// Memory for a tessellation's output, in bytes.
+pub const ARENA_BYTES: u64 = 256 << 20;
+
+/// What is shown and how, apart from mesh and camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    pub tessellation: Tessellation,
+    pub overlays: Overlays,
+    /// The unit of the distances that the deviation overlay colours.
+    pub deviation_in: DeviationUnit,
+    /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
+    pub split: Option<f32>,
+    /// The surface left of the split, with all other settings the same; none for the untessellated mesh.
+    pub split_surface: Option<Surface>,
+    /// sRGB colour behind the mesh.
+    pub background: [u8; 3],
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tessellation: Tessellation::default(),
+            overlays: Overlays::default(),
+            deviation_in: DeviationUnit::Units,
+            split: None,
+            split_surface: None,
+            background: [0x2b, 0x2e, 0x33],
+        }
+    }
+}
+
+impl From<Tessellation> for Settings {
+    fn from(tessellation: Tessellation) -> Self {
+        Self { tessellation, ..Self::default() }
+    }
+}
+
+/// Of a picture that is split; one that isn't is all right half.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SplitSide {
+    Left,
+    Right,
+}
+
+impl SplitSide {
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+}
+
+/// The unit of distances on the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DeviationUnit {
+    /// Object units, which don't depend on the view.
+    #[default]
+    Units,
+    /// Px that the distance takes across the view, at its depth.
+    Px,
+}
+
+impl Choice for DeviationUnit {
+    const ALL: &'static [Self] = &[Self::Units, Self::Px];
+
+    fn description(self) -> Description {
+        match self {
+            Self::Units => Description::new("units", "Object units", "Object units, which don't depend on the view."),
+            Self::Px => {
+                Description::new("px", "Px", "The length of the distance on screen, in px, if it lay across the view.")
+            }
+        }
+    }
+}
+
+impl Settings {
+    /// What the window opens with: no more than the picture needs, and its triangles.
+    pub fn opening() -> Self {
+        Self {
+            tessellation: Tessellation {
+                lod: Lod::Error,
+                partitioning: Partitioning::Integer,
+                clip: Clip::Frustum,
+                cull_back_faces: true,
+                ..Tessellation::default()
+            },
+            overlays: Overlays { wireframe: true, ..Overlays::default() },
+            ..Self::default()
+        }
+    }
+
+    /// These settings with another tessellation.
+    pub fn with(&self, tessellation: Tessellation) -> Self {
+        Self { tessellation, ..*self }
+    }
+
+    /// Changes how shared edges are computed. As published, LOD by edge length and clipping switch to the white paper's
+    /// forms, and otherwise to those that also hold near the eye.
+    pub fn set_edges(&mut self, edges: Edges) {
+        let own = &mut self.tessellation;
+        if edges == own.edges {
+            return;
+        }
+        own.edges = edges;
+        let published = edges == Edges::AsPublished;
+        own.lod = match own.lod {
+            Lod::EdgeLength if published => Lod::Paper,
+            Lod::Paper if !published => Lod::EdgeLength,
+            other => other,
+        };
+        own.clip = match own.clip {
+            Clip::Frustum if published => Clip::Paper,
+            Clip::Paper if !published => Clip::Frustum,
+            other => other,
+        };
+    }
+
+    /// The settings of one half of the picture; none where that half doesn't exist or shows the untessellated mesh.
+    pub fn half(&self, half: SplitSide) -> Option<Self> {
+        match half {
+            SplitSide::Left => {
+                let surface = self.split_surface.filter(|_| self.split.is_some())?;
+                Some(self.with(Tessellation { surface, ..self.tessellation }))
+            }
+            SplitSide::Right => Some(*self),
+        }
+    }
+
+    /// How far heights move any point of a mesh at most, in object units.
+    pub fn reach(&self, mesh: &Mesh) -> f32 {
+        reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
+    }
+
+    /// What the tessellation depends on, seen from `view`.
+    pub fn inputs(&self, view: LodView) -> Inputs {
+        Inputs::new(&self.tessellation, view)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subtriangulation_is_uniform_and_forgets_no_lod() {
+        let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
+        for partitioning in Partitioning::ALL {
+            for &lod in Lod::ALL {
+                let tessellation = Tessellation { partitioning, lod, ..Tessellation::default() };
+                let used = if partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { lod };
+                let inputs = Settings::from(tessellation).inputs(view).tessellation;
+                assert_eq!((tessellation.used_lod(), inputs.lod), (used, used), "{partitioning:?} {lod:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn as_published_takes_lod_and_clipping_along() {
+        let adaptive = Tessellation { lod: Lod::EdgeLength, clip: Clip::Frustum, ..Tessellation::default() };
+        let mut settings = Settings::from(adaptive);
+        settings.set_edges(Edges::AsPublished);
+        assert_eq!((settings.tessellation.lod, settings.tessellation.clip), (Lod::Paper, Clip::Paper));
+        settings.set_edges(Edges::PerEdge);
+        assert_eq!(settings, Settings::from(adaptive));
+        for lod in [Lod::Uniform, Lod::Error, Lod::Distance] {
+            let mut other = Settings::from(Tessellation { lod, ..Tessellation::default() });
+            other.set_edges(Edges::AsPublished);
+            assert_eq!((other.tessellation.lod, other.tessellation.clip), (lod, Clip::Off));
+        }
+    }
+}

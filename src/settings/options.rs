@@ -1,0 +1,351 @@
+//! Every option of [`Settings`], declared once.
+//!
+//! To add one: put a field into [`Settings`] or [`crate::tessellate::Tessellation`], declare it here, and list it in
+//! [`TESSELLATION`] or [`PICTURE`].
+
+use super::value::Field;
+use super::{
+    Access, Colors, Declaration, Description, DeviationUnit, Kind, Overlay, Range, Settings, Value, descriptions,
+};
+use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
+
+/// What is tessellated how: options of every command that tessellates.
+pub static TESSELLATION: [&Declaration; 16] = [
+    &SURFACE,
+    &ALPHA,
+    &NORMALS,
+    &EDGES,
+    &FACTOR,
+    &PARTITIONING,
+    &LOD,
+    &PIXELS,
+    &TOLERANCE,
+    &DISTANCES,
+    &CLIP,
+    &CULL_BACK_FACES,
+    &CONVENTION,
+    &DISPLACEMENT,
+    &HEIGHT_SCALE,
+    &MIDLEVEL,
+];
+
+/// How the picture is drawn: options of commands that draw one.
+pub static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+
+/// Tessellation factors, as Direct3D 11 has them.
+pub const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
+/// Tolerances of LOD by error, in px.
+pub const TOLERANCE_RANGE: Range = Range::new(0.01, 100.0, "px").logarithmic();
+/// Distances of LOD by distance, in bounding radii.
+pub const DISTANCE_RANGE: Range = Range::new(0.1, 1000.0, "r");
+
+/// All options.
+pub fn all() -> impl Iterator<Item = &'static Declaration> {
+    TESSELLATION.into_iter().chain(PICTURE)
+}
+
+/// A field of settings, by its path.
+macro_rules! field {
+    ($($path:ident).+) => {
+        Access {
+            get: |settings| settings.$($path).+.value(),
+            set: |settings, value| settings.$($path).+.put(value),
+        }
+    };
+}
+
+const fn always_has_effect(_: &Settings) -> Option<&'static str> {
+    None
+}
+
+pub static SURFACE: Declaration = Declaration {
+    name: "surface",
+    label: "Surface",
+    placeholder: "SURFACE",
+    text: "The surface that each triangle becomes.",
+    kind: Kind::Choice(descriptions::<Surface>),
+    unset: None,
+    saved_as: &["surface"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.surface),
+};
+
+pub static ALPHA: Declaration = Declaration {
+    name: "alpha",
+    label: "Phong strength",
+    placeholder: "A",
+    text: "Strength of Phong tessellation: 0 is flat, and its authors use 0.75 (Boubekeur and Alexa 2008).",
+    kind: Kind::Number(Range::new(0.0, 1.0, "")),
+    unset: None,
+    saved_as: &["alpha"],
+    no_effect: |settings| {
+        let left = settings.split_surface.filter(|_| settings.split.is_some());
+        let is_phong = settings.tessellation.surface.is_phong() || left.is_some_and(Surface::is_phong);
+        (!is_phong).then_some("Only Phong tessellation has a strength.")
+    },
+    access: field!(tessellation.alpha),
+};
+
+pub static NORMALS: Declaration = Declaration {
+    name: "normals",
+    label: "Shading",
+    placeholder: "NORMALS",
+    text: "The normals that the surface is shaded with.",
+    kind: Kind::Choice(descriptions::<Normals>),
+    unset: None,
+    saved_as: &["normals"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.normals),
+};
+
+pub static EDGES: Declaration = Declaration {
+    name: "edges",
+    label: "Shared edges",
+    placeholder: "EDGES",
+    text: "Shared edges are computed once (watertight), or by each patch (as published).",
+    kind: Kind::Choice(descriptions::<Edges>),
+    unset: None,
+    saved_as: &["edges"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.edges),
+};
+
+pub static FACTOR: Declaration = Declaration {
+    name: "factor",
+    label: "Factor",
+    placeholder: "F",
+    text: "Tessellation factor: the number of segments that each edge is cut into. Under LOD by distance, the largest factor.",
+    kind: Kind::Number(FACTOR_RANGE),
+    unset: None,
+    saved_as: &["factor"],
+    no_effect: |settings| {
+        let is_used = matches!(settings.tessellation.used_lod(), Lod::Uniform | Lod::Distance);
+        (!is_used).then_some("Adaptive LOD computes a factor for every edge.")
+    },
+    access: field!(tessellation.factor),
+};
+
+pub static PARTITIONING: Declaration = Declaration {
+    name: "partitioning",
+    label: "Partitioning",
+    placeholder: "P",
+    text: "How a factor between two whole numbers becomes segments.",
+    kind: Kind::Choice(descriptions::<Partitioning>),
+    unset: None,
+    saved_as: &["partitioning"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.partitioning),
+};
+
+pub static LOD: Declaration = Declaration {
+    name: "lod",
+    label: "LOD",
+    placeholder: "LOD",
+    text: "Level of detail: how the factors of edges are computed.",
+    kind: Kind::Choice(descriptions::<Lod>),
+    unset: None,
+    saved_as: &["lod"],
+    no_effect: |settings| {
+        let is_fixed = settings.tessellation.partitioning == Partitioning::Subtriangulation;
+        is_fixed.then_some(
+            "Subtriangulation has the same number of segments everywhere. Another partitioning brings back the LOD that was \
+             chosen.",
+        )
+    },
+    access: field!(tessellation.lod),
+};
+
+pub static PIXELS: Declaration = Declaration {
+    name: "pixels",
+    label: "Segment length",
+    placeholder: "P",
+    text: "Length of a segment on screen under LOD by edge length and the white paper's LOD.",
+    kind: Kind::Number(Range::new(1.0, 256.0, "px").decimals(1).logarithmic()),
+    unset: None,
+    saved_as: &["pixels"],
+    no_effect: |settings| {
+        let is_used = matches!(settings.tessellation.used_lod(), Lod::Paper | Lod::EdgeLength);
+        (!is_used).then_some("Only LOD by edge length and the white paper's LOD have a segment length.")
+    },
+    access: field!(tessellation.pixels),
+};
+
+pub static TOLERANCE: Declaration = Declaration {
+    name: "tolerance",
+    label: "Tolerance",
+    placeholder: "PX",
+    text: "Largest distance on screen between the triangles and the surface under LOD by error.",
+    kind: Kind::Number(TOLERANCE_RANGE),
+    unset: None,
+    saved_as: &["tolerance"],
+    no_effect: |settings| {
+        (settings.tessellation.used_lod() != Lod::Error).then_some("Only LOD by error has a tolerance.")
+    },
+    access: field!(tessellation.tolerance),
+};
+
+pub static DISTANCES: Declaration = Declaration {
+    name: "distances",
+    label: "Near, far",
+    placeholder: "NEAR,FAR",
+    text: "Distances to the eye under LOD by distance, in bounding radii of the mesh: the factor is --factor up to NEAR, 1 \
+           from FAR on, and linear in between. FAR is larger than NEAR.",
+    kind: Kind::Pair(DISTANCE_RANGE),
+    unset: None,
+    saved_as: &["near", "far"],
+    no_effect: |settings| {
+        (settings.tessellation.used_lod() != Lod::Distance).then_some("Only LOD by distance has distances.")
+    },
+    access: Access {
+        get: |settings| Value::Pair([settings.tessellation.near, settings.tessellation.far]),
+        set: |settings, value| {
+            let Value::Pair([near, far]) = value else { return false };
+            settings.tessellation = Tessellation { near, far, ..settings.tessellation };
+            true
+        },
+    },
+};
+
+pub static CLIP: Declaration = Declaration {
+    name: "clip",
+    label: "Clipping",
+    placeholder: "CLIP",
+    text: "Which patches outside the view are left out.",
+    kind: Kind::Choice(descriptions::<Clip>),
+    unset: None,
+    saved_as: &["clip"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.clip),
+};
+
+pub static CULL_BACK_FACES: Declaration = Declaration {
+    name: "cull-back-faces",
+    label: "Cull back faces",
+    placeholder: "",
+    text: "Leaves out patches that show only their backs, if the mesh is closed, wound outward and single-sided.",
+    kind: Kind::Switch,
+    unset: None,
+    saved_as: &["cull_back_faces"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.cull_back_faces),
+};
+
+pub static CONVENTION: Declaration = Declaration {
+    name: "convention",
+    label: "Convention",
+    placeholder: "NAME",
+    text: "Which edges factors 0, 1 and 2 belong to, and which corners the weights u, v and w: hull and domain shader must \
+           agree on it.",
+    kind: Kind::Choice(descriptions::<Convention>),
+    unset: None,
+    saved_as: &["convention"],
+    no_effect: always_has_effect,
+    access: field!(tessellation.convention),
+};
+
+/// It isn't saved: it depends on whether the open mesh has heights.
+pub static DISPLACEMENT: Declaration = Declaration {
+    name: "displacement",
+    label: "Displace",
+    placeholder: "DISPLACEMENT",
+    text: "Whether heights displace the surface, and what patches agree on where they meet.",
+    kind: Kind::Choice(descriptions::<Displacement>),
+    unset: None,
+    saved_as: &[],
+    no_effect: always_has_effect,
+    access: field!(tessellation.displacement),
+};
+
+fn not_displaced(settings: &Settings) -> Option<&'static str> {
+    (settings.tessellation.displacement == Displacement::Off).then_some("The surface isn't displaced.")
+}
+
+pub static HEIGHT_SCALE: Declaration = Declaration {
+    name: "height-scale",
+    label: "Scale",
+    placeholder: "S",
+    text: "Distance between black and white of the height map, in bounding radii of the mesh at rest.",
+    kind: Kind::Number(Range::new(-1.0, 1.0, "r").decimals(3)),
+    unset: None,
+    saved_as: &["height_scale"],
+    no_effect: not_displaced,
+    access: field!(tessellation.height_scale),
+};
+
+pub static MIDLEVEL: Declaration = Declaration {
+    name: "midlevel",
+    label: "Midlevel",
+    placeholder: "H",
+    text: "The height that isn't moved, from 0 (black) to 1 (white).",
+    kind: Kind::Number(Range::new(0.0, 1.0, "")),
+    unset: None,
+    saved_as: &["midlevel"],
+    no_effect: not_displaced,
+    access: field!(tessellation.midlevel),
+};
+
+pub static OVERLAY: Declaration = Declaration {
+    name: "overlay",
+    label: "Overlays",
+    placeholder: "OVERLAY,..",
+    text: "What is drawn over the surface. At most one of barycentric, factors, triangle-size, low-factors and deviation, \
+           which colour all of it.",
+    kind: Kind::Several(descriptions::<Overlay>),
+    unset: None,
+    saved_as: &["overlays"],
+    no_effect: always_has_effect,
+    access: field!(overlays),
+};
+
+pub static DEVIATION_IN: Declaration = Declaration {
+    name: "deviation-in",
+    label: "Distances in",
+    placeholder: "UNIT",
+    text: "The unit of the distances that the deviation overlay colours.",
+    kind: Kind::Choice(descriptions::<DeviationUnit>),
+    unset: None,
+    saved_as: &["deviation_in"],
+    no_effect: |settings| {
+        (settings.overlays.colors != Colors::Deviation).then_some("Only the deviation overlay colours distances.")
+    },
+    access: field!(deviation_in),
+};
+
+pub static SPLIT: Declaration = Declaration {
+    name: "split",
+    label: "Divider",
+    placeholder: "FRACTION",
+    text: "Splits the picture at this fraction of its width: on the left, the untessellated mesh or another surface.",
+    kind: Kind::Number(Range::new(0.0, 1.0, "")),
+    unset: Some(Description::new("none", "None", "The picture isn't split.")),
+    saved_as: &["split"],
+    no_effect: always_has_effect,
+    access: field!(split),
+};
+
+pub static SPLIT_SURFACE: Declaration = Declaration {
+    name: "split-surface",
+    label: "Left",
+    placeholder: "SURFACE",
+    text: "The surface left of the split; all other settings are the same, and so is the scale of the deviation overlay.",
+    kind: Kind::Choice(descriptions::<Surface>),
+    unset: Some(Description::new("none", "Untessellated", "The mesh itself, with no tessellation.")),
+    saved_as: &["split_surface"],
+    no_effect: |settings| settings.split.is_none().then_some("The view isn't split."),
+    access: field!(split_surface),
+};
+
+pub static BACKGROUND: Declaration = Declaration {
+    name: "background",
+    label: "Background",
+    placeholder: "RRGGBB",
+    text: "The sRGB colour behind the mesh.",
+    kind: Kind::Color,
+    unset: None,
+    saved_as: &["background"],
+    no_effect: always_has_effect,
+    access: field!(background),
+};
+
+#[cfg(test)]
+mod tests;
