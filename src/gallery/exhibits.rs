@@ -30,7 +30,7 @@ pub struct Tile {
     /// Where not everybody's is meant.
     pub factor: Option<f32>,
     /// Of the bounding diagonal.
-    pub rim: f32,
+    pub crease_band: f32,
 }
 
 impl Tile {
@@ -39,7 +39,7 @@ impl Tile {
         let value = value.to_possible_value();
         let name = value.as_ref().map_or_else(String::new, |value| value.get_name().to_owned());
         let about = value.as_ref().and_then(|value| value.get_help()).map(ToString::to_string);
-        Self { name, about: about.unwrap_or_default() + ".", settings, factor: None, rim: 0.0 }
+        Self { name, about: about.unwrap_or_default() + ".", settings, factor: None, crease_band: 0.0 }
     }
 
     fn named(self, name: &str, about: &str) -> Self {
@@ -71,18 +71,18 @@ fn surfaces() -> Exhibit {
 
 fn creases() -> Exhibit {
     let of = |surface| Tile::of(surface, Settings { surface, ..settings() });
-    let rim = Tile { rim: 0.02, ..of(Surface::Pn) };
+    let band = Tile { crease_band: 0.02, ..of(Surface::Pn) };
     Exhibit {
         name: "creases",
         title: "Creases",
         about: "What becomes of an edge whose sides have different normals: nothing, so that it tears; the mean of both sides' \
-                control points; the line that both tangent planes share; or a rim of small triangles with one normal on the \
+                control points; the line that both tangent planes share; or a band of small triangles with one normal on the \
                 crease, made before.",
         shape: Shape::Cylinder,
         overlays: Overlays { cracks: true, ..Overlays::default() },
         tiles: vec![
             of(Surface::Pn),
-            rim.named("pn --rim 0.02", "A rim along creases, for PN triangles (Vlachos et al. 2001)."),
+            band.named("pn --rim 0.02", "A crease band, for PN triangles (Vlachos et al. 2001)."),
             of(Surface::PnCrease),
             of(Surface::PnAen),
         ],
@@ -109,7 +109,7 @@ fn patterns() -> Exhibit {
         about: partitioning.about().to_owned(),
         settings: Settings { partitioning, ..settings() },
         factor: Some(5.4),
-        rim: 0.0,
+        crease_band: 0.0,
     };
     Exhibit {
         name: "patterns",

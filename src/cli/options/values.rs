@@ -7,7 +7,7 @@ use clap::builder::{OsStringValueParser, PossibleValue, PossibleValuesParser, Ty
 use glam::Vec3;
 
 use crate::load::Source;
-use crate::mesh::rim::WIDEST;
+use crate::mesh::crease_band::WIDEST;
 use crate::settings::{ALPHA_RANGE, DISTANCE_RANGE, FACTOR_RANGE, HEIGHT_RANGE, PIXELS_RANGE, TOLERANCE_RANGE};
 use crate::tessellate::Partitioning;
 
