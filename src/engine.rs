@@ -13,9 +13,9 @@ use crate::gpu::{
     AdapterChoice, ComputePipelines, Gpu, GpuError, PassTime, Recorder, Timing, read_buffer, read_buffers, take_times,
     vertices_of,
 };
-use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, rim_warnings, untextured_warning};
+use crate::load::{Budget, HeightSource, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning};
 use crate::measure::{AskedFactors, EmittedChunk, Visitor};
-use crate::mesh::{BuildError, Mesh, Moment, Rim, Topology, with_rim};
+use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Settings, SplitSide};
@@ -27,10 +27,10 @@ pub use measurements::{MeasurementResults, Measurements};
 #[derive(Clone, Debug)]
 pub struct Loaded {
     pub source: Source,
-    /// What was asked for; a rim as wide as there is.
+    /// The requested preparation, even where the crease band is narrower.
     pub preparation: Preparation,
-    pub rim: Rim,
-    /// As it was read: `mesh` itself unless that has a rim.
+    pub crease_band: CreaseBand,
+    /// The mesh as it was read: the same as `mesh` unless that has a crease band.
     pub read: Arc<Mesh>,
     pub mesh: Arc<Mesh>,
     /// What was left out or repaired, one sentence each.
@@ -52,14 +52,14 @@ impl Loaded {
     }
 }
 
-/// How a mesh is read, and what becomes of it after.
+/// How a mesh is read and prepared.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Preparation {
-    /// Within which part of the bounding diagonal points are welded.
+    /// The tolerance for welding points, relative to the bounding diagonal.
     pub weld: f32,
-    /// The width of a rim along its creases, a part of the diagonal too; 0 for none.
-    pub rim: f32,
-    /// What it can be displaced by.
+    /// The width of the crease band, relative to the bounding diagonal; 0 for none.
+    pub crease_band: f32,
+    /// The height images for displacement.
     pub heights: Option<HeightSource>,
     pub limits: Limits,
 }
@@ -78,14 +78,15 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let too_large = |what| move |error| unfinished(source, what, error);
     let mut topology =
         Topology::build_afforded(&read, preparation.weld, &budget, progress).map_err(too_large("its edges"))?;
-    let (mut cut, mut rim) = (None, Rim::default());
-    if preparation.rim > 0.0 {
-        let made = with_rim(&read, &topology, preparation.rim, &budget, progress).map_err(too_large("its rim"))?;
+    let (mut cut, mut crease_band) = (None, CreaseBand::default());
+    if preparation.crease_band > 0.0 {
+        let made = with_crease_band(&read, &topology, preparation.crease_band, &budget, progress)
+            .map_err(too_large("its crease band"))?;
         cut = Some(made.0);
-        (topology, rim) = (made.1, made.2);
-        warnings.extend(rim_warnings(&rim));
+        (topology, crease_band) = (made.1, made.2);
+        warnings.extend(crease_band_warnings(&crease_band));
         if read.rig.is_some() {
-            warnings.push("its animations are left out, as a rim hangs on nothing that they move.".to_owned());
+            warnings.push("its animations are left out, since a mesh with a crease band can't be animated.".to_owned());
         }
     }
     let mesh = cut.as_mut().unwrap_or(&mut read);
@@ -102,7 +103,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     Ok(Loaded {
         source: source.clone(),
         preparation: preparation.clone(),
-        rim,
+        crease_band,
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
         warnings,

@@ -1,5 +1,5 @@
-//! Files on disk: how large a file may be, reading one whole, writing one so that a failure loses nothing, and what the
-//! system says of files, in words that tell what to do.
+//! Reads and writes files: limits on their size, reading a file whole, replacing a file so that a failure loses
+//! nothing, and messages about file system errors that say what to do.
 
 use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind, Read, Seek, Write};
@@ -9,12 +9,13 @@ use std::time::SystemTime;
 use crate::names::shown_path;
 use crate::progress::{Cancelled, Progress};
 
-/// How much a load may read and take.
+/// Limits on what a load may read and how much memory it may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The largest file that is read, in bytes: the model's, and each file that it names.
+    /// The size of the largest file that is read, in bytes. It applies to the model's file and to each file that it
+    /// names.
     pub file: u64,
-    /// Memory that a load may take, in bytes, beyond four times the size of all its files.
+    /// How much memory a load may take, in bytes, beyond four times the size of all its files.
     pub memory: u64,
 }
 
@@ -29,55 +30,56 @@ impl Default for Limits {
 pub enum FileError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{} is not a file", shown_path(path))]
-    NoFile { path: PathBuf },
+    #[error("{} is not a file; choose a file", shown_path(path))]
+    NotAFile { path: PathBuf },
     #[error("{} changed while it was read; open it again once it is whole", shown_path(path))]
     Changed { path: PathBuf },
     #[error("{} can't be read: {}", shown_path(path), file_reason(source))]
     Io { path: PathBuf, source: io::Error },
     #[error(
-        "{} has {bytes} bytes, and {limit} are read at most; if you trust it, allow more with --max-size",
+        "{} has {bytes} bytes, but at most {limit} are read; if you trust the file, allow more with --max-size",
         shown_path(path)
     )]
     TooLarge { path: PathBuf, bytes: u64, limit: u64 },
 }
 
-/// Why a file couldn't be read or written, as a clause that says what to do.
+/// Returns why a file couldn't be read or written, as a clause that says what to do.
 pub fn file_reason(error: &io::Error) -> String {
     match error.kind() {
-        // Made by this program, which has given a reason already.
+        // An error that this program made has a reason already.
         _ if error.raw_os_error().is_none() => error.to_string(),
         ErrorKind::NotFound => "there is no such file or folder; check its path".to_owned(),
         ErrorKind::PermissionDenied => {
-            "the system doesn't allow it; change its permissions or choose another".to_owned()
+            "the system doesn't allow it; change its permissions, or choose another file".to_owned()
         }
         ErrorKind::ReadOnlyFilesystem => "nothing can be written there; choose another folder".to_owned(),
         ErrorKind::StorageFull => "there is no room left; delete something or choose another disk".to_owned(),
         ErrorKind::IsADirectory => "it is a folder; name a file".to_owned(),
-        ErrorKind::NotADirectory => "a part of its path is no folder; check its path".to_owned(),
+        ErrorKind::NotADirectory => "a part of its path isn't a folder; check its path".to_owned(),
         _ => error.to_string(),
     }
 }
 
-/// Opens a regular file for reading. A folder, a device or a pipe gives [`None`]: opening those may block for ever.
+/// Opens a regular file for reading. Returns none for a folder, a device or a pipe, since opening those may block for
+/// ever.
 ///
 /// # Errors
-/// Those of the file system.
+/// The errors of the file system.
 pub fn open_file(path: &Path) -> io::Result<Option<(File, Metadata)>> {
     if !std::fs::metadata(path)?.is_file() {
         return Ok(None);
     }
     let file = File::open(path)?;
     let about = file.metadata()?;
-    // Something else may be there by now.
+    // The file may have been replaced in between.
     Ok(about.is_file().then_some((file, about)))
 }
 
-/// A file's length and time of change: where they differ, the file was changed in between.
+/// A file's length and time of change. If one of them differs, the file was changed.
 #[derive(Debug, PartialEq)]
 pub struct Stamp {
     bytes: u64,
-    /// None where the file system keeps no times.
+    /// None if the file system stores no times.
     modified: Option<SystemTime>,
 }
 
@@ -86,27 +88,27 @@ impl Stamp {
         Self { bytes: about.len(), modified: about.modified().ok() }
     }
 
-    /// Checks that the file at `path` hasn't changed since this stamp was taken: the files that it names may belong to
-    /// another version of it by now.
+    /// Checks that the file at `path` hasn't changed since this stamp was taken. If it has, the files that it names may
+    /// belong to another version of it.
     ///
     /// # Errors
     /// [`FileError::Changed`].
     pub fn check(&self, path: &Path) -> Result<(), FileError> {
         match std::fs::metadata(path) {
             Ok(about) if Self::of(&about) != *self => Err(FileError::Changed { path: path.to_owned() }),
-            // What is gone was read before.
+            // A file that was removed had been read before.
             _ => Ok(()),
         }
     }
 }
 
-/// Reads a whole file, unless it is larger than `limits` allows, by its length or by what there turns out to be. The bytes
-/// are all of one time: a file that changes meanwhile is refused.
+/// Reads a whole file, unless it is larger than `limits` allows, by its length or by what is read. The bytes all belong
+/// to one version of the file: a file that changes while it is read is refused.
 ///
-/// `check_start` sees the first bytes (at most 4,096) before the rest is read, and may refuse the file.
+/// `check_start` gets the first bytes (at most 4,096) before the rest is read, and may refuse the file.
 ///
 /// # Errors
-/// [`FileError`], and what `check_start` gives.
+/// [`FileError`], and the errors of `check_start`.
 pub fn read_file<E: From<FileError>>(
     path: &Path,
     limits: &Limits,
@@ -115,7 +117,7 @@ pub fn read_file<E: From<FileError>>(
 ) -> Result<Vec<u8>, E> {
     let io = |source| FileError::Io { path: path.to_owned(), source };
     let opened = open_file(path).map_err(io)?;
-    let (mut file, about) = opened.ok_or_else(|| FileError::NoFile { path: path.to_owned() })?;
+    let (mut file, about) = opened.ok_or_else(|| FileError::NotAFile { path: path.to_owned() })?;
     if about.len() <= limits.file {
         let mut start = Vec::new();
         Read::by_ref(&mut file).take(START).read_to_end(&mut start).map_err(io)?;
@@ -125,7 +127,7 @@ pub fn read_file<E: From<FileError>>(
     Ok(read_whole(file, &about, path, limits, progress)?)
 }
 
-/// How many first bytes of a file tell its format.
+/// How many bytes at the start of a file are enough to recognise its format.
 const START: u64 = 4096;
 /// How many bytes are read between two checks for cancellation.
 const PIECE: u64 = 1 << 24;
@@ -144,7 +146,7 @@ fn read_whole(
         return Err(too_large(said));
     }
     let mut bytes = Vec::new();
-    // Reserved at once: growing step by step would take up to twice as much.
+    // Reserved at once: a list that grows may take up to twice as much.
     let room = usize::try_from(said).unwrap_or(usize::MAX).saturating_add(1);
     bytes.try_reserve_exact(room).map_err(|error| io(error.into()))?;
     let mut rest = file.take(limits.file.saturating_add(1));
@@ -159,14 +161,15 @@ fn read_whole(
     }
 }
 
-/// How many symbolic links are followed to a file that isn't there yet.
+/// The greatest number of symbolic links that are followed to a file that doesn't exist yet.
 const MAX_LINKS: usize = 40;
 
-/// Writes a file: first beside its place under another name, then renamed, so that a full disk or a killed process leaves
-/// the old file whole. A pipe or a device is written directly. A symbolic link stays one, and permissions are kept.
+/// Writes a file: first under another name in the same folder, then renamed. So the old file stays whole if the disk is
+/// full or the process is killed. A pipe or a device is written directly. A symbolic link stays a link, and permissions
+/// are kept.
 ///
 /// # Errors
-/// Those of the file system. An existing file that is read-only is not replaced.
+/// The errors of the file system. An existing file that is read-only isn't replaced.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
@@ -182,7 +185,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let write = || {
         let mut file = std::fs::File::create(beside)?;
         file.write_all(bytes)?;
-        // A network's or a full disk's failure may come only now.
+        // A network drive or a full disk may report its failure only now.
         file.sync_all()?;
         permissions.map_or(Ok(()), |permissions| std::fs::set_permissions(beside, permissions))
     };
@@ -193,7 +196,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// The place that symbolic links lead to, where no file is yet.
+/// Follows symbolic links to the path of a file that doesn't exist yet.
 fn end_of_links(path: &Path) -> PathBuf {
     let mut place = path.to_owned();
     for _ in 0..MAX_LINKS {
@@ -209,13 +212,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_system_says_what_to_do() {
+    fn file_errors_say_what_to_do() {
         let missing = std::fs::read("no/such/file").expect_err("it isn't there");
         assert_eq!(file_reason(&missing), "there is no such file or folder; check its path");
         assert_eq!(file_reason(&io::Error::other("it is a device")), "it is a device");
     }
 
-    /// What the system writes as it is read has no length before.
+    /// Files in /proc report a length of 0, since the system writes them while they are read.
     #[cfg(target_os = "linux")]
     #[test]
     fn files_that_turn_out_larger_are_refused_too() {
@@ -225,7 +228,7 @@ mod tests {
             read_file(path, &Limits { file, ..Limits::default() }, |_| Ok::<(), FileError>(()), &Progress::new())
         };
         let message = read(100).unwrap_err().to_string();
-        assert!(message.contains("has 101 bytes, and 100 are read at most"), "{message}");
+        assert!(message.contains("has 101 bytes, but at most 100 are read"), "{message}");
         assert!(read(1 << 20).is_ok_and(|bytes| bytes.len() > 100));
     }
 
@@ -257,7 +260,7 @@ mod tests {
         assert!(before.check(&path).is_ok());
         write(100);
         assert!(before.check(&path).is_err_and(|error| error.to_string().contains("changed while it was read")));
-        // What takes its place under its name is another file.
+        // A file that takes this file's name isn't the file that was opened.
         let before = opened();
         std::fs::remove_file(&path).unwrap();
         write(7);
@@ -266,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn reading_stops_when_nobody_waits_for_it() {
+    fn reading_stops_when_it_is_cancelled() {
         let path = std::env::temp_dir().join(format!("pnaen-cancelled-{}.stl", std::process::id()));
         File::create(&path).and_then(|file| file.set_len(1 << 30)).unwrap();
         let progress = Progress::new();

@@ -1,6 +1,6 @@
-//! What pages that commands write are made of.
+//! Building blocks of the Markdown pages that commands write.
 
-/// A table: `words` are the columns that stand to the left, others are numbers and stand to the right.
+/// Formats a table. The columns whose indices are in `words` are aligned to the left, all others to the right.
 pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let cell = |text: &str| if text.is_empty() { " |".to_owned() } else { format!(" {text} |") };
@@ -12,7 +12,7 @@ pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String 
     text
 }
 
-/// Words one after the other, as a sentence lists them.
+/// Joins words with commas, and with "and" before the last.
 pub fn listed(words: &[String]) -> String {
     match words {
         [] => String::new(),
@@ -21,7 +21,7 @@ pub fn listed(words: &[String]) -> String {
     }
 }
 
-/// Text that stands for itself, also where it has letters that Markdown reads as signs.
+/// Escapes a text so that Markdown shows all its characters as they are.
 pub fn plain(text: &str) -> String {
     let mut out = String::new();
     for letter in text.chars() {

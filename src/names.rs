@@ -1,16 +1,16 @@
-//! Names and paths that a file or a person gave, made fit to be shown: on one line, and no longer than anyone reads.
+//! Makes names and paths from files or users fit for display: one line each, and of limited length.
 
 use std::path::Path;
 
-/// Characters of a name that are shown, at most.
-const MOST: usize = 200;
+/// The greatest length of a displayed name or path, in characters.
+const MAX_LENGTH: usize = 200;
 
-/// Without anything that a terminal would obey.
+/// Replaces every control character by U+FFFD, so that a name can neither break a line nor command a terminal.
 pub fn on_one_line(text: &str) -> String {
     text.replace(char::is_control, "\u{fffd}")
 }
 
-/// A text in so many characters at most.
+/// Cuts a text to at most `most` characters; a text that was cut ends in an ellipsis.
 pub fn shortened(name: &str, most: usize) -> String {
     if name.chars().count() <= most {
         return name.to_owned();
@@ -18,15 +18,16 @@ pub fn shortened(name: &str, most: usize) -> String {
     name.chars().take(most.saturating_sub(1)).chain(['…']).collect()
 }
 
-/// A name as it is shown.
+/// Returns a name for display: on one line, with at most 200 characters.
 pub fn shown(name: &str) -> String {
-    shortened(&on_one_line(name), MOST)
+    shortened(&on_one_line(name), MAX_LENGTH)
 }
 
-/// A path as it is shown: of a long one the end, which names the file.
+/// Returns a path for display: on one line, with at most 200 characters. A longer path loses its start, since its end
+/// names the file.
 pub fn shown_path(path: &Path) -> String {
     let path = on_one_line(&path.display().to_string());
-    let surplus = path.chars().count().saturating_sub(MOST);
+    let surplus = path.chars().count().saturating_sub(MAX_LENGTH);
     if surplus == 0 { path } else { ['…'].into_iter().chain(path.chars().skip(surplus + 1)).collect() }
 }
 
@@ -39,9 +40,12 @@ mod tests {
         assert_eq!(shown("\x1b[2Jred\nblue\u{9b}é"), "\u{fffd}[2Jred\u{fffd}blue\u{fffd}é");
         assert_eq!([shortened("Walk", 4), shortened("Walking", 4)], ["Walk", "Wal…"]);
         let long = shown(&"ä".repeat(1000));
-        assert!(long.chars().count() == MOST && long.ends_with("ä…"));
+        assert!(long.chars().count() == MAX_LENGTH && long.ends_with("ä…"));
         let path = shown_path(Path::new(&format!("{}/a\x07.glb", "b/".repeat(500))));
-        assert!(path.chars().count() == MOST && path.starts_with("…") && path.ends_with("/a\u{fffd}.glb"), "{path}");
+        assert!(
+            path.chars().count() == MAX_LENGTH && path.starts_with("…") && path.ends_with("/a\u{fffd}.glb"),
+            "{path}"
+        );
         assert_eq!(shown_path(Path::new("a b/c.glb")), "a b/c.glb");
     }
 }

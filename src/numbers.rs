@@ -1,8 +1,8 @@
-//! Numbers as people read them, in the window and on pages.
+//! Formats numbers and times for people.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// With a comma between thousands.
+/// Formats a number with commas between groups of three digits.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -15,7 +15,7 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// Three significant digits, in scientific notation where plain digits would be long.
+/// Formats a number with three significant digits; numbers below 0.001 or from 10,000 on are in scientific notation.
 pub fn short(number: f64) -> String {
     let magnitude = number.abs();
     if number == 0.0 {
@@ -28,12 +28,13 @@ pub fn short(number: f64) -> String {
     }
 }
 
-/// All digits of an f32, in scientific notation where zeros would be most of them.
+/// Formats an f32 with all its digits; numbers below 1e-5 or from 1e9 on are in scientific notation.
 pub fn exact(number: f32) -> String {
     if number == 0.0 || (1e-5..1e9).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
-/// Two decimals, for a column of px or ms: 0 as 0, and what is less than the decimals show as that.
+/// Formats a number that isn't negative with two decimals, for columns of px or ms. Returns "0" for 0 and "< 0.01" for
+/// anything less than that.
 pub fn hundredths(number: f64) -> String {
     if number == 0.0 {
         "0".into()
@@ -47,7 +48,7 @@ pub fn hundredths(number: f64) -> String {
     }
 }
 
-/// A moment as its day and minute, in UTC.
+/// Formats a time as date, hour and minute, in UTC.
 pub fn utc(moment: SystemTime) -> String {
     let seconds = moment.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
     let (days, minutes) = (seconds / 86_400, seconds / 60 % 1440);
@@ -55,11 +56,12 @@ pub fn utc(moment: SystemTime) -> String {
     format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", minutes / 60, minutes % 60)
 }
 
-/// Year, month and day, so many days after the first of January 1970. Years are counted from March, so that a leap day is
-/// the last of its year.
+/// Returns the year, month and day that lie `days` after 1 January 1970. The calculation counts years from March, so
+/// that a leap day is the last day of its year.
 fn date(days: u64) -> (u64, u64, u64) {
-    /// From the first of March of the year 0 to 1970, and in 400 years.
+    /// Days from 1 March of the year 0 to 1 January 1970.
     const BEFORE: u64 = 719_468;
+    /// Days in 400 years.
     const ERA: u64 = 146_097;
     let days = days + BEFORE;
     let (era, day) = (days / ERA, days % ERA);

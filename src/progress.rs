@@ -1,26 +1,29 @@
-//! How far a long job is, and the wish that it stop: one handle, shared between the job and whoever waits for it.
+//! The progress of a long job, and the request to cancel it: one handle, shared between the job and the code that waits
+//! for it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-/// The job was told to stop and has stopped; nothing was kept.
+/// The error of a job that was cancelled. It has stopped, and nothing was changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled; nothing was changed")]
 pub struct Cancelled;
 
-/// What a job is at.
+/// Which part of a load is running.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stage {
+    /// A mesh is being read or made.
     #[default]
     Mesh,
+    /// Height images are being read.
     Heights,
 }
 
-/// A handle on one job. Clones share their state, so the waiting side keeps one and the job gets another.
+/// A handle on one job. Clones share their state: the code that waits keeps one, and the job gets another.
 #[derive(Clone, Debug)]
 pub struct Progress {
     shared: Arc<Shared>,
-    /// The part of the whole that this handle's 0 to 1 is.
+    /// The interval of the whole job that this handle's 0 to 1 is mapped to.
     part: [f32; 2],
 }
 
@@ -33,7 +36,7 @@ impl Default for Progress {
 #[derive(Debug, Default)]
 struct Shared {
     cancelled: AtomicBool,
-    /// The bits of an f32: there is no atomic float.
+    /// The bits of an f32, since there is no atomic float.
     fraction: AtomicU32,
     reads_heights: AtomicBool,
 }
@@ -43,15 +46,15 @@ impl Progress {
         Self::default()
     }
 
-    /// Asks the job to stop. It does at its next [`check`](Self::check); there is no way back.
+    /// Asks the job to stop, which it does at its next [`check`](Self::check). A cancelled job can't be resumed.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// For the job, between two pieces of work.
+    /// Tells the job whether to go on. A job calls this between two pieces of work.
     ///
     /// # Errors
-    /// [`Cancelled`] once anyone has called [`cancel`](Self::cancel).
+    /// [`Cancelled`] after any clone's [`cancel`](Self::cancel).
     pub fn check(&self) -> Result<(), Cancelled> {
         match self.shared.cancelled.load(Ordering::Relaxed) {
             true => Err(Cancelled),
@@ -59,21 +62,21 @@ impl Progress {
         }
     }
 
-    /// For the job: how much is done, 0 to 1 (other values are clamped, NaN counts as 0).
+    /// Reports how much of the job is done, 0 to 1. Values outside are clamped, and NaN counts as 0.
     pub fn set(&self, fraction: f32) {
         let fraction = if fraction > 0.0 { fraction.min(1.0) } else { 0.0 };
         let [start, end] = self.part;
         self.shared.fraction.store((start + (end - start) * fraction).to_bits(), Ordering::Relaxed);
     }
 
-    /// A handle on the same job for a part of it, from `start` to `end` of this one's 0 to 1: who gets it may go from 0 to 1
-    /// without knowing of the rest.
+    /// Returns a handle on the same job whose 0 to 1 stands for `start` to `end` of this handle's. Code that does a
+    /// part of the work can report 0 to 1 without knowing about the rest.
     pub fn part(&self, start: f32, end: f32) -> Self {
         let length = self.part[1] - self.part[0];
         Self { shared: self.shared.clone(), part: [start, end].map(|at| self.part[0] + length * at) }
     }
 
-    /// For the job: what it is at from now on.
+    /// Reports which part of a load is running from now on.
     pub fn enter(&self, stage: Stage) {
         self.shared.reads_heights.store(stage == Stage::Heights, Ordering::Relaxed);
     }
@@ -82,7 +85,7 @@ impl Progress {
         if self.shared.reads_heights.load(Ordering::Relaxed) { Stage::Heights } else { Stage::Mesh }
     }
 
-    /// How much is done, 0 to 1.
+    /// Returns how much of the job is done, 0 to 1.
     pub fn fraction(&self) -> f32 {
         f32::from_bits(self.shared.fraction.load(Ordering::Relaxed))
     }

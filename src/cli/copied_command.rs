@@ -45,10 +45,10 @@ impl CopiedCommand<'_> {
 
     /// What is read, and what becomes of it before it is tessellated.
     fn mesh(&self, line: &mut Line) {
-        let Preparation { weld, rim, heights, limits } = self.preparation;
+        let Preparation { weld, crease_band, heights, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
         line.changed("--weld", weld, &0.0);
-        line.changed("--rim", rim, &0.0);
+        line.changed("--rim", crease_band, &0.0);
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         let Some(heights) = heights else { return };
@@ -206,7 +206,7 @@ mod tests {
         let (source, truth) = (Source::File("-x.glb".into()), Source::File("shape:y".into()));
         let limits = Limits { memory: 1 << 31, ..Limits::default() };
         let heights = Some(HeightSource::File("material".into()));
-        let preparation = Preparation { weld: 1e-5, rim: 0.02, heights, limits };
+        let preparation = Preparation { weld: 1e-5, crease_band: 0.02, heights, limits };
         let settings = Settings::opening().with(Tessellation {
             displacement: Displacement::PerPatch,
             height_scale: -0.5,

@@ -5,7 +5,7 @@ use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
 use crate::engine;
 use crate::load::{LoadError, Source};
-use crate::mesh::joins;
+use crate::mesh::weld_previews;
 use crate::progress::Progress;
 
 #[derive(Debug, clap::Args)]
@@ -31,9 +31,9 @@ fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
     let loaded = engine::load(source, &options.preparation(), &progress)?;
     let info = Info::of(&loaded.mesh, &loaded.topology, options.weld, &loaded.warnings, &progress)?;
-    if loaded.rim.width == 0.0 {
+    if loaded.crease_band.width == 0.0 {
         return Ok(info);
     }
-    // A tolerance would weld what was read, not what the rim made of it.
-    Ok(Info { rim: loaded.rim, joins: joins(&loaded.read, None, &progress)?, ..info })
+    // A tolerance would weld what was read, and not the mesh with a crease band.
+    Ok(Info { crease_band: loaded.crease_band, joins: weld_previews(&loaded.read, None, &progress)?, ..info })
 }

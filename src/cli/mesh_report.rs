@@ -4,9 +4,11 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::mesh::rig::{Clip, Moved, Rig};
-use crate::mesh::rim::Rim;
-use crate::mesh::{EdgeCounts, Joins, Material, Mesh, NormalFaults, Repairs, TJunction, Topology, joins, t_junctions};
+use crate::mesh::crease_band::CreaseBand;
+use crate::mesh::rig::{AnimatedCounts, Clip, Rig};
+use crate::mesh::{
+    EdgeCounts, Material, Mesh, NormalFaults, Repairs, TJunction, Topology, WeldPreview, t_junctions, weld_previews,
+};
 use crate::names::{on_one_line, shown};
 use crate::numbers::exact;
 use crate::progress::{Cancelled, Progress};
@@ -21,8 +23,8 @@ pub struct Info {
     pub triangles: u32,
     /// Within what points were welded, relative to the bounding diagonal; 0 is exactly.
     pub weld: f32,
-    /// The rim that the mesh has along its creases; all other numbers are those of the mesh with it.
-    pub rim: Rim,
+    /// The crease band; all other numbers are of the mesh that has it.
+    pub crease_band: CreaseBand,
     /// Triangles left out because two corners lie on one point.
     pub degenerate: u32,
     pub corners: u32,
@@ -31,7 +33,7 @@ pub struct Info {
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
-    pub joins: Vec<Joins>,
+    pub joins: Vec<WeldPreview>,
     /// See [`t_junctions`].
     pub t_junctions: u32,
     /// Where they are, in their order.
@@ -63,7 +65,7 @@ pub struct AnimationInfo {
     pub duration: f64,
     /// What it moves.
     #[serde(flatten)]
-    pub moved: Moved,
+    pub moved: AnimatedCounts,
 }
 
 /// A T-junction with positions, in object units.
@@ -87,7 +89,7 @@ pub struct BoundsInfo {
 }
 
 impl Info {
-    /// Gathers the numbers of a mesh without a rim and of the topology built from it; `weld` is the tolerance of
+    /// Gathers the numbers of a mesh without a crease band and of the topology built from it; `weld` is the tolerance of
     /// [`Topology::build_within`], and `warnings` are those of loading.
     ///
     /// # Errors
@@ -106,14 +108,14 @@ impl Info {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
             weld,
-            rim: Rim::default(),
+            crease_band: CreaseBand::default(),
             degenerate: topology.degenerate,
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(material).collect(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
-            joins: joins(mesh, (weld == 0.0).then_some(topology), progress)?,
+            joins: weld_previews(mesh, (weld == 0.0).then_some(topology), progress)?,
             t_junctions: t_junctions.len() as u32,
             t_junctions_at: t_junctions.iter().map(|junction| t_junction(topology, junction)).collect(),
             repairs: mesh.repairs,
@@ -170,9 +172,9 @@ impl Info {
         writeln!(f, "  non-manifold  {non_manifold}")?;
         let closed = if self.closed { "closed" } else { "open" };
         writeln!(f, "surface       {closed}, Euler characteristic {}", self.euler_characteristic)?;
-        let Rim { width, creases, .. } = self.rim;
+        let CreaseBand { width, creases, .. } = self.crease_band;
         if width > 0.0 {
-            writeln!(f, "rim           {width} of the bounding diagonal wide, along {creases} creases")?;
+            writeln!(f, "crease band   {width} of the bounding diagonal wide, along {creases} creases")?;
         }
         Ok(())
     }
@@ -224,8 +226,11 @@ fn material(material: &Material) -> MaterialInfo {
 }
 
 fn animations(rig: &Rig) -> Vec<AnimationInfo> {
-    let animation =
-        |clip: &Clip| AnimationInfo { name: clip.name.clone(), duration: clip.duration, moved: rig.moved(clip) };
+    let animation = |clip: &Clip| AnimationInfo {
+        name: clip.name.clone(),
+        duration: clip.duration,
+        moved: rig.animated_counts(clip),
+    };
     rig.clips.iter().map(animation).collect()
 }
 

@@ -201,7 +201,7 @@ pub struct WeldOption {
 
 impl WeldOption {
     pub fn preparation(&self) -> Preparation {
-        Preparation { weld: self.weld, rim: self.rim, heights: None, limits: self.limit.limits() }
+        Preparation { weld: self.weld, crease_band: self.rim, heights: None, limits: self.limit.limits() }
     }
 }
 

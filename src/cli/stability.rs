@@ -54,8 +54,8 @@ impl Args {
         for source in &self.files {
             let loaded = super::load(source, &self.weld.preparation())?;
             let name = free_name(&source.title(), &subjects);
-            // With a rim it is welded already.
-            let weld = if loaded.rim.width > 0.0 { 0.0 } else { self.weld.weld };
+            // With a crease band the mesh is welded already.
+            let weld = if loaded.crease_band.width > 0.0 { 0.0 } else { self.weld.weld };
             subjects.push(Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld));
         }
         Ok(subjects)

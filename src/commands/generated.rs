@@ -6,7 +6,7 @@ use egui::{Key, KeyboardShortcut};
 
 use super::availability as when;
 use super::{Action, Availability, Change, Command, FileAction, Preparing, Submenu, plain};
-use crate::mesh::joins::TOLERANCES;
+use crate::mesh::weld_preview::TOLERANCES;
 use crate::names::shortened;
 use crate::settings::{Choice, Colors, Control, DeviationUnit, Overlay, Overlays, options};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
@@ -102,9 +102,13 @@ fn mesh() -> Vec<Command> {
     }));
     let on = format!("Makes a band of small triangles along creases, {CREASE_BAND} of the bounding diagonal wide.");
     all.extend([
-        Command::new(Action::Prepare(Preparing::CreaseBand(CREASE_BAND)), "Rim: On", on).unless(when::document),
-        Command::new(Action::Prepare(Preparing::CreaseBand(0.0)), "Rim: Off", "Leaves creases as the mesh has them.")
-            .unless(when::document),
+        Command::new(Action::Prepare(Preparing::CreaseBand(CREASE_BAND)), "Crease band: On", on).unless(when::document),
+        Command::new(
+            Action::Prepare(Preparing::CreaseBand(0.0)),
+            "Crease band: Off",
+            "Leaves creases as the mesh has them.",
+        )
+        .unless(when::document),
         Command::new(Action::Prepare(Preparing::NoHeights), "Heights: None", "Displaces the mesh by nothing.")
             .unless(when::document),
         Command::new(

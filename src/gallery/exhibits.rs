@@ -28,14 +28,20 @@ pub struct Tile {
     /// Where not everybody's is meant.
     pub factor: Option<f32>,
     /// Of the bounding diagonal.
-    pub rim: f32,
+    pub crease_band: f32,
 }
 
 impl Tile {
     /// A technique that is a value of an option: its name and explanation are the option's.
     fn of(value: impl Choice, tessellation: Tessellation) -> Self {
         let Description { name, text, .. } = value.description();
-        Self { name: name.to_owned(), about: text.to_owned(), settings: tessellation.into(), factor: None, rim: 0.0 }
+        Self {
+            name: name.to_owned(),
+            about: text.to_owned(),
+            settings: tessellation.into(),
+            factor: None,
+            crease_band: 0.0,
+        }
     }
 
     fn named(self, name: &str, about: &str) -> Self {
@@ -67,18 +73,18 @@ fn surfaces() -> Exhibit {
 
 fn creases() -> Exhibit {
     let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
-    let rim = Tile { rim: 0.02, ..of(Surface::Pn) };
+    let band = Tile { crease_band: 0.02, ..of(Surface::Pn) };
     Exhibit {
         name: "creases",
         title: "Creases",
         about: "What becomes of an edge whose sides have different normals: nothing, so that it tears; the mean of both sides' \
-                control points; the line that both tangent planes share; or a rim of small triangles with one normal on the \
+                control points; the line that both tangent planes share; or a band of small triangles with one normal on the \
                 crease, made before.",
         shape: Shape::Cylinder,
         overlays: Overlays { cracks: true, ..Overlays::default() },
         tiles: vec![
             of(Surface::Pn),
-            rim.named("pn --rim 0.02", "A rim along creases, for PN triangles (Vlachos et al. 2001)."),
+            band.named("pn --rim 0.02", "A crease band, for PN triangles (Vlachos et al. 2001)."),
             of(Surface::PnCrease),
             of(Surface::PnAen),
         ],

@@ -95,10 +95,10 @@ impl<'a> Gallery<'a> {
         let mut hung: Option<(f32, Loaded, Scene)> = None;
         for (index, tile) in exhibit.tiles.iter().enumerate() {
             starting(index);
-            if hung.as_ref().is_none_or(|(rim, ..)| *rim != tile.rim) {
-                let loaded = self.prepared(exhibit, tile.rim)?;
+            if hung.as_ref().is_none_or(|(crease_band, ..)| *crease_band != tile.crease_band) {
+                let loaded = self.prepared(exhibit, tile.crease_band)?;
                 let scene = engine.scene(&loaded, ARENA_BYTES)?;
-                hung = Some((tile.rim, loaded, scene));
+                hung = Some((tile.crease_band, loaded, scene));
             }
             let Some((_, loaded, scene)) = &mut hung else { continue };
             let settings = self.settings(tile);
@@ -184,9 +184,9 @@ impl<'a> Gallery<'a> {
 
     /// The exhibit's mesh; with the heights that suit a shape made in code where it is to be displaced and nobody named
     /// others.
-    fn prepared(&mut self, exhibit: &Exhibit, rim: f32) -> Result<Loaded, LoadError> {
+    fn prepared(&mut self, exhibit: &Exhibit, crease_band: f32) -> Result<Loaded, LoadError> {
         let source = self.look.source.clone().unwrap_or(Source::Shape(exhibit.shape));
-        let mut loaded = self.load(source, rim)?.clone();
+        let mut loaded = self.load(source, crease_band)?.clone();
         let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement != Displacement::Off);
         if displaced && loaded.mesh.heights.is_none() {
             let mut mesh = (*loaded.mesh).clone();
@@ -196,8 +196,8 @@ impl<'a> Gallery<'a> {
         Ok(loaded)
     }
 
-    fn load(&mut self, source: Source, rim: f32) -> Result<&Loaded, LoadError> {
-        let preparation = Preparation { rim, ..self.look.preparation.clone() };
+    fn load(&mut self, source: Source, crease_band: f32) -> Result<&Loaded, LoadError> {
+        let preparation = Preparation { crease_band, ..self.look.preparation.clone() };
         let known = |loaded: &Loaded| loaded.source == source && loaded.preparation == preparation;
         let index = match self.loaded.iter().position(known) {
             Some(index) => index,

@@ -1,32 +1,32 @@
-//! glTF 2.0 (`.gltf` and `.glb`): the triangles of the default scene in their rest pose, and how they move.
+//! Reads glTF 2.0 (`.gltf` and `.glb`): the triangles of the default scene in their rest pose, and its animations.
 //!
-//! The `gltf` crate parses the document; its accessor readers are not used, since they panic on what a bad file may
-//! say. [`accessor`] reads instead, with every range checked.
+//! The `gltf` crate parses the document. Its accessor readers aren't used, since they panic on some broken files;
+//! [`accessor`] reads instead, and checks every range.
 //!
 //! Source: Khronos, glTF 2.0 specification, <https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html>.
 
 mod accessor;
+mod animated_vertices;
 mod animations;
-mod binder;
+mod attachment;
+mod binding_space;
 mod buffers;
-mod check;
+mod decompressed_primitive;
 mod document;
 mod draco;
 mod extensions;
-pub(super) mod extent;
 mod glb;
-mod hanging;
+mod gltf_error;
 mod json;
 mod materials;
 mod meshopt;
-mod moving;
 mod nodes;
 mod primitive;
-mod problem;
+mod rig_builder;
+pub(super) mod scene_size;
 mod schema;
+mod schema_check;
 mod skin;
-mod space;
-mod unpacked;
 mod vertices;
 
 use std::path::Path;
@@ -45,29 +45,30 @@ use crate::mesh::mesh_builder::MeshBuilder;
 use crate::progress::Progress;
 
 use accessor::Accessors;
-use binder::Binder;
 use materials::Materials;
 use nodes::Placed;
-use primitive::Primitives;
+use primitive::PrimitiveReader;
+use rig_builder::RigBuilder;
 
-pub use problem::Problem;
+pub use gltf_error::GltfError;
 
-/// Sentences that are said of a document at most.
+/// The greatest number of warnings about a document.
 const MAX_WARNINGS: usize = 100;
 
-/// Makes a mesh of a document's bytes.
+/// Builds a mesh from a document's bytes.
 ///
-/// `folder` is where the document lies, `name` becomes the mesh's. `limits` are those of files that it names.
+/// `folder` is the document's folder; `name` becomes the mesh's name. `limits` apply to the files that the document
+/// names.
 ///
 /// # Errors
-/// [`Problem`].
+/// [`GltfError`].
 pub fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,
     limits: &Limits,
     progress: &Progress,
-) -> Result<LoadedMesh, Problem> {
+) -> Result<LoadedMesh, GltfError> {
     let budget = Budget::new(bytes.len(), limits);
     let document::Parsed { document, blob, extensions, animations, mut warnings } =
         document::parse(bytes, &budget, progress)?;
@@ -80,15 +81,15 @@ pub fn read(
     accessors.unpacked = draco::unpack(&accessors, &document, &placed, &extensions.packed, progress)?;
     let clips = animations::read(animations, &document, &accessors, &mut warnings);
     progress.check()?;
-    let binder = Binder::new(clips, &document, &placed, &mut warnings);
-    let [vertices, corners] = extent::check(&document, &placed, &accessors, &budget, binder.is_some())?;
+    let binder = RigBuilder::new(clips, &document, &placed, &mut warnings);
+    let [vertices, corners] = scene_size::check(&document, &placed, &accessors, &budget, binder.is_some())?;
     let mut scene = Scene {
         document: &document,
         placed: &placed,
         accessors: &accessors,
         materials: Materials::new(&document, &accessors, &files, &extensions.transforms, &budget),
         builder: MeshBuilder::new(),
-        primitives: Primitives::default(),
+        primitives: PrimitiveReader::default(),
         binder,
     };
     scene.builder.expect(vertices, corners);
@@ -98,7 +99,7 @@ pub fn read(
     }
     let Scene { materials, builder, primitives, binder, .. } = scene;
     if builder.is_empty() {
-        return Err(Problem::Empty { holds: primitives.holds(&document) });
+        return Err(GltfError::Empty { holds: primitives.holds(&document) });
     }
     warnings.extend(materials.warnings);
     warnings.extend(primitives.warnings());
@@ -113,7 +114,7 @@ pub fn read(
         Some(Err(warning)) => warnings.push(warning),
         None => {}
     }
-    // What reaches the builder has been turned and is of unit length: only the reader knows what the file said.
+    // The builder gets transformed normals of unit length, so the reader counts those that weren't in the file.
     mesh.repairs.normals_rescaled += primitives.rescaled;
     if warnings.len() > MAX_WARNINGS {
         let more = warnings.len() - MAX_WARNINGS;
@@ -124,21 +125,21 @@ pub fn read(
     Ok(LoadedMesh { mesh, warnings, files: files.named(), file_bytes: budget.files() })
 }
 
-/// What is needed to turn nodes into triangles, and the triangles so far.
+/// The scene that is being read, and the mesh that is being built from it.
 struct Scene<'a> {
     document: &'a Document,
     placed: &'a Placed,
     accessors: &'a Accessors<'a>,
     materials: Materials<'a>,
     builder: MeshBuilder,
-    primitives: Primitives,
-    /// None if nothing moves.
-    binder: Option<Binder>,
+    primitives: PrimitiveReader,
+    /// None if nothing is animated.
+    binder: Option<RigBuilder>,
 }
 
 impl<'a> Scene<'a> {
-    /// Adds the triangles of the node's mesh, if it has one.
-    fn add(&mut self, node: usize, progress: &Progress) -> Result<(), Problem> {
+    /// Adds the triangles of a node's mesh, if it has one.
+    fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
         let Some(mesh) = node.mesh() else { return Ok(()) };
         let skin = node.skin().map(|skin| skin::Joints::read(&skin, self.accessors)).transpose()?;
@@ -152,7 +153,7 @@ impl<'a> Scene<'a> {
                 continue;
             }
             let material = self.materials.resolve(&primitive.material(), &mut self.builder);
-            let pose = primitive::Pose { global, joints: &joints, weights: weights(&node) };
+            let pose = primitive::NodePose { global, joints: &joints, weights: weights(&node) };
             let (accessors, builder) = (self.accessors, &mut self.builder);
             let job = primitive::Job { mesh: &mesh, primitive: &primitive, pose: &pose, material, accessors, builder };
             self.primitives.read(job, binder.as_mut())?;
@@ -161,7 +162,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// The weights of the morph targets at rest: the node's, else the mesh's.
+/// Returns the weights of a node's morph targets at rest: the node's own, or else those of its mesh.
 fn weights<'a>(node: &Node<'a>) -> &'a [f32] {
     node.weights().or_else(|| node.mesh().and_then(|mesh| mesh.weights())).unwrap_or(&[])
 }

@@ -1,4 +1,4 @@
-//! Height images, for displacement: read from a file, or made of the materials' base colour images.
+//! Height maps for displacement, from an image file or from the materials' base colour images.
 
 mod reading;
 
@@ -16,10 +16,10 @@ use crate::progress::{Cancelled, Progress};
 
 use reading::{map_of_px, read_map};
 
-/// The largest width and height of an image that is read, in px.
+/// The greatest width and height of an image that is read, in px.
 const MAX_SIZE: u32 = 16384;
 
-/// Why an image is no height map.
+/// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum HeightError {
     #[error(transparent)]
@@ -27,12 +27,12 @@ pub enum HeightError {
     #[error("{} can't be read as a height image: {reason}", shown_path(path))]
     Image { path: PathBuf, reason: String },
     #[error(
-        "{} is {} x {} px large, and at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
+        "{} has {} x {} px, but at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
         shown_path(path), size[0], size[1]
     )]
     TooLarge { path: PathBuf, size: [u32; 2] },
     #[error(
-        "{} is {} x {} px large and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
+        "{} has {} x {} px and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
          interlaced",
         shown_path(path), size[0], size[1]
     )]
@@ -41,24 +41,24 @@ pub enum HeightError {
         "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"
     )]
     NoImage { name: String, why: String },
-    #[error("{name} has {count} images to displace by, and at most {MAX_MAPS} are taken; name one height image")]
+    #[error("{name} has {count} images to displace by, but at most {MAX_MAPS} can be used; name one height image")]
     TooMany { name: String, count: usize },
-    #[error("heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
+    #[error("the heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
     TooMuchOfMaterials { name: String, count: usize, reason: String },
 }
 
-/// Where height images come from. As text: `material`, or a path.
+/// The source of height maps. Its text form is `material`, or a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HeightSource {
     /// The brightness of each material's base colour image.
     Materials,
-    /// One image over all materials.
+    /// One image for all materials.
     File(PathBuf),
 }
 
 impl HeightSource {
-    /// Reads heights for a mesh, within what a load may take; `progress` goes from 0 to 1 meanwhile. `warnings` are those of
-    /// reading the mesh: where it has no image because a texture was left out, the error says why.
+    /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are
+    /// those of loading the mesh: if it has no image because a texture was left out, the error says why.
     ///
     /// # Errors
     /// [`HeightError`].
@@ -78,7 +78,7 @@ impl HeightSource {
         Ok(heights)
     }
 
-    /// A name for the window: the file's without its folder.
+    /// Returns a name for the window: the file's name without its folder.
     pub fn title(&self) -> String {
         match self {
             Self::Materials => "Material".to_owned(),
@@ -93,13 +93,13 @@ impl From<OsString> for HeightSource {
     }
 }
 
-/// Reads a PNG or JPEG image and lays it over all materials.
+/// Loads a PNG or JPEG image as the height map of all materials.
 fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
     let map = read_map(path, mesh.corners.len(), budget, &progress.part(0.0, 0.8))?;
     Ok(Heights::all_over(mesh, map, &progress.part(0.8, 1.0))?)
 }
 
-/// The brightness of every material's base colour image, each image once.
+/// Computes the brightness of every material's base colour image. Materials that share an image share its map.
 ///
 /// # Errors
 /// [`HeightError::NoImage`], [`HeightError::TooMany`] and [`HeightError::TooMuchOfMaterials`].
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_image_is_a_sentence() {
+    fn a_file_that_is_not_an_image_is_refused() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
         let error = from_file(path, &Mesh::default(), &Budget::unlimited(), &Progress::new())
             .expect_err("no image")

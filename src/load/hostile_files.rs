@@ -1,10 +1,11 @@
-//! OBJ, STL and PLY files that are broken or meant to do harm: what each gets, and that nothing takes long.
+//! Tests with OBJ, STL and PLY files that are broken or hostile: what the loader answers, and that it never takes long.
 
 mod mutated;
 pub mod page;
 mod seeds;
 mod table;
 
+use std::fmt::{Debug, Display};
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
@@ -30,16 +31,36 @@ impl Random {
     }
 }
 
-/// What no file of a test may take longer than, of this thread's own time.
+/// The longest time that reading a file may take, in CPU time of this thread.
 const LIMIT: Duration = Duration::from_secs(1);
 
-/// This thread's own time: tests beside this one, on a busy machine, take nothing of it. Where there is no such clock, time as
-/// it passes.
+/// Returns this thread's CPU time, to which other tests on a busy machine don't add. Returns the elapsed time on systems without
+/// such a clock.
 pub fn time() -> Duration {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = said.and_then(|said| said.split(' ').next()?.parse().ok());
     nanoseconds.map_or_else(|| START.elapsed(), Duration::from_nanos)
+}
+
+/// Whether an error is the expected one: its variant, followed by parts of its message (the place and the numbers), all separated
+/// by ` | `. The pages in `docs/hostile` hold the whole sentences.
+pub fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
+    let (variant, parts) = expected.split_once(" | ").unwrap_or((expected, ""));
+    let debug = format!("{error:?}");
+    let own = debug.split(|letter: char| !letter.is_alphanumeric()).next();
+    own == Some(variant) && mentions(&error.to_string(), parts)
+}
+
+/// Whether a message has all these parts, which are separated by ` | `, as whole words and numbers.
+pub fn mentions(message: &str, parts: &str) -> bool {
+    let in_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
+    let is_whole = |start: usize, part: &str| {
+        let (before, after) = (&message[..start], &message[start + part.len()..]);
+        !(in_word(part.chars().next()) && in_word(before.chars().next_back()))
+            && !(in_word(part.chars().next_back()) && in_word(after.chars().next()))
+    };
+    parts.split(" | ").all(|part| message.match_indices(part).any(|(start, _)| is_whole(start, part)))
 }
 
 /// The files that `PNAEN_MUTATE` names, as `a.glb:b.obj`.

@@ -1,4 +1,4 @@
-//! Images that files bring as textures, decoded within the memory that a load may take.
+//! Decodes the images of textures, within the memory that a load may take.
 
 use std::io::Cursor;
 
@@ -9,14 +9,14 @@ use super::memory_budget::Budget;
 use crate::mesh::Texture;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 
-/// The largest width and height of a texture, in px: what common GPUs take.
+/// The greatest width and height of a texture, in px, that common GPUs support.
 const MAX_SIZE: u32 = 16384;
 
-/// The most that an image's colour profile and text may take, in bytes.
+/// The greatest amount of memory for an image's colour profile and text, in bytes.
 const MAX_METADATA: u64 = 16 << 20;
 
-/// Limits for what a PNG image holds beside its px, which is borrowed: its colour profile isn't used here, and may unpack to a
-/// thousand times its size.
+/// Borrows memory for the parts of a PNG image other than its pixels, and returns it as limits for the decoder. The
+/// colour profile isn't used, but may unpack to a thousand times its size.
 pub fn metadata_limits(budget: &Budget) -> Limits {
     let mut limits = Limits::default();
     let bytes = (budget.left() / 8).min(MAX_METADATA);
@@ -41,13 +41,15 @@ pub fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> 
     let (width, height) = decoder.dimensions();
     if width.max(height) > MAX_SIZE {
         let advice = "scale it to 4096 px a side or less";
-        return Err(format!("its image is {width} x {height} px large, and {MAX_SIZE} px a side are read; {advice}"));
+        return Err(format!(
+            "its image has {width} x {height} px, but at most {MAX_SIZE} px a side are read; {advice}"
+        ));
     }
     let px = u64::from(width) * u64::from(height);
     let too_large = |refused: MemoryRefused| format!("its image of {width} x {height} px {refused}; scale it down");
     budget.borrow(decoder.total_bytes()).map_err(too_large)?;
     if is_jpeg {
-        // Gone before the px are turned into RGBA.
+        // The decoder frees them before the pixels are converted to RGBA.
         let coefficients = known.unwrap_or_else(|| most_coefficient_bytes([width, height]));
         budget.hold(coefficients).map_err(too_large)?;
         budget.release(coefficients);

@@ -1,13 +1,15 @@
-//! What decoding a JPEG image takes beside its px: a progressive one's coefficients, all of them until its last scan.
+//! Computes how much memory it takes to decode a JPEG image in addition to its pixels: a progressive image keeps all
+//! coefficients until its last scan.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// Bytes of a progressive image's coefficients: 16 bits each, in blocks of 8 x 8, whole units of blocks of every component (ITU-T
-/// T.81, A.1 and A.2). 0 for a sequential one, whose units are decoded one after another. None where the segments before the
-/// first scan don't follow each other as they should: a decoder may find what isn't seen here. The file is at its start again.
+/// Returns the size of a progressive image's coefficients, in bytes. They have 16 bits each and are stored in blocks of
+/// 8 x 8, in whole units (MCUs) of blocks of every component (ITU-T T.81, A.1 and A.2). Returns 0 for a sequential
+/// image, whose units are decoded one after another; and none if the segments before the first scan aren't in the
+/// expected order, in which case a decoder may find something else. Afterwards the file is at its start.
 ///
 /// # Errors
-/// Reading.
+/// The errors of reading.
 pub fn coefficient_bytes(file: &mut (impl Read + Seek)) -> io::Result<Option<u64>> {
     file.seek(SeekFrom::Start(0))?;
     let frame = frame(file).or_else(|error| match error.kind() {
@@ -18,29 +20,29 @@ pub fn coefficient_bytes(file: &mut (impl Read + Seek)) -> io::Result<Option<u64
     Ok(frame.map(|frame| if frame.is_progressive { bytes(frame.size, &frame.samplings) } else { 0 }))
 }
 
-/// The most that it can be of an image of so many px.
+/// Returns the greatest size of the coefficients of any image of `size` px.
 pub fn most_coefficient_bytes(size: [u32; 2]) -> u64 {
     bytes(size, &[[1, 1]; 4])
 }
 
-/// How an image's samples are coded.
-struct Frame {
+/// The frame header of a JPEG image.
+struct JpegFrame {
     is_progressive: bool,
     /// Width and height in px.
     size: [u32; 2],
-    /// How often each component is sampled in a unit, across and down.
+    /// The sampling factors of each component, horizontal and vertical.
     samplings: Vec<[u8; 2]>,
 }
 
-/// What a JPEG image says in its frame header; none if its segments are not those of one.
-fn frame(file: &mut impl Read) -> io::Result<Option<Frame>> {
+/// Reads the frame header of a JPEG image; returns none if the segments aren't those of one.
+fn frame(file: &mut impl Read) -> io::Result<Option<JpegFrame>> {
     if bytes_of::<2>(file)? != [0xff, 0xd8] {
         return Ok(None);
     }
     let mut found = None;
     loop {
         let [0xff, marker] = bytes_of(file)? else { return Ok(None) };
-        // What has no length, and the end, don't come before a scan.
+        // Markers without a length, and the end marker, don't come before a scan.
         if matches!(marker, 0x00 | 0x01 | 0xd0..=0xd9 | 0xff) {
             return Ok(None);
         }
@@ -53,7 +55,7 @@ fn frame(file: &mut impl Read) -> io::Result<Option<Frame>> {
                 let samplings = components.map(|own| own.map(|[_, factors, _]| [factors >> 4, factors & 15]));
                 let samplings = samplings.collect::<io::Result<_>>()?;
                 let size = [[w0, w1], [h0, h1]].map(|side| u16::from_be_bytes(side).into());
-                found = Some(Frame { is_progressive: marker == 0xc2, size, samplings });
+                found = Some(JpegFrame { is_progressive: marker == 0xc2, size, samplings });
             }
             0xda => return Ok(found),
             _ => {}
@@ -81,7 +83,8 @@ mod tests {
 
     use super::*;
 
-    /// A header: an application's segment, then a frame of 100 x 50 px in three components, the first sampled twice each way.
+    /// A header: an application segment, then a frame of 100 x 50 px in three components, the first of which has
+    /// sampling factors of 2.
     fn header(frame: u8) -> Vec<u8> {
         let mut bytes = vec![0xff, 0xd8, 0xff, 0xe0, 0, 4, 7, 7, 0xff, frame, 0, 17, 8, 0, 50, 0, 100, 3];
         bytes.extend([1, 0x22, 0, 2, 0x11, 1, 3, 0x11, 1, 0xff, 0xda, 0, 2]);
@@ -94,13 +97,13 @@ mod tests {
 
     #[test]
     fn progressive_images_keep_whole_units_of_every_component() {
-        // 7 x 4 units of 16 x 16 px, six blocks each.
+        // 7 x 4 units of 16 x 16 px, with six blocks each.
         assert_eq!(of(header(0xc2)), Some(7 * 4 * 6 * 128));
         assert_eq!(of(header(0xc0)), Some(0));
     }
 
     #[test]
-    fn what_is_not_understood_is_said_to_be_that() {
+    fn unknown_segments_give_no_answer() {
         let mut odd = header(0xc0);
         odd.insert(8, 0);
         assert_eq!(of(odd), None, "a byte between segments");

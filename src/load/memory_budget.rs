@@ -1,16 +1,19 @@
-//! How much memory a load takes: a small file can't ask for much, and a large one gets by with what it brings.
+//! Limits the memory that a load takes by the size of its files: a small file can't ask for much, and a large file only
+//! for a multiple of its size.
 //!
-//! At most [`PER_BYTE`] times the files' size, and [`Limits::memory`]. What counts is what is alive at one time. Of a file of `F` bytes that
-//! becomes `T` triangles with `V` distinct corners and `P` points, in bytes, beside textures and what moves:
+//! A load may take [`PER_BYTE`] times the size of its files, plus [`Limits::memory`]. What counts is the memory in use
+//! at one time. A file of `F` bytes that becomes `T` triangles with `V` distinct corners and `P` points takes, in
+//! bytes, besides textures and animation data:
 //!
-//! - while it is read, `F + 32 V + 5 S + 12 T`: the bytes as they are, corners, the table that tells them apart (`S` is the next
-//!   power of two from `8 V / 7` on), triangles. For each vertex of the one glTF primitive that is read 5 more, and for each
-//!   one of an OBJ or a PLY file what it is made of. Where nobody knows beforehand how many corners there will be, they grow
-//!   by half, and old and new are both alive: `80 V`.
-//! - where normals are made, when the file's bytes are gone: `32 V + 24 T + 4 P`, and 16 for each corner that a crease adds.
-//! - at the end `36 V + 12 T`, or `24 T` where triangles came in several runs.
-//! - with its topology `32 V + 12 T`, and beside it first `32 V` for points, then `16 P + 4 V + 40 T` for patches and sides, and
-//!   8 for each edge; of a closed mesh that is 92 for each triangle in all.
+//! - while it is read, `F + 32 V + 5 S + 12 T`: the file's bytes, corners, the table that finds equal corners (`S` is
+//!   the first power of two from `8 V / 7` on), and triangles. Each vertex of the glTF primitive that is being read takes
+//!   5 more, and each vertex of an OBJ or PLY file takes its attributes. If the number of corners isn't known beforehand,
+//!   their list grows by half, and the old and the new list exist at the same time: `80 V`.
+//! - while normals are computed, after the file's bytes have been freed: `32 V + 24 T + 4 P`, and 16 for each corner
+//!   that a crease adds.
+//! - at the end `36 V + 12 T`, or `24 T` if triangles were collected in several lists.
+//! - with its topology `32 V + 12 T`; in addition first `32 V` for points, then `16 P + 4 V + 40 T` for patches and
+//!   sides, and 8 for each edge. For a closed mesh this is 92 for each triangle in all.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -19,55 +22,56 @@ use crate::files::Limits;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::{Material, Mesh};
 
-/// What each byte of a file allows, in bytes, beyond what is allowed whatever the files' size ([`Limits::memory`]).
+/// How many bytes of memory each byte of a file allows, in addition to [`Limits::memory`].
 pub const PER_BYTE: u64 = 4;
 
-/// Counts what is about to be taken, before it is.
+/// Counts memory before it is allocated, and refuses what is too much.
 pub struct Budget {
-    /// Allowed whatever the files' size.
+    /// How many bytes are allowed whatever the files' size.
     free: u64,
-    /// Bytes of all files.
+    /// The size of all files, in bytes.
     files: Cell<u64>,
-    /// Taken until the end.
+    /// How many bytes are in use until they are released.
     held: Cell<u64>,
-    /// Given back soon.
+    /// How many bytes are borrowed.
     passing: Cell<u64>,
 }
 
 impl Budget {
-    /// For a document's own file of so many bytes, which are held.
+    /// Makes a budget for a document whose own file has `file` bytes, which are held.
     pub fn new(file: usize, limits: &Limits) -> Self {
         let file = file as u64;
         Self { free: limits.memory, files: Cell::new(file), held: Cell::new(file), passing: Cell::new(0) }
     }
 
-    /// For what is made of a mesh, which is held. `file_bytes` are those of all files that it was read from.
+    /// Makes a budget for what is computed from a mesh, which is held. `file_bytes` is the size of all files that it
+    /// was read from.
     pub fn of_mesh(mesh: &Mesh, file_bytes: u64, limits: &Limits) -> Self {
         let (files, held) = (Cell::new(file_bytes), Cell::new(bytes_of(mesh)));
         Self { free: limits.memory, files, held, passing: Cell::new(0) }
     }
 
-    /// Allows everything: for meshes that no file asks for.
+    /// Makes a budget that allows everything, for meshes whose size no file determines.
     pub fn unlimited() -> Self {
         Self { free: u64::MAX, files: Cell::new(0), held: Cell::new(0), passing: Cell::new(0) }
     }
 
-    /// There is another file of so many bytes.
+    /// Adds another file of `file` bytes, which allows more memory.
     pub fn allow(&self, file: u64) {
         self.files.set(self.files.get().saturating_add(file));
     }
 
-    /// Bytes of all files.
+    /// Returns the size of all files, in bytes.
     pub fn files(&self) -> u64 {
         self.files.get()
     }
 
-    /// What may be taken in all.
+    /// Returns how many bytes may be in use.
     fn allowed(&self) -> u64 {
         self.free.saturating_add(self.files.get().saturating_mul(PER_BYTE))
     }
 
-    /// What may still be taken.
+    /// Returns how many more bytes may be taken.
     pub fn left(&self) -> u64 {
         self.allowed().saturating_sub(self.held.get() + self.passing.get())
     }
@@ -105,7 +109,7 @@ impl MemoryAccount for Budget {
     }
 }
 
-/// What a mesh takes, in bytes: textures that materials share count once.
+/// Returns the size of a mesh in memory, in bytes. A texture that materials share counts once.
 fn bytes_of(mesh: &Mesh) -> u64 {
     let mut textures: Vec<_> = mesh.materials.iter().filter_map(|material| material.texture.as_ref()).collect();
     textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
@@ -131,7 +135,7 @@ mod tests {
         assert!(budget.borrow(free).is_ok() && budget.hold(43 << 20).is_ok());
         let said = budget.hold(1).unwrap_err().to_string();
         assert!(
-            said.contains("would take at least 301 MiB of memory, and files of this size may take 300 MiB"),
+            said.contains("would take at least 301 MiB of memory, but files of this size may take only 300 MiB"),
             "{said}"
         );
         budget.give_back_to(0);

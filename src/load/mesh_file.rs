@@ -1,8 +1,8 @@
-//! From a path to a mesh: picks the reader by the file's extension.
+//! Loads a mesh from a file, with the reader for its extension.
 
 use std::path::{Path, PathBuf};
 
-use super::gltf::{self, Problem};
+use super::gltf::{self, GltfError};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::read_error::ReadError;
@@ -11,31 +11,34 @@ use crate::files::{FileError, Limits, Stamp, read_file};
 use crate::names::shown_path;
 use crate::progress::{Cancelled, Progress};
 
-/// Ends of names of files that can be read, for messages.
+/// The extensions of files that can be read, for messages.
 const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
 
-/// Why a file became no mesh.
+/// Why a file could not be loaded as a mesh.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    #[error("{} can't be read because its name ends in {extension}; choose a {KNOWN} file", shown_path(path))]
+    #[error("{} can't be read, since it has {extension}; choose a {KNOWN} file", shown_path(path))]
     UnknownFormat { path: PathBuf, extension: String },
     #[error("{} is not a file; choose a {KNOWN} file", shown_path(path))]
-    NoFile { path: PathBuf },
+    NotAFile { path: PathBuf },
     #[error(transparent)]
     File(FileError),
-    #[error("{} is empty: export the model again", shown_path(path))]
+    #[error("{} is empty; export the model again", shown_path(path))]
     NoBytes { path: PathBuf },
     #[error(
-        "{} begins as {is} does, which isn't what its name says: rename it, or export the model again",
+        "{} begins like {is}, which doesn't fit its extension; rename it, or export the model again",
         shown_path(path)
     )]
     Misnamed { path: PathBuf, is: &'static str },
-    #[error("{} is no glTF: it begins neither with \"glTF\" nor with a {{; export the model again", shown_path(path))]
+    #[error(
+        "{} isn't a glTF file: it begins neither with \"glTF\" nor with a {{; export the model again",
+        shown_path(path)
+    )]
     NoGltf { path: PathBuf },
     #[error("{}: {problem}", shown_path(path))]
-    Gltf { path: PathBuf, problem: Box<Problem> },
+    Gltf { path: PathBuf, problem: Box<GltfError> },
     #[error("{}: {fault}", shown_path(path))]
     Broken { path: PathBuf, fault: Box<ReadError> },
     #[error(transparent)]
@@ -50,7 +53,7 @@ impl From<FileError> for LoadError {
     fn from(error: FileError) -> Self {
         match error {
             FileError::Cancelled(cancelled) => cancelled.into(),
-            FileError::NoFile { path } => Self::NoFile { path },
+            FileError::NotAFile { path } => Self::NotAFile { path },
             error => Self::File(error),
         }
     }
@@ -65,20 +68,20 @@ impl From<HeightError> for LoadError {
     }
 }
 
-/// Reads a file: glTF 2.0, as `.gltf` or `.glb`; `.obj`, `.stl` or `.ply` (all in either case).
+/// Loads a mesh from a file: `.gltf`, `.glb`, `.obj`, `.stl` or `.ply`, in upper or lower case.
 ///
-/// `progress` goes from 0 to 1 meanwhile. Buffers and textures in files of their own are looked for in the model's
-/// folder and below it. Neither it nor they may be larger than `limits` says.
+/// Sets `progress` from 0 to 1. Files that the model names are only read from its folder and folders below it. No file
+/// may be larger than `limits` allows.
 ///
 /// # Errors
-/// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture is none: it
-/// becomes one of the warnings.
+/// [`LoadError`], whose message says what is wrong, where, and what to do. A missing or broken texture isn't an error
+/// but a warning.
 pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
     progress.set(0.0);
     // Reading a folder, a device or a pipe would fail later, or never end.
     let file = std::fs::metadata(path).map_err(|source| FileError::Io { path: path.to_owned(), source })?;
     if !file.is_file() {
-        return Err(LoadError::NoFile { path: path.to_owned() });
+        return Err(LoadError::NotAFile { path: path.to_owned() });
     }
     let format = Format::of(path)?;
     let before = Stamp::of(&file);
@@ -89,10 +92,10 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
     Ok(mesh)
 }
 
-/// What a file is read as.
+/// The format that a file is read as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `.gltf` and `.glb`: the first bytes tell them apart.
+    /// `.gltf` or `.glb`; the first bytes tell which.
     Gltf,
     Obj,
     Stl,
@@ -100,7 +103,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// By the end of a file's name.
+    /// Returns the format of a file by its extension.
     ///
     /// # Errors
     /// [`LoadError::UnknownFormat`].
@@ -112,7 +115,8 @@ impl Format {
             Some("stl") => Ok(Self::Stl),
             Some("ply") => Ok(Self::Ply),
             other => {
-                let extension = other.map_or("no extension".to_owned(), |extension| format!(".{extension}"));
+                let extension =
+                    other.map_or("no extension".to_owned(), |extension| format!("the extension .{extension}"));
                 Err(LoadError::UnknownFormat { path: path.to_owned(), extension })
             }
         }
@@ -120,7 +124,7 @@ impl Format {
 }
 
 impl Format {
-    /// Whether a file may be of this format, by how it starts: what is something else needn't be read whole.
+    /// Checks whether a file's first bytes fit this format, so that another file isn't read whole.
     ///
     /// # Errors
     /// [`LoadError::NoBytes`], [`LoadError::Misnamed`] and [`LoadError::NoGltf`].
@@ -137,7 +141,7 @@ impl Format {
             return Err(LoadError::Misnamed { path: path(), is: "a .ply file" });
         }
         let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
-        // A list isn't either, which the parser says with its depth.
+        // A list isn't a document either, but the parser also reports how deep it is nested.
         if self == Self::Gltf && !is_glb && !matches!(text.first(), None | Some(b'{' | b'[')) {
             return Err(LoadError::NoGltf { path: path() });
         }
@@ -145,10 +149,11 @@ impl Format {
     }
 }
 
-/// Makes a mesh of a file's bytes, as [`load`] does. `path` says where they came from: what they name is looked for there.
+/// Builds a mesh from a file's bytes, as [`load`] does. `path` is the path of the file; the files that it names are
+/// looked for in its folder.
 ///
 /// # Errors
-/// As [`load`].
+/// The same as [`load`]'s.
 pub fn read(
     format: Format,
     bytes: Vec<u8>,
@@ -166,10 +171,10 @@ pub fn read(
     }
 }
 
-fn of_problem(problem: Problem, path: &Path) -> LoadError {
+fn of_problem(problem: GltfError, path: &Path) -> LoadError {
     match problem {
-        Problem::Cancelled(cancelled) => cancelled.into(),
-        Problem::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+        GltfError::Cancelled(cancelled) => cancelled.into(),
+        GltfError::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
         problem => LoadError::Gltf { path: path.to_owned(), problem: Box::new(problem) },
     }
 }
@@ -195,13 +200,13 @@ mod tests {
     #[test]
     fn unknown_formats_name_the_known_ones() {
         let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-        let expected = "can't be read because its name ends in .toml; choose a .gltf, .glb, .obj, .stl or .ply file";
+        let expected = "can't be read, since it has the extension .toml; choose a .gltf, .glb, .obj, .stl or .ply file";
         assert_eq!(message(manifest), format!("{manifest} {expected}"));
         assert!(message(concat!(env!("CARGO_MANIFEST_DIR"), "/LICENSE")).contains("no extension"));
     }
 
     #[test]
-    fn a_folder_is_no_file() {
+    fn folders_are_refused() {
         assert!(message(env!("CARGO_MANIFEST_DIR")).contains("is not a file"));
     }
 
@@ -212,16 +217,16 @@ mod tests {
         let load = |file| load(path, &Limits { file, ..Limits::default() }, &Progress::new());
         assert!(load(bytes).is_ok());
         let message = load(bytes - 1).unwrap_err().to_string();
-        let expected = format!("has {bytes} bytes, and {} are read at most", bytes - 1);
+        let expected = format!("has {bytes} bytes, but at most {} are read", bytes - 1);
         assert!(message.contains(&expected) && message.contains("--max-size"), "{message}");
     }
 
     #[test]
-    fn what_is_something_else_is_known_by_its_start() {
+    fn files_of_another_format_are_recognised_by_their_start() {
         let said = |name: &str, bytes: &[u8]| {
             let path = std::env::temp_dir().join(format!("pnaen-start-{}-{name}", std::process::id()));
             std::fs::write(&path, bytes).unwrap();
-            // So large that nobody waits for the whole of it.
+            // Too large to read in the time that a test may take.
             File::options()
                 .write(true)
                 .open(&path)
@@ -232,16 +237,18 @@ mod tests {
             said
         };
         for name in ["a.obj", "a.stl", "a.ply"] {
-            assert!(said(name, b"glTF\x02\0\0\0").contains("begins as a .glb file does"), "{name}");
+            assert!(said(name, b"glTF\x02\0\0\0").contains("begins like a .glb file"), "{name}");
         }
         for name in ["a.obj", "a.stl", "a.gltf", "a.glb"] {
-            assert!(said(name, b"ply\nformat").contains("begins as a .ply file does"), "{name}");
+            assert!(said(name, b"ply\nformat").contains("begins like a .ply file"), "{name}");
         }
-        assert!(said("a.glb", b"\0\0\0\0").contains("is no glTF: it begins neither with \"glTF\" nor with a {;"));
-        assert!(said("a.gltf", b"\xff\xfe{\0").contains("is no glTF"));
+        assert!(
+            said("a.glb", b"\0\0\0\0").contains("isn't a glTF file: it begins neither with \"glTF\" nor with a {;")
+        );
+        assert!(said("a.gltf", b"\xff\xfe{\0").contains("isn't a glTF file"));
         let empty = std::env::temp_dir().join(format!("pnaen-start-{}.gltf", std::process::id()));
         std::fs::write(&empty, b"").unwrap();
-        assert!(message(empty.to_str().expect("it is of letters")).ends_with("is empty: export the model again"));
+        assert!(message(empty.to_str().expect("it is of letters")).ends_with("is empty; export the model again"));
         std::fs::remove_file(&empty).unwrap();
     }
 

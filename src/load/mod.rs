@@ -1,7 +1,7 @@
-//! Files become meshes: glTF, OBJ, STL and PLY, height images and textures, each within limits of size and memory. Nothing
-//! that a file says is trusted.
+//! Loads meshes from glTF, OBJ, STL and PLY files, height images and textures, within limits of file size and memory.
+//! Everything in a file is checked before it is used.
 
-mod faces;
+mod face_builder;
 mod gltf;
 mod heights;
 #[cfg(test)]
@@ -20,11 +20,11 @@ mod text_lines;
 mod uri;
 mod warnings;
 
-pub use gltf::Problem as GltfProblem;
+pub use gltf::GltfError;
 pub use heights::{HeightError, HeightSource};
 pub use loaded_mesh::LoadedMesh;
 pub use memory_budget::Budget;
 pub use mesh_file::{Format, LoadError, load, read};
 pub use read_error::ReadError;
 pub use source::Source;
-pub use warnings::{rim_warnings, untextured_warning};
+pub use warnings::{crease_band_warnings, untextured_warning};

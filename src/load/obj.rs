@@ -1,10 +1,10 @@
-//! Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
+//! Reads Wavefront OBJ: polygons with texture coordinates and normals, and the colours of their materials.
 //!
-//! All groups and objects are one mesh; smoothing groups, vertex colours and weights are ignored. Read twice, so that
-//! faces may come before their vertices: first positions and the like, then faces.
+//! All groups and objects become one mesh. Smoothing groups, vertex colours and weights are ignored. The file is read
+//! twice, first vertices and then faces, so that faces may come before their vertices.
 //!
-//! Not by `tobj`, which panics on an index near 2^63, gives corners without a normal some other corner's, knows no lines that
-//! continue, and names no line in its errors.
+//! The crate `tobj` isn't used. It panics on an index near 2^63, gives a corner without a normal the normal of another
+//! corner, doesn't know continued lines, and names no line in its errors.
 //!
 //! Source: Wavefront Technologies 1992, "Advanced Visualizer Manual", appendix B1.
 
@@ -16,7 +16,7 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3};
 
-use super::faces::{Faces, MAX_CORNERS, counted};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, counted};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::read_error::ReadError;
@@ -25,12 +25,12 @@ use super::uri::Files;
 use crate::files::Limits;
 use crate::mesh::MemoryAccount;
 use crate::mesh::chunked_vec::ChunkedVec;
-use crate::mesh::mesh_builder::LooseCorner;
+use crate::mesh::mesh_builder::InputCorner;
 use crate::progress::Progress;
 
 use materials::Materials;
 
-/// Statements whose absence changes neither shape nor colour, as far as either is read.
+/// Statements that are ignored without a warning, since they change neither shape nor colour here.
 const SILENT: [&[u8]; 24] = [
     b"g",
     b"o",
@@ -58,12 +58,12 @@ const SILENT: [&[u8]; 24] = [
     b"trace_obj",
 ];
 
-/// Makes a mesh of a file's bytes.
+/// Builds a mesh from a file's bytes.
 ///
-/// `folder` is where the file lies, `name` becomes the mesh's.
+/// `folder` is the file's folder; `name` becomes the mesh's name.
 ///
 /// # Errors
-/// [`ReadError`]. A missing material or texture is none: it becomes a warning.
+/// [`ReadError`]. A missing material or texture isn't an error but a warning.
 pub fn read(
     bytes: Vec<u8>,
     folder: &Path,
@@ -78,10 +78,10 @@ pub fn read(
     let mut reader = Reader {
         vertices: &vertices,
         above: [0; 3],
-        faces: Faces::new(bytes.len(), &budget),
+        faces: FaceBuilder::new(bytes.len(), &budget),
         materials: Materials::new(&files, &budget),
         corners: Vec::new(),
-        found: Found::default(),
+        found: StatementCounts::default(),
     };
     each(&bytes, &progress.part(0.2, 0.5), |line| reader.take(line))?;
     let mut warnings = reader.materials.warnings();
@@ -94,7 +94,7 @@ pub fn read(
     Ok(LoadedMesh { files: files.named(), ..loaded })
 }
 
-/// Goes through all statements: lines without comments, those joined that continue.
+/// Calls `take` with each statement: a line without its comment, joined with the lines that continue it.
 fn each(
     bytes: &[u8],
     progress: &Progress,
@@ -108,7 +108,7 @@ fn each(
             progress.set(1.0 - lines.rest().len() as f32 / bytes.len() as f32);
             progress.check()?;
         }
-        // A comment may end with a folder of Windows.
+        // A comment may end with a backslash, as in the path of a Windows folder.
         if line.text.trim_ascii_start().starts_with(b"#") {
             continue;
         }
@@ -118,7 +118,7 @@ fn each(
     Ok(())
 }
 
-/// A line, with those that it continues in: where it ends with a `\`.
+/// Returns a line joined with the lines that continue it. A line that ends with `\` is continued.
 fn continued<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Result<Cow<'a, [u8]>, ReadError> {
     let Some(start) = text.strip_suffix(b"\\") else { return Ok(text.into()) };
     let mut all = start.to_vec();
@@ -134,14 +134,14 @@ fn continued<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Result<Cow<'a, [u8]>,
     Ok(all.into())
 }
 
-/// What stands before a `#` that begins a word: names may have one.
+/// Returns the text before a comment. A comment starts with a `#` at the start of a word, since names may contain one.
 fn without_comment(text: &[u8]) -> &[u8] {
     let begins = |i: &usize| *i == 0 || text[i - 1].is_ascii_whitespace();
     let comment = memchr::memchr_iter(b'#', text).find(begins);
     &text[..comment.unwrap_or(text.len())]
 }
 
-/// What corners refer to.
+/// The positions, texture coordinates and normals that corners refer to.
 #[derive(Default)]
 struct Vertices {
     positions: ChunkedVec<Vec3>,
@@ -150,10 +150,10 @@ struct Vertices {
 }
 
 impl Vertices {
-    /// Keeps what a statement says of vertices.
+    /// Stores the vertex data of a statement.
     fn take(&mut self, line: &Line, budget: &Budget) -> Result<(), ReadError> {
         let (word, rest) = first_word(line.text);
-        let wrong = |reason| line.place().fault(reason);
+        let wrong = |reason| line.place().error(reason);
         let hold = |bytes| budget.hold(bytes).map_err(|refused| ReadError::TooLarge { reason: refused.into() });
         match word {
             b"v" => {
@@ -169,7 +169,7 @@ impl Vertices {
                 let [u] = numbers("vt", rest).map_err(wrong)?;
                 let has_v = words(rest).nth(1).is_some();
                 let v = if has_v { numbers::<2>("vt", rest).map_err(wrong)?[1] } else { 0.0 };
-                // Upwards in the file, downwards here.
+                // The file's v points upwards, the mesh's downwards.
                 self.uvs.push(Vec2::new(u, 1.0 - v));
             }
             _ => {}
@@ -177,25 +177,25 @@ impl Vertices {
         Ok(())
     }
 
-    /// What it takes.
+    /// Returns the size in memory, in bytes.
     fn bytes(&self) -> u64 {
         self.positions.bytes() + self.uvs.bytes() + self.normals.bytes()
     }
 }
 
-/// What there is besides triangles, in statements; of points, in points.
+/// Numbers of statements that don't make triangles; for points, the number of points.
 #[derive(Default)]
-struct Found {
+struct StatementCounts {
     faces: usize,
     points: usize,
     lines: usize,
     surfaces: usize,
     unknown: usize,
-    /// Faces of which a corner has no normal.
+    /// FaceBuilder with a corner that has no normal.
     without_normals: usize,
 }
 
-impl Found {
+impl StatementCounts {
     fn warnings(&self) -> impl Iterator<Item = String> {
         counted([
             (
@@ -223,16 +223,16 @@ impl Found {
     }
 }
 
-/// Reads faces.
+/// Reads the faces of a file.
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
-    /// Positions, uvs and normals above the statement.
+    /// The numbers of positions, texture coordinates and normals above the current statement.
     above: [usize; 3],
-    faces: Faces<'a>,
+    faces: FaceBuilder<'a>,
     materials: Materials<'a>,
-    /// The face's that is being read.
-    corners: Vec<LooseCorner>,
-    found: Found,
+    /// The corners of the face that is being read.
+    corners: Vec<InputCorner>,
+    found: StatementCounts,
 }
 
 impl Reader<'_, '_> {
@@ -260,9 +260,9 @@ impl Reader<'_, '_> {
         corners.clear();
         for word in words(rest) {
             if corners.len() == MAX_CORNERS {
-                return Err(line.place().fault(format!("the face has more than {MAX_CORNERS} corners")));
+                return Err(line.place().error(format!("the face has more than {MAX_CORNERS} corners")));
             }
-            corners.push(self.corner(word).map_err(|reason| line.place().fault(reason))?);
+            corners.push(self.corner(word).map_err(|reason| line.place().error(reason))?);
         }
         self.found.without_normals += usize::from(corners.iter().any(|corner| corner.normal.is_none()));
         let material = self.materials.current(&mut self.faces)?;
@@ -271,12 +271,12 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    fn corner(&self, word: &[u8]) -> Result<LooseCorner, String> {
+    /// Parses a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn corner(&self, word: &[u8]) -> Result<InputCorner, String> {
         let mut parts = word.split(|&byte| byte == b'/');
         let [position, uv, normal] = [0, 1, 2].map(|_| parts.next().filter(|part| !part.is_empty()));
         let (None, Some(position)) = (parts.next(), position) else {
-            return Err(format!("{} is no corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
+            return Err(format!("{} isn't a corner, such as 1, 1/2, 1//3 or 1/2/3", shown(word)));
         };
         let Vertices { positions, uvs, normals } = self.vertices;
         let position = index(position, "position", self.above[0], positions.len())?;
@@ -284,23 +284,24 @@ impl Reader<'_, '_> {
         let normal = normal.map(|normal| index(normal, "normal", self.above[2], normals.len())).transpose()?;
         let uv = uv.and_then(|uv| uvs.get(uv)).copied().unwrap_or_default();
         let position = positions.get(position).copied().unwrap_or_default();
-        Ok(LooseCorner { position, normal: normal.and_then(|normal| normals.get(normal)).copied(), uv })
+        Ok(InputCorner { position, normal: normal.and_then(|normal| normals.get(normal)).copied(), uv })
     }
 }
 
-/// A place in a list of `count`, from 0: given from 1, or backwards from the last of those `above`, which is -1.
+/// Parses an index into a list of `count` items, and returns it counted from 0. The file counts from 1, or backwards
+/// from the last of the `above` items before the statement, which is -1.
 fn index(word: &[u8], what: &str, above: usize, count: usize) -> Result<usize, String> {
     let number: i64 = std::str::from_utf8(word)
         .ok()
         .and_then(|word| word.parse().ok())
-        .ok_or_else(|| format!("{} is no number of a {what}", shown(word)))?;
+        .ok_or_else(|| format!("{} isn't the index of a {what}", shown(word)))?;
     let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
     match number {
-        0 => Err(format!("the face uses {what} 0, and they are counted from 1")),
+        0 => Err(format!("the face uses {what} 0, but indices start at 1")),
         1.. if distance <= count => Ok(distance - 1),
-        1.. => Err(format!("the face uses {what} {number}, and there are {count}")),
+        1.. => Err(format!("the face uses {what} {number}, but the file has {count}")),
         _ if distance <= above => Ok(above - distance),
-        _ => Err(format!("the face uses {what} {number}, and {above} are above it")),
+        _ => Err(format!("the face uses {what} {number}, but {above} are above the face")),
     }
 }
 

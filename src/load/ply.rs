@@ -1,7 +1,7 @@
-//! PLY, in text and in binary of either order: vertices, polygons and strips of triangles.
+//! Reads PLY, in text and in binary of either byte order: vertices, polygons and triangle strips.
 //!
-//! Not by `ply-rs-bw`, which never ends on a large count of elements without properties, takes ten bytes of memory for one of a
-//! long line, and refuses a comment that isn't UTF-8.
+//! The crate `ply-rs-bw` isn't used. It never ends on a large number of elements without properties, takes ten bytes of
+//! memory for each byte of a long line, and refuses comments that aren't UTF-8.
 //!
 //! Source: Turk 1994, "The PLY Polygon File Format".
 
@@ -10,20 +10,20 @@ mod values;
 
 use glam::{Vec2, Vec3};
 
-use super::faces::{Faces, MAX_CORNERS, counted};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, counted};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
-use super::read_error::{Place, ReadError};
+use super::read_error::{FilePosition, ReadError};
 use super::text_lines::shown;
 use crate::files::Limits;
-use crate::mesh::mesh_builder::LooseCorner;
+use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::{Material, MemoryAccount};
 use crate::progress::Progress;
 
-use header::{Element, Kind, Property};
+use header::{Element, Property, PropertyKind};
 use values::{Values, plain};
 
-/// What is read of a vertex. Texture coordinates have three names.
+/// The properties of a vertex that are read, and the attribute that each sets. Texture coordinates have three names.
 const ATTRIBUTES: [(&[u8], usize); 12] = [
     (b"x", 0),
     (b"y", 1),
@@ -39,7 +39,7 @@ const ATTRIBUTES: [(&[u8], usize); 12] = [
     (b"texture_v", 7),
 ];
 
-/// Makes a mesh of a file's bytes; `name` becomes the mesh's.
+/// Builds a mesh called `name` from a file's bytes.
 ///
 /// # Errors
 /// [`ReadError`].
@@ -51,14 +51,14 @@ pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) ->
     faces.finish(name, holds, warnings, &progress.part(0.5, 1.0))
 }
 
-/// All faces; what there is in place of them, and warnings.
+/// Reads all faces. Also returns what the file holds in case it has no triangles, and warnings.
 fn gather<'a>(
     bytes: &[u8],
     budget: &'a Budget,
     progress: &'a Progress,
-) -> Result<(Faces<'a>, String, Vec<String>), ReadError> {
+) -> Result<(FaceBuilder<'a>, String, Vec<String>), ReadError> {
     let header = header::read(bytes)?;
-    let mut faces = Faces::new(bytes.len(), budget);
+    let mut faces = FaceBuilder::new(bytes.len(), budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader { faces, material, vertices: None, corners: Vec::new(), budget, progress };
     let mut values = Values::new(&header, bytes.len());
@@ -67,7 +67,7 @@ fn gather<'a>(
         values.check(element)?;
         match (element.name, &reader.vertices) {
             (b"vertex", None) => reader.vertices = Some(reader.read_vertices(element, &mut values)?),
-            (b"vertex", Some(_)) => return Err(values.place().fault("the header has two elements of name \"vertex\"")),
+            (b"vertex", Some(_)) => return Err(values.place().error("the header has two elements named \"vertex\"")),
             (b"face" | b"tristrips", Some(_)) => reader.read_lists(element, &mut values)?,
             (name, _) => {
                 if matches!(name, b"face" | b"tristrips") {
@@ -83,7 +83,7 @@ fn gather<'a>(
     Ok(reader.finish(&header.elements, values.left_over()))
 }
 
-/// The vertices' attributes; no normals or uvs at all if they have none.
+/// The attributes of the vertices. Normals or uvs are empty if the file has none.
 #[derive(Default)]
 struct Vertices {
     positions: Vec<Vec3>,
@@ -92,24 +92,24 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn corner(&self, index: f64, place: Place) -> Result<LooseCorner, ReadError> {
+    fn corner(&self, index: f64, place: FilePosition) -> Result<InputCorner, ReadError> {
         let vertex = index as usize;
-        // What is negative, broken or not finite becomes another number.
+        // The conversion changes an index that is negative, not whole or not finite.
         let position = self.positions.get(vertex).filter(|_| vertex as f64 == index).ok_or_else(|| {
             let (index, count) = (plain(index), self.positions.len());
-            place.fault(format!("the face uses vertex {index}, and there are {count}, counted from 0"))
+            place.error(format!("the face uses vertex {index}, but the file has {count}, counted from 0"))
         })?;
         let uv = self.uvs.get(vertex).copied().unwrap_or_default();
-        Ok(LooseCorner { position: *position, normal: self.normals.get(vertex).copied(), uv })
+        Ok(InputCorner { position: *position, normal: self.normals.get(vertex).copied(), uv })
     }
 }
 
 struct Reader<'a> {
-    faces: Faces<'a>,
+    faces: FaceBuilder<'a>,
     material: usize,
     vertices: Option<Vertices>,
-    /// The face's that is being read.
-    corners: Vec<LooseCorner>,
+    /// The corners of the face that is being read.
+    corners: Vec<InputCorner>,
     budget: &'a Budget,
     progress: &'a Progress,
 }
@@ -119,10 +119,10 @@ impl<'a> Reader<'a> {
         let slots: Vec<Option<usize>> = element.properties.iter().map(slot).collect();
         let has = |slot: usize| slots.contains(&Some(slot));
         if !(has(0) && has(1) && has(2)) {
-            return Err(values.place().fault("the vertices have no x, y and z"));
+            return Err(values.place().error("the vertices have no x, y and z"));
         }
         let (has_normals, has_uvs) = ((3..6).all(has), (6..8).all(has));
-        // The count was held against the bytes that are left.
+        // `values.check` has compared the count with the remaining bytes.
         let count = usize::try_from(element.count).unwrap_or_default();
         let bytes = count as u64 * (12 + 12 * u64::from(has_normals) + 8 * u64::from(has_uvs));
         self.budget.hold(bytes).map_err(|refused| ReadError::TooLarge { reason: refused.into() })?;
@@ -138,7 +138,7 @@ impl<'a> Reader<'a> {
             let mut found = [0.0; 8];
             for (property, slot) in element.properties.iter().zip(&slots) {
                 match (property.kind, slot) {
-                    (Kind::One(scalar), Some(slot)) => found[*slot] = values.next(scalar)? as f32,
+                    (PropertyKind::One(scalar), Some(slot)) => found[*slot] = values.next(scalar)? as f32,
                     (kind, _) => values.skip_one(kind)?,
                 }
             }
@@ -149,24 +149,25 @@ impl<'a> Reader<'a> {
                 vertices.normals.push(Vec3::new(nx, ny, nz));
             }
             if has_uvs {
-                // Upwards in the file, downwards here.
+                // The file's v points upwards, the mesh's downwards.
                 vertices.uvs.push(Vec2::new(u, 1.0 - v));
             }
         }
         Ok(vertices)
     }
 
-    /// Faces, or strips of triangles.
+    /// Reads an element of faces or of triangle strips.
     fn read_lists(&mut self, element: &Element, values: &mut Values) -> Result<(), ReadError> {
         let vertices = self.vertices.take().unwrap_or_default();
         let is_list = |property: &Property| {
-            matches!(property.name, b"vertex_indices" | b"vertex_index") && matches!(property.kind, Kind::List { .. })
+            matches!(property.name, b"vertex_indices" | b"vertex_index")
+                && matches!(property.kind, PropertyKind::List { .. })
         };
         let Some(list) = element.properties.iter().position(is_list) else {
-            let reason = format!("the element {} has no list of name \"vertex_indices\"", shown(element.name));
-            return Err(values.place().fault(reason));
+            let reason = format!("the element {} has no list named \"vertex_indices\"", shown(element.name));
+            return Err(values.place().error(reason));
         };
-        // Both counts were held against the bytes that there are.
+        // Both counts have been compared with the remaining bytes.
         let faces = usize::try_from(element.count).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
         for i in 0..element.count {
@@ -174,7 +175,7 @@ impl<'a> Reader<'a> {
             values.begin(element, i)?;
             for (k, property) in element.properties.iter().enumerate() {
                 match property.kind {
-                    Kind::List { count, item } if k == list => {
+                    PropertyKind::List { count, item } if k == list => {
                         let place = values.place();
                         let mut left = values.count(count, item)?;
                         let next = || {
@@ -200,25 +201,25 @@ impl<'a> Reader<'a> {
         &mut self,
         mut next: impl FnMut() -> Result<Option<f64>, ReadError>,
         vertices: &Vertices,
-        place: Place,
+        place: FilePosition,
     ) -> Result<(), ReadError> {
         self.corners.clear();
         while let Some(index) = next()? {
             if self.corners.len() == MAX_CORNERS {
-                return Err(place.fault(format!("the face has more than {MAX_CORNERS} corners")));
+                return Err(place.error(format!("the face has more than {MAX_CORNERS} corners")));
             }
             self.corners.push(vertices.corner(index, place)?);
         }
         self.faces.add(self.material, &mut self.corners, place)
     }
 
-    /// Each vertex makes a triangle with the two before it, every other one turned; -1 begins anew. Those that use a vertex twice
-    /// only carry the strip on.
+    /// Reads a triangle strip. Each vertex makes a triangle with the two vertices before it, with alternating winding;
+    /// -1 starts a new strip. A triangle that uses a vertex twice only continues the strip and is left out.
     fn strip(
         &mut self,
         mut next: impl FnMut() -> Result<Option<f64>, ReadError>,
         vertices: &Vertices,
-        place: Place,
+        place: FilePosition,
     ) -> Result<(), ReadError> {
         let (mut last, mut length) = ([0.0; 2], 0);
         while let Some(index) = next()? {
@@ -242,7 +243,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Now and then says how far it is.
+    /// Sets the progress, once every 4,096 elements.
     fn at(&self, values: &Values, i: u64) -> Result<(), ReadError> {
         if i.is_multiple_of(4096) {
             self.progress.set(0.5 * values.fraction());
@@ -251,7 +252,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn finish(self, elements: &[Element], left_over: usize) -> (Faces<'a>, String, Vec<String>) {
+    fn finish(self, elements: &[Element], left_over: usize) -> (FaceBuilder<'a>, String, Vec<String>) {
         let count =
             |name: &[u8]| elements.iter().filter(|element| element.name == name).map(|element| element.count).sum();
         let [vertices, faces, strips]: [u64; 3] = [b"vertex" as &[u8], b"face", b"tristrips"].map(count);
@@ -268,10 +269,10 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Where among the attributes a property of a vertex belongs, if it is one of them.
+/// Returns which attribute a property of a vertex sets, if any.
 fn slot(property: &Property) -> Option<usize> {
     let known = ATTRIBUTES.iter().find(|(name, _)| *name == property.name);
-    known.filter(|_| matches!(property.kind, Kind::One(_))).map(|(_, slot)| *slot)
+    known.filter(|_| matches!(property.kind, PropertyKind::One(_))).map(|(_, slot)| *slot)
 }
 
 #[cfg(test)]

@@ -1,17 +1,17 @@
-//! What can be wrong with a file that is no document: OBJ, STL and PLY.
+//! Errors in OBJ, STL and PLY files.
 
 use std::fmt;
 
 use crate::mesh::build_limits::BuildError;
 use crate::progress::Cancelled;
 
-/// Why such a file became no mesh. The file's own path is not part of the message.
+/// Why an OBJ, STL or PLY file could not be loaded. The message doesn't contain the file's path.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error("{place}{reason}; export the model again")]
-    Broken { place: Place, reason: String },
+    Broken { place: FilePosition, reason: String },
     #[error("it has more than {limit} {what}; split it into several files")]
     TooMany { limit: u64, what: &'static str },
     #[error("its mesh {reason}; split it into several files")]
@@ -29,25 +29,26 @@ impl From<BuildError> for ReadError {
     }
 }
 
-/// Where in a file.
+/// A position in a file, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// From 1: of text.
+pub enum FilePosition {
+    /// The number of a line of text, from 1.
     Line(usize),
-    /// From 0: of what is no text.
+    /// The offset of a byte in a binary file, from 0.
     Byte(usize),
+    /// The file as a whole.
     Everywhere,
 }
 
-impl Place {
-    /// An error there.
-    pub fn fault(self, reason: impl Into<String>) -> ReadError {
+impl FilePosition {
+    /// Returns an error at this position.
+    pub fn error(self, reason: impl Into<String>) -> ReadError {
         ReadError::Broken { place: self, reason: reason.into() }
     }
 }
 
-/// As the start of a message.
-impl fmt::Display for Place {
+/// Writes the position as the start of a message.
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}: "),

@@ -1,4 +1,4 @@
-//! Where a mesh comes from: a shape made in code, or a file.
+//! The source of a mesh: a shape made in code, or a file.
 
 use std::ffi::OsString;
 use std::fmt;
@@ -11,14 +11,14 @@ use crate::files::Limits;
 use crate::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use crate::progress::Progress;
 
-/// What comes before a shape's name.
+/// The prefix of a shape's name.
 const SHAPE: &str = "shape:";
 
-/// A shape or a file. As text: `shape:torus`, `shape:torus@2`, or a path.
+/// A shape or a file. Its text form is `shape:torus`, `shape:torus@2`, or a path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
     Shape(Shape),
-    /// A shape that has levels, at one of 1 to [`MAX_LEVEL`]; at level 0 it is a `Shape`.
+    /// A shape with levels, at a level from 1 to [`MAX_LEVEL`]. At level 0 it is a `Shape`.
     FineShape(Shape, u32),
     File(PathBuf),
 }
@@ -30,10 +30,10 @@ impl Default for Source {
 }
 
 impl Source {
-    /// Builds the shape or reads the file, if it isn't larger than `limits` says.
+    /// Builds the shape, or loads the file within `limits`.
     ///
     /// # Errors
-    /// Those of [`load`]; a shape has none.
+    /// The same as [`load`]'s; a shape has none.
     pub fn load(&self, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, LoadError> {
         match self {
             Self::Shape(shape) => Ok(LoadedMesh { mesh: shape.build(), ..LoadedMesh::default() }),
@@ -42,7 +42,7 @@ impl Source {
         }
     }
 
-    /// A shape at a level that was written behind its name.
+    /// Returns a shape at the level that followed its name.
     fn at_level(shape: Shape, level: &str) -> Result<Self, ShapeError> {
         if !shape.has_levels() {
             return Err(ShapeError::NoLevels { shape });
@@ -54,7 +54,7 @@ impl Source {
         }
     }
 
-    /// The shape that it is or samples.
+    /// Returns the shape at any level; none for a file.
     pub fn shape(&self) -> Option<Shape> {
         match self {
             Self::Shape(shape) | Self::FineShape(shape, _) => Some(*shape),
@@ -62,7 +62,7 @@ impl Source {
         }
     }
 
-    /// A name for a window's title: the shape's, or the file's without its folder.
+    /// Returns a name for a window's title: the shape's name, or the file's name without its folder.
     pub fn title(&self) -> String {
         match self {
             Self::Shape(shape) => shape.title().to_owned(),
@@ -75,7 +75,7 @@ impl Source {
 impl TryFrom<OsString> for Source {
     type Error = ShapeError;
 
-    /// As from text, but a path may be in any encoding.
+    /// Parses the text form; unlike text, a path may have any encoding.
     fn try_from(text: OsString) -> Result<Self, ShapeError> {
         match text.to_str() {
             Some(text) => text.parse(),

@@ -1,19 +1,19 @@
-//! Text by lines and words: OBJ, MTL, and what is text of STL and PLY.
+//! Splits text into lines and words, for OBJ, MTL, and STL and PLY in text.
 
 use memchr::memchr;
 
-use super::read_error::{Place, ReadError};
+use super::read_error::{FilePosition, ReadError};
 
-/// The longest line, in bytes: a polygon of half a million corners.
+/// The greatest length of a line, in bytes: enough for a polygon of half a million corners.
 const MAX_LINE: usize = 1 << 22;
 
 /// The lines of a text, one after another.
 #[derive(Clone)]
 pub struct Lines<'a> {
     rest: &'a [u8],
-    /// What a line ends with.
+    /// The byte that ends a line.
     end: u8,
-    /// Of lines that have been read.
+    /// The number of lines that have been read.
     count: usize,
 }
 
@@ -21,26 +21,26 @@ pub struct Lines<'a> {
 #[derive(Clone, Copy)]
 pub struct Line<'a> {
     pub text: &'a [u8],
-    /// From 1.
+    /// The line's number, from 1.
     pub number: usize,
 }
 
 impl<'a> Lines<'a> {
-    /// Ends of lines are those of Unix or Windows; or of old Macs, where there are no others.
+    /// Splits lines as Unix, Windows or, in a text without `\n`, old Macs end them.
     pub fn new(bytes: &'a [u8]) -> Self {
         let end = if memchr(b'\n', bytes).is_some() { b'\n' } else { b'\r' };
         Self::ending(bytes, end)
     }
 
-    /// Lines that end with one byte or another. A byte order mark isn't part of the first.
+    /// Splits a text into lines that end with this byte. A byte order mark isn't part of the first line.
     pub fn ending(bytes: &'a [u8], end: u8) -> Self {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0 }
     }
 
-    /// The next line, if there is one.
+    /// Returns the next line, if there is one.
     ///
     /// # Errors
-    /// [`ReadError::Broken`] for one that is out of all proportion.
+    /// [`ReadError::Broken`] for a line that is longer than 4 MiB.
     pub fn next(&mut self) -> Result<Option<Line<'a>>, ReadError> {
         if self.rest.is_empty() {
             return Ok(None);
@@ -53,32 +53,32 @@ impl<'a> Lines<'a> {
         Ok(Some(Line { text: text.strip_suffix(b"\r").unwrap_or(text), number: self.count }))
     }
 
-    /// Whether a line, the one that was read last, may be so long.
+    /// Checks the length of the line that was read last, in bytes.
     ///
     /// # Errors
-    /// As [`next`](Self::next).
+    /// The same as [`next`](Self::next)'s.
     pub fn check(&self, length: usize) -> Result<(), ReadError> {
         if length <= MAX_LINE {
             return Ok(());
         }
-        let reason = format!("the line has {length} bytes, and at most {MAX_LINE} are read");
-        Err(Place::Line(self.count).fault(reason))
+        let reason = format!("the line has {length} bytes, but at most {MAX_LINE} are read");
+        Err(FilePosition::Line(self.count).error(reason))
     }
 
-    /// What hasn't been read.
+    /// Returns the text that hasn't been read.
     pub fn rest(&self) -> &'a [u8] {
         self.rest
     }
 
-    /// How many lines have been read.
+    /// Returns how many lines have been read.
     pub fn count(&self) -> usize {
         self.count
     }
 }
 
 impl<'a> Line<'a> {
-    pub fn place(&self) -> Place {
-        Place::Line(self.number)
+    pub fn place(&self) -> FilePosition {
+        FilePosition::Line(self.number)
     }
 
     pub fn words(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
@@ -86,36 +86,36 @@ impl<'a> Line<'a> {
     }
 }
 
-/// What stands between white space.
+/// Returns the words of a text, which are separated by white space.
 pub fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// The first word, and what follows it; both without white space around them.
+/// Returns the first word, and the rest after it; both without white space around them.
 pub fn first_word(text: &[u8]) -> (&[u8], &[u8]) {
     let text = text.trim_ascii();
     let length = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
     (&text[..length], text[length..].trim_ascii_start())
 }
 
-/// A number, or the reason why it is none.
+/// Parses a number, or returns why the word isn't one.
 pub fn number(word: &[u8]) -> Result<f32, String> {
     let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-    number.ok_or_else(|| format!("{} is no number", shown(word)))
+    number.ok_or_else(|| format!("{} isn't a number", shown(word)))
 }
 
-/// The first N words as numbers, of a statement of that name; more are left alone.
+/// Parses the first N words as the numbers of a statement of this name, and ignores further words.
 pub fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N], String> {
     let mut found = [0.0; N];
     let mut words = words(text);
     for (i, slot) in found.iter_mut().enumerate() {
-        let word = words.next().ok_or_else(|| format!("{name} needs {N} numbers, and there are {i}"))?;
+        let word = words.next().ok_or_else(|| format!("{name} needs {N} numbers, but has {i}"))?;
         *slot = number(word)?;
     }
     Ok(found)
 }
 
-/// A word fit for a message, in quotes.
+/// Returns the start of a word for a message, in quotes.
 pub fn shown(word: &[u8]) -> String {
     let start = String::from_utf8_lossy(&word[..word.len().min(160)]);
     let short: String = start.chars().take(40).collect();
@@ -159,8 +159,8 @@ mod tests {
         assert_eq!(first_word(b"\t usemtl  old  wood \r"), (&b"usemtl"[..], &b"old  wood"[..]));
         assert_eq!(first_word(b"  "), (&b""[..], &b""[..]));
         assert_eq!(numbers("v", b" 1\t-2.5e1 +.5 7"), Ok([1.0, -25.0, 0.5]));
-        assert_eq!(numbers::<3>("v", b"1 2"), Err("v needs 3 numbers, and there are 2".to_owned()));
-        assert_eq!(numbers::<1>("v", b"1,5"), Err("\"1,5\" is no number".to_owned()));
+        assert_eq!(numbers::<3>("v", b"1 2"), Err("v needs 3 numbers, but has 2".to_owned()));
+        assert_eq!(numbers::<1>("v", b"1,5"), Err("\"1,5\" isn't a number".to_owned()));
         assert_eq!(shown(&[0xff; 500]), format!("\"{}...\"", "\u{fffd}".repeat(40)));
     }
 }

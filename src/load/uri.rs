@@ -1,4 +1,4 @@
-//! URIs of buffers and images: data in the document itself, or files next to it.
+//! Reads the URIs of buffers and images: data in the document itself, or files next to it.
 
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -15,17 +15,17 @@ use crate::mesh::MemoryAccount;
 use crate::names::{on_one_line, shown_path};
 use crate::progress::Progress;
 
-/// The largest data URI, in bytes that it stands for.
+/// The greatest size of a data URI, in bytes of decoded data.
 const MAX_DATA: usize = 512 << 20;
 
-/// The files that a document may name.
+/// Reads the files that a document names.
 pub struct Files<'a> {
-    /// Where the document lies.
+    /// The document's folder.
     folder: &'a Path,
     limits: &'a Limits,
     budget: &'a Budget,
     progress: &'a Progress,
-    /// Those that have brought their allowance.
+    /// The files that have been added to the budget.
     counted: RefCell<HashSet<PathBuf>>,
 }
 
@@ -34,13 +34,13 @@ impl<'a> Files<'a> {
         Self { folder, limits, budget, progress, counted: RefCell::default() }
     }
 
-    /// The bytes that a URI stands for, kept until the end or not.
+    /// Reads the bytes that a URI stands for. Their memory is held if `is_kept`, and borrowed otherwise.
     ///
-    /// Files must lie in the document's folder or below it, also after links are followed: a model can't make the program
-    /// read anything else.
+    /// Files must lie in the document's folder or below it, also after links are resolved, so that a model can't make
+    /// the program read other files.
     ///
     /// # Errors
-    /// A clause that says what is wrong, and what to do.
+    /// A clause that says what is wrong and what to do.
     pub fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
         let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
         if let Some(data) = strip_scheme(uri, "data:") {
@@ -48,9 +48,9 @@ impl<'a> Files<'a> {
             return read_data(data, MAX_DATA);
         }
         let path = self.found(&relative_path(uri)?)?;
-        // What is too large is refused by its name and size, whatever memory there is.
+        // A file that is too large is refused by the limit on files, even if memory is short too.
         let bytes = path.metadata().map_or(0, |about| about.len()).min(self.limits.file);
-        // A file that is named a thousand times brings what it allows once.
+        // A file that is named many times adds to the budget once.
         if self.counted.borrow_mut().insert(path.clone()) {
             self.budget.allow(bytes);
         }
@@ -58,21 +58,21 @@ impl<'a> Files<'a> {
         read_file(&path, self.limits, |_| Ok(()), self.progress).map_err(|error: FileError| error.to_string())
     }
 
-    /// Those that were read, in order of their names.
+    /// Returns the files that were read, sorted by name.
     pub fn named(&self) -> Vec<PathBuf> {
         let mut named: Vec<_> = self.counted.borrow().iter().cloned().collect();
         named.sort();
         named
     }
 
-    /// The file itself, wherever links lead.
+    /// Returns the path of the file itself, with links resolved.
     fn found(&self, relative: &Path) -> Result<PathBuf, String> {
         let missing = |path: &Path, error: std::io::Error| {
             let reason = match error.kind() {
-                ErrorKind::NotFound => "it is not there".to_owned(),
+                ErrorKind::NotFound => "there is no such file".to_owned(),
                 _ => error.to_string(),
             };
-            format!("{}: {reason}; put the file where the document says, or export as .glb", shown_path(path))
+            format!("{}: {reason}; put it where the document names it, or export as .glb", shown_path(path))
         };
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { self.folder };
         let path = folder.join(relative);
@@ -80,7 +80,8 @@ impl<'a> Files<'a> {
         let root = folder.canonicalize().map_err(|error| missing(folder, error))?;
         if !real.starts_with(&root) {
             return Err(format!(
-                "{} is a link out of the document's folder, and only files below that are read; put the file itself there",
+                "{} is a link to a file outside the document's folder, but only files in that folder and below are read; \
+                 put the file itself there",
                 shown_path(&path)
             ));
         }
@@ -92,15 +93,15 @@ impl<'a> Files<'a> {
     }
 }
 
-/// A URI fit for a message: data URIs are long.
+/// Returns the start of a URI for a message; data URIs are long.
 pub fn shown(uri: &str) -> String {
     let (start, rest) = uri.split_at(uri.char_indices().nth(60).map_or(uri.len(), |(i, _)| i));
-    // On one line, whatever it is.
+    // Without control characters.
     let start = on_one_line(start);
     if rest.is_empty() { start } else { format!("{start}...") }
 }
 
-/// What follows a scheme, which may be written in either case.
+/// Returns what follows a scheme, in upper or lower case.
 fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
     let (start, rest) = uri.split_at_checked(scheme.len())?;
     start.eq_ignore_ascii_case(scheme).then_some(rest)
@@ -111,19 +112,19 @@ fn read_data(data: &str, limit: usize) -> Result<Vec<u8>, String> {
     let is_base64 = header.ends_with(";base64");
     let size = if is_base64 { body.len() / 4 * 3 } else { body.len() };
     if size > limit {
-        return Err(format!("the data URI holds {size} bytes, and {limit} are read at most; export as .glb"));
+        return Err(format!("the data URI holds {size} bytes, but at most {limit} are read; export as .glb"));
     }
     if is_base64 { base64(body) } else { Ok(percent_decoded(body)) }
 }
 
-/// A path without anything in it that could lead elsewhere, on any system.
+/// Returns a URI as a relative path that can't lead outside its folder, on any system.
 fn relative_path(uri: &str) -> Result<PathBuf, String> {
     let refused = |reason: &str| Err(format!("{reason}; only files in the document's folder and below are read"));
     let Ok(decoded) = String::from_utf8(percent_decoded(uri)) else {
         return Err("its name is not UTF-8 once its % signs are decoded; rename the file".to_owned());
     };
     let mut parts = decoded.split('/');
-    // A scheme ends at a colon before any slash, a drive of Windows does, and so does a file that hides behind another.
+    // A colon before any slash ends a scheme, a Windows drive, or the name of a file with a hidden stream.
     match parts.next() {
         Some(first) if first.contains(':') => {
             return refused(&format!("it names another place, with {}:", shown(first.split(':').next().unwrap_or(""))));
@@ -135,7 +136,7 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
         return Err("its name is empty; export the model again".to_owned());
     }
     if decoded.contains('\\') {
-        return refused("it has a backslash, where a URI has /");
+        return refused("it has a backslash instead of a /");
     }
     if decoded.contains(char::is_control) {
         return refused("it has a control character");
@@ -151,7 +152,7 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
     if path.components().all(inside) { Ok(path) } else { refused("it leads elsewhere") }
 }
 
-/// %XX as the byte it stands for; a % that no two hexadecimal digits follow stays.
+/// Decodes %XX. A % that isn't followed by two hexadecimal digits stays.
 fn percent_decoded(text: &str) -> Vec<u8> {
     let digit = |byte: &u8| char::from(*byte).to_digit(16);
     let mut decoded = Vec::with_capacity(text.len());
@@ -170,7 +171,7 @@ fn percent_decoded(text: &str) -> Vec<u8> {
     decoded
 }
 
-/// RFC 4648, section 4, without the checks of how the text ends.
+/// Base64 by RFC 4648, section 4, without the checks of how the text ends.
 const FORGIVING: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new()
@@ -178,10 +179,10 @@ const FORGIVING: GeneralPurpose = GeneralPurpose::new(
         .with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
-/// Digits that are decoded at once, a multiple of 4: so much more memory than the bytes is used, and no more.
+/// The number of digits that are decoded at once, a multiple of 4, which limits the additional memory.
 const DIGITS: usize = 4096;
 
-/// Base64 as bytes; line breaks and missing padding are forgiven, and what follows the padding is left out.
+/// Decodes base64. Line breaks are ignored, padding may be missing, and text after the padding is left out.
 fn base64(text: &str) -> Result<Vec<u8>, String> {
     let wrong = |byte| format!("the data URI has a character that isn't base64, {byte:?}; export the model again");
     let mut decoded = Vec::with_capacity(text.len() / 4 * 3);
@@ -194,7 +195,7 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
         if let Some(&byte) = block.iter().find(|&&byte| !STANDARD.as_str().as_bytes().contains(&byte)) {
             return Err(wrong(char::from(byte)));
         }
-        // A last digit alone is no byte yet.
+        // A single digit at the end isn't a whole byte.
         if block.len() % 4 == 1 {
             block.pop();
         }
@@ -258,7 +259,7 @@ mod tests {
     fn data_has_a_limit() {
         assert_eq!(read_data("application/octet-stream;base64,Zm9v", 3), Ok(b"foo".to_vec()));
         let said = read_data(";base64,Zm9vZm9v", 5).unwrap_err();
-        assert!(said.contains("holds 6 bytes, and 5 are read at most"), "{said}");
+        assert!(said.contains("holds 6 bytes, but at most 5 are read"), "{said}");
         assert_eq!(read_data(",a%20b", 5), Ok(b"a b".to_vec()));
         assert!(read_data(";base64Zm9v", 5).unwrap_err().contains("no comma"));
     }

@@ -1,32 +1,37 @@
-//! Warnings about a mesh that was read or changed, in sentences for people.
+//! Warnings about a mesh that was loaded or changed, as sentences.
 
-use crate::mesh::rim::Rim;
+use crate::mesh::crease_band::CreaseBand;
 use crate::mesh::{Heights, Mesh, Repairs};
 
-/// Warnings about corners that were repaired. Normals that were made are none: files may leave them out on purpose.
+/// Returns warnings about corners that were repaired. Normals that were missing don't cause one here, since files may
+/// leave them out on purpose.
 pub fn repair_warnings(repairs: &Repairs) -> Vec<String> {
     let sentences = [
-        (repairs.normals_replaced, "normals of no direction, replaced by ones that are smooth within 60 degrees"),
-        (repairs.normals_rescaled, "normals whose length isn't 1, brought to it"),
+        (repairs.normals_replaced, "normals without a direction, replaced by ones that are smooth within 60 degrees"),
+        (repairs.normals_rescaled, "normals whose length wasn't 1, scaled to it"),
         (repairs.denormals, "positions with coordinates too small for some devices (below 1.2e-38), set to 0"),
     ];
     let found = sentences.into_iter().filter(|(count, _)| *count > 0);
     found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect()
 }
 
-/// Warnings about a rim along creases: that there is no crease, or that it is narrower than asked for in places.
-pub fn rim_warnings(rim: &Rim) -> Vec<String> {
+/// Returns warnings about a crease band: that the mesh has no crease, or that the band is narrower than requested in places.
+pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
     let mut warnings = Vec::new();
-    if rim.creases == 0 {
-        warnings.push("no edge has split normals, so there is no crease for a rim.".to_owned());
+    if band.creases == 0 {
+        warnings.push("no edge has split normals, so no crease band was made.".to_owned());
     }
-    if rim.narrowed > 0 {
-        warnings.push(format!("edges and triangles too small for all of the rim's width: {}.", rim.narrowed));
+    if band.narrowed > 0 {
+        warnings.push(format!(
+            "edges and triangles too small for the full width of the crease band, which is narrower there: {}.",
+            band.narrowed
+        ));
     }
     warnings
 }
 
-/// A warning about triangles whose corners all have one texture coordinate: heights move each of them as a whole.
+/// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a
+/// triangle as a whole.
 pub fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
     let mut count = 0;
     for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
@@ -54,8 +59,8 @@ mod tests {
     }
 
     #[test]
-    fn a_rim_without_creases_or_without_room_is_warned_of() {
-        let of = |creases, narrowed| rim_warnings(&Rim { width: 0.1, creases, narrowed }).len();
+    fn crease_bands_without_creases_or_room_cause_warnings() {
+        let of = |creases, narrowed| crease_band_warnings(&CreaseBand { width: 0.1, creases, narrowed }).len();
         assert_eq!([of(0, 0), of(5, 0), of(5, 7)], [1, 0, 1]);
     }
 

@@ -1,4 +1,4 @@
-//! Index buffers for PN-AEN: each patch with its neighbours' corners.
+//! Index buffers for PN-AEN: the corners of each patch and of its neighbours.
 //!
 //! The nine-index patch is that of McDonald and Kilgard 2010, "Crack-Free Point-Normal Triangles using Adjacent Edge
 //! Normals". Its first three indices are the mesh's own index buffer; the other six can be kept in a buffer of their own,
@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use super::topology::{Patch, Side, Topology};
 
-/// Which indices a patch has.
+/// How many indices a patch has, and which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
     /// What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0
@@ -34,12 +34,12 @@ pub enum Part {
 impl Layout {
     pub const ALL: [Self; 3] = [Self::Six, Self::Nine, Self::Twelve];
 
-    /// The number of indices a patch.
+    /// The number of indices of each patch.
     pub fn per_patch(self) -> usize {
         self.of_twelve().len()
     }
 
-    /// Which of a patch's twelve.
+    /// Returns which of a patch's twelve indices belong to this layout.
     fn of_twelve(self) -> Range<usize> {
         match self {
             Self::Six => 3..9,
@@ -48,20 +48,20 @@ impl Layout {
         }
     }
 
-    /// The indices of every patch, in the order of the patches.
+    /// Returns the indices of all patches, in the order of the patches.
     pub fn indices(self, topology: &Topology) -> Vec<u32> {
         let (per_patch, of_twelve) = (self.per_patch(), self.of_twelve());
         let mut indices = Vec::with_capacity(per_patch * topology.patches.len());
         for patch in &topology.patches {
             indices.extend_from_slice(&alone(topology, patch)[of_twelve.clone()]);
         }
-        // Edge by edge: sides lie in a row, and only what is exchanged is as far apart as the patches. To ask each patch for
-        // its neighbours is several times slower where triangles come in no order.
+        // Goes through the edges, not the patches: an edge's sides are neighbours in memory. Looking up each patch's
+        // neighbours is several times slower if the triangles are in random order.
         let place = |side: &Side| per_patch * side.patch() as usize + pair(side.index()).start - of_twelve.start;
-        // Where both have the same corners, each has the other's already.
+        // Two sides with the same corners have each other's indices already.
         for edge in topology.edges.iter().filter(|edge| !edge.shares_corners) {
             if let [a, b] = topology.edge_sides(edge) {
-                // Each has its own there till now.
+                // Until now, each side has its own corners there.
                 let (first, second) = (place(a), place(b));
                 let opposed = usize::from(a.reversed() != b.reversed());
                 indices.swap(first, second + opposed);
@@ -71,7 +71,7 @@ impl Layout {
         indices
     }
 
-    /// The parts of a patch, and where among its indices they are.
+    /// Returns the parts of a patch's indices, and where each lies among them.
     pub fn parts(self) -> impl Iterator<Item = (Part, Range<usize>)> {
         let first = pair(0).start - self.of_twelve().start;
         let corners = (self != Self::Six).then_some((Part::Corners, 0..3));
@@ -81,22 +81,23 @@ impl Layout {
     }
 }
 
-/// A patch's corners 0, 1, 2, then its neighbours' corners along the sides 0-1, 1-2 and 2-0, each pair in the patch's own
-/// direction: the first lies on the point of corner 0, the second on that of corner 1, the third on that of corner 1, and
-/// so on. Where there is no single neighbour (a boundary, or three sides and more) the patch's own corners stand in.
+/// Returns the three corners of a patch, followed by its neighbours' corners along the sides 0-1, 1-2 and 2-0. Each
+/// pair is in the patch's own direction: the first corner of the first pair lies on the point of corner 0, the second
+/// on the point of corner 1, and so on. On an edge with one side, or with three or more, the pair holds the patch's own
+/// corners.
 ///
 /// # Panics
-/// When `patch` isn't an index into [`Topology::patches`].
+/// If `patch` isn't an index into [`Topology::patches`].
 pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
     let [nine @ .., _, _, _] = twelve(topology, patch);
     nine
 }
 
-/// The nine of [`nine`], then the dominant corner of corners 0, 1 and 2: the lowest corner on the same point, which is
-/// the same for every patch around it.
+/// Returns the nine indices of [`nine`], followed by the dominant corners on the points of corners 0, 1 and 2. A
+/// point's dominant corner is the lowest one on it, so that all patches around the point agree.
 ///
 /// # Panics
-/// When `patch` isn't an index into [`Topology::patches`].
+/// If `patch` isn't an index into [`Topology::patches`].
 pub fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
     let patch = &topology.patches[patch as usize];
     let mut indices = alone(topology, patch);
@@ -108,7 +109,7 @@ pub fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
     indices
 }
 
-/// The twelve of a patch as if it had no neighbours.
+/// Returns the twelve indices that a patch without neighbours would have.
 fn alone(topology: &Topology, patch: &Patch) -> [u32; 12] {
     let corners = topology.corners(patch);
     let [a, b, c] = corners;
@@ -119,12 +120,13 @@ fn alone(topology: &Topology, patch: &Patch) -> [u32; 12] {
     [a, b, c, a, b, b, c, c, a, d, e, f]
 }
 
-/// Where the neighbour's corners along side k are among the twelve.
+/// Returns the place among the twelve indices of the neighbour's corners along side k.
 fn pair(k: usize) -> Range<usize> {
     3 + 2 * k..5 + 2 * k
 }
 
-/// The corners that the one other patch has along a side (an index into [`Topology::sides`]).
+/// Returns the other patch's corners along a side (an index into [`Topology::sides`]), in the side's own direction.
+/// Returns none unless its edge has exactly two sides.
 fn neighbour(topology: &Topology, own: u32) -> Option<[u32; 2]> {
     let side = &topology.sides[own as usize];
     let range = topology.side_range(&topology.edges[side.edge as usize]);
@@ -135,7 +137,7 @@ fn neighbour(topology: &Topology, own: u32) -> Option<[u32; 2]> {
     Some(across(topology, side, &topology.sides[other as usize]))
 }
 
-/// The other side's corners in a side's own direction.
+/// Returns the corners of `other` in the direction of `own`.
 fn across(topology: &Topology, own: &Side, other: &Side) -> [u32; 2] {
     let [a, b] = topology.side_corners(other);
     if own.reversed() { [b, a] } else { [a, b] }
@@ -159,7 +161,7 @@ mod tests {
         topology
     }
 
-    /// A square of two triangles, each with corners of its own.
+    /// A square of two triangles that share no corners.
     fn square() -> Mesh {
         let at = |x: f32, y: f32, n: Vec3| Corner { position: Vec3::new(x, y, 0.0), normal: n, uv: Vec2::ZERO };
         let one = [at(0.0, 0.0, Vec3::Z), at(1.0, 0.0, Vec3::Z), at(1.0, 1.0, Vec3::Z)];
@@ -220,8 +222,8 @@ mod tests {
         }
     }
 
-    /// meshoptimizer as a peer. (It knows only neighbours that run the edge the other way, so the Möbius strip's join
-    /// is not for it.)
+    /// Compares with meshoptimizer. It only recognises neighbours that use the edge in the opposite direction, so the
+    /// edge where the Möbius strip's ends meet is left out.
     #[test]
     fn meshoptimizer_writes_the_same_twelve() {
         for shape in Shape::ALL.into_iter().filter(|shape| *shape != Shape::Moebius) {

@@ -1,10 +1,11 @@
-//! How large a mesh is and where it lies.
+//! The size and position of a mesh.
 
 use glam::Vec3;
 
 use super::Mesh;
 
-/// An axis-aligned box around corners, in object units, and the sphere around the box's centre that holds them all.
+/// An axis-aligned bounding box, in object units, and the radius of a sphere around its centre that contains all
+/// corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     pub min: Vec3,
@@ -13,7 +14,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds of some positions; all zero when there are none.
+    /// Returns the bounds of some positions, or all zeros if there are none.
     pub fn of(positions: impl Iterator<Item = Vec3> + Clone) -> Self {
         let around = |(min, max): (Vec3, Vec3), p: Vec3| (min.min(p), max.max(p));
         let start = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -22,40 +23,42 @@ impl Bounds {
             return Self::default();
         }
         let center = min * 0.5 + max * 0.5;
-        // In f64: squares of very small or large lengths leave f32.
+        // In f64, since the squares of very small or large lengths leave f32.
         let radius = positions.map(|p| p.as_dvec3().distance(center.as_dvec3())).fold(0.0, f64::max) as f32;
         Self { min, max, radius }
     }
 
-    /// The middle of the box.
+    /// Returns the centre of the box.
     pub fn center(&self) -> Vec3 {
-        // Halved first: the sum of two large coordinates could overflow.
+        // Each term is halved first: the sum of two large coordinates could overflow.
         self.min * 0.5 + self.max * 0.5
     }
 
-    /// The length of the box's diagonal.
+    /// Returns the length of the box's diagonal.
     pub fn diagonal(&self) -> f32 {
         self.min.as_dvec3().distance(self.max.as_dvec3()) as f32
     }
 
-    /// The same with room for everything in it to move by so many object units.
+    /// Returns bounds that hold everything in these after it has moved by up to `by` object units.
     pub fn grown(&self, by: f32) -> Self {
         Self { min: self.min - by, max: self.max + by, radius: self.radius + by }
     }
 
-    /// A length relative to the diagonal, in object units. In f64: the diagonal itself may leave f32.
+    /// Returns a length relative to the diagonal, in object units. The result is an f64, since the diagonal itself may
+    /// leave f32.
     pub(super) fn part(&self, relative: f64) -> f64 {
         relative * self.min.as_dvec3().distance(self.max.as_dvec3())
     }
 
-    /// The greatest distance of a corner from [`center`](Self::center): at most half the diagonal, often less.
+    /// Returns the greatest distance of a corner from [`center`](Self::center): at most half of the diagonal, often
+    /// less.
     pub fn radius(&self) -> f32 {
         self.radius
     }
 }
 
 impl Mesh {
-    /// The bounds of all corners; zero for an empty mesh.
+    /// Returns the bounds of all corners, or all zeros for an empty mesh.
     pub fn bounds(&self) -> Bounds {
         Bounds::of(self.corners.iter().map(|corner| corner.position))
     }

@@ -1,13 +1,14 @@
-//! What limits the building of a mesh: its number of triangles, and memory, which is asked for before it is taken, so that
-//! whoever loads files can refuse what is too much.
+//! Limits on building a mesh: the number of triangles, and memory. Code that builds a mesh asks for memory before it
+//! allocates, so that a loader can refuse a file that needs too much.
 
 use crate::progress::Cancelled;
 
-/// The most triangles that a mesh may have: its sides, two for each corner, are numbered in 32 bits (see [`super::Side`]).
+/// The greatest number of triangles of a mesh. Its sides are numbered with two bits of extra information each, which
+/// must fit into 32 bits (see [`super::Side`]).
 pub const MAX_TRIANGLES: u64 = 1 << 27;
 const _: () = assert!(6 * MAX_TRIANGLES <= 1 << 32);
 
-/// Why a mesh, or something made of one, was not finished.
+/// Why a mesh, or something that is made from one, could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
     #[error(transparent)]
@@ -21,14 +22,14 @@ pub enum BuildError {
 /// A request for memory that was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "would take at least {} MiB of memory, and files of this size may take {} (--max-memory allows more)",
+    "would take at least {} MiB of memory, but files of this size may take only {} (--max-memory allows more)",
     needed.div_ceil(1 << 20),
     size_text(*allowed)
 )]
 pub struct MemoryRefused {
-    /// What would be in use with the request granted, in bytes.
+    /// The bytes that would be in use if the request were granted.
     pub needed: u64,
-    /// What may be in use, in bytes.
+    /// The bytes that may be in use.
     pub allowed: u64,
 }
 
@@ -42,31 +43,31 @@ impl From<MemoryRefused> for String {
     }
 }
 
-/// Counts bytes that are about to be taken, and refuses what is too much. Held memory stays in use; borrowed memory is
-/// given back soon, all at once.
+/// An account of memory, in bytes, that is asked before each allocation and refuses what is too much. Memory that is
+/// *held* stays in use; memory that is *borrowed* is returned soon, all at once.
 pub trait MemoryAccount {
-    /// Takes memory that stays in use, until it is [released](Self::release).
+    /// Asks for memory that stays in use until it is [released](Self::release).
     ///
     /// # Errors
     /// [`MemoryRefused`].
     fn hold(&self, bytes: u64) -> Result<(), MemoryRefused>;
 
-    /// Gives back memory that was held.
+    /// Returns memory that was held.
     fn release(&self, bytes: u64);
 
-    /// Takes memory that is given back by [`give_back_to`](Self::give_back_to).
+    /// Asks for memory that [`give_back_to`](Self::give_back_to) returns.
     ///
     /// # Errors
     /// [`MemoryRefused`].
     fn borrow(&self, bytes: u64) -> Result<(), MemoryRefused>;
 
-    /// Bytes that are borrowed now.
+    /// Returns how many bytes are borrowed now.
     fn borrowed(&self) -> u64;
 
-    /// Gives back what was borrowed beyond `borrowed` bytes.
+    /// Returns all borrowed memory but the given number of bytes.
     fn give_back_to(&self, borrowed: u64);
 
-    /// Holds `new` bytes in place of `old` ones; for a moment both are in use.
+    /// Holds `new` bytes in place of `old` ones. Both are in use for a moment.
     ///
     /// # Errors
     /// [`MemoryRefused`].
@@ -77,7 +78,7 @@ pub trait MemoryAccount {
     }
 }
 
-/// Refuses nothing: for meshes that no file asks for.
+/// An account that refuses nothing, for meshes whose size no file determines.
 pub struct Unlimited;
 
 impl MemoryAccount for Unlimited {

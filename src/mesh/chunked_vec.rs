@@ -1,34 +1,35 @@
-//! A list that grows without being copied: its end is elsewhere now and then.
+//! A list of chunks that grows without copying its items.
 
-/// The most items that lie in one piece.
-const RUN: usize = 1 << 14;
+/// The greatest number of items in a chunk.
+const MAX_CHUNK: usize = 1 << 14;
 
+/// A list that allocates a new chunk when it grows, so that its items stay where they are.
 pub struct ChunkedVec<T> {
-    /// All but the last are full.
-    runs: Vec<Vec<T>>,
+    /// All chunks but the last are full.
+    chunks: Vec<Vec<T>>,
     count: usize,
 }
 
 impl<T> Default for ChunkedVec<T> {
     fn default() -> Self {
-        Self { runs: Vec::new(), count: 0 }
+        Self { chunks: Vec::new(), count: 0 }
     }
 }
 
 impl<T> ChunkedVec<T> {
     pub fn push(&mut self, item: T) {
-        if self.count.is_multiple_of(RUN) {
-            // Most lists are short.
-            self.runs.push(if self.count == 0 { Vec::new() } else { Vec::with_capacity(RUN) });
+        if self.count.is_multiple_of(MAX_CHUNK) {
+            // The first chunk grows from nothing, since most lists are short.
+            self.chunks.push(if self.count == 0 { Vec::new() } else { Vec::with_capacity(MAX_CHUNK) });
         }
-        if let Some(run) = self.runs.last_mut() {
-            run.push(item);
+        if let Some(chunk) = self.chunks.last_mut() {
+            chunk.push(item);
         }
         self.count += 1;
     }
 
     pub fn get(&self, i: usize) -> Option<&T> {
-        self.runs.get(i / RUN)?.get(i % RUN)
+        self.chunks.get(i / MAX_CHUNK)?.get(i % MAX_CHUNK)
     }
 
     pub fn len(&self) -> usize {
@@ -39,14 +40,14 @@ impl<T> ChunkedVec<T> {
         self.count == 0
     }
 
-    /// What it takes, in bytes.
+    /// Returns the size of the chunks, in bytes.
     pub fn bytes(&self) -> u64 {
-        (self.runs.len() * RUN * size_of::<T>()) as u64
+        (self.chunks.len() * MAX_CHUNK * size_of::<T>()) as u64
     }
 
-    /// The bytes that the next item takes beyond those that are taken.
+    /// Returns how many bytes the next [`push`](Self::push) allocates.
     pub fn next_bytes(&self) -> u64 {
-        if self.count.is_multiple_of(RUN) { (RUN * size_of::<T>()) as u64 } else { 0 }
+        if self.count.is_multiple_of(MAX_CHUNK) { (MAX_CHUNK * size_of::<T>()) as u64 } else { 0 }
     }
 }
 
@@ -55,7 +56,7 @@ impl<T> IntoIterator for ChunkedVec<T> {
     type IntoIter = std::iter::Flatten<std::vec::IntoIter<Vec<T>>>;
 
     fn into_iter(self) -> Self::IntoIter {
-        self.runs.into_iter().flatten()
+        self.chunks.into_iter().flatten()
     }
 }
 
@@ -65,13 +66,13 @@ mod tests {
 
     #[test]
     fn items_stay_in_order_and_in_place() {
-        let mut runs = ChunkedVec::default();
-        for i in 0..3 * RUN + 5 {
-            assert_eq!((runs.len(), runs.next_bytes() > 0), (i, i % RUN == 0));
-            runs.push(i);
+        let mut chunks = ChunkedVec::default();
+        for i in 0..3 * MAX_CHUNK + 5 {
+            assert_eq!((chunks.len(), chunks.next_bytes() > 0), (i, i % MAX_CHUNK == 0));
+            chunks.push(i);
         }
-        assert!([0, RUN - 1, RUN, 3 * RUN + 4].iter().all(|i| runs.get(*i) == Some(i)));
-        assert_eq!(runs.get(3 * RUN + 5), None);
-        assert!(runs.into_iter().eq(0..3 * RUN + 5));
+        assert!([0, MAX_CHUNK - 1, MAX_CHUNK, 3 * MAX_CHUNK + 4].iter().all(|i| chunks.get(*i) == Some(i)));
+        assert_eq!(chunks.get(3 * MAX_CHUNK + 5), None);
+        assert!(chunks.into_iter().eq(0..3 * MAX_CHUNK + 5));
     }
 }

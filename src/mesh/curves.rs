@@ -1,56 +1,59 @@
-//! Curves: which sides of an edge share control points. What a set of sides shares is computed once, in the edge's own
-//! direction, so that they agree to the last bit. As published, nothing is shared: every side has a curve of its own.
+//! Curves: the control points of edges, and which sides of an edge share them. Shared control points are computed once,
+//! in the edge's own direction, so that all sides agree to the last bit. In the published algorithms nothing is shared,
+//! and each side has a curve of its own.
 
 use super::{Edge, Mesh, Topology};
 
 /// Which sides of an edge share a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sharing {
-    /// All of them: flat dicing, and PN-AEN, whose control points are the mean over the sides.
+    /// All sides share one: flat dicing, and PN-AEN, whose control points are the mean over the sides.
     AllSides,
-    /// Those with equal normals at both ends: PN, which lets the others tear apart.
+    /// Sides with equal normals at both ends share one: PN triangles, which tear where normals differ.
     EqualNormals,
-    /// None: every side has its own curve in its patch's direction, with its own proposal, as shaders without adjacency
-    /// compute it.
+    /// No sides share one. Each side has a curve in its patch's direction, with control points from its own corners, as
+    /// shaders without adjacency compute it.
     None,
-    /// None, but a side averages its proposal with the one neighbour's, as the PN-AEN white paper's shader does from a
-    /// patch's nine indices (see [`super::adjacency::nine`]).
+    /// No sides share one, but each side averages its control points with those of its one neighbour, as the shader in
+    /// the PN-AEN white paper does with a patch's nine indices (see [`super::adjacency::nine`]).
     NoneAveraged,
 }
 
 impl Sharing {
-    /// Whether every side has a curve, and a factor, of its own.
+    /// Returns whether each side has a curve and a tessellation factor of its own.
     pub fn is_per_patch(self) -> bool {
         matches!(self, Self::None | Self::NoneAveraged)
     }
 }
 
-/// One set of sides of one edge.
+/// The sides of an edge that share control points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Curve {
-    /// End points, in the curve's direction: the edge's, or the patch's where nothing is shared.
+    /// The end points, in the curve's direction: the edge's direction, or the patch's if nothing is shared.
     pub points: [u32; 2],
-    /// Its run of [`Curves::sides`].
+    /// Where this curve's part of [`Curves::sides`] starts.
     pub first_side: u32,
     pub side_count: u32,
 }
 
-/// Every edge's curves.
+/// The curves of all edges.
 #[derive(Clone, Debug, Default)]
 pub struct Curves {
     pub curves: Vec<Curve>,
-    /// Corners at the start and the end of each curve's sides, in the curve's direction.
+    /// For each side that a curve's control points are computed from, its corners at the start and the end of the
+    /// curve.
     pub sides: Vec<[u32; 2]>,
-    /// Factor f is asked for by curves `factor_curves[f]..factor_curves[f + 1]`. There is one factor an edge; or where
-    /// nothing is shared, one a side.
+    /// Factor f is the factor of the curves `factor_curves[f]..factor_curves[f + 1]`. There is one factor for each
+    /// edge, or for each side if nothing is shared.
     pub factor_curves: Vec<u32>,
-    /// The curve of each side of the topology.
+    /// For each side of the topology, its curve.
     pub side_curves: Vec<u32>,
     per_patch: bool,
 }
 
 impl Curves {
-    /// Groups the sides of every edge. Linear in sides, but for edges with many.
+    /// Groups the sides of every edge into curves. Takes time linear in the number of sides, except for edges with many
+    /// sides.
     pub fn build(mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Self {
         let per_patch = sharing.is_per_patch();
         let mut curves = Curves { side_curves: vec![0; topology.sides.len()], per_patch, ..Curves::default() };
@@ -73,22 +76,23 @@ impl Curves {
         curves
     }
 
-    /// Whether a side (an index into [`Topology::sides`]) runs against its curve.
+    /// Returns whether a side (an index into [`Topology::sides`]) has the direction opposite to its curve's.
     pub fn runs_against(&self, topology: &Topology, side: u32) -> bool {
         !self.per_patch && topology.sides[side as usize].reversed()
     }
 
-    /// Which factor a side has.
+    /// Returns the index of a side's factor.
     pub fn factor(&self, topology: &Topology, side: u32) -> u32 {
         if self.per_patch { self.side_curves[side as usize] } else { topology.sides[side as usize].edge }
     }
 
-    /// How many factors there are.
+    /// Returns the number of factors.
     pub fn factor_count(&self) -> u32 {
         self.factor_curves.len() as u32 - 1
     }
 
-    /// A curve in the edge's direction for the sides `all`, of whom `asked` propose its control points.
+    /// Adds a curve in the edge's direction for the sides `all`. Its control points are computed from the sides
+    /// `asked`.
     fn push_shared(
         &mut self,
         topology: &Topology,
@@ -109,18 +113,19 @@ impl Curves {
         let mut sides: Vec<u32> = topology.side_range(edge).collect();
         sides.sort_by_key(|&side| normals(side));
         for group in sides.chunk_by(|&x, &y| normals(x) == normals(y)) {
-            // Equal normals propose equal control points: the first side speaks for all.
+            // Equal normals give equal control points, so the first side is enough.
             self.push_shared(topology, edge, group[..1].iter().copied(), group.iter().copied());
         }
     }
 
-    /// A curve for each side, in its patch's direction, and a factor for each.
+    /// Adds a curve and a factor for each side, in its patch's direction.
     fn push_own(&mut self, topology: &Topology, edge: &Edge, averaged: bool) {
         let sides = topology.side_range(edge);
         for side in sides.clone() {
             let reversed = topology.sides[side as usize].reversed();
             let turned = |[a, b]: [u32; 2]| if reversed { [b, a] } else { [a, b] };
-            // The only other side, if there is just one; the paper's shader adds it to its own proposal.
+            // The other side, if there is exactly one: the shader in the white paper averages its control points with
+            // these.
             let other = (averaged && sides.len() == 2).then(|| sides.start + sides.start + 1 - side);
             let asked = std::iter::once(side).chain(other);
             self.factor_curves.push(self.curves.len() as u32);
@@ -145,10 +150,10 @@ mod tests {
     use crate::progress::Progress;
 
     #[test]
-    fn as_published_each_side_asks_for_what_the_nine_indices_hold() {
+    fn as_published_each_side_uses_its_nine_indices() {
         for shape in Shape::ALL {
             let mesh = shape.build();
-            let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+            let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
             let curves = Curves::build(&mesh, &topology, Sharing::NoneAveraged);
             assert_eq!(
                 (curves.curves.len(), curves.factor_count() as usize),
@@ -174,7 +179,7 @@ mod tests {
     #[test]
     fn shared_curves_run_as_their_edge_does() {
         let mesh = Shape::CubeSplit.build();
-        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
         for (sharing, curves_per_split_edge) in [(Sharing::AllSides, 1), (Sharing::EqualNormals, 2), (Sharing::None, 2)]
         {
             let curves = Curves::build(&mesh, &topology, sharing);

@@ -1,21 +1,22 @@
-//! Dominance: which side speaks for an edge, and which corner for a point, where those that meet there disagree on texture
-//! coordinates (McDonald 2011, *Tessellation on Any Budget*: dominant edges and dominant vertices). And in what parts
-//! corners have a say in the one direction that a point is displaced in.
+//! Dominance: which side of an edge, and which corner on a point, all patches around it use where texture coordinates
+//! differ (McDonald 2011, *Tessellation on Any Budget*: dominant edges and dominant vertices). Also the weights of the
+//! corners on a point in the direction in which the point is displaced.
 
 use super::{Curves, Topology};
 
-/// Who speaks for edges and points. What is asked for anew with every factor is asked in lists, point by point.
+/// The dominant sides and corners, and lists of each point's corners and factors.
 #[derive(Clone, Debug, Default)]
 pub struct Dominance {
-    /// For each factor of [`Curves`], its edge's dominant side: the patch times 4, plus which of its sides.
+    /// For each factor of [`Curves`], the dominant side of its edge: 4 * patch + k for the patch's side k.
     pub sides: Vec<u32>,
-    /// For each point, its dominant corner: a patch that has it times 4, plus which of its corners.
+    /// For each point, its dominant corner: 4 * patch + k for corner k of some patch around the point.
     pub corners: Vec<u32>,
-    /// Point p's corners and their parts: `parts[part_starts[p]..part_starts[p + 1]]`. A part is the sum of the angles, in
-    /// radians, that triangles have at that corner: however a face is triangulated, it has the same say. Never 0.
+    /// The corners on point p and their weights are `parts[part_starts[p]..part_starts[p + 1]]`. A corner's weight is
+    /// the sum of the angles, in radians, of its triangles there, so that it doesn't depend on how faces are
+    /// triangulated. It is never 0.
     pub part_starts: Vec<u32>,
     pub parts: Vec<(u32, f32)>,
-    /// The factors of point p's edges: `factors[factor_starts[p]..factor_starts[p + 1]]`.
+    /// The factors of the edges at point p are `factors[factor_starts[p]..factor_starts[p + 1]]`.
     pub factor_starts: Vec<u32>,
     pub factors: Vec<u32>,
     /// For each patch, the factors of its sides 0, 1 and 2.
@@ -23,7 +24,7 @@ pub struct Dominance {
 }
 
 impl Dominance {
-    /// `angles` are those of [`super::Heights`]. Takes n log n steps.
+    /// Finds dominant sides and corners. `angles` are those of [`super::Heights`]. Takes about n log n steps.
     pub fn new(topology: &Topology, curves: &Curves, angles: &[f32]) -> Self {
         let mut dominance = Self { sides: sides(topology, curves), ..Self::default() };
         let of_sides = |patch: &super::Patch| patch.sides.map(|side| curves.factor(topology, side));
@@ -42,7 +43,7 @@ impl Dominance {
                 factors.extend([(point, own[k]), (point, own[(k + 2) % 3])]);
             }
         }
-        // Points that only degenerate triangles have are asked for by nobody.
+        // Points that only degenerate triangles use have no dominant corner, and none is ever read.
         dominance.corners = corners.into_iter().map(|corner| if corner == u32::MAX { 0 } else { corner }).collect();
         parts.sort_unstable();
         parts.dedup();
@@ -58,7 +59,7 @@ impl Dominance {
     }
 }
 
-/// An edge's first side, as the topology has them, speaks for all.
+/// Returns the dominant side for each factor: the first side of its edge.
 fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
     let mut sides = vec![0; curves.factor_count() as usize];
     for (index, side) in (0..).zip(&topology.sides) {
@@ -68,7 +69,7 @@ fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
     sides
 }
 
-/// Where each point's run starts, and where the last ends, of a list sorted by point.
+/// Returns where each point's part of a list that is sorted by point starts, and the end of the last.
 fn starts(points: usize, sorted: impl Iterator<Item = u32>) -> Vec<u32> {
     let mut starts = vec![0; points + 1];
     for point in sorted {
@@ -88,7 +89,7 @@ mod tests {
 
     fn dominance(shape: Shape, sharing: Sharing) -> (Topology, Curves, Dominance) {
         let mesh = shape.build();
-        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
         let curves = Curves::build(&mesh, &topology, sharing);
         let heights = Heights::everywhere(&mesh, HeightMap::new([1, 1], vec![0.0]));
         let dominance = Dominance::new(&topology, &curves, &heights.angles);
@@ -96,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn one_side_speaks_for_an_edge_and_one_corner_for_a_point() {
+    fn each_edge_has_a_dominant_side_and_each_point_a_dominant_corner() {
         for shape in Shape::ALL {
             for sharing in [Sharing::AllSides, Sharing::EqualNormals, Sharing::None] {
                 let (topology, curves, dominance) = dominance(shape, sharing);
@@ -114,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn every_point_knows_its_corners_angles_and_its_edges() {
+    fn every_point_has_its_corners_angles_and_edges() {
         let (topology, curves, dominance) = dominance(Shape::CubeSplit, Sharing::AllSides);
         for (point, ends) in (0..).zip(dominance.part_starts.windows(2)) {
             let parts = &dominance.parts[ends[0] as usize..ends[1] as usize];

@@ -1,4 +1,5 @@
-//! Normals for corners that came without: each triangle gives its own, so that a corner may become several.
+//! Computes normals for corners without one. A corner may get different normals from different triangles, and is then
+//! split.
 
 use glam::Vec3;
 
@@ -10,60 +11,66 @@ use super::weld::{plus_zero3, weld};
 use crate::mesh::build_limits::MemoryAccount;
 use crate::progress::Progress;
 
-/// What a face of the largest fan takes meanwhile, in bytes.
+/// Memory for each face of the largest fan, in bytes.
 const PER_FACE: u64 = 160;
 
-/// A mesh in the making. A corner without a normal has NaN in its place.
+/// A mesh that is being built. Missing normals are NaN.
 #[derive(Default)]
-pub struct Loose {
+pub struct UnfinishedMesh {
     pub corners: Vec<Corner>,
-    /// What corners are bound to; none at all if all are 0.
+    /// The binding of each corner; empty if all are 0.
     pub bindings: Vec<u32>,
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Gives a normal to every corner without one, by the faces around its point; points are welded by exact position. Corners that
-/// nothing uses any more may be left. Linear in triangles, but for a logarithm of the largest fan's faces where those differ.
+/// Gives every corner without a normal one, computed from the faces around its point. Corners with exactly equal
+/// positions lie on one point. Some corners may be left without a use. Takes time linear in the number of triangles,
+/// times the logarithm of the largest fan's faces where those give different normals.
 ///
 /// # Errors
 /// [`BuildError`].
-pub fn generate_normals(loose: &mut Loose, budget: &dyn MemoryAccount, progress: &Progress) -> Result<(), BuildError> {
+pub fn generate_normals(
+    mesh: &mut UnfinishedMesh,
+    budget: &dyn MemoryAccount,
+    progress: &Progress,
+) -> Result<(), BuildError> {
     let borrowed = budget.borrowed();
-    let points = Points::of(loose, budget)?;
-    let mut around = Around::new(loose, &points, budget)?;
-    let mut added = Added { made: ChunkedVec::default(), first: loose.corners.len() as u32, budget };
+    let points = CornerPoints::of(mesh, budget)?;
+    let mut around = CornersByPoint::new(mesh, &points, budget)?;
+    let mut added = AddedCorners { made: ChunkedVec::default(), first: mesh.corners.len() as u32, budget };
     let mut fan = Fan::default();
     for point in 0..around.ends.len() {
         if point % 4096 == 0 {
             progress.check()?;
         }
-        fan.fill(loose, around.of(point));
-        fan.number(loose, &mut added)?;
+        fan.fill(mesh, around.of(point));
+        fan.number(mesh, &mut added)?;
         around.of(point).copy_from_slice(&fan.ids);
     }
-    around.hand_out(loose, &points);
+    around.hand_out(mesh, &points);
     drop((around, points));
-    added.append_to(loose)?;
+    added.append_to(mesh)?;
     budget.give_back_to(borrowed);
     Ok(())
 }
 
 /// The point of each corner.
-enum Points {
-    /// Every corner is a point of its own.
+enum CornerPoints {
+    /// Every corner has a point of its own.
     Corners,
+    /// The point of each corner, and the number of points.
     Welded(Vec<u32>, usize),
 }
 
-impl Points {
-    fn of(loose: &Loose, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
-        // Corners that have nothing but a position differ in it.
+impl CornerPoints {
+    fn of(mesh: &UnfinishedMesh, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
+        // Corners that are nothing but positions differ in their positions.
         let plain = |corner: &Corner| corner.normal.x.is_nan() && corner.uv == glam::Vec2::ZERO;
-        if loose.bindings.is_empty() && loose.corners.iter().all(plain) {
+        if mesh.bindings.is_empty() && mesh.corners.iter().all(plain) {
             return Ok(Self::Corners);
         }
-        budget.borrow(loose.corners.len() as u64 * 40)?;
-        let (points, point_of) = weld(loose.corners.iter().map(|corner| corner.position));
+        budget.borrow(mesh.corners.len() as u64 * 40)?;
+        let (points, point_of) = weld(mesh.corners.iter().map(|corner| corner.position));
         Ok(Self::Welded(point_of, points.len()))
     }
 
@@ -75,20 +82,20 @@ impl Points {
     }
 }
 
-/// The corners of triangles (3 * triangle + k) by their points, then by number.
-struct Around {
-    /// Those of point p end before `ends[p]`, and begin where those of the point before end.
+/// The corners of triangles (3 * triangle + k), sorted by point, then by number.
+struct CornersByPoint {
+    /// Where the corners of each point end in `list`; they start where those of the point before end.
     ends: Vec<u32>,
     list: Vec<u32>,
 }
 
-impl Around {
-    fn new(loose: &Loose, points: &Points, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
+impl CornersByPoint {
+    fn new(mesh: &UnfinishedMesh, points: &CornerPoints, budget: &dyn MemoryAccount) -> Result<Self, BuildError> {
         let count = match points {
-            Points::Corners => loose.corners.len(),
-            Points::Welded(_, count) => *count,
+            CornerPoints::Corners => mesh.corners.len(),
+            CornerPoints::Welded(_, count) => *count,
         };
-        let corners = loose.triangles.as_flattened();
+        let corners = mesh.triangles.as_flattened();
         let bytes = 4 * (count as u64 + corners.len() as u64);
         budget.borrow(bytes)?;
         let mut ends = vec![0_u32; count];
@@ -113,10 +120,10 @@ impl Around {
         &mut self.list[start as usize..self.ends[point] as usize]
     }
 
-    /// Gives triangles the corners that the list has in place of their numbers by now.
-    fn hand_out(&mut self, loose: &mut Loose, points: &Points) {
-        for corner in loose.triangles.as_flattened_mut().iter_mut().rev() {
-            // Backwards, so that each point's end is where its next one is.
+    /// Replaces the corners of triangles by those that the list now has in the places of their numbers.
+    fn hand_out(&mut self, mesh: &mut UnfinishedMesh, points: &CornerPoints) {
+        for corner in mesh.triangles.as_flattened_mut().iter_mut().rev() {
+            // Goes backwards, so that the end of each point's part is where its next corner is.
             let end = &mut self.ends[points.at(*corner)];
             *end -= 1;
             *corner = self.list[*end as usize];
@@ -124,15 +131,15 @@ impl Around {
     }
 }
 
-/// Corners beyond those that there are: which one each is like, and its normal.
-struct Added<'a> {
+/// Corners that are added: the number of the corner that each is a copy of, and its normal.
+struct AddedCorners<'a> {
     made: ChunkedVec<(u32, Vec3)>,
-    /// The number of the first.
+    /// The number of the first added corner.
     first: u32,
     budget: &'a dyn MemoryAccount,
 }
 
-impl Added<'_> {
+impl AddedCorners<'_> {
     fn add(&mut self, like: u32, normal: Vec3) -> Result<u32, BuildError> {
         let id = self.first + self.made.len() as u32;
         self.budget.borrow(self.made.next_bytes())?;
@@ -140,80 +147,81 @@ impl Added<'_> {
         Ok(id)
     }
 
-    fn append_to(self, loose: &mut Loose) -> Result<(), BuildError> {
-        let (count, capacity, more) = (loose.corners.len(), loose.corners.capacity(), self.made.len());
+    fn append_to(self, mesh: &mut UnfinishedMesh) -> Result<(), BuildError> {
+        let (count, capacity, more) = (mesh.corners.len(), mesh.corners.capacity(), self.made.len());
         if capacity - count < more {
             let [old, new] = [capacity, count + more].map(|corners| corners as u64 * 32);
             self.budget.exchange(old, new)?;
-            loose.corners.reserve_exact(more);
+            mesh.corners.reserve_exact(more);
         }
-        if !loose.bindings.is_empty() {
-            loose.bindings.reserve_exact(more);
+        if !mesh.bindings.is_empty() {
+            mesh.bindings.reserve_exact(more);
         }
         for (like, normal) in self.made {
-            loose.corners.push(Corner { normal, ..loose.corners[like as usize] });
-            if let Some(&binding) = loose.bindings.get(like as usize) {
-                loose.bindings.push(binding);
+            mesh.corners.push(Corner { normal, ..mesh.corners[like as usize] });
+            if let Some(&binding) = mesh.bindings.get(like as usize) {
+                mesh.bindings.push(binding);
             }
         }
         Ok(())
     }
 }
 
-/// What lies around one point.
+/// The faces around one point.
 #[derive(Default)]
 struct Fan {
     faces: Vec<Face>,
     normals: Vec<Vec3>,
-    /// The corners that the faces have there.
+    /// For each face, its corner on the point.
     ids: Vec<u32>,
-    /// Places among these, ordered by what the corners become.
+    /// Indices of faces, sorted by the corner that they will use.
     order: Vec<u32>,
 }
 
 impl Fan {
-    /// The faces of these corners of triangles, and the normals that they get: given ones stay.
-    fn fill(&mut self, loose: &Loose, corners: &[u32]) {
+    /// Collects the faces of some corners of triangles (3 * triangle + k), and the normal that each gets. A corner with
+    /// a normal keeps it.
+    fn fill(&mut self, mesh: &UnfinishedMesh, corners: &[u32]) {
         self.faces.clear();
         self.ids.clear();
         for &corner in corners {
-            let (triangle, k) = (loose.triangles[corner as usize / 3], corner as usize % 3);
-            self.faces.push(Face::new(triangle.map(|id| loose.corners[id as usize].position), k));
+            let (triangle, k) = (mesh.triangles[corner as usize / 3], corner as usize % 3);
+            self.faces.push(Face::new(triangle.map(|id| mesh.corners[id as usize].position), k));
             self.ids.push(triangle[k]);
         }
         fan_normals(&self.faces, &mut self.normals);
         for (normal, &id) in self.normals.iter_mut().zip(&self.ids) {
-            let given = loose.corners[id as usize].normal;
+            let given = mesh.corners[id as usize].normal;
             *normal = if given.x.is_nan() { plus_zero3(*normal) } else { given };
         }
     }
 
-    /// Finds a corner for each of its normals: one that has it, or has none yet, or a new one.
-    fn number(&mut self, loose: &mut Loose, added: &mut Added) -> Result<(), BuildError> {
+    /// Chooses a corner for each face's normal: one with that normal, one without a normal, or a new one.
+    fn number(&mut self, mesh: &mut UnfinishedMesh, added: &mut AddedCorners) -> Result<(), BuildError> {
         let Self { normals, ids, order, .. } = self;
-        let key = |i: u32, ids: &[u32], loose: &Loose| {
+        let key = |i: u32, ids: &[u32], mesh: &UnfinishedMesh| {
             let (id, normal) = (ids[i as usize], normals[i as usize]);
-            let uv = loose.corners[id as usize].uv.to_array().map(f32::to_bits);
-            (uv, loose.bindings.get(id as usize).copied(), normal.to_array().map(f32::to_bits))
+            let uv = mesh.corners[id as usize].uv.to_array().map(f32::to_bits);
+            (uv, mesh.bindings.get(id as usize).copied(), normal.to_array().map(f32::to_bits))
         };
         order.clear();
         order.extend(0..ids.len() as u32);
         let first = |i: &u32| ids[*i as usize] == ids[0] && normals[*i as usize] == normals[0];
         if !order.iter().all(first) {
-            order.sort_unstable_by_key(|&i| (key(i, ids, loose), i));
+            order.sort_unstable_by_key(|&i| (key(i, ids, mesh), i));
         }
         let mut start = 0;
         while start < order.len() {
-            let own = key(order[start], ids, loose);
-            let length = order[start..].iter().take_while(|&&i| key(i, ids, loose) == own).count();
+            let own = key(order[start], ids, mesh);
+            let length = order[start..].iter().take_while(|&&i| key(i, ids, mesh) == own).count();
             let alike = &order[start..start + length];
             let (like, normal) = (ids[alike[0] as usize], normals[alike[0] as usize]);
-            let normal_of = |i: &&u32| loose.corners[ids[**i as usize] as usize].normal;
+            let normal_of = |i: &&u32| mesh.corners[ids[**i as usize] as usize].normal;
             let found = alike.iter().find(|i| normal_of(i) == normal);
             let found = found.or_else(|| alike.iter().find(|i| normal_of(i).x.is_nan())).map(|&i| ids[i as usize]);
             let id = match found {
                 Some(id) => {
-                    loose.corners[id as usize].normal = normal;
+                    mesh.corners[id as usize].normal = normal;
                     id
                 }
                 None => added.add(like, normal)?,

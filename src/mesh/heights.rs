@@ -1,4 +1,5 @@
-//! Height images, for displacement: each a pyramid of ever smaller ones, so that what is sampled fits what is drawn.
+//! Height images for displacement. Each is a pyramid of levels, so that a sample can cover an area that suits the
+//! triangles.
 
 mod pyramid;
 
@@ -7,59 +8,61 @@ use glam::Vec2;
 use super::Mesh;
 use crate::progress::{Cancelled, Progress};
 
-/// The largest width and height that is kept, in px: larger images are made smaller first.
+/// The greatest width and height of a height map, in px. Larger images are scaled down.
 pub const MAX_KEPT: u32 = 4096;
 
-/// Levels that a map has at most: 4096 px halved down to 1.
+/// The greatest number of levels: 4096 px halved down to 1.
 pub const MAX_LEVELS: usize = 13;
 
-/// Maps that a mesh has at most: as many as the shaders have room for.
+/// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
 
-/// One image's heights, 0 (black) to 1 (white), level after level; each level half as wide and high as the one before, down
-/// to a single px.
+/// The heights of one image, from 0 (black) to 1 (white), in levels. Each level is half as wide and high as the one
+/// before, down to a single pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
-    /// Width and height of level 0, in px.
+    /// The width and height of level 0, in px.
     pub size: [u32; 2],
     pub levels: u32,
-    /// Whether it starts again where it ends: some texture coordinate goes beyond 0 to 1. Else its border goes on.
+    /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
+    /// continue.
     pub repeats: bool,
-    /// Rows from the top, level after level.
+    /// The pixels of all levels, one level after another, each row by row from the top.
     pub heights: Vec<f32>,
 }
 
-/// What a mesh is displaced by.
+/// The height maps that displace a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heights {
     pub maps: Vec<HeightMap>,
-    /// The map of each of the mesh's materials; none for what stays where it is.
+    /// For each of the mesh's materials, its map; none if the material isn't displaced.
     pub of_material: Vec<Option<u32>>,
-    /// The least and the greatest height in any map.
+    /// The least and the greatest height in all maps.
     pub range: [f32; 2],
-    /// The mesh's bounding radius before anything moves it, in object units: heights are measured in it.
+    /// The mesh's bounding radius at rest, in object units. The scale of displacement is a multiple of it.
     pub radius: f32,
-    /// The sum of the angles, in radians, that triangles have at each of the mesh's corners, before anything moves them.
+    /// For each of the mesh's corners, the sum of the angles, in radians, of the triangles there, in the mesh at rest.
     pub angles: Vec<f32>,
-    /// How far level l of each map, linearly interpolated, is from its level 0 at most; no less for a coarser level.
+    /// For each level of each map, the greatest difference between that level, interpolated linearly, and level 0. The
+    /// difference never decreases from level to level.
     pub detail: Vec<[f32; MAX_LEVELS]>,
 }
 
 impl HeightMap {
-    /// Width and height of a level, in px.
+    /// Returns the width and height of a level, in px.
     pub fn level_size(&self, level: u32) -> [u32; 2] {
         self.size.map(|side| (side >> level).max(1))
     }
 }
 
 impl Heights {
-    /// One map for all of a mesh's materials.
+    /// Uses one map for all materials of a mesh.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
-        // It fails only when it is cancelled, and this progress is nobody else's.
-        Self::all_over(mesh, map, &Progress::new()).expect("nobody cancels")
+        // The only possible error is cancellation, and no other code has this handle.
+        Self::all_over(mesh, map, &Progress::new()).expect("not cancelled")
     }
 
-    /// The same; stops when `progress` says so.
+    /// Uses one map for all materials of a mesh, and can be cancelled.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -67,7 +70,7 @@ impl Heights {
         Self::new(mesh, vec![map], vec![Some(0); mesh.materials.len()], progress)
     }
 
-    /// Maps and the map of each material.
+    /// Uses several maps; `of_material` holds the map of each material.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
@@ -98,18 +101,18 @@ impl Heights {
         Ok(Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail })
     }
 
-    /// How far anything is moved at most, in units of the scale.
+    /// Returns the greatest distance that a point can be moved by, as a multiple of the scale.
     pub fn reach(&self, midlevel: f32) -> f32 {
         (self.range[0] - midlevel).abs().max((self.range[1] - midlevel).abs())
     }
 
-    /// Bytes of all maps.
+    /// Returns the size of all maps, in bytes.
     pub fn bytes(&self) -> u64 {
         self.maps.iter().map(|map| size_of_val(&map.heights[..]) as u64).sum()
     }
 }
 
-/// What [`Heights::angles`] takes, in bytes.
+/// Returns the size of [`Heights::angles`], in bytes.
 pub(crate) fn angle_bytes(corners: usize) -> u64 {
     4 * corners as u64
 }
@@ -133,7 +136,7 @@ mod tests {
 
     #[test]
     fn detail_is_lost_level_by_level() {
-        // A checkerboard is gone at once, a slope not at all inside.
+        // The first level already loses a checkerboard. A slope loses nothing except at the border.
         let board = HeightMap::new([8, 8], (0..64).map(|i| ((i + i / 8) % 2) as f32).collect());
         let heights = Heights::everywhere(&Shape::Torus.build(), board);
         let detail = heights.detail[0];

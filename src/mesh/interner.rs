@@ -1,11 +1,11 @@
-//! Numbers for things by what they are, where the things themselves lie in a list.
+//! Gives equal keys equal numbers, while the keyed items lie in a list of the caller's.
 
 use std::hash::{BuildHasher, Hash};
 
 use foldhash::fast::RandomState;
 use hashbrown::HashTable;
 
-/// Numbers from 0 on. The table holds nothing else: 5 to 12 bytes a thing.
+/// Numbers items from 0 on. The table holds only the numbers: 5 to 12 bytes an item.
 #[derive(Default)]
 pub struct Interner {
     table: HashTable<u32>,
@@ -13,13 +13,13 @@ pub struct Interner {
 }
 
 impl Interner {
-    /// With room for so many.
+    /// Makes an empty table with room for `count` items.
     pub fn with_capacity(count: usize) -> Self {
         Self { table: HashTable::with_capacity(count), ..Self::default() }
     }
 
-    /// The number of the thing with this key, and whether it is a new one, the next. `key_of` is the key of what has a number
-    /// already.
+    /// Returns the number of the item with this key, and whether the item is new, in which case the number is the next
+    /// one. `key_of` must return the key of each item that has a number.
     pub fn number<K: Hash + Eq>(&mut self, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
         let hash = self.hasher.hash_one(&key);
         if let Some(&id) = self.table.find(hash, |&id| key_of(id) == key) {
@@ -33,7 +33,7 @@ impl Interner {
         (id, true)
     }
 
-    /// Makes room for so many more. The old table is gone before there is a new one.
+    /// Makes room for `more` further items. The old table is freed before the new one is allocated.
     pub fn reserve<K: Hash>(&mut self, more: usize, key_of: impl Fn(u32) -> K) {
         let count = self.table.len();
         if self.table.capacity() - count >= more {
@@ -47,17 +47,18 @@ impl Interner {
         }
     }
 
-    /// How many more there is room for.
+    /// Returns how many more items there is room for.
     pub fn room(&self) -> usize {
         self.table.capacity() - self.table.len()
     }
 
-    /// What it takes, in bytes.
+    /// Returns the size of the table, in bytes.
     pub fn bytes(&self) -> u64 {
         self.table.allocation_size() as u64
     }
 
-    /// What it would take at most with room for so many, in bytes: a power of two of which an eighth stays free.
+    /// Returns the greatest size of a table with room for `count` items, in bytes. A table has a power of two of slots,
+    /// of which an eighth stays free.
     pub fn bytes_for(count: usize) -> u64 {
         let places = (count as u64 * 8).div_ceil(7).max(16).next_power_of_two();
         places * 5 + 64

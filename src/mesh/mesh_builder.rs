@@ -1,68 +1,71 @@
-//! From loose triangles to a [`Mesh`]: grouped by material, every distinct corner once.
+//! Builds a [`Mesh`] from single triangles: groups them by material, and merges equal corners.
 
-mod distinct;
+mod distinct_corners;
 
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
 
 use super::build_limits::{BuildError, MemoryAccount, MemoryRefused, Unlimited};
-use super::generate_normals::{Loose, generate_normals};
-use super::normals::Given;
+use super::generate_normals::{UnfinishedMesh, generate_normals};
+use super::normals::GivenNormal;
 use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, Repairs};
 use crate::progress::{Cancelled, Progress};
 
-use distinct::Distinct;
+use distinct_corners::DistinctCorners;
 
-/// The most triangles that lie in one piece while they are gathered: what has been gathered isn't copied for more.
-const RUN: usize = 1 << 16;
+/// The greatest number of triangles in one list while they are collected. A list that is full isn't copied into a
+/// larger one.
+const MAX_RUN: usize = 1 << 16;
 
-/// A corner as a file or a shape gives it: the normal may be missing, or not fit for use.
+/// A corner from a file or a shape. Its normal may be missing or unusable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LooseCorner {
+pub struct InputCorner {
     pub position: Vec3,
-    /// Of any length, or none. [`MeshBuilder::finish`] brings it to unit length, or makes one where this has no
-    /// direction (see [`Given`]).
+    /// The normal, of any length, or none. [`MeshBuilder::finish`] scales it to unit length, or computes one if this
+    /// has no direction (see [`GivenNormal`]).
     pub normal: Option<Vec3>,
     pub uv: Vec2,
 }
 
-impl From<Corner> for LooseCorner {
+impl From<Corner> for InputCorner {
     fn from(corner: Corner) -> Self {
         Self { position: corner.position, normal: Some(corner.normal), uv: corner.uv }
     }
 }
 
-/// Collects triangles, material by material, and makes a mesh of them. Each distinct corner is kept once: what it holds
-/// grows with them, and with 12 bytes a triangle (`budget` has the formula).
+/// Collects triangles and builds a mesh. Equal corners are stored once: the memory that a builder takes grows with the
+/// number of distinct corners, plus 12 bytes a triangle (the formula is in `load::memory_budget`).
 #[derive(Default)]
 pub struct MeshBuilder {
     groups: Vec<Group>,
-    distinct: Distinct,
+    distinct: DistinctCorners,
     triangles: usize,
-    /// How many corners have been offered; how many will be, and how many of them distinct, if that is known.
+    /// How many corners have been added.
     offered: usize,
+    /// How many corners will have been added in the end, and how many distinct ones, if that is known; otherwise 0.
     expected: [usize; 2],
-    /// What has been mended.
+    /// Counts of the repairs so far.
     repairs: Repairs,
 }
 
 /// The triangles of one material.
 struct Group {
     material: Material,
+    /// Lists of triangles, of which all but the last are full.
     runs: Vec<Vec<[u32; 3]>>,
 }
 
 impl Group {
-    /// How many triangles there is room for without another run.
+    /// Returns how many more triangles fit into the last list.
     fn room(&self) -> usize {
         self.runs.last().map_or(0, |run| run.capacity() - run.len())
     }
 
-    /// How long the next run is to be: as long as all others, but not too long.
+    /// Returns the length of the next list: as long as all lists before it together, but limited.
     fn next_run(&self) -> usize {
-        (4 << self.runs.len().min(20)).min(RUN)
+        (4 << self.runs.len().min(20)).min(MAX_RUN)
     }
 }
 
@@ -71,13 +74,13 @@ impl MeshBuilder {
         Self::default()
     }
 
-    /// About so many corners more will be offered, and so many of them will be distinct.
+    /// Announces that about `offered` more corners will be added, and that about `distinct` of them will be distinct.
     pub fn expect(&mut self, offered: usize, distinct: usize) {
         self.expected = [self.offered + offered, self.distinct.corners.len() + distinct];
     }
 
-    /// Makes room for so many more distinct corners, within the budget: if there are too few, for as many as there will be by
-    /// those that there are, or half as many again where nobody knows.
+    /// Makes room for `corners` more distinct corners, within the budget. If there is too little, it makes room for as
+    /// many as the ratio of distinct corners so far suggests; or for half as many again if the total isn't known.
     ///
     /// # Errors
     /// [`MemoryRefused`].
@@ -88,7 +91,7 @@ impl MeshBuilder {
         let count = self.distinct.corners.len();
         let [offered, distinct] = self.expected;
         let likely = match self.offered {
-            // And a few, since corners that turn out to be there already need room too.
+            // And a few more: a corner that turns out not to be distinct needs room while it is looked up.
             _ if count < distinct => distinct + 64,
             so_far if so_far < offered => {
                 let all = (count as u128 * offered as u128 / so_far.max(1) as u128) as usize;
@@ -99,7 +102,7 @@ impl MeshBuilder {
         self.distinct.make_room(corners.max(likely.saturating_sub(count)), budget)
     }
 
-    /// The same for so many more triangles of one material.
+    /// Makes room for `triangles` more triangles of one material, within the budget.
     ///
     /// # Errors
     /// As [`make_room`](Self::make_room).
@@ -121,48 +124,48 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Adds a material (its `triangles` are set at the end) and returns its index for [`triangle`](Self::triangle).
-    /// The mesh has its materials in the order of these calls.
+    /// Adds a material and returns its index for [`triangle`](Self::triangle). The material's `triangles` are set at
+    /// the end. The mesh has its materials in the order of these calls.
     pub fn material(&mut self, material: Material) -> usize {
         self.groups.push(Group { material, runs: Vec::new() });
         self.groups.len() - 1
     }
 
-    /// Adds a triangle, counter-clockwise seen from outside.
+    /// Adds a triangle; its corners are counter-clockwise seen from outside.
     ///
     /// # Panics
-    /// When `material` isn't an index that [`material`](Self::material) gave.
-    pub fn triangle(&mut self, material: usize, corners: [LooseCorner; 3]) {
+    /// If `material` isn't an index that [`material`](Self::material) returned.
+    pub fn triangle(&mut self, material: usize, corners: [InputCorner; 3]) {
         let kept = corners.map(|corner| self.corner(corner, 0));
-        self.kept_triangle(material, kept);
+        self.stored_triangle(material, kept);
     }
 
-    /// Keeps a corner for [`kept_triangle`](Self::kept_triangle). Corners are told apart by what they are bound to as well: those
-    /// with different numbers aren't merged.
-    pub fn corner(&mut self, corner: LooseCorner, binding: u32) -> Kept {
-        let (corner, mended) = repaired(corner);
+    /// Stores a corner for [`stored_triangle`](Self::stored_triangle). Corners with different bindings (numbers of the
+    /// caller's, for animation) aren't merged.
+    pub fn corner(&mut self, corner: InputCorner, binding: u32) -> StoredCorner {
+        let (corner, repairs) = repaired(corner);
         self.offered += 1;
-        Kept { id: self.distinct.id(corner, binding), mended }
+        StoredCorner { id: self.distinct.id(corner, binding), repairs }
     }
 
-    /// Adds a triangle of corners that are kept.
+    /// Adds a triangle of stored corners.
     ///
     /// # Panics
     /// As [`triangle`](Self::triangle).
-    pub fn kept_triangle(&mut self, material: usize, corners: [Kept; 3]) {
+    pub fn stored_triangle(&mut self, material: usize, corners: [StoredCorner; 3]) {
         let group = &mut self.groups[material];
         if group.room() == 0 {
             let count = group.next_run();
             group.runs.push(Vec::with_capacity(count));
         }
-        corners.iter().for_each(|corner| corner.mended.count(&mut self.repairs));
+        corners.iter().for_each(|corner| corner.repairs.count(&mut self.repairs));
         if let Some(run) = group.runs.last_mut() {
             run.push(corners.map(|corner| corner.id));
         }
         self.triangles += 1;
     }
 
-    /// How many triangles there are so far.
+    /// Returns how many triangles have been added.
     pub fn len(&self) -> usize {
         self.triangles
     }
@@ -171,23 +174,25 @@ impl MeshBuilder {
         self.len() == 0
     }
 
-    /// The mesh: triangles grouped by material, in the order they came; corners with the same bits (-0 counts as 0)
-    /// merged, in the order of first use; materials without triangles left out. Normals that are missing or have no
-    /// direction are made (see [`super::normals::fan_normals`]), others brought to unit length (see [`Given`]); coordinates of
-    /// positions nearer to 0 than f32's least normal number become 0, since devices may take them for it. All that is
-    /// counted in the mesh's `repairs`. Linear in triangles.
+    /// Builds the mesh. Triangles are grouped by material and keep their order otherwise. Corners with the same bits
+    /// (-0 counts as 0) are merged, in the order of first use. Materials without triangles are left out. Normals that
+    /// are missing or have no direction are computed (see [`super::normals::fan_normals`]); others are scaled to unit
+    /// length (see [`GivenNormal`]). Coordinates of positions that are nearer to 0 than f32's least normal number
+    /// become 0, since devices may treat them as 0. The mesh's `repairs` counts these changes. Takes time linear in the
+    /// number of triangles.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn finish(self, name: String, progress: &Progress) -> Result<Mesh, Cancelled> {
         match self.finish_bound(name, &Unlimited, progress) {
             Ok((mesh, _)) => Ok(mesh),
-            // Memory is unlimited, so that nothing but a cancellation ends it.
+            // Memory is unlimited, so cancellation is the only possible error.
             Err(_) => Err(Cancelled),
         }
     }
 
-    /// The same within a budget, and the number of each corner's binding (see [`corner`](Self::corner)).
+    /// Builds the mesh as [`finish`](Self::finish) does, within a budget, and returns each corner's binding too (see
+    /// [`corner`](Self::corner)).
     ///
     /// # Errors
     /// [`BuildError`].
@@ -200,15 +205,15 @@ impl MeshBuilder {
         self.distinct.close(budget);
         let (triangles, materials) = self.gathered(budget)?;
         progress.check()?;
-        let Distinct { corners, bindings, .. } = self.distinct;
-        let mut loose = Loose { corners, bindings, triangles };
-        if loose.corners.iter().any(|corner| corner.normal.x.is_nan()) {
-            generate_normals(&mut loose, budget, progress)?;
+        let DistinctCorners { corners, bindings, .. } = self.distinct;
+        let mut mesh = UnfinishedMesh { corners, bindings, triangles };
+        if mesh.corners.iter().any(|corner| corner.normal.x.is_nan()) {
+            generate_normals(&mut mesh, budget, progress)?;
         }
-        budget.borrow(loose.corners.len() as u64 * 4)?;
-        renumber(&mut loose);
+        budget.borrow(mesh.corners.len() as u64 * 4)?;
+        renumber(&mut mesh);
         progress.check()?;
-        let Loose { mut corners, mut bindings, triangles } = loose;
+        let UnfinishedMesh { mut corners, mut bindings, triangles } = mesh;
         bindings.resize(corners.len(), 0);
         if corners.capacity() > corners.len() + corners.len() / 8 {
             budget.borrow(corners.len() as u64 * 32)?;
@@ -218,7 +223,7 @@ impl MeshBuilder {
         Ok((Mesh { name, corners, triangles: triangles.into(), materials, repairs, ..Mesh::default() }, bindings))
     }
 
-    /// All triangles in one list, and the materials that own some.
+    /// WeldPreview all triangles into one list, and returns it with the materials that have triangles.
     fn gathered(&mut self, budget: &dyn MemoryAccount) -> Result<(Vec<[u32; 3]>, Vec<Material>), BuildError> {
         let used = |group: &Group| group.runs.iter().any(|run| !run.is_empty());
         let mut groups: Vec<Group> = std::mem::take(&mut self.groups).into_iter().filter(used).collect();
@@ -245,9 +250,9 @@ impl MeshBuilder {
     }
 }
 
-/// Puts corners in the order of first use, in place; what nothing uses goes.
-fn renumber(loose: &mut Loose) {
-    let Loose { corners, bindings, triangles } = loose;
+/// Puts corners in the order of first use, in place, and removes those that no triangle uses.
+fn renumber(mesh: &mut UnfinishedMesh) {
+    let UnfinishedMesh { corners, bindings, triangles } = mesh;
     let mut numbers = vec![u32::MAX; corners.len()];
     let mut next = 0;
     for corner in triangles.as_flattened_mut() {
@@ -277,23 +282,23 @@ fn renumber(loose: &mut Loose) {
     bindings.truncate(used);
 }
 
-/// A corner that a builder has: its number, and what had to be mended, which counts for every triangle.
+/// A corner that a builder stores: its number, and its repairs, which count for every triangle that uses it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Kept {
+pub struct StoredCorner {
     pub id: u32,
-    pub mended: Mended,
+    pub repairs: CornerRepairs,
 }
 
-/// What had to be mended of a corner, one bit each.
+/// How a corner was repaired, one bit for each kind of repair.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Mended(pub u8);
+pub struct CornerRepairs(pub u8);
 
-impl Mended {
+impl CornerRepairs {
     const DENORMAL: u8 = 1;
     const MADE: u8 = 2;
     const REPLACED: u8 = 4;
     const RESCALED: u8 = 8;
-    /// How many bits it has: others may be used for something else.
+    /// How many bits are used; callers may use the others.
     pub const BITS: u32 = 4;
 
     fn count(self, repairs: &mut Repairs) {
@@ -308,23 +313,24 @@ impl Mended {
     }
 }
 
-/// A corner with a position and a normal that are fit for use: NaN in place of a normal that is missing or without a direction.
-fn repaired(corner: LooseCorner) -> (Corner, Mended) {
+/// Returns a corner with a usable position and normal, and what was repaired. The normal is NaN if it is missing or has
+/// no direction.
+fn repaired(corner: InputCorner) -> (Corner, CornerRepairs) {
     let position = Vec3::from(corner.position.to_array().map(|x| if x.is_subnormal() { 0.0 } else { x }));
-    let mut mended = if position == corner.position { 0 } else { Mended::DENORMAL };
-    let given = corner.normal.map(Given::new);
-    mended |= match given {
-        None => Mended::MADE,
-        Some(Given::None) => Mended::REPLACED,
-        Some(Given::Rescaled(_)) => Mended::RESCALED,
-        Some(Given::Unit(_)) => 0,
+    let mut repairs = if position == corner.position { 0 } else { CornerRepairs::DENORMAL };
+    let given = corner.normal.map(GivenNormal::new);
+    repairs |= match given {
+        None => CornerRepairs::MADE,
+        Some(GivenNormal::None) => CornerRepairs::REPLACED,
+        Some(GivenNormal::Rescaled(_)) => CornerRepairs::RESCALED,
+        Some(GivenNormal::Unit(_)) => 0,
     };
-    let normal = given.and_then(Given::unit).map_or(Vec3::NAN, plus_zero3);
-    (Corner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }, Mended(mended))
+    let normal = given.and_then(GivenNormal::unit).map_or(Vec3::NAN, plus_zero3);
+    (Corner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }, CornerRepairs(repairs))
 }
 
 impl Material {
-    /// A material of one colour (linear RGBA), without triangles yet.
+    /// Returns a material of one colour (linear RGBA), without triangles.
     pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
         Self { name: name.to_owned(), base_color, texture: None, double_sided: false, triangles: 0..0 }
     }

@@ -1,4 +1,4 @@
-//! Normals that are legal but suspicious: the surface over them folds, tears or bulges.
+//! Normals that are valid but suspicious: the curved surface over them may fold, tear or bulge.
 
 use std::collections::HashSet;
 
@@ -8,29 +8,30 @@ use serde::Serialize;
 use super::Mesh;
 use super::topology::{Edge, Patch, Topology};
 
-/// Two unit vectors whose dot product is beyond this, either way, count as parallel: within 2.6 degrees.
+/// Two unit vectors count as parallel if the magnitude of their dot product is greater than this: within 2.6 degrees.
 const PARALLEL: f64 = 0.999;
 
-/// Sides of one edge that are compared with each other. More than that is noise, and comparing all would be quadratic.
+/// The greatest number of an edge's sides that are compared with each other. Comparing more would take quadratic time
+/// and tell little.
 const TRIES: usize = 256;
 
-/// How many normals are suspicious. All three may be meant, as in a Möbius strip.
+/// Numbers of suspicious normals. All three can be intended, as in a Möbius strip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NormalFaults {
-    /// Corners of patches whose normal points to the inside of the triangle's own plane (dot product below 0). A
-    /// triangle without area has no inside.
+    /// Corners of patches whose normal points to the back of their triangle (the dot product with its surface normal is
+    /// below 0). Triangles without area don't count.
     pub against_face: u32,
-    /// Edges at one end of which two sides have opposite normals (dot product below -0.999): their mean has no
-    /// direction.
+    /// Edges with two sides whose normals are opposite at one end (their dot product is below -0.999): their mean has
+    /// no direction.
     pub opposite: u32,
-    /// Corners of patches whose normal is parallel to one of the two edges there (dot product beyond 0.999): the
-    /// edge's control point has nowhere to go.
+    /// Corners of patches whose normal is parallel to one of the two edges there (the magnitude of their dot product is
+    /// above 0.999): the edge's control point can't follow the normal.
     pub along_edge: u32,
 }
 
 impl NormalFaults {
-    /// Counts them, in f64, with the edges as welded. Linear: of an edge with more than 256 sides the first 256 are
-    /// compared.
+    /// Counts the suspicious normals, in f64, after welding. Takes linear time: of an edge with more than 256 sides,
+    /// the first 256 are compared.
     pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
         let mut faults = Self::default();
         for patch in &topology.patches {
@@ -55,7 +56,7 @@ impl NormalFaults {
     }
 }
 
-/// Whether two sides of an edge have opposite normals at one of its ends.
+/// Returns whether two sides of an edge have opposite normals at one of its ends.
 fn opposed(mesh: &Mesh, topology: &Topology, edge: &Edge, end: usize) -> bool {
     let normal = |corner: u32| mesh.corners[corner as usize].normal;
     let normals = topology.edge_sides(edge).iter().take(TRIES).map(|side| normal(topology.side_corners(side)[end]));
@@ -80,7 +81,8 @@ mod tests {
         NormalFaults::of(mesh, &Topology::build(mesh, &Progress::new()).unwrap())
     }
 
-    /// Triangles over the edge from 0 to X, one for each pair of normals at its ends; their tips have the face's own.
+    /// Triangles over the edge from 0 to X, one for each pair of normals at its ends. Their third corners have the
+    /// surface normal of the triangle.
     fn book(normals: &[[Vec3; 2]]) -> Mesh {
         let corner = |position: Vec3, normal: Vec3| Corner { position, normal, uv: Vec2::ZERO };
         let pages = normals.iter().enumerate().flat_map(|(i, normals)| {
@@ -93,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn good_normals_are_no_faults() {
+    fn good_normals_are_not_suspicious() {
         for shape in Shape::ALL.into_iter().filter(|shape| *shape != Shape::Moebius) {
             assert_eq!(faults(&shape.build()), NormalFaults::default(), "{shape}");
         }
@@ -120,7 +122,7 @@ mod tests {
             let found = faults(&book(&[[Vec3::Z, normal]]));
             assert_eq!(found, NormalFaults { along_edge, ..NormalFaults::default() }, "{normal}");
         }
-        // Corner 0's two edges are nearly one: still one corner.
+        // The two edges of corner 0 are nearly parallel; the corner still counts once.
         let mut sliver = book(&[[Vec3::X, Vec3::Z]]);
         sliver.corners[2].position = Vec3::new(2.0, 0.01, 0.0);
         assert_eq!(faults(&sliver).along_edge, 1);
@@ -149,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn size_plays_no_part() {
+    fn the_size_of_a_mesh_makes_no_difference() {
         for scale in [1e-30, 1e-7, 1e7, 1e30] {
             let mut mesh = book(&[[Vec3::NEG_Z, Vec3::X]]);
             mesh.corners.iter_mut().for_each(|corner| corner.position *= scale);

@@ -1,42 +1,45 @@
-//! What normals are taken as they come, and normals for corners that came without a good one: smooth where faces meet
-//! at up to 60 degrees, creased elsewhere.
+//! Checks the normals that a mesh comes with, and computes normals where there is no usable one: smooth between faces
+//! that meet at up to 60 degrees, creased elsewhere.
 
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-/// cos 60 degrees, with a little room: faces at exactly 60 degrees count as smooth whatever the rounding.
+/// The cosine of 60 degrees, with room for rounding: faces that meet at exactly 60 degrees count as smooth.
 const COS_LIMIT: f64 = 0.5 - 1e-5;
 
-/// Points with more faces than this have them gathered by direction first, which keeps the work linear.
+/// Around a point with more faces than this, faces are first grouped by direction, which keeps the work linear.
 const FAN_LIMIT: usize = 256;
 
-/// Cells along each axis of the direction grid for such points: about 1.3 degrees each, or more where faces look every way.
+/// Numbers of cells along each axis of the grid of directions that groups such faces. The first cells are about 1.3
+/// degrees wide; the coarser ones are used where faces point in very different directions.
 const CELLS: [f64; 4] = [45.0, 23.0, 12.0, 6.0];
 
-/// More cells than this are too many, if there are larger ones.
+/// The greatest number of cells in a grid, unless the grid is the coarsest one.
 const MAX_CELLS: usize = 1024;
 
-/// How far a normal's length may be from 1 without a word: as far as 8-bit numbers leave it.
+/// How far a normal's length may be from 1 without counting as rescaled: as far as the rounding of 8-bit normals takes
+/// it.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
-/// How far the square of a normal's length may be from 1 without any change: more than a normal in f32 can help.
+/// How far the square of a normal's length may be from 1 for the normal to keep its bits: a little more than rounding
+/// to f32.
 const ROUNDING: f64 = 1e-6;
 
-/// A normal as it was given, made fit for use.
+/// A normal from a file or a caller, checked and of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Given {
-    /// It was zero or not finite: as good as none.
+pub enum GivenNormal {
+    /// The normal was zero or not finite; it counts as missing.
     None,
-    /// It was of unit length to within 1e-2, and is now to within rounding.
+    /// The normal was of unit length to within 1e-2, and now is to within rounding.
     Unit(Vec3),
-    /// It was of another length, and is of unit length now.
+    /// The normal had another length, and has been scaled to unit length.
     Rescaled(Vec3),
 }
 
-impl Given {
-    /// The rule for every normal that is given. One whose length is 1 to within half a millionth keeps its bits; all
-    /// others are normalised in f64, where neither 1e-45 nor 1e38 is out of range.
+impl GivenNormal {
+    /// Checks a normal. If its length is 1 to within half a millionth, it keeps its bits; others are normalised in f64,
+    /// in which neither 1e-45 nor 1e38 is out of range.
     pub fn new(normal: Vec3) -> Self {
         let wide = normal.as_dvec3();
         let square = wide.length_squared();
@@ -50,7 +53,7 @@ impl Given {
         }
     }
 
-    /// The normal in unit length, if there is one.
+    /// Returns the unit normal, if there is one.
     pub fn unit(self) -> Option<Vec3> {
         match self {
             Self::None => None,
@@ -59,17 +62,18 @@ impl Given {
     }
 }
 
-/// A triangle as one of a point's faces.
+/// A triangle as one of the faces around a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Face {
-    /// Unit length; zero for a triangle without area.
+    /// The unit surface normal; zero for a triangle without area.
     normal: DVec3,
     /// The triangle's angle at the point, in radians.
     angle: f64,
 }
 
 impl Face {
-    /// A triangle as the face of its corner k. In f64, where the products of f32 differences neither overflow nor vanish.
+    /// Makes a triangle the face around its corner k. Computed in f64, where products of differences of f32 numbers
+    /// neither overflow nor underflow.
     pub fn new(triangle: [Vec3; 3], k: usize) -> Self {
         let p = triangle.map(Vec3::as_dvec3);
         let cross = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -79,15 +83,16 @@ impl Face {
     }
 }
 
-/// A unit normal for each face around a point.
+/// Computes a unit normal for each face around a point.
 ///
-/// That of face f averages the normals of all faces g around the point (f among them) whose normal lies within 60 degrees of
-/// f's, each weighted by g's angle there. Faces without area weigh nothing; their own normals average every face, or are +Z
-/// where there is none. Of more than 256 faces, those are first gathered in cells of direction of about 1.3 degrees (up to 10
-/// where they look every way), and a cell's mean normal stands for its faces on both sides of that comparison.
+/// The normal of face f is the mean of the surface normals of all faces g around the point (f among them) that lie
+/// within 60 degrees of f's, each weighted by g's angle at the point. Faces without area have weight 0; their own
+/// normals are the mean over all faces, or +Z if no face has area. If there are more than 256 faces, they are first
+/// grouped in cells of directions, about 1.3 degrees wide (up to 10 where they point in very different directions), and
+/// the mean normal of a cell is used for each of its faces.
 ///
-/// Linear in faces, apart from fans of up to 256. Source of the weights: Thürmer and Wüthrich 1998, "Computing vertex normals
-/// from polygonal facets".
+/// Takes time linear in the number of faces, except in fans of up to 256 faces. Source of the weights: Thürmer and
+/// Wüthrich 1998, "Computing vertex normals from polygonal facets".
 pub fn fan_normals(fan: &[Face], normals: &mut Vec<Vec3>) {
     normals.clear();
     if fan.len() <= FAN_LIMIT {
@@ -113,8 +118,8 @@ fn averages(fan: &[Face]) -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Faces gathered by direction, with so many cells along an axis: each cell as one face (mean normal, total angle), and the
-/// cell of each face.
+/// Groups faces by direction, in a grid with `along` cells for each unit of an axis. Returns each cell as one face
+/// (mean normal, total angle), and the cell of each face.
 fn gather(fan: &[Face], along: f64) -> (Vec<Face>, Vec<u32>) {
     let mut ids: HashMap<[i64; 3], u32> = HashMap::new();
     let mut sums: Vec<(DVec3, f64)> = Vec::new();
@@ -137,17 +142,17 @@ fn gather(fan: &[Face], along: f64) -> (Vec<Face>, Vec<u32>) {
 mod tests {
     use super::*;
     use crate::mesh::Material;
-    use crate::mesh::mesh_builder::{LooseCorner, MeshBuilder};
+    use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
     use crate::mesh::shapes::Shape;
     use crate::progress::{Cancelled, Progress};
     use glam::Vec2;
 
-    /// The normals that triangles get, corner by corner.
+    /// Returns the normals that triangles get, corner by corner.
     fn smooth(triangles: &[[Vec3; 3]], progress: &Progress) -> Result<Vec<[Vec3; 3]>, Cancelled> {
         let mut builder = MeshBuilder::new();
         let material = builder.material(Material::plain("plain", [1.0; 4]));
         for triangle in triangles {
-            let corner = |position| LooseCorner { position, normal: None, uv: Vec2::ZERO };
+            let corner = |position| InputCorner { position, normal: None, uv: Vec2::ZERO };
             builder.triangle(material, triangle.map(corner));
         }
         let mesh = builder.finish(String::new(), progress)?;
@@ -165,9 +170,11 @@ mod tests {
     #[test]
     fn normals_of_any_length_keep_their_direction() {
         for scale in [1e-45, 1e-30, 1e-3, 0.98, 1.02, 1e30, f32::MAX] {
-            assert_eq!(Given::new(Vec3::NEG_Y * scale), Given::Rescaled(Vec3::NEG_Y), "{scale}");
+            assert_eq!(GivenNormal::new(Vec3::NEG_Y * scale), GivenNormal::Rescaled(Vec3::NEG_Y), "{scale}");
         }
-        let Given::Rescaled(unit) = Given::new(Vec3::MAX) else { panic!("the longest of all has a direction") };
+        let GivenNormal::Rescaled(unit) = GivenNormal::new(Vec3::MAX) else {
+            panic!("the longest of all has a direction")
+        };
         assert!(unit.distance(Vec3::splat(3_f32.sqrt().recip())) < 1e-6);
     }
 
@@ -175,20 +182,24 @@ mod tests {
     fn normals_without_a_direction_are_none() {
         let bad = [Vec3::ZERO, -Vec3::ZERO, Vec3::NAN, Vec3::INFINITY, Vec3::new(1.0, 0.0, f32::NEG_INFINITY)];
         for normal in bad.into_iter().chain([Vec3::new(f32::NAN, 1.0, 0.0)]) {
-            assert_eq!((Given::new(normal), Given::new(normal).unit()), (Given::None, None), "{normal}");
+            assert_eq!(
+                (GivenNormal::new(normal), GivenNormal::new(normal).unit()),
+                (GivenNormal::None, None),
+                "{normal}"
+            );
         }
     }
 
     #[test]
-    fn lengths_near_1_pass_in_silence() {
+    fn lengths_near_1_are_not_counted() {
         let slant = Vec3::new(0.6, 0.0, 0.8);
         for (length, given) in
             [(1.0, 1.0), (1.0 + 4e-7, 1.0 + 4e-7), (1.0 - 4e-7, 1.0 - 4e-7), (1.009, 1.0), (0.991, 1.0)]
         {
-            assert_eq!(Given::new(Vec3::X * length), Given::Unit(Vec3::X * given));
+            assert_eq!(GivenNormal::new(Vec3::X * length), GivenNormal::Unit(Vec3::X * given));
         }
-        assert!(matches!(Given::new(slant * 1.011), Given::Rescaled(unit) if unit.distance(slant) < 1e-7));
-        assert!(matches!(Given::new(slant * 0.989), Given::Rescaled(unit) if unit.distance(slant) < 1e-7));
+        assert!(matches!(GivenNormal::new(slant * 1.011), GivenNormal::Rescaled(unit) if unit.distance(slant) < 1e-7));
+        assert!(matches!(GivenNormal::new(slant * 0.989), GivenNormal::Rescaled(unit) if unit.distance(slant) < 1e-7));
     }
 
     #[test]
@@ -211,13 +222,13 @@ mod tests {
         }
     }
 
-    /// A cone of n sides, its apex above the origin; `flat` is the height.
+    /// Returns a cone of n sides, its apex above the origin. It is flat if the height is small.
     fn cone(n: usize, height: f32) -> Vec<[Vec3; 3]> {
-        let rim = |i: usize| {
+        let base = |i: usize| {
             let angle = std::f32::consts::TAU * (i % n) as f32 / n as f32;
             Vec3::new(angle.cos(), angle.sin(), 0.0)
         };
-        (0..n).map(|i| [rim(i), rim(i + 1), Vec3::new(0.0, 0.0, height)]).collect()
+        (0..n).map(|i| [base(i), base(i + 1), Vec3::new(0.0, 0.0, height)]).collect()
     }
 
     #[test]
@@ -289,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cancel_is_heard() {
+    fn cancelling_stops_the_work() {
         let progress = Progress::new();
         progress.cancel();
         assert_eq!(smooth(&cone(5, 1.0), &progress), Err(Cancelled));

@@ -1,53 +1,56 @@
-//! Polygons as triangles, by ear clipping: whatever their outline, no triangle lies outside, and every corner is used.
+//! Cuts polygons into triangles by ear clipping. Every corner is used, and no triangle of a valid polygon lies outside
+//! it.
 //!
-//! Source: O'Rourke 1998, "Computational Geometry in C", section 1.6.6: cutting off an ear changes at most whether its two
-//! neighbours are ears. Libraries for it leave out corners on straight edges, and so leave T-junctions.
+//! Source: O'Rourke 1998, "Computational Geometry in C", section 1.6.6: cutting off an ear changes only whether its two
+//! neighbours are ears. Libraries for this leave out corners on straight edges, which makes T-junctions.
 
 use std::collections::VecDeque;
 
 use glam::{DVec2, DVec3, Vec3};
 
-/// What is left of the work that one file may cause: containment tests.
+/// The work that the polygons of one file may still cause, counted in tests whether a corner lies in a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct WorkBudget(u64);
 
 impl WorkBudget {
-    /// For a file of so many bytes: enough for outlines of 3,000 corners of which every ear has all others beside it, and for
-    /// many times as many corners of what people draw.
+    /// Returns the budget for a file of `bytes` bytes: enough for polygons of 3,000 corners in which every ear is
+    /// tested against all other corners, and for many times as many corners in ordinary polygons.
     pub fn new(bytes: usize) -> Self {
         Self((1 << 23) + 4 * bytes as u64)
     }
 }
 
-/// How a polygon was cut.
+/// How well a polygon was cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cut {
-    /// All triangles lie within it.
-    Exactly,
-    /// It has no area, or its sides cross, or the budget was spent: triangles may overlap.
-    Somehow,
+pub enum CutQuality {
+    /// All triangles lie within the polygon, without overlaps.
+    Exact,
+    /// The polygon has no area, its sides cross, or the budget was used up: triangles may overlap.
+    MayOverlap,
 }
 
-/// Cuts a polygon into as many triangles as it has corners, less two; corners are numbers into `outline`, and triangles turn as
-/// it does. Of three corners or more. Quadratic in corners that turn inward, and never beyond the budget.
-pub fn triangulate(outline: &[Vec3], budget: &mut WorkBudget, triangles: &mut Vec<[usize; 3]>) -> Cut {
+/// Cuts a polygon of three corners or more into triangles, two fewer than it has corners. The triangles hold indices
+/// into `outline` and have its winding. Takes time quadratic in the number of corners that turn inward, but never more
+/// than the budget.
+pub fn triangulate(outline: &[Vec3], budget: &mut WorkBudget, triangles: &mut Vec<[usize; 3]>) -> CutQuality {
     if outline.len() == 3 {
         triangles.push([0, 1, 2]);
-        return Cut::Exactly;
+        return CutQuality::Exact;
     }
     let normal = newell(outline);
     let mut ears = Ears::new(flat(outline, normal), budget);
     ears.cut(triangles);
-    if ears.forced || normal == DVec3::ZERO { Cut::Somehow } else { Cut::Exactly }
+    if ears.forced || normal == DVec3::ZERO { CutQuality::MayOverlap } else { CutQuality::Exact }
 }
 
-/// Newell's normal: as long as twice the area of the outline, seen from where that is largest.
+/// Returns Newell's normal. Its length is twice the polygon's area, seen from the direction in which that is largest.
 fn newell(outline: &[Vec3]) -> DVec3 {
     let first = outline[0].as_dvec3();
     outline.array_windows().map(|&[a, b]| (a.as_dvec3() - first).cross(b.as_dvec3() - first)).sum()
 }
 
-/// The outline seen along the axis that is nearest to its normal, counter-clockwise. Coordinates stay exactly what they are.
+/// Projects the outline along the axis that is nearest to its normal, so that it is counter-clockwise. Coordinates stay
+/// exact.
 fn flat(outline: &[Vec3], normal: DVec3) -> Vec<DVec2> {
     let size = normal.abs();
     let (u, v, w) = match () {
@@ -62,20 +65,22 @@ fn flat(outline: &[Vec3], normal: DVec3) -> Vec<DVec2> {
 /// A polygon that is being cut.
 struct Ears<'a> {
     points: Vec<DVec2>,
-    /// Along which of the two axes it is longer.
+    /// The axis along which the polygon is longer: 0 or 1.
     axis: usize,
-    /// Neighbours among the corners that are left.
+    /// The neighbours of each corner among those that are left.
     before: Vec<usize>,
     after: Vec<usize>,
-    /// Corners that turn inward or are straight, along that axis: only they can lie in an ear. Some that are gone, or turn outward by now, are
-    /// still among them.
+    /// The corners that turn inward or are straight, sorted along that axis: only these can lie in an ear. Some may
+    /// have been removed, or turn outward by now.
     inward: Vec<usize>,
-    /// Corners that were ears, the next first, and when each was looked at.
+    /// Corners that were ears when they were tested, the next one first, each with the number of that test.
     queue: VecDeque<(usize, u32)>,
-    /// When each corner was looked at last, in looks at it.
+    /// How often each corner has been tested.
     looks: Vec<u32>,
+    /// Whether each corner has been removed.
     gone: Vec<bool>,
     budget: &'a mut WorkBudget,
+    /// Whether a triangle had to be cut off that isn't an ear, or wasn't tested.
     forced: bool,
 }
 
@@ -93,7 +98,7 @@ impl<'a> Ears<'a> {
         let mut inward: Vec<usize> = (0..count).filter(|&i| ears.turn(i) <= 0.0).collect();
         inward.sort_unstable_by(|&a, &b| ears.points[a][axis].total_cmp(&ears.points[b][axis]));
         ears.inward = inward;
-        // From the second corner: a quadrilateral is cut from its first.
+        // Starts with the second corner, so that a quadrilateral is cut from its first.
         (1..=count).for_each(|i| ears.look(i % count));
         ears
     }
@@ -128,14 +133,14 @@ impl<'a> Ears<'a> {
         None
     }
 
-    /// Corners that are gone or turn outward by now aren't tested again.
+    /// Drops the corners that have been removed or now turn outward from those that are tested.
     fn forget_outward(&mut self) {
         let mut inward = std::mem::take(&mut self.inward);
         inward.retain(|&i| !self.gone[i] && self.turn(i) <= 0.0);
         self.inward = inward;
     }
 
-    /// A corner that is left, from that one on.
+    /// Returns the first corner from `from` on that is left, and sets `from` to it.
     fn any_left(&self, from: &mut usize) -> usize {
         while self.gone[*from] {
             *from = self.after[*from];
@@ -151,7 +156,7 @@ impl<'a> Ears<'a> {
         [after, before].into_iter().for_each(|corner| self.look(corner));
     }
 
-    /// Queues a corner if it is an ear now, behind all others: large polygons don't become fans.
+    /// Tests a corner, and queues it behind all others if it is an ear. So a large polygon doesn't become a fan.
     fn look(&mut self, corner: usize) {
         self.looks[corner] += 1;
         if self.is_ear(corner) {
@@ -189,7 +194,7 @@ impl<'a> Ears<'a> {
         true
     }
 
-    /// Twice the area of a corner's triangle: above 0 where it turns outward.
+    /// Returns twice the area of a corner's triangle: above 0 where the outline turns outward.
     fn turn(&self, corner: usize) -> f64 {
         cross(self.points[self.before[corner]], self.points[corner], self.points[self.after[corner]])
     }
@@ -204,7 +209,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn cut(outline: &[Vec3]) -> (Vec<[usize; 3]>, Cut) {
+    fn cut(outline: &[Vec3]) -> (Vec<[usize; 3]>, CutQuality) {
         let mut triangles = Vec::new();
         let cut = triangulate(outline, &mut WorkBudget::new(0), &mut triangles);
         (triangles, cut)
@@ -214,7 +219,7 @@ mod tests {
         outline.iter().map(|&[x, y]| Vec3::new(x, y, 2.0)).collect()
     }
 
-    /// Twice the areas of the triangles, as vectors.
+    /// The area vectors of the triangles, doubled.
     fn areas(outline: &[Vec3], triangles: &[[usize; 3]]) -> Vec<DVec3> {
         let area = |t: &[usize; 3]| {
             let [a, b, c] = t.map(|i| outline[i].as_dvec3());
@@ -223,10 +228,11 @@ mod tests {
         triangles.iter().map(area).collect()
     }
 
-    /// As many triangles as there must be, all turning as the outline does, with its area in sum: so none overlap.
+    /// Checks that there are as many triangles as there must be, that all have the outline's winding, and that their
+    /// areas add up to its area, so that none overlap.
     fn assert_exact(outline: &[Vec3]) {
         let (triangles, how) = cut(outline);
-        assert_eq!((triangles.len(), how), (outline.len() - 2, Cut::Exactly));
+        assert_eq!((triangles.len(), how), (outline.len() - 2, CutQuality::Exact));
         let (whole, areas) = (newell(outline), areas(outline, &triangles));
         assert!(areas.iter().all(|area| area.dot(whole) > 0.0), "a triangle turns the other way, or has no area");
         let sum: DVec3 = areas.iter().sum();
@@ -236,7 +242,7 @@ mod tests {
     #[test]
     fn quadrilaterals_are_cut_from_the_first_corner_or_where_they_must_be() {
         let square = in_plane(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
-        assert_eq!(cut(&square), (vec![[0, 1, 2], [0, 2, 3]], Cut::Exactly));
+        assert_eq!(cut(&square), (vec![[0, 1, 2], [0, 2, 3]], CutQuality::Exact));
         let arrow = in_plane(&[[0.0, 0.0], [4.0, -3.0], [1.0, 0.0], [4.0, 3.0]]);
         assert_exact(&arrow);
         assert!(cut(&arrow).0.iter().all(|t| t.contains(&0) && t.contains(&2)), "along the notch");
@@ -264,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_convex_outline_is_no_fan() {
+    fn large_convex_outlines_do_not_become_fans() {
         let round = |i: usize| {
             let angle = std::f64::consts::TAU * i as f64 / 1000.0;
             Vec3::new((1e3 * angle.cos()) as f32, (1e3 * angle.sin()) as f32, 0.0)
@@ -277,12 +283,12 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_area_or_crosses_itself_is_cut_somehow() {
+    fn outlines_without_area_or_with_crossings_may_overlap() {
         let line = in_plane(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 0.0], [0.5, 0.0]]);
         let bow = in_plane(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
         for outline in [line, bow, vec![Vec3::ONE; 9]] {
             let (triangles, how) = cut(&outline);
-            assert_eq!((triangles.len(), how), (outline.len() - 2, Cut::Somehow));
+            assert_eq!((triangles.len(), how), (outline.len() - 2, CutQuality::MayOverlap));
         }
     }
 
@@ -300,16 +306,16 @@ mod tests {
 
     #[test]
     fn the_budget_ends_the_work_of_hostile_outlines() {
-        // A comb: every tooth spans all that turns inward.
+        // A comb: each tooth has all inward corners in its range.
         let tooth = |i: u32| [[0.0, i as f32], [1e7, i as f32 + 0.5]];
         let comb: Vec<[f32; 2]> = (0..50_000).flat_map(tooth).chain([[0.0, 5e4], [-1.0, 5e4], [-1.0, 0.0]]).collect();
         let (outline, mut budget, mut triangles) = (in_plane(&comb), WorkBudget::new(0), Vec::new());
-        assert_eq!(triangulate(&outline, &mut budget, &mut triangles), Cut::Somehow);
+        assert_eq!(triangulate(&outline, &mut budget, &mut triangles), CutQuality::MayOverlap);
         assert_eq!((triangles.len(), budget.0), (outline.len() - 2, 0));
     }
 
     proptest! {
-        /// Outlines around a centre that sees all of them, in whole numbers, where the test is exact.
+        /// Outlines around a centre from which all of them can be seen, in whole numbers, for which the test is exact.
         #[test]
         fn stars_of_any_shape_are_cut_exactly(radii in prop::collection::vec(200_u32..4000, 4..40)) {
             let count = radii.len() as f64;
@@ -327,7 +333,7 @@ mod tests {
             let triangles = cut(&outline).0;
             prop_assert_eq!(triangles.len(), outline.len() - 2);
             prop_assert!(triangles.iter().all(|&[a, b, c]| a != b && b != c && c != a));
-            // Every side of the outline is a side of exactly one triangle, once more than its opposite.
+            // Every side of the outline is a side of exactly one triangle, in the same direction.
             for i in 0..outline.len() {
                 let side = (i, (i + 1) % outline.len());
                 let sides = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);

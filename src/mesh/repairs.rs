@@ -1,16 +1,16 @@
-//! How many corners were repaired while a mesh was built.
+//! Counts of the corners that were repaired while a mesh was built.
 
 use serde::Serialize;
 
-/// Numbers of triangle corners that were repaired: a vertex that six triangles use counts six times.
+/// Numbers of triangle corners that were repaired. A corner that six triangles use counts six times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Repairs {
     /// Corners without a normal, which got a smooth one.
     pub normals_made: u32,
     /// Corners whose normal was zero or not finite, which got a smooth one.
     pub normals_replaced: u32,
-    /// Corners whose normal was brought to unit length.
+    /// Corners whose normal was scaled to unit length.
     pub normals_rescaled: u32,
-    /// Corners with a coordinate below f32's smallest normal number, about 1.2e-38, which is now 0.
+    /// Corners with a coordinate below f32's smallest normal number, about 1.2e-38, which became 0.
     pub denormals: u32,
 }

@@ -1,13 +1,13 @@
-//! How a mesh moves: what its corners are before they are deformed, the nodes that move them, and clips that say where
-//! those nodes are at a time.
+//! Animation of a mesh: its corners before they are deformed, the nodes that move them, and clips that say how those
+//! nodes move over time.
 //!
-//! A corner hangs on up to four *joints*: matrices of one palette. A joint of a skin is one, and so is a node that a clip
-//! moves, for all that hangs on it rigidly. What no clip moves hangs on the identity.
+//! A corner is bound to up to four *joints*: matrices of one palette. Each joint of a skin is one. So is each animated
+//! node, for the meshes attached to it or below it. What no clip moves is bound to the identity matrix.
 //!
 //! Source: Khronos, glTF 2.0 specification, sections 3.7.2.2 (morph targets), 3.7.3 (skins) and 3.11 (animations).
 
+mod animated_node;
 mod clip;
-mod mover;
 
 use std::fmt;
 
@@ -15,52 +15,58 @@ use bytemuck::{Pod, Zeroable};
 use glam::DMat4;
 use serde::Serialize;
 
+pub use animated_node::{AnimatedNode, Placement};
 pub use clip::{Channel, Clip, Interpolation, Keys, Property};
-pub use mover::{Mover, Placement};
 
-/// A mesh's bindings to its joints and morph targets, and the clips that move those.
+/// A mesh's bindings to joints and morph targets, and the clips that move those.
 #[derive(Clone, Debug, Default)]
 pub struct Rig {
-    /// One for each of the mesh's corners.
+    /// One binding for each of the mesh's corners.
     pub bindings: Vec<Binding>,
-    /// Each binding's own run, one a morph target that moves or turns it.
+    /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns
+    /// it.
     pub deltas: Vec<Delta>,
-    /// Corners at one position with the same number stay together in every pose: same joints, weights and displacements.
+    /// Corners at one position with the same number here stay together in every pose: they have the same joints,
+    /// weights and displacements.
     pub alike: Vec<u32>,
-    /// Parents before children.
-    pub movers: Vec<Mover>,
-    /// The palette's matrices.
+    /// The animated nodes, parents before children.
+    pub nodes: Vec<AnimatedNode>,
+    /// The matrices of the palette.
     pub joints: Vec<Joint>,
+    /// One for each node with morph targets.
     pub morphs: Vec<Morph>,
-    /// Each moves something.
+    /// The clips that move something.
     pub clips: Vec<Clip>,
+    /// Bounds on the coordinates before deformation.
     pub reach: Reach,
 }
 
-/// The largest coordinates of what is deformed.
+/// The largest coordinates of the data that poses deform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reach {
+    /// The largest coordinate of a position.
     position: f64,
-    /// Of positions and normals, by morph targets of weight 1.
+    /// The largest coordinate of a displacement of a position or normal, by a morph target of weight 1.
     delta: f64,
 }
 
-/// A corner before it is deformed, in the space that its joints' matrices start from. Also the shaders' struct.
+/// A corner before it is deformed, in the space that the matrices of its joints start from. The shaders use this struct
+/// too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Binding {
     pub position: [f32; 3],
     pub first_delta: u32,
-    /// Of any length, if morph targets are to be added.
+    /// Not of unit length if morph targets are added to it.
     pub normal: [f32; 3],
     pub delta_count: u32,
-    /// Indices into the palette; those without weight are 0.
+    /// Indices into the palette; 0 where the weight is 0.
     pub joints: [u32; 4],
-    /// They sum to 1.
+    /// They add up to 1.
     pub weights: [f32; 4],
 }
 
-/// What a morph target of weight 1 adds to a corner. Also the shaders' struct.
+/// What a morph target of weight 1 adds to a corner. The shaders use this struct too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Delta {
@@ -71,7 +77,7 @@ pub struct Delta {
     pub _pad: f32,
 }
 
-/// The first three rows of a matrix, whose fourth is (0, 0, 0, 1). Also the shaders' struct.
+/// The first three rows of a matrix whose fourth row is (0, 0, 0, 1). The shaders use this struct too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct JointMatrix {
@@ -91,53 +97,53 @@ impl JointMatrix {
     }
 }
 
-/// A matrix of the palette: `offset`, then whatever moves it.
+/// A matrix of the palette: `offset`, followed by the transform of the animated node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// Index into [`Rig::movers`]; none if no clip moves it.
-    pub mover: Option<u32>,
+    /// Index into [`Rig::nodes`]; none if no clip moves the joint.
+    pub node: Option<u32>,
     pub offset: DMat4,
 }
 
 /// The morph targets of one node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Morph {
-    /// Their run of [`Pose::weights`] starts here.
+    /// Where the weights of these targets start in [`Pose::weights`].
     pub first_weight: u32,
-    /// One a target.
+    /// The weight of each target at rest.
     pub rest: Vec<f32>,
 }
 
-/// Where everything is at one time.
+/// The state of all joints and morph targets at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
     pub palette: Vec<JointMatrix>,
-    /// Of all morph targets of all nodes; never empty, so that there is something to bind.
+    /// The weights of all morph targets of all nodes. Never empty, so that a buffer for them can be bound.
     pub weights: Vec<f32>,
 }
 
-/// A clip and a time in it.
+/// A time in a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Index into [`Rig::clips`].
     pub clip: usize,
-    /// s.
+    /// In seconds.
     pub time: f64,
 }
 
-/// What a clip moves, in numbers.
+/// Numbers of the things that a clip moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Moved {
+pub struct AnimatedCounts {
     /// Joints of skins.
     pub joints: usize,
-    /// Other nodes.
+    /// Nodes that aren't joints.
     pub nodes: usize,
     /// Morph targets.
     pub targets: usize,
 }
 
-impl fmt::Display for Moved {
-    /// In words, without what there is none of.
+impl fmt::Display for AnimatedCounts {
+    /// Writes the counts as text, leaving out those that are 0.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let counts = [(self.joints, "joint"), (self.nodes, "node"), (self.targets, "morph target")];
         for (i, (count, what)) in counts.into_iter().filter(|(count, _)| *count > 0).enumerate() {
@@ -148,12 +154,13 @@ impl fmt::Display for Moved {
     }
 }
 
-/// In object units. Control points, which are sums of several positions, stay within f32.
+/// The greatest coordinate of a pose, in object units. Control points, which are sums of several positions, then stay
+/// within f32.
 pub const LARGEST_COORDINATE: f32 = 1e37;
 
 impl Rig {
-    /// The clip of this name; of several, the first, and the second is `NAME#2`. Without one, the only clip of this name but for
-    /// its case.
+    /// Finds a clip by name. If several have the name, it is the first one's; the second is `NAME#2`, and so on. If no
+    /// clip has exactly this name, and one clip has it in other upper or lower case, that clip is found.
     pub fn clip(&self, name: &str) -> Option<usize> {
         let named = |name: &str, nth: usize| {
             self.clips.iter().enumerate().filter(|(_, clip)| clip.name == name).nth(nth).map(|(index, _)| index)
@@ -168,7 +175,7 @@ impl Rig {
         exact.or_else(|| self.clips.iter().position(alike).filter(|_| only()))
     }
 
-    /// The name by which [`Self::clip`] finds a clip.
+    /// Returns the name by which [`Self::clip`] finds a clip.
     pub fn clip_name(&self, clip: usize) -> String {
         let name = &self.clips[clip].name;
         match self.clips[..clip].iter().filter(|other| other.name == *name).count() {
@@ -177,10 +184,10 @@ impl Rig {
         }
     }
 
-    /// Where everything is at a moment. Before the first and after the last key a channel keeps its value. A pose in
-    /// which coordinates would leave f32 is the one at rest.
+    /// Computes the pose at a moment. Before its first and after its last key frame, a channel keeps the value of that
+    /// key frame. If coordinates would leave f32, the result is the pose at rest.
     pub fn pose(&self, Moment { clip, time }: Moment) -> Pose {
-        let mut placements: Vec<Placement> = self.movers.iter().map(|mover| mover.rest).collect();
+        let mut placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
         let mut weights = self.rest_weights();
         for channel in self.clips.get(clip).map_or(&[][..], |clip| &clip.channels) {
             let target = channel.target as usize;
@@ -195,7 +202,7 @@ impl Rig {
         if self.is_held(&pose) { pose } else { self.rest() }
     }
 
-    /// What it takes, in bytes.
+    /// Returns the size of the rig, in bytes.
     pub(crate) fn bytes(&self) -> usize {
         let keys = |channel: &Channel| channel.keys.times.len() + channel.keys.values.len();
         let clips =
@@ -203,19 +210,19 @@ impl Rig {
         size_of_val(&self.bindings[..])
             + size_of_val(&self.deltas[..])
             + size_of_val(&self.alike[..])
-            + size_of_val(&self.movers[..])
+            + size_of_val(&self.nodes[..])
             + size_of_val(&self.joints[..])
             + clips.sum::<usize>()
     }
 
-    /// The pose without any clip.
+    /// Returns the pose without any clip.
     pub fn rest(&self) -> Pose {
-        let placements: Vec<Placement> = self.movers.iter().map(|mover| mover.rest).collect();
+        let placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
         Pose { palette: self.palette(&placements), weights: self.rest_weights() }
     }
 
-    /// What a clip moves.
-    pub fn moved(&self, clip: &Clip) -> Moved {
+    /// Counts what a clip moves.
+    pub fn animated_counts(&self, clip: &Clip) -> AnimatedCounts {
         let targets = |weights: bool| {
             let channels = clip.channels.iter().filter(|channel| (channel.property == Property::Weights) == weights);
             let mut targets: Vec<usize> = channels.map(|channel| channel.target as usize).collect();
@@ -223,12 +230,12 @@ impl Rig {
             targets.dedup();
             targets
         };
-        let movers = targets(false);
-        let joints = movers.iter().filter(|&&mover| self.movers[mover].is_joint).count();
+        let nodes = targets(false);
+        let joints = nodes.iter().filter(|&&node| self.nodes[node].is_joint).count();
         let morphs = targets(true);
-        Moved {
+        AnimatedCounts {
             joints,
-            nodes: movers.len() - joints,
+            nodes: nodes.len() - joints,
             targets: morphs.iter().map(|&morph| self.morphs[morph].rest.len()).sum(),
         }
     }
@@ -242,18 +249,18 @@ impl Rig {
     }
 
     fn palette(&self, placements: &[Placement]) -> Vec<JointMatrix> {
-        let mut global: Vec<DMat4> = Vec::with_capacity(self.movers.len());
-        for (mover, placement) in self.movers.iter().zip(placements) {
-            let above = mover.parent.map_or(DMat4::IDENTITY, |parent| global[parent as usize]);
-            global.push(above * mover.between * placement.matrix());
+        let mut global: Vec<DMat4> = Vec::with_capacity(self.nodes.len());
+        for (node, placement) in self.nodes.iter().zip(placements) {
+            let above = node.parent.map_or(DMat4::IDENTITY, |parent| global[parent as usize]);
+            global.push(above * node.between * placement.matrix());
         }
         let matrix = |joint: &Joint| {
-            JointMatrix::new(joint.mover.map_or(joint.offset, |mover| global[mover as usize] * joint.offset))
+            JointMatrix::new(joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset))
         };
         self.joints.iter().map(matrix).collect()
     }
 
-    /// Whether no corner leaves f32 in this pose, by bounds on its coordinates.
+    /// Returns whether all corners stay within [`LARGEST_COORDINATE`] in this pose, by bounds on their coordinates.
     fn is_held(&self, pose: &Pose) -> bool {
         let limit = f64::from(LARGEST_COORDINATE);
         let weights: f64 = pose.weights.iter().map(|weight| f64::from(weight.abs())).sum();

@@ -1,6 +1,6 @@
-//! Shapes made in code: small meshes with known answers, coarse on purpose so that tessellation shows.
+//! Meshes that are made in code: small, with known properties, and coarse so that tessellation shows.
 //!
-//! All are about one unit in radius, centred, with +Y up, counter-clockwise seen from outside.
+//! All have a radius of about 1 object unit, are centred, have +Y up, and are counter-clockwise seen from outside.
 
 pub(crate) mod bicubic;
 pub(crate) mod polyhedra;
@@ -16,44 +16,46 @@ use super::mesh_builder::MeshBuilder;
 use super::{Corner, Material, Mesh};
 use crate::progress::Progress;
 
-/// A shape that needs no file.
+/// A mesh that is made in code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// 12 triangles, with normals and a uv square for each face: every edge between faces is split. The normals lean
-    /// outwards at the corners; upright ones would leave faces flat and edges straight, and nothing would tear.
+    /// 12 triangles, with normals and a uv square for each face: all edges between faces are split. The normals lean
+    /// outwards at the corners. If they were at right angles to the faces, PN triangles would leave faces flat and
+    /// edges straight, and nothing would tear.
     #[default]
     CubeSplit,
-    /// 12 triangles whose corners share one normal on each point.
+    /// 12 triangles; all corners on one point have the same normal.
     CubeSmooth,
     /// 20 triangles with smooth normals.
     Icosahedron,
-    /// 80 triangles with the sphere's own normals.
+    /// 80 triangles with the normals of the sphere.
     Icosphere,
-    /// The icosphere stretched to three different radii, with the ellipsoid's own normals.
+    /// The icosphere, scaled to three different radii, with the normals of the ellipsoid.
     Ellipsoid,
-    /// 16 by 8 quads with the torus's own normals; uv seams both ways round.
+    /// 16 by 8 quads with the normals of the torus, and uv seams around both circles.
     Torus,
-    /// 12 sides and two caps with a crease between.
+    /// 12 sides and two caps, with creases between sides and caps.
     Cylinder,
-    /// 12 sides that each have a normal of their own at the apex, and a cap.
+    /// 12 sides, each with a normal of its own at the apex, and a cap.
     Cone,
-    /// The open patch y = (x^2 - z^2) / 2 over 6 by 6 quads.
+    /// The open surface y = (x^2 - z^2) / 2 over 6 by 6 quads.
     Saddle,
-    /// An open leaning vase of 5 by 3 bicubic patches, each sampled at 2 by 2 quads, with the surface's own normals.
+    /// A leaning vase without lid or bottom: 5 by 3 bicubic patches, each sampled at 2 by 2 quads, with the surface's
+    /// normals.
     Bicubic,
-    /// A strip with half a twist: one side, one boundary, normals that flip at the join.
+    /// A strip with half a twist. It has one side and one boundary, and its normals flip where its ends meet.
     Moebius,
 }
 
-/// The finest level of a shape that has levels.
+/// The highest level of a shape with levels.
 pub const MAX_LEVEL: u32 = 6;
 
-/// Text names no shape that there is.
+/// Why a text doesn't name a shape.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ShapeError {
     #[error("there is no shape \"{name}\"; choose one of {}", Shape::ALL.map(Shape::name).join(", "))]
     Unknown { name: String },
-    #[error("a shape's level is a whole number from 0 to {MAX_LEVEL}, as in shape:torus@2; \"{text}\" is none")]
+    #[error("\"{text}\" isn't a level of a shape; choose a whole number from 0 to {MAX_LEVEL}, as in shape:torus@2")]
     Level { text: String },
     #[error(
         "{shape} has no exact surface to be sampled more finely, so it has no levels; leave out the @, or choose one of {}",
@@ -63,7 +65,7 @@ pub enum ShapeError {
 }
 
 impl Shape {
-    /// All shapes, in the order of a menu.
+    /// All shapes, in the order of the menu.
     pub const ALL: [Self; 11] = [
         Self::CubeSplit,
         Self::CubeSmooth,
@@ -78,7 +80,7 @@ impl Shape {
         Self::Moebius,
     ];
 
-    /// The name that commands use, as in `shape:torus`.
+    /// Returns the name in commands, as in `shape:torus`.
     pub fn name(self) -> &'static str {
         match self {
             Self::CubeSplit => "cube-split",
@@ -95,7 +97,7 @@ impl Shape {
         }
     }
 
-    /// The name that people read in a menu.
+    /// Returns the name for menus.
     pub fn title(self) -> &'static str {
         match self {
             Self::CubeSplit => "Cube, split normals",
@@ -112,18 +114,18 @@ impl Shape {
         }
     }
 
-    /// Whether its corners are samples of a curved surface, of which there may be more.
+    /// Returns whether the shape's corners are samples of a curved surface, which can be sampled more densely.
     pub fn has_levels(self) -> bool {
         !matches!(self, Self::CubeSplit | Self::CubeSmooth | Self::Moebius)
     }
 
-    /// The mesh, the same every time.
+    /// Builds the mesh at level 0. It is the same every time.
     pub fn build(self) -> Mesh {
         self.build_at(0)
     }
 
-    /// The mesh with its segments doubled `level` times, all corners on the same surface with the surface's normals.
-    /// Shapes without levels stay what they are.
+    /// Builds the mesh with its number of segments doubled `level` times. All corners lie on the same surface and have
+    /// its normals. A shape without levels stays as it is.
     pub fn build_at(self, level: u32) -> Mesh {
         let triangles = match self {
             Self::CubeSplit => polyhedra::cube_split(),
@@ -143,11 +145,11 @@ impl Shape {
         for triangle in triangles {
             builder.triangle(material, triangle.map(Into::into));
         }
-        // Nobody else holds this handle, so nobody can cancel.
+        // The only possible error is cancellation, and no other code has this handle.
         builder.finish(self.title_at(level), &Progress::new()).unwrap_or_default()
     }
 
-    /// The title, with the level if it isn't 0.
+    /// Returns the name for menus, with the level if it isn't 0.
     pub fn title_at(self, level: u32) -> String {
         if level == 0 { self.title().to_owned() } else { format!("{}, level {level}", self.title()) }
     }
@@ -172,7 +174,7 @@ fn corner(position: Vec3, normal: Vec3, uv: Vec2) -> Corner {
     Corner { position, normal: normal.normalize(), uv }
 }
 
-/// A quad a b c d, counter-clockwise, as two triangles along its diagonal a-c.
+/// Returns two triangles for the quad a b c d, which is counter-clockwise, cut along its diagonal a-c.
 fn quad([a, b, c, d]: [Corner; 4]) -> [[Corner; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }

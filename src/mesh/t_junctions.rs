@@ -1,75 +1,78 @@
-//! T-junctions: points between the ends of another triangle's open edge, which divide the surface on its other side.
+//! T-junctions: points between the ends of another triangle's open edge, where the surface on the other side of that
+//! edge is divided.
 
 mod chains;
-mod line;
-mod straight;
+mod line_segment;
+mod points_on_edges;
 
 use serde::Serialize;
 
 use super::topology::{Edge, EdgeKind, Topology};
 use crate::progress::{Cancelled, Progress};
 
-use chains::Chains;
-use line::Line;
-use straight::Straight;
+use chains::ChainSearch;
+use line_segment::LineSegment;
+use points_on_edges::PointsOnEdges;
 
-/// Boundary edges at one point, and boundary points on one spot, that are tried. More than that is noise, and trying
-/// all of them would be quadratic.
+/// The greatest number of boundary edges at one point, and of boundary points in one place, that are tried. Trying all
+/// would take quadratic time and tell little.
 const TRIES: usize = 32;
 
-/// T-junctions listed at most. A mesh with more is no mesh but edges on top of each other, whose number is quadratic.
+/// The greatest number of T-junctions that are listed. A mesh with more is a heap of edges on top of each other, where
+/// the number of T-junctions is quadratic.
 const MOST: usize = 1 << 20;
 
-/// A boundary point between the ends of a boundary edge. No tessellation closes it: the edge curves and is divided on
-/// its own, and doesn't know of the point. Only a mesh in which the triangle is divided there does.
+/// A boundary point between the ends of a boundary edge. No tessellation closes the gap there: the edge curves and is
+/// divided without regard to the point. The mesh must be changed so that the edge ends at the point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TJunction {
     /// Index into [`Topology::edges`].
     pub edge: u32,
     /// Index into [`Topology::points`].
     pub point: u32,
-    /// Where along the edge, 0 to 1 in its own direction.
+    /// The point's position along the edge, 0 to 1 in the edge's own direction.
     pub t: f32,
-    /// Between the point and the straight edge, in object units. Up to 1/8 of the edge's length where a chain of edges
-    /// runs beside it.
+    /// The distance between the point and the straight edge, in object units. It is up to 1/8 of the edge's length
+    /// where a chain of edges runs beside the edge.
     pub distance: f32,
 }
 
-/// Boundary points that are a boundary edge's T-junctions, in either of two ways. In the order of the edges, then along
-/// each; a point that is one in both ways is listed once.
+/// Finds the T-junctions of a mesh, of two kinds. They are listed in the order of the edges, then along each edge. A
+/// point that is of both kinds is listed once.
 ///
-/// *On the straight edge*: the point lies within 1e-5 of the bounding diagonal of it, and is no near miss of its ends.
-/// It is a near miss of an end within 1e-5 of the diagonal, or within the smallest of
-/// [`TOLERANCES`](super::joins::TOLERANCES) that reaches from one to the other, if all boundary edges at both are longer
-/// than twice that: welding within it joins the two and collapses none of those edges.
+/// *On the straight edge*: the point is no farther from the edge than 1e-5 of the bounding diagonal, and nearly meets
+/// neither end of the edge. It nearly meets an end if the distance is within 1e-5 of the diagonal. It also does if the
+/// smallest of [`TOLERANCES`](super::weld_preview::TOLERANCES) within which the distance lies is less than half of the
+/// length of every boundary edge at both points: then welding joins the two and collapses none of those edges.
 ///
-/// *Beside it*: the point is inside a chain of two or more other boundary edges from one end to the other, as where a
-/// curved surface changes its density. Along the edge the chain's points come in order, strictly between the ends;
-/// across, they lie within 1/8 of its length (an arc of 56 degrees over its chord). The chain's triangles lie on the
-/// other side of the edge than its own: from the edge to its triangle's third corner, and from each of the chain's edges
-/// to its own, directions are opposed; the chain's third corners lie beyond the edge, and are none of the chain's points.
-/// Heights below a thousandth of the edge's length are none. So neither a thin ribbon nor a leaf is taken for a seam, as
-/// its third corners lie between, and no sliver is.
+/// *Beside the edge*: the point lies inside a chain of two or more other boundary edges that connects the edge's ends,
+/// as where a curved surface changes its density. Along the edge, the chain's points come in order, strictly between
+/// the ends; across, they lie within 1/8 of the edge's length (an arc of 56 degrees over its chord). The chain's
+/// triangles lie on the other side of the edge than its own triangle: the direction from the edge to the third corner
+/// of its triangle is opposed to the directions from the chain's edges to theirs. The chain's third corners lie beyond
+/// the edge, and none of them is a point of the chain. A height counts only from a thousandth of the edge's length on.
+/// So neither a thin ribbon nor a two-sided leaf is taken for a seam, since their third corners lie between; nor is a
+/// sliver.
 ///
-/// In both, the point is no corner of the edge's own triangle.
+/// A corner of the edge's own triangle is never its T-junction.
 ///
-/// Takes about n log n steps in boundary edges: an edge looks only at the points along it. Of the points in one cell
-/// of two tolerances, and of the boundary edges at one point, the first 32 are tried, chains are sought in 64 steps for
-/// each boundary edge on average, and the first 2^20 T-junctions are listed.
+/// Takes about n log n steps for n boundary edges, since only points near an edge are tried. Of the points in one cell
+/// with a width of two tolerances, and of the boundary edges at one point, the first 32 are tried. ChainSearch are searched
+/// in 64 steps for each boundary edge on average, and the first 2^20 T-junctions are listed.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
 pub fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunction>, Cancelled> {
-    let straight = Straight::new(topology);
+    let on_edges = PointsOnEdges::new(topology);
     progress.check()?;
-    let mut chains = Chains::new(topology);
+    let mut chains = ChainSearch::new(topology);
     let mut all = Vec::new();
     let mut points = Vec::new();
     for (step, (i, edge)) in open_edges(topology).enumerate() {
         if step % 4096 == 0 {
             progress.check()?;
         }
-        straight.find(edge, &mut points);
+        on_edges.find(edge, &mut points);
         chains.find(i, edge, &mut points);
         list(topology, i, edge, &mut points, &mut all);
         if all.len() >= MOST {
@@ -80,17 +83,17 @@ pub fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunc
     Ok(all)
 }
 
-/// Boundary edges with their numbers.
+/// Returns the boundary edges with their indices.
 fn open_edges(topology: &Topology) -> impl Iterator<Item = (u32, &Edge)> {
     (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind == EdgeKind::Boundary)
 }
 
-/// Takes an edge's points, each once and in their order along it.
+/// Lists an edge's T-junctions at `points`, each once and in their order along the edge; empties `points`.
 fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &mut Vec<TJunction>) {
     if points.is_empty() {
         return;
     }
-    let line = Line::of(topology, of);
+    let line = LineSegment::of(topology, of);
     points.sort_unstable();
     points.dedup();
     let places = points.drain(..).map(|point| (line.project(topology.points[point as usize].as_dvec3()), point));
@@ -101,7 +104,7 @@ fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &
     all.extend(places.into_iter().map(junction));
 }
 
-/// The points of the corners of the boundary edge's one triangle.
+/// Returns the points of a boundary edge's one triangle.
 fn corners(topology: &Topology, edge: &Edge) -> [u32; 3] {
     let side = topology.sides[edge.first_side as usize];
     topology.patch_points(side.patch())

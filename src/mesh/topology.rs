@@ -1,4 +1,4 @@
-//! From triangles to patches, points, edges and sides: who meets whom, and how.
+//! Builds patches, points, edges and sides from a mesh's triangles: which patches meet, and how.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,32 +16,34 @@ use crate::progress::{Cancelled, Progress};
 
 /// A mesh's patches and the edges between them.
 ///
-/// Order: points by first appearance among the corners, patches as their triangles, edges by their two points, an
-/// edge's sides by patch. So the same mesh always gives the same topology.
+/// Points are in the order of their first appearance among the corners, patches in the order of their triangles, edges
+/// in the order of their two points, and an edge's sides in the order of their patches. So the same mesh always gives
+/// the same topology.
 ///
-/// Of a mesh whose edges mostly have two sides it takes about 62 bytes a triangle, so what follows from something else is not
-/// kept: where a patch's corners are (in the mesh's triangles), where an edge ends, and how many sides it has.
+/// If most edges have two sides, a topology takes about 62 bytes a triangle. To save memory, what follows from other
+/// data isn't stored: a patch's corners (they are in the mesh's triangles), an edge's points, and the number of its
+/// sides.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
     /// Welded positions (see [`weld_alike`]), in object units.
     pub points: Vec<Vec3>,
     /// The point of each of the mesh's corners.
     pub corner_points: Vec<u32>,
-    /// The lowest corner on each point: the dominant one, which speaks for all of them.
+    /// The lowest corner on each point: its dominant corner.
     pub point_corners: Vec<u32>,
-    /// The mesh's.
+    /// The triangles of the mesh.
     triangles: Arc<Vec<[u32; 3]>>,
     pub patches: Vec<Patch>,
     pub edges: Vec<Edge>,
-    /// Grouped by edge.
+    /// The sides of all patches, grouped by edge.
     pub sides: Vec<Side>,
     /// Triangles left out because two of their corners lie on one point.
     pub degenerate: u32,
-    /// For each of the mesh's materials, the patches that wear it.
+    /// For each of the mesh's materials, its patches.
     pub material_patches: Vec<Range<u32>>,
 }
 
-/// An input triangle with three distinct points.
+/// A triangle of the mesh with three distinct points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patch {
     /// Indices into [`Topology::sides`]; side k runs from corner k to corner (k + 1) % 3.
@@ -50,21 +52,21 @@ pub struct Patch {
     pub triangle: u32,
 }
 
-/// An unordered pair of points that at least one patch connects.
+/// Two points that at least one patch connects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// Index into [`Topology::sides`], of the first of its sides.
+    /// The first of its sides, an index into [`Topology::sides`].
     pub first_side: u32,
     pub kind: EdgeKind,
-    /// Whether it has two sides, with the same two corners of the mesh.
+    /// Whether it has exactly two sides, which have the same two corners of the mesh.
     pub shares_corners: bool,
 }
 
-/// One patch's use of an edge.
+/// The use of an edge by one patch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Side {
-    /// Six times the patch, plus twice which of its sides, plus 1 if it runs against the edge's own direction: a mesh has more
-    /// sides than anything else.
+    /// Six times the patch, plus twice which of its sides this is, plus 1 if it has the opposite direction to the edge.
+    /// Packed, since a mesh has more sides than anything else.
     code: u32,
     pub edge: u32,
 }
@@ -78,27 +80,27 @@ impl Side {
         self.code / 6
     }
 
-    /// Which of the patch's sides, 0 to 2.
+    /// Returns which of the patch's sides this is, 0 to 2.
     pub fn index(&self) -> usize {
         (self.code % 6 / 2) as usize
     }
 
-    /// Whether the patch runs it against the edge's own direction.
+    /// Returns whether the side's direction in its patch is opposite to the edge's own direction.
     pub fn reversed(&self) -> bool {
         self.code % 2 == 1
     }
 }
 
-/// What an edge's sides have in common.
+/// What the sides of an edge have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[repr(u8)]
 #[serde(rename_all = "snake_case")]
 pub enum EdgeKind {
     /// Two sides with the same normals and uvs.
     Smooth = 0,
-    /// Two sides whose normals differ at one end at least.
+    /// Two sides whose normals differ at one end or both.
     Split = 1,
-    /// Two sides with the same normals whose uvs differ at one end at least.
+    /// Two sides with the same normals, whose texture coordinates differ at one end or both.
     Seam = 2,
     /// One side.
     Boundary = 3,
@@ -106,7 +108,7 @@ pub enum EdgeKind {
     NonManifold = 4,
 }
 
-/// How many edges there are of each kind.
+/// The number of edges of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct EdgeCounts {
     pub smooth: u32,
@@ -117,14 +119,15 @@ pub struct EdgeCounts {
 }
 
 impl EdgeCounts {
-    /// The edges of all kinds.
+    /// Returns the number of all edges.
     pub fn total(&self) -> u32 {
         self.smooth + self.split + self.seam + self.boundary + self.non_manifold
     }
 }
 
 impl Topology {
-    /// [`build_within`](Self::build_within) without a tolerance: corners at exactly equal positions share a point.
+    /// Builds a topology in which only corners at exactly equal positions share a point:
+    /// [`build_within`](Self::build_within) without a tolerance.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
@@ -132,22 +135,22 @@ impl Topology {
         Self::build_within(mesh, 0.0, progress)
     }
 
-    /// Welds the corners within a tolerance (see [`super::weld::weld_within`]) and finds the edges. The tolerance is relative to the
-    /// mesh's bounding diagonal; 0 joins only exactly equal positions. Triangles whose corners it brings together are
-    /// degenerate. Corners that a clip moves apart stay apart. Linear in triangles, but for a logarithm of the most patches
-    /// around a point.
+    /// Welds corners within a tolerance (see [`super::weld::weld_within`]) and finds the edges. The tolerance is
+    /// relative to the mesh's bounding diagonal; 0 joins only exactly equal positions. A triangle with two corners on
+    /// one point is degenerate. Corners that a clip moves apart aren't joined. Takes time linear in the number of
+    /// triangles, times the logarithm of the greatest number of patches around a point.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
     pub fn build_within(mesh: &Mesh, tolerance: f32, progress: &Progress) -> Result<Self, Cancelled> {
         match Self::build_afforded(mesh, tolerance, &Unlimited, progress) {
             Ok(topology) => Ok(topology),
-            // Memory is unlimited, so that nothing but a cancellation ends it.
+            // Memory is unlimited, so cancellation is the only possible error.
             Err(_) => Err(Cancelled),
         }
     }
 
-    /// The same within a budget, which holds what the topology takes.
+    /// Builds a topology as [`build_within`](Self::build_within) does, within a budget, which holds its memory.
     ///
     /// # Errors
     /// [`BuildError`].
@@ -185,7 +188,7 @@ impl Topology {
         };
         let count = topology.count_edges(&starts);
         take(count * size_of::<Edge>())?;
-        // Exactly: one more than there is room for would double what edges take.
+        // Reserves exactly as much as is needed: a list that grows may take twice as much.
         topology.edges.reserve_exact(count);
         topology.connect(&starts, &mesh.corners);
         budget.give_back_to(borrowed);
@@ -193,7 +196,7 @@ impl Topology {
         Ok(topology)
     }
 
-    /// How many edges there are of each kind.
+    /// Counts the edges of each kind.
     pub fn edge_counts(&self) -> EdgeCounts {
         let mut counts = EdgeCounts::default();
         for edge in &self.edges {
@@ -208,7 +211,7 @@ impl Topology {
         counts
     }
 
-    /// Whether every edge has exactly two sides, which run it in opposite directions: what has an inside.
+    /// Returns whether every edge has exactly two sides with opposite directions, so that the mesh has an inside.
     pub fn is_closed_and_oriented(&self) -> bool {
         let opposed = |edge: &Edge| match self.edge_sides(edge) {
             [a, b] => a.reversed() != b.reversed(),
@@ -217,8 +220,8 @@ impl Topology {
         !self.edges.is_empty() && self.edges.iter().all(opposed)
     }
 
-    /// The volumes of the parts that hang together by edges, in cubic object units: less than 0 where a part is wound
-    /// inward. Only of a closed mesh do they mean anything.
+    /// Returns the volume of each part of the mesh that is connected by edges, in cubic object units. It is negative
+    /// for a part that is wound inward, and means something only for a closed mesh.
     pub fn part_volumes(&self) -> impl Iterator<Item = f64> {
         let mut parts = UnionFind::new(self.patches.len());
         for edge in &self.edges {
@@ -229,14 +232,14 @@ impl Topology {
         let mut volumes = vec![None; self.patches.len()];
         for i in 0..self.patches.len() {
             let [a, b, c] = self.patch_positions(i as u32).map(Vec3::as_dvec3);
-            // From a place of the part's own, so that what is far away is no less exact.
+            // Measured from a corner of the part, so that a part far from the origin loses no precision.
             let (at, volume) = volumes[parts.of(i as u32) as usize].get_or_insert((a, 0.0));
             *volume += (a - *at).dot((b - *at).cross(c - *at)) / 6.0;
         }
         volumes.into_iter().flatten().map(|(_, volume)| volume)
     }
 
-    /// Where the sides of an edge are among all of them.
+    /// Returns the range of an edge's sides in [`Topology::sides`].
     pub fn side_range(&self, edge: &Edge) -> Range<u32> {
         let first = edge.first_side;
         let count = match edge.kind {
@@ -250,51 +253,51 @@ impl Topology {
         first..first + count
     }
 
-    /// The sides of an edge.
+    /// Returns the sides of an edge.
     pub fn edge_sides(&self, edge: &Edge) -> &[Side] {
         let range = self.side_range(edge);
         &self.sides[range.start as usize..range.end as usize]
     }
 
-    /// The points of an edge, the lower first: its own direction runs from there to the other.
+    /// Returns the points of an edge, the lower one first. The edge's own direction is from the first to the second.
     pub fn edge_points(&self, edge: &Edge) -> [u32; 2] {
         self.side_corners(&self.sides[edge.first_side as usize]).map(|corner| self.corner_points[corner as usize])
     }
 
-    /// The corners of a patch: indices into the mesh's, in its triangle's own order.
+    /// Returns the corners of a patch as indices into the mesh's corners, in the order of its triangle.
     pub fn patch_corners(&self, patch: u32) -> [u32; 3] {
-        // Where nothing is degenerate, patches are numbered as triangles are: one look into memory fewer.
+        // Without degenerate triangles, patches and triangles have the same numbers, which saves reading the patch.
         let triangle = if self.degenerate == 0 { patch } else { self.patches[patch as usize].triangle };
         self.triangles[triangle as usize]
     }
 
-    /// The same of a patch at hand.
+    /// Returns the corners of a patch, as [`patch_corners`](Self::patch_corners) does.
     pub fn corners(&self, patch: &Patch) -> [u32; 3] {
         self.triangles[patch.triangle as usize]
     }
 
-    /// The points of a patch's corners.
+    /// Returns the points of a patch's corners.
     pub fn patch_points(&self, patch: u32) -> [u32; 3] {
         self.patch_corners(patch).map(|corner| self.corner_points[corner as usize])
     }
 
-    /// The patch that a triangle of the mesh has become; none if it is degenerate.
+    /// Returns the patch of a triangle of the mesh; none if the triangle is degenerate.
     pub fn patch_of(&self, triangle: u32) -> Option<u32> {
         // Patches are in the order of their triangles.
         self.patches.binary_search_by_key(&triangle, |patch| patch.triangle).ok().map(|patch| patch as u32)
     }
 
-    /// Where a patch's corners lie, in object units.
+    /// Returns the positions of a patch's points, in object units.
     pub fn patch_positions(&self, patch: u32) -> [Vec3; 3] {
         self.patch_points(patch).map(|point| self.points[point as usize])
     }
 
-    /// The material (an index into [`Mesh::materials`]) of a patch.
+    /// Returns the material of a patch, an index into [`Mesh::materials`].
     pub fn material_of(&self, patch: u32) -> usize {
         self.material_patches.partition_point(|patches| patches.end <= patch)
     }
 
-    /// The direction that an edge's patches face together: the sum of their facings, by area; zero where they cancel.
+    /// Returns the mean surface normal of an edge's patches, weighted by area, at unit length; zero where they cancel.
     pub fn edge_facing(&self, edge: &Edge) -> Vec3 {
         let facing = |side: &Side| {
             let [a, b, c] = self.patch_positions(side.patch()).map(Vec3::as_dvec3);
@@ -304,21 +307,21 @@ impl Topology {
         sum.normalize_or_zero().as_vec3()
     }
 
-    /// The corners that a side's patch has there, in the edge's own direction.
+    /// Returns the corners of a side's patch at the ends of its edge, in the edge's own direction.
     pub fn side_corners(&self, side: &Side) -> [u32; 2] {
         let own = self.patch_corners(side.patch());
         let [a, b] = [own[side.index()], own[(side.index() + 1) % 3]];
         if side.reversed() { [b, a] } else { [a, b] }
     }
 
-    /// How many edges sorted sides have, which know the edge's higher point in its place.
+    /// Counts the edges of sorted sides, whose `edge` still holds the higher point.
     fn count_edges(&self, starts: &[u32]) -> usize {
         let is_last = |i: usize, end: usize| i + 1 == end || self.sides[i].edge != self.sides[i + 1].edge;
         let of = |around: Range<usize>| around.clone().filter(|&i| is_last(i, around.end)).count();
         runs(starts).map(of).sum()
     }
 
-    /// Makes edges of such sides, and tells patches and sides of each other.
+    /// Makes an edge of each group of such sides, and connects patches, sides and edges.
     fn connect(&mut self, starts: &[u32], corners: &[Corner]) {
         for around in runs(starts) {
             let mut start = around.start;
@@ -336,7 +339,7 @@ impl Topology {
         }
     }
 
-    /// What an edge with these sides is, and whether two of them have the same corners.
+    /// Returns the kind of an edge with these sides, and whether it has two sides with the same corners.
     fn kind(&self, sides: &[Side], corners: &[Corner]) -> (EdgeKind, bool) {
         let [a, b] = match sides {
             [_] => return (EdgeKind::Boundary, false),
@@ -358,7 +361,8 @@ impl Topology {
     }
 }
 
-/// The points of a mesh within a tolerance, as [`Topology::build_within`] has them, and the point of each corner.
+/// Welds a mesh's corners within a tolerance, as [`Topology::build_within`] does. Returns the points, and the point of
+/// each corner.
 pub(super) fn weld_corners(mesh: &Mesh, tolerance: f32) -> (Vec<Vec3>, Vec<u32>) {
     let distance = mesh.bounds().part(tolerance.into());
     let alike = mesh.rig.as_ref().map_or(&[][..], |rig| &rig.alike);
@@ -366,26 +370,26 @@ pub(super) fn weld_corners(mesh: &Mesh, tolerance: f32) -> (Vec<Vec3>, Vec<u32>)
     weld_alike(mesh.corners.iter().map(|corner| corner.position).zip(numbers), distance)
 }
 
-/// Whether a triangle with corners on these points is none.
+/// Returns whether a triangle with corners on these points is degenerate.
 pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// What [`weld_corners`] takes at most meanwhile, in bytes.
+/// Returns the greatest amount of memory that [`weld_corners`] needs temporarily, in bytes.
 fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
-    // Every corner's point, and points as lists of them are copied when those shrink.
+    // Each corner's point, and the points, which are copied when their list shrinks.
     let exactly = 36;
-    // Points twice over with their cells, in lists and a table that double as they grow.
+    // Further lists of the points, and a table of cells; lists and table double as they grow.
     let within = if tolerance > 0.0 { 64 } else { 0 };
     Interner::bytes_for(corners) + (exactly + within) * corners as u64
 }
 
-/// Where the sides of each point are.
+/// Returns the range of each point's sides.
 fn runs(starts: &[u32]) -> impl Iterator<Item = Range<usize>> {
     starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
 }
 
-/// The triangles with three distinct points; their sides are not known yet.
+/// Returns the triangles with three distinct points as patches, whose sides are set later.
 fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
     let whole = |corners: &[u32; 3]| !is_degenerate(corners.map(|corner| corner_points[corner as usize]));
     let triangles = (0..).zip(mesh.triangles.iter()).filter(|(_, corners)| whole(corners));
@@ -394,8 +398,8 @@ fn patches(mesh: &Mesh, corner_points: &[u32]) -> Vec<Patch> {
     patches
 }
 
-/// The sides of all patches by their lower points, then by their higher ones, which stand where their edges will, then by patch.
-/// Those of point p are `starts[p]..starts[p + 1]`.
+/// Returns the sides of all patches, sorted by the lower point of their edge, then by its higher point, which `edge`
+/// holds for now, then by patch. The sides whose lower point is p are `starts[p]..starts[p + 1]`.
 fn sides(patches: &[Patch], triangles: &[[u32; 3]], corner_points: &[u32], points: usize) -> (Vec<Side>, Vec<u32>) {
     let ends = |patch: &Patch, k: usize| {
         let corners = triangles[patch.triangle as usize];
@@ -428,7 +432,7 @@ fn sides(patches: &[Patch], triangles: &[[u32; 3]], corner_points: &[u32], point
     (sides, starts)
 }
 
-/// The lowest corner on each point.
+/// Returns the lowest corner on each point.
 fn first_corners(corner_points: &[u32], points: usize) -> Vec<u32> {
     let mut first = vec![0; points];
     for (corner, &point) in corner_points.iter().enumerate().rev() {
@@ -437,7 +441,8 @@ fn first_corners(corner_points: &[u32], points: usize) -> Vec<u32> {
     first
 }
 
-/// Each material's triangles as patches. Patches are in the order of their triangles, so ranges stay ranges.
+/// Returns the range of each material's patches. Patches are in the order of their triangles, so a range of triangles
+/// becomes a range of patches.
 fn material_patches(mesh: &Mesh, patches: &[Patch]) -> Vec<Range<u32>> {
     let before = |triangle: u32| patches.partition_point(|patch| patch.triangle < triangle) as u32;
     mesh.materials.iter().map(|m| before(m.triangles.start)..before(m.triangles.end)).collect()

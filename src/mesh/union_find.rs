@@ -1,18 +1,18 @@
-//! What hangs together: sets that are joined two at a time.
+//! Disjoint sets that can be merged (union-find).
 
-/// Items 0 to n - 1, each in one part (Tarjan 1975: union by linking, with path halving).
+/// Items 0 to n - 1, each in one set (Tarjan 1975: union by linking, with path halving).
 pub struct UnionFind {
-    /// Another item of the same part, or itself.
+    /// For each item, another item of the same set; or itself, if it stands for the set.
     links: Vec<u32>,
 }
 
 impl UnionFind {
-    /// Every item a part of its own.
+    /// Makes a set of its own for each item.
     pub fn new(items: usize) -> Self {
         Self { links: (0..items as u32).collect() }
     }
 
-    /// The part of an item, named by one of its items: the same for all of them until the next join.
+    /// Returns the set of an item, named by one of its items. All items of a set get the same name until the next join.
     pub fn of(&mut self, mut item: u32) -> u32 {
         while self.links[item as usize] != item {
             let next = self.links[item as usize];
@@ -22,7 +22,7 @@ impl UnionFind {
         item
     }
 
-    /// Makes one part of those of two items. The lower name stays.
+    /// Merges the sets of two items. The lower of their two names is the name of the result.
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.of(a), self.of(b));
         self.links[a.max(b) as usize] = a.min(b);
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_joined_hangs_together() {
+    fn joined_items_are_in_one_set() {
         let mut parts = UnionFind::new(6);
         for [a, b] in [[4, 2], [1, 0], [2, 5], [5, 4]] {
             parts.join(a, b);

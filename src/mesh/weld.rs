@@ -1,27 +1,27 @@
-//! Points: which positions are one and the same place.
+//! Finds out which positions are the same point.
 
 use std::collections::HashMap;
 use std::num::NonZero;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::grid::Grid;
 use super::interner::Interner;
+use super::spatial_hash::SpatialHash;
 
-/// Points by exact position: two positions are one point when all three coordinates have the same value (-0 equals 0;
-/// no tolerance). Points come in the order of their first appearance, with +0 for every zero.
+/// WeldPreview equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
+/// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
 ///
-/// Returns the points, and for each position the index of its point. Linear in expectation.
+/// Returns the points, and for each position the index of its point. Takes expected linear time.
 pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) {
     let (points, point_of) = weld_exactly(positions.into_iter().map(|position| (position, 0)));
     (points.into_iter().map(|(point, _)| point).collect(), point_of)
 }
 
-/// As [`weld`], of positions with a number each, which must be equal too.
+/// WeldPreview positions as [`weld`] does; each has a number, which must be equal too.
 fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
     let count = positions.size_hint().0;
     let (mut ids, mut points) = (Interner::with_capacity(count), Vec::with_capacity(count));
-    // Two words a key: foldhash takes them several times faster than an array.
+    // Two words per key, which foldhash hashes several times faster than an array.
     let key = |(point, number): (Vec3, u32)| {
         let [x, y, z] = point.to_array().map(|coordinate| u64::from(coordinate.to_bits()));
         (x << 32 | y, z << 32 | u64::from(number))
@@ -39,37 +39,38 @@ fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32
     (points, point_of)
 }
 
-/// Points within a tolerance, in object units. Distinct positions come in the order of their first appearance; each
-/// becomes the nearest earlier point within the tolerance (the earlier one of two equally near), or a new point where
-/// it lies. So no point stands for anything more than one tolerance away, however long a chain of near positions is,
-/// and two points are always more than one tolerance apart.
+/// WeldPreview positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
+/// first appearance. Each becomes part of the nearest point so far that lies within the tolerance (the earlier one of
+/// two at the same distance), or else a new point. So every position lies within one tolerance of its point, however
+/// long a chain of near positions is, and any two points are more than one tolerance apart.
 ///
-/// A tolerance that isn't above 0 gives exactly [`weld`]. Returns the points, and for each position the index of its
-/// point. Linear in expectation: only so many points that far apart fit into one cell of the grid.
+/// A tolerance that isn't above 0 gives the same result as [`weld`]. Returns the points, and for each position the
+/// index of its point. Takes expected linear time, since only a limited number of points that far apart fit into one
+/// cell of the spatial hash.
 pub fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
 }
 
-/// As [`weld_within`], of positions with a number each: those with different numbers stay apart, wherever they are.
+/// WeldPreview positions as [`weld_within`] does; each has a number, and positions with different numbers aren't joined.
 pub fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
-    // Equal positions first: they must stay together though a nearer point may turn up between them.
+    // WeldPreview equal positions first: they must stay together even if a nearer point comes between them.
     let (distinct, mut point_of) = weld_exactly(positions);
     if tolerance.is_nan() || tolerance <= 0.0 {
         return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
     }
-    let mut grids: HashMap<u32, Grid> = HashMap::new();
+    let mut grids: HashMap<u32, SpatialHash> = HashMap::new();
     let mut apart = Apart::default();
     let mut merged = Vec::with_capacity(distinct.len());
     for (position, number) in distinct {
-        let grid = grids.entry(number).or_insert_with(|| Grid::new(tolerance));
+        let grid = grids.entry(number).or_insert_with(|| SpatialHash::new(tolerance));
         merged.push(apart.nearest(grid, position, tolerance).unwrap_or_else(|| apart.push(grid, position)));
     }
     point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
     (apart.points, point_of)
 }
 
-/// Points that are more than one tolerance apart, and the one before each in its cell of a grid: a list of its own for every
-/// cell would take several times as much as the points.
+/// Points that are more than one tolerance apart. `before` links each point to the one before it in its cell; a list
+/// for each cell would take several times as much memory as the points.
 #[derive(Default)]
 struct Apart {
     points: Vec<Vec3>,
@@ -77,11 +78,11 @@ struct Apart {
 }
 
 impl Apart {
-    fn push(&mut self, grid: &mut Grid, position: Vec3) -> u32 {
+    fn push(&mut self, grid: &mut SpatialHash, position: Vec3) -> u32 {
         let point = self.points.len() as u32;
         self.points.push(position);
         let before = grid.put(point, |point| self.place(point));
-        // One more than its number.
+        // Stores the number plus one, since 0 stands for none.
         self.before.push(before.and_then(|before| NonZero::new(before + 1)));
         point
     }
@@ -90,8 +91,8 @@ impl Apart {
         self.points[point as usize].as_dvec3()
     }
 
-    /// The nearest point within the tolerance, the lowest of those equally near.
-    fn nearest(&self, grid: &Grid, position: Vec3, tolerance: f64) -> Option<u32> {
+    /// Returns the nearest point within the tolerance; of several at the same distance, the lowest.
+    fn nearest(&self, grid: &SpatialHash, position: Vec3, tolerance: f64) -> Option<u32> {
         let place = position.as_dvec3();
         let before = |&point: &u32| self.before[point as usize].map(|next| next.get() - 1);
         let near = grid.near(place, |point| self.place(point));
@@ -102,13 +103,13 @@ impl Apart {
     }
 }
 
-/// The same value with +0 for -0, so that equal values have equal bits.
+/// Replaces -0 by +0, so that equal values have equal bits.
 pub(super) fn plus_zero3(v: Vec3) -> Vec3 {
-    // IEEE 754: -0 + +0 is +0; all else stays as it is.
+    // By IEEE 754, -0 + +0 is +0, and adding +0 changes nothing else.
     v + Vec3::ZERO
 }
 
-/// As [`plus_zero3`], for texture coordinates.
+/// Replaces -0 by +0 in texture coordinates.
 pub(super) fn plus_zero2(v: Vec2) -> Vec2 {
     v + Vec2::ZERO
 }
@@ -141,10 +142,10 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_of_near_positions_drags_nothing_together() {
+    fn chains_of_near_positions_do_not_become_one_point() {
         let chain = (0..100).map(|i| Vec3::Y * (i as f32 / 4.0));
         let (points, of) = weld_within(chain, 0.5);
-        // 0, 0.25 and 0.5 are one; 0.75 is too far from 0, and 1 goes with it.
+        // 0, 0.25 and 0.5 become one point. 0.75 is too far from 0, and becomes one point with 1.
         assert_eq!((points.len(), &of[..7]), (34, &[0, 0, 0, 1, 1, 1, 2][..]));
     }
 
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_differently_stays_apart() {
+    fn positions_that_move_differently_stay_apart() {
         let positions = [(0.0, 7), (0.0, 9), (0.1, 9), (0.1, 7), (0.0, 7)].map(|(x, number)| (Vec3::X * x, number));
         assert_eq!(weld_alike(positions.into_iter(), 0.0).1, [0, 1, 2, 3, 0]);
         let (points, of) = weld_alike(positions.into_iter(), 0.5);
@@ -198,7 +199,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_grid_welds_as_trying_all_does(
+        fn the_spatial_hash_welds_as_a_slow_search_does(
             grid in prop::collection::vec(prop::array::uniform3(-6_i8..6), 0..60),
             tolerance in 0_u8..7,
         ) {
@@ -210,7 +211,7 @@ mod tests {
             for (position, &point) in positions.iter().zip(&of) {
                 let slow = *known.entry(plus_zero3(*position).to_array().map(f32::to_bits)).or_insert_with(|| {
                     let apart = |i: &u32| expected[*i as usize].as_dvec3().distance(position.as_dvec3());
-                    // The first of the least: `min_by` keeps it.
+                    // `min_by` keeps the first of several least values.
                     let near = (0..expected.len() as u32).min_by(|a, b| apart(a).total_cmp(&apart(b)));
                     near.filter(|i| apart(i) <= tolerance).unwrap_or_else(|| {
                         expected.push(*position);

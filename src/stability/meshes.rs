@@ -6,12 +6,12 @@ pub use techniques::{dart, height_seams, height_splits, inflection, moving};
 
 use glam::{Vec2, Vec3, vec3};
 
-use crate::mesh::mesh_builder::{LooseCorner, MeshBuilder};
+use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::{Corner, Material, Mesh, Shape};
 use crate::progress::Progress;
 
 /// A mesh of loose triangles, made as a file's would be: normals repaired, equal corners merged.
-fn mesh(triangles: impl IntoIterator<Item = [LooseCorner; 3]>) -> Mesh {
+fn mesh(triangles: impl IntoIterator<Item = [InputCorner; 3]>) -> Mesh {
     let mut builder = MeshBuilder::new();
     let material = builder.material(Material::plain("default", [0.6, 0.6, 0.6, 1.0]));
     for triangle in triangles {
@@ -21,8 +21,8 @@ fn mesh(triangles: impl IntoIterator<Item = [LooseCorner; 3]>) -> Mesh {
     builder.finish("case".to_owned(), &Progress::new()).unwrap_or_default()
 }
 
-fn corner(position: Vec3, normal: Vec3) -> LooseCorner {
-    LooseCorner { position, normal: Some(normal), uv: Vec2::ZERO }
+fn corner(position: Vec3, normal: Vec3) -> InputCorner {
+    InputCorner { position, normal: Some(normal), uv: Vec2::ZERO }
 }
 
 /// A shape's triangles, with their numbers.
@@ -34,7 +34,7 @@ fn triangles(shape: Shape) -> Vec<(usize, [Corner; 3])> {
 /// A shape with every corner changed; `change` gets its triangle's number and its own number in it.
 fn changed(shape: Shape, change: impl Fn(usize, usize, Corner) -> Corner) -> Mesh {
     let triangles = triangles(shape).into_iter();
-    mesh(triangles.map(|(t, corners)| [0, 1, 2].map(|k| LooseCorner::from(change(t, k, corners[k])))))
+    mesh(triangles.map(|(t, corners)| [0, 1, 2].map(|k| InputCorner::from(change(t, k, corners[k])))))
 }
 
 fn scaled(shape: Shape, scale: Vec3, offset: Vec3) -> Mesh {
@@ -59,7 +59,7 @@ pub fn fins() -> Mesh {
 /// An icosphere of whose triangles every third is wound the other way.
 pub fn reversed_neighbours() -> Mesh {
     let turned = |(t, [a, b, c]): (usize, [Corner; 3])| if t % 3 == 0 { [a, c, b] } else { [a, b, c] };
-    mesh(triangles(Shape::Icosphere).into_iter().map(|triangle| turned(triangle).map(LooseCorner::from)))
+    mesh(triangles(Shape::Icosphere).into_iter().map(|triangle| turned(triangle).map(InputCorner::from)))
 }
 
 /// A torus of whose triangles every second is there twice and every fifth once more the other way round, with triangles
@@ -75,7 +75,7 @@ pub fn duplicates() -> Mesh {
         }
         all
     };
-    mesh(triangles(Shape::Torus).into_iter().flat_map(repeated).map(|corners| corners.map(LooseCorner::from)))
+    mesh(triangles(Shape::Torus).into_iter().flat_map(repeated).map(|corners| corners.map(InputCorner::from)))
 }
 
 /// A cube drawn out to a needle: triangles a million times longer than wide.
@@ -108,7 +108,7 @@ pub fn mirrored() -> Mesh {
         let [a, b, c] = own.map(|c| Corner { position: c.position * flip, normal: c.normal * flip, ..c });
         [own, [a, c, b]]
     });
-    mesh(both.map(|corners| corners.map(LooseCorner::from)))
+    mesh(both.map(|corners| corners.map(InputCorner::from)))
 }
 
 /// An icosphere with a zero normal on every third corner.
@@ -180,7 +180,7 @@ pub fn near_seam() -> Mesh {
     let moved = |corners: [Corner; 3]| {
         let right = corners.iter().map(|c| c.position.x).sum::<f32>() > 0.0;
         let offset = if right { vec3(2e-6, 1e-6, -1e-6) } else { Vec3::ZERO };
-        corners.map(|c| LooseCorner::from(Corner { position: c.position + offset, ..c }))
+        corners.map(|c| InputCorner::from(Corner { position: c.position + offset, ..c }))
     };
     mesh(triangles(Shape::Torus).into_iter().map(|(_, corners)| moved(corners)))
 }

@@ -82,13 +82,17 @@ fn what_is_exported_as_obj_loads_back_with_the_same_triangles() {
 fn broken_files_are_refused_in_one_sentence() {
     let folder = Folder::new("broken-formats");
     let cases: [(&str, &[u8], &str); 6] = [
-        ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "a.obj: line 4: the face uses position 4, and there are 3"),
+        (
+            "a.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n",
+            "a.obj: line 4: the face uses position 4, but the file has 3",
+        ),
         ("points.OBJ", b"v 0 0 0\np 1\n", "points.OBJ has no triangles to show: it holds 1 positions, 1 points (p)"),
         ("a.stl", &[0; 100], "a.stl has no triangles to show: its header counts 0 triangles"),
         (
             "cut.stl",
             &[1; 100],
-            "cut.stl: byte 80: its header says 16843009 triangles, which take 842150534 bytes, and the file has 100",
+            "cut.stl: byte 80: its header says that it has 16843009 triangles, which take 842150534 bytes, but the file has 100",
         ),
         (
             "a.ply",

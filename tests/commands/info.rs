@@ -16,24 +16,24 @@ fn info_is_for_people_and_for_programs() {
 
 #[test]
 fn a_rim_is_told_and_in_what_is_written() {
-    let rim = ["--rim", "0.02"];
-    let info = |file: &str| output(&[&["info", file, "--json"], &rim[..]].concat());
+    let band = ["--rim", "0.02"];
+    let info = |file: &str| output(&[&["info", file, "--json"], &band[..]].concat());
     let json: Value = serde_json::from_str(&info("shape:cube-split")).expect("JSON");
     assert_eq!((&json["triangles"], &json["edges"]["split"], &json["closed"]), (&108.into(), &0.into(), &true.into()));
-    assert_eq!((&json["rim"]["creases"], &json["rim"]["narrowed"]), (&12.into(), &0.into()));
-    let text = output(&[&["info", "shape:cube-split"], &rim[..]].concat());
-    assert!(text.contains("\nrim           0.02 of the bounding diagonal wide, along 12 creases\n"), "{text}");
-    let adjacency = output(&[&["adjacency", "shape:cube-split", "-o", "-"], &rim[..]].concat());
+    assert_eq!((&json["crease_band"]["creases"], &json["crease_band"]["narrowed"]), (&12.into(), &0.into()));
+    let text = output(&[&["info", "shape:cube-split"], &band[..]].concat());
+    assert!(text.contains("\ncrease band   0.02 of the bounding diagonal wide, along 12 creases\n"), "{text}");
+    let adjacency = output(&[&["adjacency", "shape:cube-split", "-o", "-"], &band[..]].concat());
     let adjacency: Value = serde_json::from_str(&adjacency).expect("JSON");
     assert_eq!(adjacency["patches"].as_array().map(Vec::len), Some(108));
     let torus: Value = serde_json::from_str(&info("shape:torus")).expect("JSON");
     assert!(torus["warnings"][0].as_str().is_some_and(|warning| warning.contains("no crease")), "{torus}");
-    assert!(!output(&["info", "shape:cube-split"]).contains("rim "));
+    assert!(!output(&["info", "shape:cube-split"]).contains("crease band"));
 }
 
 #[test]
 fn what_a_tolerance_would_join_is_told_of_the_mesh_as_it_was_read() {
-    let folder = Folder::new("rim");
+    let folder = Folder::new("crease-band");
     let path = write_seam(&folder);
     let joins = |options: &[&str]| -> Value {
         let json: Value = serde_json::from_str(&output(&[&["info", &path, "--json"], options].concat())).expect("JSON");

@@ -171,16 +171,16 @@ fn a_mesh_of_which_nothing_is_left_says_so() {
 #[test]
 fn files_beyond_the_limit_are_refused() {
     let vase = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb");
-    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "and 10240 are read at most", "--max-size"]);
-    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "and 10240 are read at most"]);
+    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "but at most 10240 are read", "--max-size"]);
+    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "but at most 10240 are read"]);
     sentence(
         &["render", "shape:torus", "--truth", vase, "--max-size", "1", "-o", "unwritten.png"],
-        &["vase.glb has ", "and 1 are read at most"],
+        &["vase.glb has ", "but at most 1 are read"],
     );
     output(&["info", vase, "--max-size", "11 KiB"]);
     sentence(
         &["info", vase, "--max-memory", "1"],
-        &["vase.glb: ", "MiB of memory, and files of this size may take 4", " KiB (--max-memory allows more); "],
+        &["vase.glb: ", "MiB of memory, but files of this size may take only 4", " KiB (--max-memory allows more); "],
     );
     output(&["info", vase, "--max-memory", "1MiB"]);
     for option in ["--max-size", "--max-memory"] {
@@ -214,13 +214,16 @@ fn hostile_files_are_one_sentence_and_exit_code_1() {
         ["past.gltf: /accessors/0 (POSITION of /meshes/0/primitives/0) needs ", "/bufferViews/0, which has 36"];
     sentence(&["info", &past], &expected);
     let deep = write("deep.gltf", "[".repeat(100_000).as_bytes());
-    sentence(&["render", &deep, "-o", &folder.path("none.png")], &["nested 100000 deep, and 100 are read"]);
+    sentence(
+        &["render", &deep, "-o", &folder.path("none.png")],
+        &["nested 100000 levels deep, but at most 100 levels are read"],
+    );
     let elsewhere = document("").replace("data:;base64,", "../%2e%2e/");
     sentence(&["info", &write("elsewhere.gltf", elsewhere.as_bytes())], &["/buffers/0", "leads out of a folder"]);
     let unknown = document("").replace(r#""nodes""#, r#""extensionsRequired":["EXT_unknown"],"nodes""#);
     sentence(&["info", &write("unknown.gltf", unknown.as_bytes())], &["is EXT_unknown", "export the model without it"]);
     let chunk = [&b"glTF"[..], &[2, 0, 0, 0], &[24, 0, 0, 0], &[255; 4], b"JSON", b"{}  "].concat();
-    sentence(&["info", &write("chunk.glb", &chunk)], &["chunk 0 says 4294967295 bytes, and 4 are left"]);
+    sentence(&["info", &write("chunk.glb", &chunk)], &["chunk 0 says that it has 4294967295 bytes, but 4 are left"]);
 }
 
 #[test]

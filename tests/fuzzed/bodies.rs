@@ -1,4 +1,4 @@
-//! What every target does with its bytes, whoever makes them up: a fuzzer, or a run of the tests.
+//! The code that each fuzz target runs with its bytes, in a fuzzer or in the tests.
 #![allow(dead_code, reason = "each target runs one of them")]
 
 use std::collections::HashMap;
@@ -11,17 +11,17 @@ use pnaen::progress::Progress;
 use pnaen::tessellate::factors::{outer_count, point_count, triangle_count};
 use pnaen::tessellate::{HullFactors, Partitioning, PatchFactors, domain_plan, domain_point, domain_triangle};
 
-/// Larger meshes are left without a topology: it takes longer than a fuzzer should wait.
+/// The greatest number of triangles for which a topology is built; larger meshes take too long for a fuzzer.
 const MOST_TRIANGLES: usize = 1 << 14;
 
-/// 1 in the coordinates of the tessellator.
+/// The number 1 in the tessellator's fixed-point coordinates.
 const ONE: i64 = 1 << 16;
 
 pub fn gltf(data: &[u8]) {
     mesh(Format::Gltf, data);
 }
 
-/// A `.glb` whatever its first bytes are.
+/// Reads bytes as a `.glb`, whatever they start with.
 pub fn glb(data: &[u8]) {
     let mut data = data.to_vec();
     data.iter_mut().zip(b"glTF").for_each(|(byte, own)| *byte = *own);
@@ -40,7 +40,7 @@ pub fn ply(data: &[u8]) {
     mesh(Format::Ply, data);
 }
 
-/// A file becomes a sound mesh, or a sentence.
+/// Reads bytes as a file, which must give a valid mesh or an error.
 fn mesh(format: Format, data: &[u8]) {
     let progress = Progress::new();
     match read(format, data.to_vec(), Path::new("nowhere/fuzzed"), &Limits::default(), &progress) {
@@ -69,7 +69,8 @@ fn assert_sound(mesh: &Mesh, progress: &Progress) {
     }
 }
 
-/// Four factors of any bits, under every partitioning, before and after a shader compiler rounds them.
+/// Tessellates with four factors of any bits, in every partitioning, before and after the rounding of a shader
+/// compiler.
 pub fn factors(data: &[u8]) {
     let Some((bits, _)) = data.split_first_chunk::<16>() else { return };
     let [a, b, c, inside] = [0, 4, 8, 12].map(|i| f32::from_le_bytes([bits[i], bits[i + 1], bits[i + 2], bits[i + 3]]));
@@ -80,7 +81,8 @@ pub fn factors(data: &[u8]) {
     }
 }
 
-/// As many points and triangles as the closed forms say, which make one disc that fills the patch.
+/// Checks that there are as many points and triangles as the formulas say, and that they form one disc that fills the
+/// patch.
 fn pattern(factors: PatchFactors) {
     let (points, triangles) = (point_count(factors), triangle_count(factors));
     if points == 0 {
@@ -107,6 +109,6 @@ fn pattern(factors: PatchFactors) {
     let open = sides.keys().filter(|[a, b]| !sides.contains_key(&[*b, *a])).count() as u32;
     assert!(sides.values().all(|uses| *uses == 1), "{factors:?}: a side that two triangles run in one direction");
     assert_eq!(open, outer_count(factors), "{factors:?}: sides on the outline");
-    // Euler: a disc's faces are two for each point, less what its outline lacks.
+    // Euler's formula: a disc has two triangles for each point, minus a number that depends on its outline.
     assert_eq!(triangles + 2 + open, 2 * points, "{factors:?}");
 }

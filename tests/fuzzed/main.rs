@@ -1,4 +1,5 @@
-//! The fuzz targets without a fuzzer: every seed, and copies of seeds with bytes changed, cut off or brought in from others.
+//! Runs the fuzz targets without a fuzzer: with every seed, and with copies of seeds in which bytes are changed, cut
+//! off or replaced by those of other seeds.
 
 mod bodies;
 
@@ -7,10 +8,10 @@ use std::path::Path;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// A change to a file: where, what kind, and by what.
+/// A change to a file: its place, its kind and its value.
 type Change = (Index, u8, u32, Index);
 
-/// The files in a target's folder of seeds, by name.
+/// Returns the files in a target's folder of seeds, sorted by name.
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzzed/seeds").join(target);
     let mut paths: Vec<_> =
@@ -42,7 +43,7 @@ fn changed(seeds: &[Vec<u8>], seed: Index, changes: &[Change]) -> Vec<u8> {
     bytes
 }
 
-/// Runs a target with all its seeds, then with so many changed copies.
+/// Runs a target with all its seeds, then with a number of changed copies.
 fn run(target: &str, copies: u32, body: fn(&[u8])) {
     let seeds = seeds(target);
     assert!(seeds.len() >= 3, "{target} has {} seeds", seeds.len());

@@ -8,7 +8,7 @@ use pnaen::engine::{Loaded, Preparation, Runs};
 use pnaen::gpu::Timing;
 use pnaen::load::{Budget, HeightSource, Source};
 use pnaen::measure::Measured;
-use pnaen::mesh::rim::Rim;
+use pnaen::mesh::crease_band::CreaseBand;
 use pnaen::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Scene, Target};
@@ -63,7 +63,7 @@ fn on_device(shape: Shape, mesh: Mesh) -> (Loaded, Scene) {
             source,
             read: mesh.clone(),
             preparation: Preparation::default(),
-            rim: Rim::default(),
+            crease_band: CreaseBand::default(),
             mesh,
             warnings: Vec::new(),
             files: Vec::new(),
@@ -349,7 +349,7 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
     assert_eq!(passes, pnaen::gpu::PASSES, "every pass has something to do");
 }
 
-/// A torus in two halves of a material each, under these images; a rim between the halves twice.
+/// A torus in two halves of a material each, under these images; a row of edges between the halves twice.
 fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
     let mut mesh = Shape::Torus.build();
     let count = mesh.triangles.len() as u32;
@@ -404,7 +404,10 @@ fn a_noisy_image_refines_its_own_patches_alone() {
             }
         }
         assert_eq!(alone + shared, both.len() as u32 / 2, "{surface:?}: as few as under the smooth image alone");
-        assert!(shared > 0 && alone > 0, "{surface:?}: {shared} patches with a rim, {alone} without");
+        assert!(
+            shared > 0 && alone > 0,
+            "{surface:?}: {shared} patches with an edge between materials, {alone} without"
+        );
         for index in 0..both.len() / 2 {
             assert!(both[index] == noisy[index], "{surface:?}: as many as under the noisy image alone");
         }

@@ -4,6 +4,7 @@
 
 mod conventions;
 mod coverage;
+mod crease_band;
 mod culling;
 mod deforming;
 mod deviation;
@@ -17,7 +18,6 @@ mod passes;
 mod picking;
 mod pictures;
 mod readbacks;
-mod rim;
 mod stability;
 
 use std::sync::OnceLock;

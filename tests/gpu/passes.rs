@@ -6,7 +6,7 @@ use pnaen::engine::{Loaded, Measurements, Preparation, Runs};
 use pnaen::gpu::{Timing, read_buffer, take_times};
 use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
-use pnaen::mesh::{Corner, EdgeKind, Material, Mesh, Rim, Shape, Topology};
+use pnaen::mesh::{Corner, CreaseBand, EdgeKind, Material, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
@@ -315,11 +315,11 @@ pub fn sheet(columns: u32, rows: u32) -> Loaded {
     let mesh = Mesh { corners, triangles: triangles.into(), materials: vec![material], ..Mesh::default() };
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
-    let (read, rim) = (mesh.clone(), Rim::default());
+    let (read, crease_band) = (mesh.clone(), CreaseBand::default());
     Loaded {
         source: Source::default(),
         preparation: Preparation::default(),
-        rim,
+        crease_band,
         read,
         mesh,
         warnings: Vec::new(),
@@ -426,7 +426,7 @@ fn only_what_changed_is_recomputed() {
 fn clipping_leaves_out_what_is_behind_and_changes_no_factor() {
     let (loaded, mut scene) = scene(Shape::Torus);
     let bounds = loaded.mesh.bounds();
-    // Close to the rim: part of the torus lies behind the eye and beside the view.
+    // Close to the outer edge: part of the torus lies behind the eye and beside the view.
     let camera = Camera { distance: bounds.radius() * 0.9, ..Camera::framing(&bounds, VIEWPORT) };
     let view = camera.lod_view(VIEWPORT, &bounds);
     let off = Settings::default();

@@ -78,9 +78,12 @@ fn normals_look_as_they_did() {
 #[test]
 fn a_rim_looks_as_it_did() {
     // Beside surface-pn and surface-pn-aen: closed as the one is not, round where the other has its crease.
-    let loaded =
-        load(&Source::Shape(Shape::CubeSplit), &Preparation { rim: 0.04, ..Preparation::default() }, &Progress::new())
-            .expect("shapes always load");
+    let loaded = load(
+        &Source::Shape(Shape::CubeSplit),
+        &Preparation { crease_band: 0.04, ..Preparation::default() },
+        &Progress::new(),
+    )
+    .expect("shapes always load");
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("shapes are small");
     let settings = Settings::from(Tessellation { surface: Surface::Pn, factor: 12.0, ..Tessellation::default() });
     let picture = picture(&mut scene, &settings, SIZE);

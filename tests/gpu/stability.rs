@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{Vec2, Vec3};
 use pnaen::gpu::Timing;
 use pnaen::measure::{AskedFactors, Measured};
-use pnaen::mesh::mesh_builder::{LooseCorner, MeshBuilder};
+use pnaen::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use pnaen::mesh::{Material, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
@@ -184,13 +184,13 @@ fn any_normal() -> impl Strategy<Value = Vec3> {
 
 /// Up to ten triangles over up to seven points, some of which may be one: edges of many sides, wound either way,
 /// triangles on top of each other and triangles without area.
-fn any_soup() -> impl Strategy<Value = Vec<[LooseCorner; 3]>> {
+fn any_soup() -> impl Strategy<Value = Vec<[InputCorner; 3]>> {
     let coordinate = prop_oneof![4 => -1f32..1.0, 1 => prop::sample::select(vec![-1.0, -0.0, 0.0, 0.5, 1.0])];
     let points = prop::collection::vec(prop::array::uniform3(coordinate), 3..=7);
     let corner = (any::<prop::sample::Index>(), any_normal(), prop::array::uniform2(-2f32..2.0));
     let triangles = prop::collection::vec(prop::array::uniform3(corner), 1..=10);
     (points, triangles).prop_map(|(points, triangles)| {
-        let loose = |(index, normal, uv): (prop::sample::Index, Vec3, [f32; 2])| LooseCorner {
+        let loose = |(index, normal, uv): (prop::sample::Index, Vec3, [f32; 2])| InputCorner {
             position: (*index.get(&points)).into(),
             normal: Some(normal),
             uv: uv.into(),
@@ -248,7 +248,7 @@ pub fn any_trial() -> impl Strategy<Value = Trial> {
         let mut builder = MeshBuilder::new();
         let material = builder.material(Material::plain("soup", [0.6, 0.6, 0.6, 1.0]));
         for corners in soup {
-            builder.triangle(material, corners.map(|c| LooseCorner { position: c.position * scale, ..c }));
+            builder.triangle(material, corners.map(|c| InputCorner { position: c.position * scale, ..c }));
         }
         let mesh = builder.finish("soup".to_owned(), &Progress::default()).expect("nobody cancels");
         let camera = Camera { target: camera.target * scale, distance: camera.distance * scale, ..camera };

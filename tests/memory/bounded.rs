@@ -1,5 +1,5 @@
-//! All of a load: reading, edges, a rim, heights. It takes no more than it is allowed, whatever that is, and isn't refused what
-//! it needs.
+//! Limits on a whole load: reading, edges, a crease band and heights. A load never takes more memory than it is
+//! allowed, and isn't refused the memory that it needs.
 
 use std::sync::PoisonError;
 
@@ -13,21 +13,21 @@ use super::glb::{blocks, indexed, loose};
 use super::grid::Grid;
 use super::{ALONE, Temporary, textures};
 
-/// For what doesn't grow with the file, in bytes.
+/// Memory that doesn't depend on the file's size, in bytes.
 const FIXED: usize = 1 << 20;
 
-/// What is allowed, of what it takes.
+/// The parts of the necessary memory that are allowed.
 const PARTS: [f64; 7] = [0.15, 0.3, 0.5, 0.65, 0.8, 0.9, 0.97];
 
-/// All of a load, with so many bytes of memory beyond four times the files' size, and what that took.
+/// Runs a whole load with this much memory (in bytes) beyond four times the files' size, and returns how much it took.
 pub fn loaded(file: &Temporary, preparation: &Preparation, memory: u64) -> (Result<Loaded, LoadError>, usize) {
     let preparation = Preparation { limits: Limits { memory, ..Limits::default() }, ..preparation.clone() };
     let source = Source::File(file.0.clone());
     peak_of(|| load(&source, &preparation, &Progress::new()))
 }
 
-/// Loads a file with more and more memory. `most` is how many times what it takes may be asked for, `image` the size of a file of
-/// heights.
+/// Loads a file with more and more memory. A load may ask for `most` times the memory that it takes; `image` is the
+/// size of the height image file.
 fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
     let file = Temporary::new(name, bytes);
     let (result, needed) = loaded(&file, preparation, u64::MAX);
@@ -42,8 +42,8 @@ fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparat
         assert!(took <= allowed + FIXED, "{name}: {took} of {allowed} bytes");
         if let Err(error) = result {
             let said = error.to_string();
-            let is_budget = said.contains(" MiB of memory, and files of this size may take ");
-            // Textures that would take too much are left out.
+            let is_budget = said.contains(" MiB of memory, but files of this size may take only ");
+            // A texture that would take too much is left out.
             assert!(is_budget || said.contains("has no image to displace by"), "{said}");
             (refused, least) = (refused + 1, allowed);
         }
@@ -54,7 +54,7 @@ fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparat
     assert!(result.is_ok(), "{name}: {}", result.expect_err("an error"));
 }
 
-/// Large enough for what grows to be most of it.
+/// A number of triangles for which most of the memory depends on the file's size.
 const TRIANGLES: usize = 57_000;
 
 #[test]
@@ -77,9 +77,9 @@ fn welds_and_rims_are_part_of_it() {
     let welded = Preparation { weld: 1e-5, ..Preparation::default() };
     assert_bounded("welded.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &welded, 1.5);
     assert_bounded("welded.stl", &Grid::of(TRIANGLES, 0.0).stl(0.1), 0, &welded, 1.5);
-    let rim = Preparation { rim: 1e-4, ..Preparation::default() };
-    assert_bounded("rim.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &rim, 1.5);
-    assert_bounded("no-rim.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &rim, 1.5);
+    let band = Preparation { crease_band: 1e-4, ..Preparation::default() };
+    assert_bounded("crease-band.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &band, 1.5);
+    assert_bounded("no-creases.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &band, 1.5);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn heights_are_part_of_it() {
     assert_bounded("file.glb", &sheet, png.get_ref().len(), &of(HeightSource::File(image.0.clone())), 1.1);
 }
 
-/// A small file whose images are large: each is kept twice, as a texture and as heights.
+/// A small file with large images. Each is in memory twice, as a texture and as heights.
 #[test]
 fn many_materials_images_are_refused_as_heights() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,11 +1,11 @@
-//! Sheets as `.glb`: floats and quantised, with indices of either size and without.
+//! Sheets as `.glb` files: with floats or quantised, with indices of 16 or 32 bits, and without indices.
 
 use serde_json::{Value, json};
 
 use super::glb;
 use super::grid::Grid;
 
-/// A document in the making: one buffer, and views into it.
+/// A document that is being built: one buffer, and views into it.
 #[derive(Default)]
 struct Draft {
     bin: Vec<u8>,
@@ -34,7 +34,7 @@ impl Draft {
         self.accessors.len() - 1
     }
 
-    /// A sheet's vertices, or some of them.
+    /// Adds some of a sheet's vertices.
     fn vertices(&mut self, grid: Grid, numbers: impl Iterator<Item = usize> + Clone, quantised: bool) -> Value {
         let at = numbers.clone().map(move |i| grid.position(i));
         let count = numbers.count();
@@ -66,7 +66,7 @@ impl Draft {
     }
 }
 
-/// One primitive, with indices of 32 bits.
+/// A sheet as one primitive, with indices of 32 bits.
 pub fn indexed(grid: Grid, quantised: bool) -> Vec<u8> {
     let mut draft = Draft::default();
     let attributes = draft.vertices(grid, 0..grid.side * grid.side, quantised);
@@ -76,7 +76,7 @@ pub fn indexed(grid: Grid, quantised: bool) -> Vec<u8> {
     draft.glb()
 }
 
-/// Quantised primitives of rows of squares, with indices of 16 bits.
+/// A sheet as quantised primitives of rows of squares, with indices of 16 bits.
 pub fn blocks(grid: Grid) -> Vec<u8> {
     let mut draft = Draft::default();
     let rows = 60_000 / grid.side;
@@ -91,7 +91,7 @@ pub fn blocks(grid: Grid) -> Vec<u8> {
     draft.glb()
 }
 
-/// One primitive without indices.
+/// A sheet as one primitive without indices.
 pub fn loose(grid: Grid, quantised: bool) -> Vec<u8> {
     let mut draft = Draft::default();
     let numbers: Vec<usize> = grid.triangles().flatten().collect();

@@ -2,18 +2,18 @@
 
 use std::fmt::Write;
 
-/// A wavy sheet of squares, each cut in two.
+/// A wavy sheet of squares, each cut into two triangles.
 #[derive(Clone, Copy)]
 pub struct Grid {
-    /// Vertices along x, and along y.
+    /// The number of vertices along x and along y.
     pub side: usize,
     pub rows: usize,
-    /// How high vertices stand at most, without any order: 0 for a smooth sheet, many squares' sides for creases everywhere.
+    /// The greatest random height of a vertex: 0 for a smooth sheet, many sides of a square for creases everywhere.
     pub spikes: f32,
 }
 
 impl Grid {
-    /// Of so many triangles or a few less.
+    /// Makes a sheet with this number of triangles, or a few less.
     pub fn of(triangles: usize, spikes: f32) -> Self {
         let side = (triangles / 2).isqrt() + 1;
         Self { side, rows: side, spikes }
@@ -32,7 +32,7 @@ impl Grid {
         [x, y, (x * 0.01).sin() * (y * 0.01).cos() + self.spikes * (i * i % 1009) as f32 / 1009.0]
     }
 
-    /// Corners of squares, counter-clockwise.
+    /// Returns the corners of the squares, counter-clockwise.
     pub fn quads(self) -> impl Iterator<Item = [usize; 4]> {
         let (side, rows) = (self.side, self.rows);
         (0..(side - 1) * (rows - 1)).map(move |i| {
@@ -45,7 +45,7 @@ impl Grid {
         self.quads().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
     }
 
-    /// Binary STL. `apart` is how far triangles stand from each other.
+    /// Writes binary STL. `apart` is the distance between neighbouring triangles.
     pub fn stl(self, apart: f32) -> Vec<u8> {
         let mut bytes = vec![0; 80];
         bytes.reserve_exact(50 * self.triangle_count() + 4);
@@ -60,7 +60,7 @@ impl Grid {
         bytes
     }
 
-    /// Binary PLY, of triangles or squares.
+    /// Writes binary PLY with triangles or squares.
     pub fn ply(self, squares: bool) -> Vec<u8> {
         let faces = self.triangle_count() / if squares { 2 } else { 1 };
         let mut bytes = format!(
@@ -81,7 +81,7 @@ impl Grid {
         bytes
     }
 
-    /// OBJ, with texture coordinates and normals or without.
+    /// Writes OBJ with or without texture coordinates and normals.
     pub fn obj(self, attributes: bool) -> Vec<u8> {
         let mut text = String::new();
         for [x, y, z] in self.positions() {

@@ -1,4 +1,4 @@
-//! Height images: what is kept of them, and no more than a row beside it.
+//! Height images: reading one takes its map, and at most one row of the image.
 
 use std::io::Cursor;
 use std::sync::PoisonError;
@@ -12,7 +12,7 @@ use pnaen::progress::Progress;
 use super::counting::peak_of;
 use super::{ALONE, Temporary};
 
-/// Reads an image from a file, and holds what that took against what its size allows. What it took, in bytes.
+/// Reads an image from a file, checks the memory against what its size allows, and returns how much it took, in bytes.
 fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
     let file = Temporary::new(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.0.clone()));
@@ -24,7 +24,7 @@ fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
     (result, took)
 }
 
-/// A PNG image of 16 bits a channel, all of one colour.
+/// A PNG image of one colour with 16 bits a channel.
 fn png(size: [u32; 2]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
@@ -48,12 +48,12 @@ fn a_large_png_takes_what_is_kept_of_it() {
     let map = &result.expect("an image").maps[0];
     assert_eq!((map.size, map.levels), ([4096, side.min(4096)], 13));
     assert!((map.heights[0] - 128.0 * 257.0 / 65535.0).abs() < 1e-4);
-    // Whole, it would be 50 MB.
+    // The decoded image would take 50 MB.
     let kept = map.heights.len() * 4;
     assert!(took < kept + kept / 4 + (1 << 20), "{took} bytes, {kept} of them kept");
 }
 
-/// A JPEG image whose frame header says that it is of so many px a side, and coded as this marker has it.
+/// A JPEG image whose frame header has this size, in px a side, and this marker for its coding.
 pub fn jpeg(side: u16, marker: u8) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     let image = DynamicImage::from(RgbImage::from_fn(600, 600, |x, y| image::Rgb([x as u8, y as u8, 90])));
@@ -77,18 +77,19 @@ fn a_jpeg_fits_or_is_refused_with_both_numbers() {
     assert!(read("small.jpg", &jpeg(600, 0xc0)).0.is_ok());
     let error = refusal(12000, 0xc0);
     assert!(error.contains("is 12000 x 12000 px large and would take at least 51"), "{error}");
-    assert!(error.contains("MiB of memory, and files of this size may take 25"), "{error}");
+    assert!(error.contains("MiB of memory, but files of this size may take only 25"), "{error}");
     assert!(
         error.ends_with("scale it to 4096 px a side or less, or save it as a PNG that isn't interlaced"),
         "{error}"
     );
-    // As large as fits, most of it missing; a progressive one's coefficients don't.
+    // The largest image that fits, with most of its data missing. If it is progressive, its coefficients don't fit.
     assert!(read("sequential.jpg", &jpeg(7000, 0xc0)).1 > 140 << 20);
     let error = refusal(7000, 0xc2);
     assert!(error.contains("is 7000 x 7000 px large and would take at least 42"), "{error}");
 }
 
-/// A profile of colours that unpacks to a thousand times its size is never unpacked: not of heights, and not of textures.
+/// A colour profile that unpacks to a thousand times its size is never unpacked, neither in height images nor in
+/// textures.
 #[test]
 fn profiles_of_colours_are_not_unpacked() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -1,8 +1,8 @@
-//! Files as programs write them: whatever their size, four times that is enough, without the 256 MiB.
+//! Ordinary files of any size load within four times their size, without the additional 256 MiB.
 
 use std::sync::PoisonError;
 
-use pnaen::mesh::{Topology, joins};
+use pnaen::mesh::{Topology, weld_previews};
 use pnaen::progress::Progress;
 
 use super::counting::peak_of;
@@ -10,10 +10,10 @@ use super::glb::{blocks, indexed, loose};
 use super::grid::Grid;
 use super::{ALONE, taken};
 
-/// For what doesn't grow with the file, in bytes.
+/// Memory that doesn't depend on the file's size, in bytes.
 const FIXED: usize = 1 << 20;
 
-/// Numbers of triangles: one after another, so that tables that double are met when they are nearly empty, and nearly full.
+/// Numbers of triangles in small steps, so that tables that double their size are tried nearly empty and nearly full.
 fn sizes() -> Vec<usize> {
     match std::env::var("PNAEN_TRIANGLES").ok().and_then(|count| count.parse().ok()) {
         Some(count) => vec![count],
@@ -21,7 +21,7 @@ fn sizes() -> Vec<usize> {
     }
 }
 
-/// Loads a file that is made for each of the sizes; `times` is how much of the file's size that may take.
+/// Loads a file of each of the sizes; it may take `times` the file's size.
 fn assert_within(name: &str, times: usize, make: impl Fn(usize) -> Vec<u8>) {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for triangles in sizes() {
@@ -48,7 +48,7 @@ fn binary_stl() {
 fn ply() {
     assert_within("triangles.ply", 4, |count| Grid::of(count, 0.0).ply(false));
     assert_within("squares.ply", 4, |count| Grid::of(count, 0.0).ply(true));
-    // A corner a face: the mesh itself is larger than that.
+    // With a corner for each face, the mesh itself is larger than that.
     assert_within("creased.ply", 9, |count| Grid::of(count, 40.0).ply(false));
 }
 
@@ -56,7 +56,7 @@ fn ply() {
 fn obj() {
     assert_within("plain.obj", 4, |count| Grid::of(count, 0.0).obj(false));
     assert_within("attributes.obj", 4, |count| Grid::of(count, 0.0).obj(true));
-    // The same.
+    // For the same reason as above.
     assert_within("creased.obj", 5, |count| Grid::of(count, 40.0).obj(false));
 }
 
@@ -69,7 +69,7 @@ fn gltf() {
     assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
 }
 
-/// What comes after a load, so that a mesh can be looked at: as docs/manual/files.md says, in bytes a triangle.
+/// The work after a load, until a mesh can be shown: as docs/manual/files.md says, in bytes a triangle.
 #[test]
 fn edges_and_what_welding_would_do() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -79,7 +79,7 @@ fn edges_and_what_welding_would_do() {
         let count = mesh.triangles.len();
         let (topology, edges) = peak_of(|| Topology::build(&mesh, &Progress::new()));
         let topology = topology.expect("nobody cancels");
-        let (joins, welds) = peak_of(|| joins(&mesh, Some(&topology), &Progress::new()));
+        let (joins, welds) = peak_of(|| weld_previews(&mesh, Some(&topology), &Progress::new()));
         println!("    {count} triangles: {} bytes each for edges, {} for welds", edges / count, welds / count);
         assert!(joins.is_ok() && edges <= 65 * count + FIXED && welds <= 40 * count + FIXED, "{edges} {welds} {count}");
     }

@@ -1,7 +1,8 @@
-//! What a load takes, by an allocator that counts: at most four times the file's size, and 256 MiB. Alone in this binary, so
-//! that nothing else is counted.
+//! Measures how much memory a load takes, with an allocator that counts: at most four times the file's size, plus 256
+//! MiB. These tests are a program of their own, so that nothing else is counted.
 //!
-//! `PNAEN_TRIANGLES=3000000 cargo test --release --test memory -- --nocapture` measures larger meshes than tests have time for.
+//! `PNAEN_TRIANGLES=3000000 cargo test --release --test memory -- --nocapture` measures larger meshes than the tests
+//! have time for.
 
 mod bounded;
 #[path = "../counting/mod.rs"]
@@ -22,7 +23,7 @@ use serde_json::{Value, json};
 
 use counting::peak_of;
 
-/// A file in the temporary folder, gone with its test.
+/// A file in the temporary folder, which its test removes.
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -39,16 +40,16 @@ impl Drop for Temporary {
     }
 }
 
-/// One at a time: all tests' memory is counted together.
+/// Lets one test run at a time, since the memory of all tests is counted together.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// Loads a `.glb`, and holds what that took against what its size allows. What it took, in MiB.
+/// Loads a `.glb`, checks the memory against what its size allows, and returns how much it took, in MiB.
 fn measured(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
     let (result, took) = taken(&format!("{name}.glb"), bytes);
     (result, took >> 20)
 }
 
-/// The same of any file, whose bytes are gone before. What it took, in bytes.
+/// Loads any file in the same way, after its bytes have been freed. Returns how much memory it took, in bytes.
 fn taken(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
     let (file, size) = (Temporary::new(name, &bytes), bytes.len());
     drop(bytes);
@@ -59,7 +60,7 @@ fn taken(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
     (result, took)
 }
 
-/// A `.glb` of a square with so many vertices a side, or of a smaller one on many nodes.
+/// A `.glb` of a square with this number of vertices a side, or of a smaller one on many nodes.
 fn grid(side: u32, nodes: usize) -> Vec<u8> {
     let at = (0..side * side).flat_map(|i| [(i % side) as f32, (i / side) as f32, 0.0]);
     let normals = (0..side * side).flat_map(|_| [0.0, 0.0, 1.0_f32]);
@@ -97,7 +98,7 @@ fn glb(root: &Value, bin: &[u8]) -> Vec<u8> {
     [&header, &number(json.len())[..], b"JSON", &json, &number(bin.len()), b"BIN\0", bin].concat()
 }
 
-/// A triangle with a texture of so many px a side, all of one colour.
+/// A triangle with a texture of one colour and this size in px a side.
 fn textured(side: u32) -> Vec<u8> {
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbImage::new(side, side).write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
@@ -126,7 +127,7 @@ fn with_image(image: &[u8]) -> Vec<u8> {
     glb(&root, &bin)
 }
 
-/// Triangles with a texture each, of so many px a side, gray.
+/// Triangles with a gray texture each, of this size in px a side.
 fn textures(count: usize, side: u32) -> Vec<u8> {
     let mut png = std::io::Cursor::new(Vec::new());
     let gray = image::GrayImage::from_pixel(side, side, image::Luma([128]));
@@ -153,7 +154,7 @@ fn textures(count: usize, side: u32) -> Vec<u8> {
     glb(&root, &bin)
 }
 
-/// A chain of nodes, each below the last.
+/// A chain of nodes, each the child of the one before.
 fn chain(count: usize) -> Vec<u8> {
     let nodes: Vec<String> = (1..count).map(|i| format!(r#"{{"children":[{i}]}}"#)).collect();
     let start = r#"{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":["#;
@@ -165,22 +166,22 @@ fn loads_take_no_more_than_their_size_allows() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let vase = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")).expect("the vase");
     assert!(measured("vase", vase).0.is_ok());
-    // What a file holds fits without what is allowed beside its size.
+    // The data in a file fits without the additional memory.
     let large = grid(600, 1);
     let size = large.len() >> 20;
     let (result, took) = measured("large", large);
     assert!(result.is_ok() && took <= 4 * size + 8, "{took} MiB for {size}");
-    // 720,000 triangles of 2,000 vertices' data.
+    // 720,000 triangles with the data of 2,000 vertices.
     let (result, took) = measured("repeated", grid(31, 400));
     assert!(result.is_ok_and(|loaded| loaded.mesh.triangles.len() == 720_000) && took > 20);
-    // Ten times that is refused, before any of it is read.
+    // Ten times as many are refused before anything is read.
     let (result, took) = measured("repeated-more", grid(31, 4000));
     assert!(result.is_err_and(|error| error.to_string().contains("of 7200000 triangles would take")) && took < 20);
     let (result, took) = measured("image", textured(5000));
     assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_some()) && took > 150);
     let (result, took) = measured("larger-image", textured(8000));
     assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_none()) && took < 20);
-    // A progressive one keeps twice as much of every px until its last scan, whatever its size as a file.
+    // A progressive image keeps twice as much for each pixel until its last scan, whatever the file's size.
     let (result, took) = measured("progressive-image", with_image(&heights::jpeg(6000, 0xc2)));
     assert!(result.is_ok_and(|loaded| loaded.mesh.materials[0].texture.is_none()) && took < 20);
     assert!(measured("nodes", chain(200_000)).0.is_err_and(|error| error.to_string().contains("no meshes")));

@@ -1,4 +1,4 @@
-//! Primitives that Draco compressed: what its decoder takes, which it can't be told.
+//! Primitives that are compressed with Draco: how much memory the decoder takes, which can't be limited.
 
 use std::sync::PoisonError;
 
@@ -13,7 +13,7 @@ use super::bounded::loaded;
 use super::grid::Grid;
 use super::{ALONE, Temporary, glb, measured, taken};
 
-/// A primitive of positions, and of other attributes by their names, kinds and widths; `from` is the buffer.
+/// A primitive with positions and other attributes, given by names, types and widths; `from` is the buffer.
 fn document(vertices: usize, triangles: usize, others: &[(String, u8)], from: &[u8]) -> Vec<u8> {
     let accessor = |width: u8| {
         let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][usize::from(width) - 1];
@@ -39,7 +39,8 @@ fn document(vertices: usize, triangles: usize, others: &[(String, u8)], from: &[
     glb(&root, from)
 }
 
-/// A sheet whose corners are all apart, or not; the more attributes, the more of its edges' neighbours are kept at once.
+/// A sheet with or without common corners. The more attributes it has, the more neighbours of its edges are in memory
+/// at once.
 fn sheet(grid: Grid, others: &[(String, u8)], apart: bool, speed: i32) -> Vec<u8> {
     let order: Vec<usize> =
         if apart { grid.triangles().flatten().collect() } else { (0..grid.side * grid.rows).collect() };
@@ -97,7 +98,8 @@ fn what_programs_pack_fits() {
     }
 }
 
-/// What decoding might take is refused, not what it takes: who trusts a file can have it.
+/// A file is refused for the memory that decoding might take, not for what it does take; with --max-memory it can be
+/// read.
 #[test]
 fn larger_ones_are_read_with_more_memory() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -111,7 +113,7 @@ fn larger_ones_are_read_with_more_memory() {
     assert_eq!(result.expect("a file without a fault").mesh.triangles.len(), grid.triangle_count());
 }
 
-/// Indices of one triangle, as symbols of a table: that says it has as many as its bytes could name, and has `rest` for bytes.
+/// The indices of one triangle, encoded with a table of as many symbols as its bytes can name, followed by `rest`.
 fn table(length: usize, symbols: usize, rest: &[u8]) -> Vec<u8> {
     let mut bytes = b"DRACO\x02\x02\x01\0\0\0\x01\x03\0\x01\x01".to_vec();
     let mut left = symbols;
@@ -128,11 +130,11 @@ fn table(length: usize, symbols: usize, rest: &[u8]) -> Vec<u8> {
 #[test]
 fn tables_that_take_most_are_counted() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    // One that ends too early.
+    // A table that ends too early.
     let length = 400 << 10;
     let (mesh, took) = measured("packed-table", table(length, (length - 64) * 64, &vec![0; length - 32]));
     assert!(mesh.is_err() && (190..256).contains(&took), "{took} MiB");
-    // A whole one: the first symbol has all of the 2^12, and all others come to nothing.
+    // A complete table: the first symbol has the whole probability of 2^12, and all others have none.
     let whole = |length: usize| table(length, (length - 64) * 64 + 1, &[2, 64, 0]);
     let (mesh, took) = measured("packed-whole-table", whole(160 << 10));
     assert!(mesh.is_err() && (200..256).contains(&took), "{took} MiB");
@@ -141,6 +143,6 @@ fn tables_that_take_most_are_counted() {
     {
         let (mesh, took) = measured(name, bytes);
         let said = mesh.err().map(|error| error.to_string()).unwrap_or_default();
-        assert!(took < 8 && said.contains("MiB of memory, and files of this size may take"), "{took} MiB: {said}");
+        assert!(took < 8 && said.contains("MiB of memory, but files of this size may take only"), "{took} MiB: {said}");
     }
 }

@@ -151,11 +151,11 @@ fn a_mesh_loaded_again_keeps_its_place_and_another_rests() {
     settle(&mut harness);
     press(&mut harness, Key::R);
     assert_eq!(harness.state().moment(), Some(Moment { clip: 1, time: 0.5 }));
-    // With a rim it doesn't move, and without it goes on where it was.
-    harness.get_by_role_and_label(Role::SpinButton, "Rim").set_value_accesskit(1.0);
+    // With a crease band the mesh doesn't move, and without one it goes on where it was.
+    harness.get_by_role_and_label(Role::SpinButton, "Crease band").set_value_accesskit(1.0);
     settle(&mut harness);
     assert_eq!(harness.state().moment(), None);
-    harness.get_by_role_and_label(Role::SpinButton, "Rim").set_value_accesskit(0.0);
+    harness.get_by_role_and_label(Role::SpinButton, "Crease band").set_value_accesskit(0.0);
     settle(&mut harness);
     assert_eq!(harness.state().moment(), Some(Moment { clip: 1, time: 0.5 }));
     let context = harness.ctx.clone();

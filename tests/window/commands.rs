@@ -203,11 +203,11 @@ fn values_tolerances_and_resets_are_commands() {
     assert_eq!(*harness.state().settings(), settings);
     let preparation = |harness: &Harness<App>| harness.state().loaded().expect("a cube").preparation.clone();
     give(&mut harness, "Weld: 1e-4");
-    give(&mut harness, "Rim: On");
-    assert_eq!((preparation(&harness).weld, preparation(&harness).rim), (1e-4, 0.02));
+    give(&mut harness, "Crease band: On");
+    assert_eq!((preparation(&harness).weld, preparation(&harness).crease_band), (1e-4, 0.02));
     give(&mut harness, "Weld: Exact");
-    give(&mut harness, "Rim: Off");
-    assert_eq!((preparation(&harness).weld, preparation(&harness).rim), (0.0, 0.0));
+    give(&mut harness, "Crease band: Off");
+    assert_eq!((preparation(&harness).weld, preparation(&harness).crease_band), (0.0, 0.0));
 }
 
 #[test]

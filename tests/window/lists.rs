@@ -145,18 +145,18 @@ fn a_rim_closes_what_pn_tears_and_the_view_stays() {
     press(&mut harness, egui::Key::Num3);
     let (camera, settings) = (*harness.state().camera(), *harness.state().settings());
     assert_eq!(harness.state().cracks().map(|cracks| cracks.edges.len()), Some(12));
-    harness.get_by_role_and_label(Role::SpinButton, "Rim").set_value_accesskit(2.0);
+    harness.get_by_role_and_label(Role::SpinButton, "Crease band").set_value_accesskit(2.0);
     settle(&mut harness);
     let app = harness.state();
-    let rim = app.loaded().map(|loaded| loaded.rim).expect("a mesh");
-    assert_eq!((rim.width, rim.creases), (0.02, 12));
+    let band = app.loaded().map(|loaded| loaded.crease_band).expect("a mesh");
+    assert_eq!((band.width, band.creases), (0.02, 12));
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(0));
     assert_eq!((*app.camera(), *app.settings()), (camera, settings));
     // Reloading keeps it.
     press(&mut harness, egui::Key::R);
-    assert_eq!(harness.state().loaded().map(|loaded| loaded.rim), Some(rim));
-    harness.get_by_role_and_label(Role::SpinButton, "Rim").set_value_accesskit(0.0);
+    assert_eq!(harness.state().loaded().map(|loaded| loaded.crease_band), Some(band));
+    harness.get_by_role_and_label(Role::SpinButton, "Crease band").set_value_accesskit(0.0);
     settle(&mut harness);
     let loaded = harness.state().loaded().expect("a mesh");
-    assert_eq!((loaded.rim.width, loaded.mesh.triangles.len()), (0.0, 12));
+    assert_eq!((loaded.crease_band.width, loaded.mesh.triangles.len()), (0.0, 12));
 }

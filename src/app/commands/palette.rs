@@ -134,7 +134,7 @@ mod tests {
             ("factor up", "Factor up"),
             ("weld 1e-5", "Weld: 1e-5"),
             ("weld exact", "Weld: Exact"),
-            ("rim on", "Rim: On"),
+            ("crease on", "Crease band: On"),
             ("background", "Background colour…"),
             ("save picture", "Save picture…"),
             ("export", "Export mesh…"),

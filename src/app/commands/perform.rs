@@ -109,9 +109,9 @@ impl App {
             Preparing::NoHeights => after.heights = None,
             Preparing::HeightsFromMaterials => after.heights = Some(HeightSource::Materials),
             Preparing::Weld(tolerance) => after.weld = tolerance,
-            Preparing::CreaseBand(width) => after.rim = width,
+            Preparing::CreaseBand(width) => after.crease_band = width,
         }
-        if (after.weld, after.rim, &after.heights) != (before.weld, before.rim, &before.heights) {
+        if (after.weld, after.crease_band, &after.heights) != (before.weld, before.crease_band, &before.heights) {
             self.prepare(context, |preparation| *preparation = after);
         }
     }

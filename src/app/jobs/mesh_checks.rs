@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::background_job::{BackgroundJob, Stopped};
 use crate::engine::Loaded;
-use crate::mesh::{Joins, NormalFaults, TJunction, joins, t_junctions};
+use crate::mesh::{NormalFaults, TJunction, WeldPreview, t_junctions, weld_previews};
 use crate::progress::Progress;
 
 /// Checks under way or done; dropping them stops them.
@@ -20,7 +20,7 @@ pub struct Checks {
 struct Found {
     normal_faults: OnceLock<NormalFaults>,
     t_junctions: OnceLock<Vec<TJunction>>,
-    joins: OnceLock<Vec<Joins>>,
+    joins: OnceLock<Vec<WeldPreview>>,
 }
 
 impl Checks {
@@ -37,7 +37,7 @@ impl Checks {
             }
             repainted.request_repaint();
             let exact = (weld == 0.0 && Arc::ptr_eq(&read, &mesh)).then_some(&*topology);
-            if let Ok(all) = joins(&read, exact, &wanted) {
+            if let Ok(all) = weld_previews(&read, exact, &wanted) {
                 let _ = found.joins.set(all);
             }
         }));
@@ -55,7 +55,7 @@ impl Checks {
     }
 
     /// What each tolerance would join, once tried.
-    pub fn joins(&self) -> Option<&[Joins]> {
+    pub fn joins(&self) -> Option<&[WeldPreview]> {
         self.found.joins.get().map(Vec::as_slice)
     }
 

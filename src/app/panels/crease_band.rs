@@ -1,37 +1,37 @@
-//! The rim along creases: a number that loads the mesh again.
+//! The row for the width of the crease band, which loads the mesh again.
 
 use crate::app::App;
 use crate::app::text::short;
-use crate::mesh::rim::WIDEST;
+use crate::mesh::crease_band::WIDEST;
 
 impl App {
-    /// The rim's width in percent; another one loads the mesh again, once it is no longer dragged.
-    pub(in crate::app) fn rim_row(&mut self, ui: &mut egui::Ui) {
+    /// Shows the width in percent of the bounding diagonal. A new width loads the mesh again once it is no longer dragged.
+    pub(in crate::app) fn crease_band_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        let rim = self.preparation().rim;
-        let mut percent = 100.0 * self.panels.dragged_rim.unwrap_or(rim);
+        let width = self.preparation().crease_band;
+        let mut percent = 100.0 * self.panels.dragged_crease_band.unwrap_or(width);
         let wide = short(f64::from(percent / 100.0 * document.scene.bounds.diagonal()));
         let hover = format!(
-            "A rim of small triangles along edges with split normals, with one normal on the crease, so that PN triangles don't \
+            "A band of small triangles along edges with split normals, with one normal on the crease, so that PN triangles don't \
              tear there (Vlachos et al. 2001; --rim). Its width is a part of the bounding diagonal, and less where triangles are \
              small.{}",
-            match document.loaded.rim.creases {
+            match document.loaded.crease_band.creases {
                 0 => String::new(),
                 creases => format!(" {wide} units here, along {creases} creases."),
             }
         );
-        let label = ui.label("Rim").on_hover_text(&hover);
+        let label = ui.label("Crease band").on_hover_text(&hover);
         let drag =
             egui::DragValue::new(&mut percent).range(0.0..=100.0 * WIDEST).speed(0.02).max_decimals(3).suffix(" %");
         let response = ui.add(drag.update_while_editing(false)).labelled_by(label.id).on_hover_text(&hover);
         ui.end_row();
         if response.changed() {
-            self.panels.dragged_rim = Some(percent / 100.0);
+            self.panels.dragged_crease_band = Some(percent / 100.0);
         }
-        if let Some(wanted) = self.panels.dragged_rim.filter(|_| !response.dragged()) {
-            self.panels.dragged_rim = None;
-            if wanted != rim {
-                self.prepare(ui.ctx(), |preparation| preparation.rim = wanted);
+        if let Some(wanted) = self.panels.dragged_crease_band.filter(|_| !response.dragged()) {
+            self.panels.dragged_crease_band = None;
+            if wanted != width {
+                self.prepare(ui.ctx(), |preparation| preparation.crease_band = wanted);
             }
         }
     }

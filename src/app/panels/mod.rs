@@ -22,13 +22,13 @@ use chart::Chart;
 pub struct Panels {
     pub chart: Chart,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
-    pub dragged_rim: Option<f32>,
+    pub dragged_crease_band: Option<f32>,
     /// What displacement was before it was last switched.
     pub last_displacement: Displacement,
 }
 
 impl Default for Panels {
     fn default() -> Self {
-        Self { chart: Chart::default(), dragged_rim: None, last_displacement: Displacement::Off }
+        Self { chart: Chart::default(), dragged_crease_band: None, last_displacement: Displacement::Off }
     }
 }

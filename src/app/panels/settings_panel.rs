@@ -18,7 +18,7 @@ impl App {
             heading(ui, "Mesh");
             egui::Grid::new("weld").num_columns(2).min_col_width(84.0).show(ui, |ui| {
                 self.weld_row(ui);
-                self.rim_row(ui);
+                self.crease_band_row(ui);
                 self.height_rows(ui);
             });
             self.animation_section(ui);

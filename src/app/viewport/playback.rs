@@ -47,7 +47,7 @@ impl Playback {
 }
 
 impl App {
-    /// Clip and time that are wanted; none at rest, and while a rim keeps the mesh from moving.
+    /// Clip and time that are wanted; none at rest, and while a crease band keeps the mesh from moving.
     pub fn moment(&self) -> Option<Moment> {
         self.viewport.playback.moment().filter(|moment| moment.clip < self.clips().len())
     }
@@ -89,7 +89,7 @@ impl App {
         }
     }
 
-    /// Keeps clip and time for a document that is the same mesh loaded again, also through a rim, with which it doesn't move;
+    /// Keeps clip and time for a document that is the same mesh loaded again, also with a crease band, with which it doesn't move;
     /// forgets them for another.
     pub(in crate::app) fn keep_playback(&mut self, is_same: bool) {
         let count = self.clips().len();
@@ -137,7 +137,7 @@ impl App {
             let read = self.document.as_ref().map(|document| &document.loaded.read);
             if read.is_some_and(|read| read.rig.is_some()) {
                 heading(ui, "Animation");
-                ui.weak("Not with a rim, which hangs on nothing that moves.");
+                ui.weak("A mesh with a crease band can't be animated.");
             }
             return;
         }

@@ -7,7 +7,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
 use crate::load::Source;
-use crate::mesh::rim::WIDEST;
+use crate::mesh::crease_band::WIDEST;
 
 /// Reads where to write a picture: not a name that says it is no PNG file.
 pub fn picture() -> impl TypedValueParser<Value = PathBuf> {

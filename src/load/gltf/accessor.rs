@@ -1,4 +1,4 @@
-//! Accessors: typed lists in buffers, sparse or not, normalised or not, with every range checked first.
+//! Reads accessors: typed lists in buffers, sparse or not, normalised or not. Every range is checked first.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -7,47 +7,48 @@ use ::gltf::accessor::sparse::{IndexType, Sparse};
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
 use ::gltf::{Document, buffer};
 
-use super::Problem;
-use super::extensions::{Compressed, Extensions, Mode};
+use super::GltfError;
+use super::decompressed_primitive::DecompressedPrimitive;
+use super::extensions::{Extensions, MeshoptExtension, MeshoptMode};
 use super::meshopt::{Decompressed, decompress};
-use super::unpacked::Unpacked;
 use crate::load::memory_budget::Budget;
 use crate::mesh::MemoryAccount;
 
-/// The largest list without a buffer view behind it (all zeros but for its sparse values): nothing else bounds those.
+/// The greatest number of elements of an accessor without a buffer view (zeros except for sparse values), since no
+/// file's size limits those.
 const MAX_ZEROS: usize = 1 << 24;
 
 /// Reads the accessors of one document.
 pub struct Accessors<'a> {
     document: &'a Document,
     buffers: &'a [Vec<u8>],
-    /// By buffer view: those that are compressed, and from one element to the next.
+    /// For each buffer view, its decompressed bytes and their stride, if it is compressed.
     decompressed: Vec<Option<(Decompressed, usize)>>,
-    /// By mesh and primitive: what Draco compressed.
-    pub unpacked: HashMap<[usize; 2], Unpacked>,
+    /// By mesh and primitive, the data that Draco compressed.
+    pub unpacked: HashMap<[usize; 2], DecompressedPrimitive>,
     pub budget: &'a Budget,
 }
 
-/// What an element's bytes stand for.
+/// Converts the bytes of an element into its value.
 type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + 'a>;
 
-/// The values of an accessor. What lies in a buffer as it is stays there, and is decoded when it is asked for.
+/// The values of an accessor. Values that lie in a buffer stay there, and are decoded when they are read.
 pub struct List<'a, T: Clone> {
     elements: Elements<'a>,
     decode: Decode<'a, T>,
-    /// In place of all that: what is sparse, or nowhere, or was decoded before.
+    /// Values that were decoded before: those of a sparse accessor, or without a buffer view, or of compressed data.
     decoded: Option<Cow<'a, [T]>>,
     zero: T,
 }
 
 impl<'a, T: Copy + 'a> List<'a, T> {
-    /// Of what was decoded before.
+    /// Makes a list of values that were decoded before.
     pub fn of(values: &'a [T], zero: T) -> Self {
         let decode: Decode<T> = Box::new(move |_| zero);
         Self { elements: Elements::default(), decode, decoded: Some(Cow::Borrowed(values)), zero }
     }
 
-    /// Zero beyond its end.
+    /// Returns element `i`, or zero beyond the end.
     pub fn get(&self, i: usize) -> T {
         match &self.decoded {
             Some(values) => values.get(i).copied().unwrap_or(self.zero),
@@ -60,7 +61,7 @@ impl<'a, T: Copy + 'a> List<'a, T> {
     }
 }
 
-/// Elements in a buffer view: `stride` bytes from one to the next, and all there.
+/// Elements in a buffer view, `stride` bytes apart, whose range has been checked.
 #[derive(Clone, Copy, Default)]
 struct Elements<'a> {
     bytes: &'a [u8],
@@ -80,49 +81,52 @@ impl<'a> Elements<'a> {
 }
 
 impl<'a> Accessors<'a> {
-    /// Decompresses what is compressed.
+    /// Decompresses the compressed buffer views.
     ///
     /// # Errors
-    /// [`Problem::Document`] when something can't be.
+    /// [`GltfError::Document`] for a view that can't be decompressed.
     pub fn new(
         document: &'a Document,
         extensions: &Extensions,
         buffers: &'a [Vec<u8>],
         budget: &'a Budget,
-    ) -> Result<Self, Problem> {
+    ) -> Result<Self, GltfError> {
         let mut accessors = Self { document, buffers, decompressed: Vec::new(), unpacked: HashMap::new(), budget };
         for (view, compressed) in document.views().zip(&extensions.compressed) {
             let made = compressed.as_ref().map(|compressed| accessors.decompress(&view, compressed)).transpose();
             accessors.decompressed.push(made.map_err(|reason| {
                 let pointer = format!("/bufferViews/{}/extensions/{}", view.index(), super::schema::MESHOPT);
-                Problem::Document { pointer, reason }
+                GltfError::Document { pointer, reason }
             })?);
         }
         Ok(accessors)
     }
 
-    fn decompress(&self, view: &buffer::View, compressed: &Compressed) -> Result<(Decompressed, usize), String> {
-        let Compressed { buffer, offset, length, stride, count, mode, .. } = *compressed;
+    fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
+        let MeshoptExtension { buffer, offset, length, stride, count, mode, .. } = *compressed;
         let made = decompress(compressed, self.range(buffer, offset, length)?, self.budget)?;
         let (said, has) = (view.length(), made.bytes().len());
         if said != has {
-            return Err(format!("has {count} elements of {stride} bytes, {has}, and its view's byteLength is {said}"));
+            return Err(format!(
+                "has {count} elements of {stride} bytes, which are {has} bytes, but its view's byteLength is {said}"
+            ));
         }
-        // Indices lie tight; attributes as the view says, and if it doesn't as they were compressed.
-        let stride = if mode == Mode::Attributes { stride } else { 0 };
+        // Indices are packed tightly. Attributes have the view's stride, or else that of the compressed data.
+        let stride = if mode == MeshoptMode::Attributes { stride } else { 0 };
         Ok((made, stride))
     }
 
-    /// Lists of N numbers, normalised integers as -1 to 1 or 0 to 1. `role` says what for, in messages.
+    /// Reads elements of N numbers; normalised integers become -1 to 1 or 0 to 1. `role` says what they are for, in
+    /// messages.
     ///
     /// # Errors
-    /// [`Problem::Accessor`] when there aren't N numbers an element, or the data isn't where it should be.
-    pub fn numbers<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<Vec<[f32; N]>, Problem> {
+    /// [`GltfError::Accessor`] if elements don't have N numbers, or if the data isn't in its buffer.
+    pub fn numbers<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<Vec<[f32; N]>, GltfError> {
         let list = self.list::<N>(accessor, role)?;
         if let Some(values) = list.decoded {
             return Ok(values.into_owned());
         }
-        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         self.budget
             .borrow((list.elements.count * size_of::<[f32; N]>()) as u64)
             .map_err(|refused| fail(refused.into()))?;
@@ -131,14 +135,17 @@ impl<'a> Accessors<'a> {
         Ok(values)
     }
 
-    /// The same, decoded as they are asked for.
+    /// Returns a list of the same elements as [`numbers`](Self::numbers), which are decoded when they are read.
     ///
     /// # Errors
-    /// As [`Self::numbers`].
-    pub fn list<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<List<'_, [f32; N]>, Problem> {
-        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+    /// The same as [`numbers`](Self::numbers)'.
+    pub fn list<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<List<'_, [f32; N]>, GltfError> {
+        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         if accessor.dimensions().multiplicity() != N {
-            return Err(fail(format!("has {:?} elements where {N} numbers are needed", accessor.dimensions())));
+            return Err(fail(format!(
+                "has {:?} elements, but {N} numbers an element are needed",
+                accessor.dimensions()
+            )));
         }
         let (kind, normalized) = (accessor.data_type(), accessor.normalized());
         let decode = move |bytes: &[u8]| {
@@ -151,32 +158,34 @@ impl<'a> Accessors<'a> {
         self.read(accessor, [0.0; N], Box::new(decode)).map_err(fail)
     }
 
-    /// Single unsigned integers, exactly.
+    /// Returns a list of single unsigned integers.
     ///
     /// # Errors
-    /// [`Problem::Accessor`] when it holds anything else, or the data isn't where it should be.
-    pub fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, Problem> {
-        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+    /// [`GltfError::Accessor`] if the elements are anything else, or if the data isn't in its buffer.
+    pub fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, GltfError> {
+        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         let unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
         if accessor.dimensions() != Dimensions::Scalar || !unsigned {
-            let kind = (accessor.dimensions(), accessor.data_type());
-            return Err(fail(format!("holds {kind:?} where unsigned integers are needed")));
+            let (dimensions, kind) = (accessor.dimensions(), accessor.data_type());
+            return Err(fail(format!(
+                "has {dimensions:?} elements of {kind:?}, but single unsigned integers are needed"
+            )));
         }
         self.read(accessor, 0, Box::new(unsigned_integer)).map_err(fail)
     }
 
-    /// Of all buffers, and of what was decompressed.
+    /// Returns the size of all buffers and decompressed data, in bytes.
     pub fn buffer_bytes(&self) -> u64 {
         let decompressed =
             self.decompressed.iter().flatten().map(|(decompressed, _)| decompressed.bytes().len() as u64);
-        let unpacked = self.unpacked.values().map(Unpacked::bytes);
+        let unpacked = self.unpacked.values().map(DecompressedPrimitive::bytes);
         self.buffers.iter().map(|buffer| buffer.len() as u64).chain(decompressed).chain(unpacked).sum()
     }
 
-    /// The bytes of a buffer view.
+    /// Returns the bytes of a buffer view.
     ///
     /// # Errors
-    /// A clause that names the view when its buffer is too short.
+    /// A clause that names the view if its buffer is too short.
     pub fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
         let i = view.index();
         if let Some(Some((decompressed, _))) = self.decompressed.get(i) {
@@ -187,31 +196,32 @@ impl<'a> Accessors<'a> {
     }
 
     /// # Errors
-    /// A clause when the buffer is too short.
+    /// A clause if the buffer is too short.
     fn range(&self, buffer: usize, offset: u64, length: u64) -> Result<&'a [u8], String> {
         let bytes = self.buffers.get(buffer).map_or(&[][..], Vec::as_slice);
         let start = usize::try_from(offset).ok();
         let end = start.zip(usize::try_from(length).ok()).and_then(|(start, length)| start.checked_add(length));
         let range = start.zip(end).and_then(|(start, end)| bytes.get(start..end));
         range.ok_or_else(|| {
-            format!("takes {length} bytes from byte {offset} of /buffers/{buffer}, which has {}", bytes.len())
+            format!("takes {length} bytes from byte {offset} of /buffers/{buffer}, which has {} bytes", bytes.len())
         })
     }
 
-    /// Whether an accessor's elements are where it says, and so many; the rest is seen when they are read.
+    /// Checks that the accessor's elements lie within its buffer view. Types and sparse values are checked when they
+    /// are read.
     ///
     /// # Errors
-    /// As [`Self::numbers`].
-    pub fn check(&self, accessor: &Accessor, role: &str) -> Result<(), Problem> {
+    /// The same as [`Self::numbers`]'.
+    pub fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
         let found = match accessor.view() {
             Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
             None => zeros(accessor.count()),
         };
-        let fail = |reason| Problem::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
+        let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         found.map_err(fail)
     }
 
-    /// The view with this index, if there is one.
+    /// Returns the view with this index, if there is one.
     pub fn view(&self, index: usize) -> Option<buffer::View<'a>> {
         self.document.views().nth(index)
     }
@@ -238,7 +248,7 @@ impl<'a> Accessors<'a> {
         Ok(List { elements: Elements::default(), decode, decoded: Some(Cow::Owned(values)), zero })
     }
 
-    /// Puts an accessor's sparse values in their places.
+    /// Replaces elements by an accessor's sparse values.
     fn replace<T>(
         &self,
         values: &mut [T],
@@ -257,12 +267,13 @@ impl<'a> Accessors<'a> {
         let count = values.len();
         for (place, bytes) in places.iter().map(unsigned_integer).zip(new.iter()) {
             let value = values.get_mut(place as usize);
-            *value.ok_or_else(|| format!("replaces element {place} of {count}, in /sparse/indices"))? = decode(bytes);
+            *value.ok_or_else(|| format!("replaces element {place} by /sparse/indices, but has {count} elements"))? =
+                decode(bytes);
         }
         Ok(())
     }
 
-    /// `count` elements of `size` bytes in a view, from a byte offset on.
+    /// Returns `count` elements of `size` bytes in a view, from a byte offset on.
     fn elements(&self, view: &buffer::View, offset: usize, size: usize, count: usize) -> Result<Elements<'_>, String> {
         let bytes = self.view_bytes(view)?;
         let compressed = self.decompressed.get(view.index()).and_then(Option::as_ref);
@@ -270,7 +281,7 @@ impl<'a> Accessors<'a> {
         let stride = stride.unwrap_or(size);
         if stride < size {
             let i = view.index();
-            return Err(format!("has elements of {size} bytes, and /bufferViews/{i} has them {stride} bytes apart"));
+            return Err(format!("has elements of {size} bytes, but in /bufferViews/{i} they are {stride} bytes apart"));
         }
         let needed = match count {
             0 => Some(0),
@@ -288,11 +299,11 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Whether so many elements may be zeros.
+/// Checks the number of elements of an accessor without data.
 fn zeros(count: usize) -> Result<(), String> {
     match count {
         0..=MAX_ZEROS => Ok(()),
-        _ => Err(format!("has {count} elements but no data, and {MAX_ZEROS} such are read at most")),
+        _ => Err(format!("has {count} elements without data, but at most {MAX_ZEROS} such elements are read")),
     }
 }
 
@@ -303,7 +314,7 @@ fn unsigned_integer(bytes: &[u8]) -> u32 {
     bytes.iter().rev().fold(0, |value, &byte| (value << 8) | u32::from(byte))
 }
 
-/// One number, as the specification's section 3.6.2.2 (data types) and 3.11 (normalised integers) say.
+/// Decodes one number by the specification's sections 3.6.2.2 (data types) and 3.11 (normalised integers).
 pub fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
     let bits = unsigned_integer(bytes);
     let (value, one) = match kind {

@@ -1,6 +1,7 @@
-//! Animations: clips whose channels move nodes of the document. What is wrong with one is said, and it is left out.
+//! Reads animations as clips whose channels move nodes of the document. An animation with an error is left out, with a
+//! warning.
 //!
-//! They are read here and not by the `gltf` crate, for which one bad index makes the whole document bad.
+//! They aren't read by the `gltf` crate, for which one wrong index invalidates the whole document.
 
 use std::collections::HashMap;
 
@@ -8,11 +9,11 @@ use ::gltf::Document;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Accessors, Problem, nodes};
+use super::{Accessors, GltfError, nodes};
 use crate::mesh::MemoryAccount;
 use crate::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
 
-/// Numbers that all clips together may have: beyond any model, within any memory.
+/// The greatest number of numbers in all clips together: more than any model has, and little enough for any memory.
 const MAX_NUMBERS: usize = 1 << 26;
 
 #[derive(Deserialize)]
@@ -26,11 +27,11 @@ struct Animation {
 #[derive(Deserialize)]
 struct ChannelEntry {
     sampler: usize,
-    target: Target,
+    target: ChannelTarget,
 }
 
 #[derive(Deserialize)]
-struct Target {
+struct ChannelTarget {
     node: Option<usize>,
     path: String,
 }
@@ -42,7 +43,8 @@ struct Sampler {
     interpolation: Option<String>,
 }
 
-/// The document's clips; their channels' targets are nodes of the document. Those left out are among the warnings.
+/// Reads the document's clips, whose channels have nodes of the document as targets. Adds a warning for each that is
+/// left out.
 pub fn read(
     animations: Vec<Value>,
     document: &Document,
@@ -62,7 +64,7 @@ pub fn read(
     clips
 }
 
-/// An animation's name, if it has one, on one line.
+/// Returns an animation's name on one line, if it has one.
 fn own_name(animation: &Value) -> Option<String> {
     let name = animation.get("name")?.as_str()?.replace(char::is_control, " ");
     (!name.trim().is_empty()).then_some(name)
@@ -72,7 +74,7 @@ struct Reader<'a> {
     document: &'a Document,
     accessors: &'a Accessors<'a>,
     numbers_left: usize,
-    /// By node.
+    /// The number of morph targets of each node.
     target_counts: HashMap<usize, usize>,
 }
 
@@ -91,13 +93,13 @@ impl Reader<'_> {
         Ok(Clip { name, duration: last.into(), channels })
     }
 
-    /// None where an extension says what is animated.
+    /// Reads a channel. Returns none if an extension defines what it animates.
     fn channel(&mut self, entry: &ChannelEntry, samplers: &[Sampler]) -> Result<Option<Channel>, String> {
         let Some(index) = entry.target.node else { return Ok(None) };
         let node = self.document.nodes().nth(index);
         let node = node.ok_or_else(|| {
             let count = self.document.nodes().len();
-            format!("moves node {index}, and /nodes has {count}")
+            format!("moves node {index}, but /nodes has {count}")
         })?;
         let (property, width) = match entry.target.path.as_str() {
             "translation" => (Property::Translation, 3),
@@ -109,13 +111,14 @@ impl Reader<'_> {
             _ => return Ok(None),
         };
         if width == 0 {
-            return Err(format!("weighs morph targets of node {index}, which has none"));
+            return Err(format!("changes weights of morph targets of node {index}, which has none"));
         }
         if property != Property::Weights && nodes::placement(&node).is_none() {
-            return Err(format!("moves node {index}, which is placed by a matrix"));
+            return Err(format!("moves node {index}, whose transform is a matrix"));
         }
         let sampler = samplers.get(entry.sampler);
-        let sampler = sampler.ok_or_else(|| format!("uses sampler {} of {}", entry.sampler, samplers.len()))?;
+        let sampler = sampler
+            .ok_or_else(|| format!("uses sampler {}, but the animation has {}", entry.sampler, samplers.len()))?;
         let keys = self.keys(sampler, property, width)?;
         Ok(Some(Channel { target: index as u32, property, keys }))
     }
@@ -125,7 +128,7 @@ impl Reader<'_> {
             None | Some("LINEAR") => Interpolation::Linear,
             Some("STEP") => Interpolation::Step,
             Some("CUBICSPLINE") => Interpolation::CubicSpline,
-            Some(other) => return Err(format!("has an interpolation {other:?}, which isn't known")),
+            Some(other) => return Err(format!("has the unknown interpolation {other:?}")),
         };
         let times = self.numbers::<1>(sampler.input, "times")?;
         let values = match property {
@@ -135,37 +138,38 @@ impl Reader<'_> {
         };
         let later = |pair: &[f32]| pair[0] < pair[1];
         if times.first().is_none_or(|first| *first < 0.0) || !times.windows(2).all(later) {
-            return Err("has times that don't rise from 0 or later".to_owned());
+            return Err("has times that are negative or don't increase".to_owned());
         }
         let elements = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        // Neither is more than the memory that holds it.
+        // Neither product overflows, since both lists are in memory.
         if values.len() != times.len() * elements * width {
-            return Err(format!("has {} numbers for {} keys of {}", values.len(), times.len(), elements * width));
+            return Err(format!("has {} numbers for {} key frames of {}", values.len(), times.len(), elements * width));
         }
         Ok(Keys { times, values, width, interpolation })
     }
 
-    /// All numbers of an accessor, which are finite.
+    /// Returns all numbers of an accessor; they are finite.
     fn numbers<const N: usize>(&mut self, index: usize, role: &str) -> Result<Vec<f32>, String> {
         let accessor = self.document.accessors().nth(index);
         let accessor = accessor.ok_or_else(|| {
             let count = self.document.accessors().len();
-            format!("names accessor {index}, and /accessors has {count}")
+            format!("names accessor {index}, but /accessors has {count}")
         })?;
         let left = accessor.count().checked_mul(N).and_then(|count| self.numbers_left.checked_sub(count));
-        self.numbers_left = left.ok_or_else(|| format!("takes the document beyond {MAX_NUMBERS} animated numbers"))?;
+        self.numbers_left =
+            left.ok_or_else(|| format!("brings the document above the limit of {MAX_NUMBERS} animated numbers"))?;
         let budget = self.accessors.budget;
         let borrowed = budget.borrowed();
         let numbers = self.accessors.numbers::<N>(&accessor, role);
         budget.give_back_to(borrowed);
         let numbers = numbers.map_err(|problem| match problem {
-            Problem::Accessor { accessor, reason, .. } => {
+            GltfError::Accessor { accessor, reason, .. } => {
                 format!("has {role} in /accessors/{accessor}, which {reason}")
             }
             problem => problem.to_string(),
         })?;
         let numbers = numbers.into_flattened();
-        // They stay as long as the mesh.
+        // They stay in memory as long as the mesh.
         let kept = budget.hold(size_of_val(&numbers[..]) as u64);
         kept.map_err(|reason| format!("has {role} in /accessors/{index}, which {reason}"))?;
         if numbers.iter().any(|number| !number.is_finite()) {

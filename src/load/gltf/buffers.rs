@@ -1,23 +1,23 @@
-//! The bytes of a document's buffers.
+//! Reads the bytes of a document's buffers.
 
 use ::gltf::Document;
 
-use super::Problem;
+use super::GltfError;
 use crate::load::uri::{self, Files};
 use crate::progress::Progress;
 
-/// All buffers, each cut to the length that the document gives it. `blob` is the binary chunk of a `.glb`. Those that are
-/// `fallback` are empty: what they are for is decompressed from others.
+/// Reads all buffers, and cuts each to the length in the document. `blob` is the binary chunk of a `.glb`. A buffer
+/// that is marked in `fallback` stays empty, since its data is decompressed from another buffer.
 ///
 /// # Errors
-/// [`Problem::Buffer`] for one that is missing or too short, and [`Problem::Cancelled`].
+/// [`GltfError::Buffer`] for a buffer that is missing or too short, and [`GltfError::Cancelled`].
 pub fn load(
     document: &Document,
     files: &Files,
     fallback: &[bool],
     mut blob: Option<Vec<u8>>,
     progress: &Progress,
-) -> Result<Vec<Vec<u8>>, Problem> {
+) -> Result<Vec<Vec<u8>>, GltfError> {
     let json = &document.as_json().buffers;
     let mut buffers = Vec::with_capacity(json.len());
     for (i, buffer) in json.iter().enumerate() {
@@ -33,11 +33,11 @@ pub fn load(
                 blob.take().ok_or_else(|| "the document has no binary chunk for it; export the model again".to_owned())
             }
         };
-        // It wasn't read to its end because nobody waits for it any more.
+        // A cancelled read isn't an error of the buffer.
         progress.check()?;
         buffers.push(bytes.and_then(|bytes| cut(bytes, length)).map_err(|reason| {
             let uri = buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
-            Problem::Buffer { buffer: i, uri, reason }
+            GltfError::Buffer { buffer: i, uri, reason }
         })?);
         progress.set(0.3 * (i + 1) as f32 / json.len() as f32);
     }
@@ -50,6 +50,6 @@ fn cut(mut bytes: Vec<u8>, length: u64) -> Result<Vec<u8>, String> {
             bytes.truncate(length);
             Ok(bytes)
         }
-        _ => Err(format!("it should have {length} bytes and has {}; export the model again", bytes.len())),
+        _ => Err(format!("it should have {length} bytes but has {}; export the model again", bytes.len())),
     }
 }

@@ -1,4 +1,4 @@
-//! From bytes to a document that the `gltf` crate can't stumble over.
+//! Parses a document so that the `gltf` crate accepts it.
 
 use ::gltf::Document;
 use ::gltf::json::Root;
@@ -6,7 +6,7 @@ use ::gltf::json::validation::Error as ValidationError;
 use serde_json::{Map, Value, json};
 
 use super::extensions::{self, Extensions};
-use super::{Problem, check, glb, json, schema};
+use super::{GltfError, glb, json, schema, schema_check};
 use crate::load::memory_budget::Budget;
 use crate::mesh::MemoryAccount;
 use crate::progress::Progress;
@@ -16,22 +16,22 @@ pub struct Parsed {
     pub document: Document,
     pub blob: Option<Vec<u8>>,
     pub extensions: Extensions,
-    /// As the document has them, not checked: see [`super::animations`].
+    /// The document's animations as JSON, not yet checked (see [`super::animations`]).
     pub animations: Vec<Value>,
     pub warnings: Vec<String>,
 }
 
-/// Parses and validates a `.gltf` or `.glb`; which one, its first bytes tell.
+/// Parses and validates a `.gltf` or `.glb`; the first bytes tell which.
 ///
 /// # Errors
-/// [`Problem::NotGltf`], [`Problem::Extension`], [`Problem::Document`], and [`Problem::Cancelled`].
-pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, Problem> {
+/// [`GltfError::NotGltf`], [`GltfError::Extension`], [`GltfError::Document`], and [`GltfError::Cancelled`].
+pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, GltfError> {
     let mut blob = None;
     let mut value = if glb::is_glb(&bytes) {
         let parts = glb::parts(&bytes)?;
         let value = json::parse(&bytes[parts.json], budget, progress)?;
         if let Some(bin) = parts.bin {
-            // In place: a copy would take the file's size once more.
+            // In place, since a copy would take the file's size once more.
             bytes.truncate(bin.end);
             bytes.drain(..bin.start);
             blob = Some(bytes);
@@ -42,16 +42,16 @@ pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result
         drop(bytes);
         value
     };
-    let Value::Object(root) = &mut value else { return Err(not_gltf("it is no JSON object")) };
+    let Value::Object(root) = &mut value else { return Err(not_gltf("its JSON isn't an object")) };
     check_version(root)?;
     extensions::check_required(root)?;
     let requires_draco = extensions::requires(root, schema::DRACO);
-    // Set aside: nothing in them can be the reason why a model doesn't load.
+    // Read separately, so that an error in an animation doesn't keep the model from loading.
     let animations = match root.remove("animations") {
         Some(Value::Array(animations)) => animations,
         _ => Vec::new(),
     };
-    check::check(root, schema::DOCUMENT)?;
+    schema_check::check(root, schema::DOCUMENT)?;
     let extensions = Extensions::of(root, requires_draco);
     complete(root);
     complete_bare(root, budget)?;
@@ -62,26 +62,27 @@ pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result
     Ok(Parsed { document, blob, extensions, animations, warnings })
 }
 
-fn not_gltf(reason: impl ToString) -> Problem {
-    Problem::NotGltf { reason: reason.to_string() }
+fn not_gltf(reason: impl ToString) -> GltfError {
+    GltfError::NotGltf { reason: reason.to_string() }
 }
 
-/// What the crate's own validation found that ours didn't: the first of it, since there may be as many faults as members.
-fn first_fault(error: ::gltf::Error) -> Problem {
+/// Returns the first error of the `gltf` crate's own validation, after ours found none. There may be as many errors as
+/// members.
+fn first_fault(error: ::gltf::Error) -> GltfError {
     let ::gltf::Error::Validation(faults) = error else { return not_gltf(error) };
     let Some((path, fault)) = faults.first() else { return not_gltf("it is invalid") };
     let pointer = format!("/{}", path.as_str().replace(['.', '['], "/").replace([']', '"'], ""));
     let reason = match fault {
-        ValidationError::IndexOutOfBounds => "names something that isn't there",
+        ValidationError::IndexOutOfBounds => "is an index of something that doesn't exist",
         ValidationError::Invalid => "has a value that isn't allowed",
         ValidationError::Missing => "is missing",
-        ValidationError::Oversize => "is more than any memory",
+        ValidationError::Oversize => "is too large for any memory",
         ValidationError::Unsupported => "isn't supported",
     };
-    Problem::Document { pointer, reason: reason.to_owned() }
+    GltfError::Document { pointer, reason: reason.to_owned() }
 }
 
-fn check_version(root: &Map<String, Value>) -> Result<(), Problem> {
+fn check_version(root: &Map<String, Value>) -> Result<(), GltfError> {
     let version = root.get("asset").and_then(|asset| asset.get("version")).and_then(Value::as_str);
     match version {
         Some(version) if version.starts_with("2.") => Ok(()),
@@ -90,15 +91,15 @@ fn check_version(root: &Map<String, Value>) -> Result<(), Problem> {
     }
 }
 
-/// The objects in one of the document's lists.
+/// Returns the objects in one of the document's lists.
 pub fn objects<'a>(root: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Map<String, Value>> {
     root.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
 }
 
-/// Adds what the crate's validation takes for granted.
+/// Adds members that the crate's validation requires.
 fn complete(root: &mut Map<String, Value>) {
     for scene in objects(root, "scenes") {
-        // A scene may be empty, but the crate wants to be told.
+        // A scene may be empty, but the crate requires the member.
         scene.entry("nodes").or_insert_with(|| json!([]));
     }
     let mut positions = Vec::new();
@@ -112,20 +113,20 @@ fn complete(root: &mut Map<String, Value>) {
     let mut accessors: Vec<_> = objects(root, "accessors").collect();
     for index in positions {
         if let Some(accessor) = usize::try_from(index).ok().and_then(|index| accessors.get_mut(index)) {
-            // Required by the specification, forgotten by some exporters, and not used here.
+            // The specification requires these, but some exporters leave them out, and they aren't used here.
             accessor.insert("min".to_owned(), json!([0.0, 0.0, 0.0]));
             accessor.insert("max".to_owned(), json!([0.0, 0.0, 0.0]));
         }
     }
 }
 
-/// Accessors without a buffer view are zeros (glTF 2.0, section 3.6.2), or what Draco compressed; but the crate wants one, or
-/// sparse values: they get none of those.
-fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), Problem> {
+/// Adds sparse values, none of them, to accessors without a buffer view: such an accessor is all zeros (glTF 2.0,
+/// section 3.6.2) or compressed by Draco, but the crate requires a view or sparse values.
+fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), GltfError> {
     let is_bare =
         |accessor: &&mut Map<String, Value>| ["bufferView", "sparse"].iter().all(|name| !accessor.contains_key(*name));
     let count = objects(root, "accessors").filter(is_bare).count();
-    let too_large = |reason| Problem::Document { pointer: "its JSON".to_owned(), reason };
+    let too_large = |reason| GltfError::Document { pointer: "its JSON".to_owned(), reason };
     budget.borrow(count as u64 * 3 * json::PER_OBJECT).map_err(|refused| too_large(refused.into()))?;
     for accessor in objects(root, "accessors").filter(is_bare) {
         let (indices, values) = (json!({ "bufferView": 0, "componentType": 5121 }), json!({ "bufferView": 0 }));
@@ -134,8 +135,8 @@ fn complete_bare(root: &mut Map<String, Value>, budget: &Budget) -> Result<(), P
     Ok(())
 }
 
-/// A texture without a source (its image is in a format that an extension adds) stops the crate. Materials do without
-/// it, with a warning, and the entry gets some source so that the others keep their indices.
+/// Gives a source to each texture without one (the image is in a format of an extension), since the crate requires it.
+/// Materials lose such a texture, with a warning; the entry stays, so that the other textures keep their indices.
 fn complete_textures(root: &mut Map<String, Value>) -> Vec<String> {
     let mut without = Vec::new();
     for (i, texture) in objects(root, "textures").enumerate() {

@@ -1,7 +1,8 @@
-//! Primitives that Draco compressed (`KHR_draco_mesh_compression`), decompressed by `draco-core` before anything is read of them.
+//! Decompresses primitives that are compressed with Draco (`KHR_draco_mesh_compression`), with the crate `draco-core`,
+//! before anything else reads them.
 //!
-//! That library lets a caller say how many points and faces a stream may become. What it takes meanwhile it doesn't let one
-//! say, so [`Header`] reads as much of a stream as tells, and nothing is decoded that the budget has no room for.
+//! The crate can limit the number of points and faces, but not the memory that it takes meanwhile. So [`Header`] reads
+//! the start of the data to estimate it, and nothing is decoded that the budget has no room for.
 //!
 //! Source: Khronos, `KHR_draco_mesh_compression`,
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_draco_mesh_compression>.
@@ -16,21 +17,21 @@ use ::gltf::{Document, Primitive, Semantic};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
 use super::accessor::component;
-use super::extensions::Packed;
+use super::decompressed_primitive::{Attribute, DecompressedPrimitive};
+use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::DRACO;
-use super::unpacked::{Attribute, Unpacked};
-use super::{Accessors, Problem};
+use super::{Accessors, GltfError};
 use crate::mesh::MemoryAccount;
 use crate::progress::Progress;
 
 use header::Header;
 
-/// Why something isn't decompressed, as a clause.
+/// Why a primitive can't be decompressed, as a clause.
 enum DecodeError {
-    /// It isn't what it should be.
+    /// The data is wrong.
     Wrong(String),
-    /// There is no room for it.
+    /// It would take too much memory.
     TooMuch(String),
 }
 
@@ -40,17 +41,18 @@ impl From<String> for DecodeError {
     }
 }
 
-/// Decompresses what is shown, by mesh and primitive.
+/// Decompresses the primitives that are shown, by mesh and primitive.
 ///
 /// # Errors
-/// [`Problem::Document`] and [`Problem::Packed`] for the first that can't be, and [`Problem::Cancelled`].
+/// [`GltfError::Document`] or [`GltfError::Draco`] for the first primitive that can't be decompressed, and
+/// [`GltfError::Cancelled`].
 pub fn unpack(
     accessors: &Accessors,
     document: &Document,
     placed: &Placed,
-    packed: &[Vec<Option<Packed>>],
+    packed: &[Vec<Option<DracoExtension>>],
     progress: &Progress,
-) -> Result<HashMap<[usize; 2], Unpacked>, Problem> {
+) -> Result<HashMap<[usize; 2], DecompressedPrimitive>, GltfError> {
     let mut unpacked = HashMap::new();
     let shown = placed.shown.iter().filter_map(|&node| document.nodes().nth(node)?.mesh());
     for (mesh, primitive) in shown.flat_map(|mesh| mesh.primitives().map(move |primitive| (mesh.index(), primitive))) {
@@ -63,23 +65,23 @@ pub fn unpack(
         progress.check()?;
         let pointer = || format!("/meshes/{mesh}/primitives/{}/extensions/{DRACO}", place[1]);
         let made = Stream { accessors, primitive: &primitive, packed }.unpack().map_err(|fault| match fault {
-            DecodeError::Wrong(reason) => Problem::Document { pointer: pointer(), reason },
-            DecodeError::TooMuch(reason) => Problem::Packed { pointer: pointer(), reason },
+            DecodeError::Wrong(reason) => GltfError::Document { pointer: pointer(), reason },
+            DecodeError::TooMuch(reason) => GltfError::Draco { pointer: pointer(), reason },
         })?;
         unpacked.insert(place, made);
     }
     Ok(unpacked)
 }
 
-/// One primitive's data, compressed.
+/// The compressed data of one primitive.
 struct Stream<'a> {
     accessors: &'a Accessors<'a>,
     primitive: &'a Primitive<'a>,
-    packed: &'a Packed,
+    packed: &'a DracoExtension,
 }
 
 impl Stream<'_> {
-    fn unpack(&self) -> Result<Unpacked, DecodeError> {
+    fn unpack(&self) -> Result<DecompressedPrimitive, DecodeError> {
         let [vertices, indices] = self.counts()?;
         let view = self.accessors.view(self.packed.view).ok_or_else(|| "has no buffer view".to_owned())?;
         let bytes = self.accessors.view_bytes(&view)?;
@@ -87,7 +89,7 @@ impl Stream<'_> {
         header.check(vertices, indices)?;
         let attributes = self.attributes()?;
         let kept = attributes.iter().map(|(_, accessor)| 4 * width(accessor) as u64).sum::<u64>();
-        // One that isn't read has four numbers at most.
+        // An attribute that isn't read has at most four numbers.
         let passed_over = 16 * (self.packed.ids.len() - attributes.len() + self.packed.others) as u64;
         let most = (kept + passed_over).saturating_mul(vertices);
         let (budget, passing) = (self.accessors.budget, self.accessors.budget.borrowed());
@@ -98,8 +100,8 @@ impl Stream<'_> {
         let mut buffer = DecoderBuffer::new(bytes).with_limits(limits.with_max_decoded_bytes(most));
         let mut mesh = Mesh::new();
         MeshDecoder::new().decode(&mut buffer, &mut mesh).map_err(|error| match error.kind() {
-            ErrorKind::LimitExceeded => format!("becomes more than {vertices} vertices with the attributes it names"),
-            _ => format!("can't be decompressed: its {} bytes aren't whole Draco data", bytes.len()),
+            ErrorKind::LimitExceeded => format!("decompresses to more than {vertices} vertices"),
+            _ => format!("can't be decompressed: its {} bytes aren't complete Draco data", bytes.len()),
         })?;
         let unpacked = taken(&mesh, &attributes, self.packed, [vertices as usize, indices as usize / 3])?;
         drop(mesh);
@@ -107,47 +109,48 @@ impl Stream<'_> {
         Ok(unpacked)
     }
 
-    /// How many vertices and indices the accessors say.
+    /// Returns the numbers of vertices and indices in the accessors.
     fn counts(&self) -> Result<[u64; 2], String> {
         if self.primitive.mode() != Mode::Triangles {
-            return Err("is of a strip or a fan, and only lists of triangles are read from there".to_owned());
+            return Err("belongs to a strip or a fan, but only compressed lists of triangles are read".to_owned());
         }
-        let indices = self.primitive.indices().ok_or("is of a primitive without indices, which it always has")?;
-        let positions = self.primitive.get(&Semantic::Positions).ok_or("is of a primitive without positions")?;
+        let indices = self.primitive.indices().ok_or("belongs to a primitive without indices, which Draco needs")?;
+        let positions = self.primitive.get(&Semantic::Positions).ok_or("belongs to a primitive without positions")?;
         Ok([positions.count() as u64, indices.count() as u64])
     }
 
-    /// Those that are read from there.
+    /// Returns the attributes that are read from the compressed data.
     fn attributes(&self) -> Result<Vec<(String, Accessor<'_>)>, String> {
         let named = self.primitive.attributes().map(|(semantic, accessor)| (semantic.to_string(), accessor));
         let found: Vec<_> = named.filter(|(name, _)| self.packed.ids.contains_key(name)).collect();
         if !found.iter().any(|(name, _)| name == "POSITION") {
             return Err("names no POSITION among its attributes".to_owned());
         }
-        // Without any, it stands for what the crate misses (see `document`).
+        // An accessor with zero sparse values isn't sparse (see `document`).
         match found.iter().find(|(_, accessor)| accessor.sparse().is_some_and(|sparse| sparse.count() > 0)) {
-            Some((name, _)) => Err(format!("holds {name}, whose accessor is sparse")),
+            Some((name, _)) => Err(format!("holds {name}, but its accessor is sparse")),
             None => Ok(found),
         }
     }
 }
 
-/// Numbers of an element.
+/// Returns how many numbers an element has.
 fn width(accessor: &Accessor) -> usize {
     accessor.dimensions().multiplicity()
 }
 
-/// What is read of a mesh, which must be of so many vertices and triangles.
+/// Copies the indices and the attributes that are read from a decoded mesh, which must have these numbers of vertices
+/// and triangles.
 fn taken(
     mesh: &Mesh,
     attributes: &[(String, Accessor)],
-    packed: &Packed,
+    packed: &DracoExtension,
     [vertices, triangles]: [usize; 2],
-) -> Result<Unpacked, String> {
+) -> Result<DecompressedPrimitive, String> {
     if [mesh.num_points(), mesh.num_faces()] != [vertices, triangles] {
         let (points, faces) = (mesh.num_points(), mesh.num_faces());
         return Err(format!(
-            "holds {points} vertices and {faces} triangles, and its accessors say {vertices} and {triangles}"
+            "holds {points} vertices and {faces} triangles, but its accessors have {vertices} and {triangles}"
         ));
     }
     let attribute = |(name, accessor): &(String, Accessor)| {
@@ -156,17 +159,17 @@ fn taken(
         let from = from.ok_or_else(|| format!("says that {name} is attribute {id}, which its data doesn't have"))?;
         Ok(Attribute { name: name.clone(), width: width(accessor), values: values(name, from, accessor, vertices)? })
     };
-    Ok(Unpacked {
+    Ok(DecompressedPrimitive {
         indices: mesh.faces().as_flattened().iter().map(|point| point.0).collect(),
         attributes: attributes.iter().map(attribute).collect::<Result<_, String>>()?,
     })
 }
 
-/// An attribute's numbers, one vertex after another, as its accessor says they are meant.
+/// Converts an attribute's numbers, vertex by vertex, to what its accessor says that they mean.
 fn values(name: &str, from: &PointAttribute, accessor: &Accessor, vertices: usize) -> Result<Vec<f32>, String> {
     let (has, width) = (usize::from(from.num_components()), width(accessor));
     if has != width {
-        return Err(format!("holds {has} numbers a vertex for {name}, and its accessor says {width}"));
+        return Err(format!("holds {has} numbers a vertex for {name}, but its accessor has {width}"));
     }
     let (kind, normalized) = (accessor.data_type(), accessor.normalized());
     let own = match from.data_type() {
@@ -176,11 +179,12 @@ fn values(name: &str, from: &PointAttribute, accessor: &Accessor, vertices: usiz
         DataType::Uint16 => Component::U16,
         DataType::Uint32 => Component::U32,
         DataType::Float32 => Component::F32,
-        other => return Err(format!("holds {name} as {other:?}, which no accessor can say")),
+        other => return Err(format!("holds {name} as {other:?}, which no accessor supports")),
     };
-    // Whole numbers may be stored wider than the accessor has them, but what a normalised one means depends on its width.
+    // Integers may be stored with more bits than the accessor says; but the value of a normalised integer depends on
+    // its number of bits.
     if own != kind && (normalized || own == Component::F32) {
-        return Err(format!("holds {name} as {own:?}, and its accessor says {kind:?}"));
+        return Err(format!("holds {name} as {own:?}, but its accessor has {kind:?}"));
     }
     let (size, data) = (own.size(), from.buffer().data());
     let mut values = Vec::with_capacity(vertices * width);

@@ -1,15 +1,15 @@
-//! Extensions: which may be required, and what a document says in those that are read.
+//! Extensions: which ones a document may require, and the data of those that are read.
 
 use std::collections::BTreeMap;
 
 use glam::Vec2;
 use serde_json::{Map, Value};
 
-use super::Problem;
+use super::GltfError;
 use super::schema::{DRACO, MESHOPT, TRANSFORM, is_attribute};
 
-/// Extensions that a document may require: those that are read, and others that change neither shape nor colour map so
-/// that ignoring them still shows the right surface.
+/// Extensions that a document may require: those that are read, and others that can be ignored, since they change
+/// neither shape nor base colour.
 const KNOWN: [&str; 17] = [
     "KHR_mesh_quantization",
     DRACO,
@@ -30,86 +30,87 @@ const KNOWN: [&str; 17] = [
     "KHR_materials_volume",
 ];
 
-/// What a document says in extensions.
+/// The data of a document's extensions.
 #[derive(Debug, Default)]
 pub struct Extensions {
     /// One for each of the document's materials.
     pub transforms: Vec<Option<UvTransform>>,
     /// One for each buffer view.
-    pub compressed: Vec<Option<Compressed>>,
-    /// One for each buffer: whether it is only for those who can't decompress, and may have no data.
+    pub compressed: Vec<Option<MeshoptExtension>>,
+    /// For each buffer, whether it is only a fallback for programs that can't decompress, and may have no data.
     pub fallback: Vec<bool>,
     /// One for each primitive of each mesh.
-    pub packed: Vec<Vec<Option<Packed>>>,
+    pub packed: Vec<Vec<Option<DracoExtension>>>,
 }
 
-/// `KHR_texture_transform`, of a material's base colour texture.
+/// `KHR_texture_transform` of a material's base colour texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UvTransform {
     pub offset: Vec2,
-    /// Radians.
+    /// In radians.
     pub rotation: f32,
     pub scale: Vec2,
-    /// The n of TEXCOORD_n, in place of the texture's own.
+    /// The n of TEXCOORD_n, which replaces the texture's own.
     pub uv_set: Option<u32>,
 }
 
-/// `EXT_meshopt_compression`, of a buffer view.
+/// `EXT_meshopt_compression` of a buffer view.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Compressed {
+pub struct MeshoptExtension {
     pub buffer: usize,
     pub offset: u64,
     pub length: u64,
-    /// Bytes from one decompressed element to the next.
+    /// The number of bytes from one decompressed element to the next.
     pub stride: usize,
     pub count: u64,
-    pub mode: Mode,
-    pub filter: Filter,
+    pub mode: MeshoptMode,
+    pub filter: MeshoptFilter,
 }
 
-/// `KHR_draco_mesh_compression`, of a primitive that is to be read from there.
+/// `KHR_draco_mesh_compression` of a primitive that is read from the compressed data.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Packed {
+pub struct DracoExtension {
     pub view: usize,
-    /// By attributes' names: of those that are read.
+    /// By name, the ids of the attributes that are read.
     pub ids: BTreeMap<String, u32>,
-    /// How many others there are.
+    /// The number of other attributes.
     pub others: usize,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
+pub enum MeshoptMode {
     Attributes,
     Triangles,
     Indices,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Filter {
+pub enum MeshoptFilter {
     None,
     Octahedral,
     Quaternion,
     Exponential,
 }
 
+/// Checks that all required extensions are known.
 /// # Errors
-/// [`Problem::Extension`] for the first that is required and not known.
-pub fn check_required(root: &Map<String, Value>) -> Result<(), Problem> {
+/// [`GltfError::Extension`] for the first that isn't.
+pub fn check_required(root: &Map<String, Value>) -> Result<(), GltfError> {
     let required = root.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
     let names = required.enumerate().filter_map(|(i, name)| Some((i, name.as_str()?)));
     let Some((place, name)) = names.into_iter().find(|(_, name)| !KNOWN.contains(name)) else { return Ok(()) };
-    Err(Problem::Extension { place, name: crate::load::uri::shown(name) })
+    Err(GltfError::Extension { place, name: crate::load::uri::shown(name) })
 }
 
-/// Whether a document can't do without this extension.
+/// Returns whether a document requires this extension.
 pub fn requires(root: &Map<String, Value>, extension: &str) -> bool {
     let required = root.get("extensionsRequired").and_then(Value::as_array);
     required.is_some_and(|names| names.iter().any(|name| name == extension))
 }
 
 impl Extensions {
-    /// From a document that has been [checked](super::check). Where it doesn't require Draco, primitives that have their
-    /// data beside are read from there.
+    /// Reads the extensions of a document that has been [checked](super::schema_check). If the document doesn't require
+    /// Draco, primitives that also have uncompressed data are read from that.
     pub fn of(root: &Map<String, Value>, requires_draco: bool) -> Self {
         let list = |name: &str| root.get(name).and_then(Value::as_array).into_iter().flatten();
         let extension = |value: &'_ Value, name: &str| value.get("extensions")?.get(name).cloned();
@@ -122,14 +123,14 @@ impl Extensions {
         };
         let packed = |primitive: &Value| {
             let extension = extension(primitive, DRACO).filter(|_| requires_draco || is_beside(primitive).is_none())?;
-            Packed::of(&extension)
+            DracoExtension::of(&extension)
         };
         let primitives = |mesh: &Value| -> Vec<_> {
             mesh.get("primitives").and_then(Value::as_array).into_iter().flatten().map(packed).collect()
         };
         Self {
             transforms: list("materials").map(transform).collect(),
-            compressed: list("bufferViews").map(|view| Compressed::of(&extension(view, MESHOPT)?)).collect(),
+            compressed: list("bufferViews").map(|view| MeshoptExtension::of(&extension(view, MESHOPT)?)).collect(),
             fallback: list("buffers").map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
             packed: list("meshes").map(primitives).collect(),
         }
@@ -151,7 +152,7 @@ impl UvTransform {
         })
     }
 
-    /// Scales, then turns counter-clockwise as one sees the image, whose v points down, then moves.
+    /// Applies scale, then a counter-clockwise rotation as seen in the image, whose v points down, then the offset.
     pub fn apply(&self, uv: Vec2) -> Vec2 {
         let (sin, cos) = self.rotation.sin_cos();
         let Vec2 { x, y } = uv * self.scale;
@@ -159,7 +160,7 @@ impl UvTransform {
     }
 }
 
-impl Packed {
+impl DracoExtension {
     fn of(value: &Value) -> Option<Self> {
         let attributes = value.get("attributes")?.as_object()?;
         let id = |(name, id): (&String, &Value)| Some((name.clone(), u32::try_from(id.as_u64()?).ok()?));
@@ -170,7 +171,7 @@ impl Packed {
     }
 }
 
-impl Compressed {
+impl MeshoptExtension {
     fn of(value: &Value) -> Option<Self> {
         let number = |name: &str| value.get(name)?.as_u64();
         let word = |name: &str| value.get(name)?.as_str();
@@ -181,15 +182,15 @@ impl Compressed {
             stride: number("byteStride")? as usize,
             count: number("count")?,
             mode: match word("mode")? {
-                "TRIANGLES" => Mode::Triangles,
-                "INDICES" => Mode::Indices,
-                _ => Mode::Attributes,
+                "TRIANGLES" => MeshoptMode::Triangles,
+                "INDICES" => MeshoptMode::Indices,
+                _ => MeshoptMode::Attributes,
             },
             filter: match word("filter") {
-                Some("OCTAHEDRAL") => Filter::Octahedral,
-                Some("QUATERNION") => Filter::Quaternion,
-                Some("EXPONENTIAL") => Filter::Exponential,
-                _ => Filter::None,
+                Some("OCTAHEDRAL") => MeshoptFilter::Octahedral,
+                Some("QUATERNION") => MeshoptFilter::Quaternion,
+                Some("EXPONENTIAL") => MeshoptFilter::Exponential,
+                _ => MeshoptFilter::None,
             },
         })
     }
@@ -204,7 +205,7 @@ mod tests {
         let quarter = std::f32::consts::FRAC_PI_2;
         let (offset, scale) = (Vec2::new(0.5, 0.25), Vec2::new(2.0, 3.0));
         let transform = UvTransform { offset, rotation: quarter, scale, uv_set: None };
-        // One to the right goes two to the right, then two up, where v is less.
+        // One to the right becomes two to the right, and then two upwards, where v is less.
         assert!(transform.apply(Vec2::X).abs_diff_eq(Vec2::new(0.5, -1.75), 1e-6), "{}", transform.apply(Vec2::X));
         assert!(transform.apply(Vec2::Y).abs_diff_eq(Vec2::new(3.5, 0.25), 1e-6), "{}", transform.apply(Vec2::Y));
         let none = UvTransform { offset: Vec2::ZERO, rotation: 0.0, scale: Vec2::ONE, uv_set: None };

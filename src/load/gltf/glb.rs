@@ -1,16 +1,17 @@
-//! The container of a `.glb`: a header and chunks, whose lengths are held against the file before anything is taken.
+//! Splits a `.glb` file into its chunks, and checks their lengths against the file's.
 //!
 //! Source: glTF 2.0 specification, section 4.4.
 
 use std::ops::Range;
 
-use super::Problem;
+use super::GltfError;
 
-/// Lengths of the file's header and of a chunk's, in bytes.
+/// The length of the file's header, in bytes.
 const HEADER: usize = 12;
+/// The length of a chunk's header, in bytes.
 const CHUNK_HEADER: usize = 8;
 
-/// Where the parts of a `.glb` lie.
+/// The ranges of the parts of a `.glb`.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Parts {
     pub json: Range<usize>,
@@ -18,33 +19,33 @@ pub struct Parts {
     pub bin: Option<Range<usize>>,
 }
 
-/// Whether these bytes say that they are a `.glb`.
+/// Returns whether these bytes start like a `.glb`.
 pub fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(b"glTF")
 }
 
-/// Finds the chunks. Those of other kinds are passed over, and so is what stands after the length that the header says.
+/// Finds the chunks. Chunks of other kinds are ignored, and so are bytes after the length in the header.
 ///
 /// # Errors
-/// [`Problem::NotGltf`], with what is said and what is there.
-pub fn parts(bytes: &[u8]) -> Result<Parts, Problem> {
-    let fail = |reason: String| Problem::NotGltf { reason };
+/// [`GltfError::NotGltf`], with the lengths in the headers and in the file.
+pub fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
+    let fail = |reason: String| GltfError::NotGltf { reason };
     if bytes.len() < HEADER {
         return Err(fail(format!(
-            "the file ends within its header, which takes {HEADER} bytes of its {}",
+            "the file ends within its header, which takes {HEADER} bytes: it has {}",
             bytes.len()
         )));
     }
     let [version, length] = [4, 8].map(|at| number(bytes, at));
     if version != 2 {
-        return Err(fail(format!("its header says version {version}, and 2 is read")));
+        return Err(fail(format!("its header says that its version is {version}, but only version 2 is read")));
     }
     if length < HEADER || length > bytes.len() {
-        return Err(fail(format!("its header says {length} bytes, the file has {}", bytes.len())));
+        return Err(fail(format!("its header says that the file has {length} bytes, but it has {}", bytes.len())));
     }
     let mut chunks = Chunks { bytes: &bytes[..length], next: HEADER, count: 0 };
     let Some((b"JSON", json)) = chunks.next()? else {
-        return Err(fail("its first chunk holds no JSON".to_owned()));
+        return Err(fail("its first chunk isn't JSON".to_owned()));
     };
     while let Some((kind, range)) = chunks.next()? {
         if kind == b"BIN\0" {
@@ -54,7 +55,7 @@ pub fn parts(bytes: &[u8]) -> Result<Parts, Problem> {
     Ok(Parts { json, bin: None })
 }
 
-/// A chunk's kind, and where its data lies.
+/// A chunk's kind, and the range of its data.
 type Chunk<'a> = (&'a [u8; 4], Range<usize>);
 
 struct Chunks<'a> {
@@ -64,21 +65,23 @@ struct Chunks<'a> {
 }
 
 impl<'a> Chunks<'a> {
-    /// None at the end.
-    fn next(&mut self) -> Result<Option<Chunk<'a>>, Problem> {
+    /// Returns the next chunk; none at the end.
+    fn next(&mut self) -> Result<Option<Chunk<'a>>, GltfError> {
         let left = self.bytes.len() - self.next;
         if left == 0 {
             return Ok(None);
         }
-        let fail = |reason| Err(Problem::NotGltf { reason });
+        let fail = |reason| Err(GltfError::NotGltf { reason });
         let (i, at) = (self.count, self.next);
         let Some(kind) = self.bytes[at..].get(4..CHUNK_HEADER).and_then(<[u8]>::first_chunk) else {
-            return fail(format!("chunk {i} ends within its header, which takes {CHUNK_HEADER} bytes of {left}"));
+            return fail(format!(
+                "chunk {i} ends within its header, which takes {CHUNK_HEADER} bytes: {left} are left"
+            ));
         };
         let length = number(self.bytes, at);
         let left = left - CHUNK_HEADER;
         if length > left {
-            return fail(format!("chunk {i} says {length} bytes, and {left} are left"));
+            return fail(format!("chunk {i} says that it has {length} bytes, but {left} are left"));
         }
         let start = at + CHUNK_HEADER;
         self.count += 1;
@@ -87,7 +90,7 @@ impl<'a> Chunks<'a> {
     }
 }
 
-/// 32 bits, little-endian; 0 beyond the end.
+/// Reads a little-endian 32-bit number; 0 beyond the end.
 fn number(bytes: &[u8], at: usize) -> usize {
     bytes[at..].first_chunk().map_or(0, |bytes| u32::from_le_bytes(*bytes) as usize)
 }

@@ -1,55 +1,56 @@
-//! A document's JSON as a tree, after a look at how deep and how large it would be.
+//! Parses a document's JSON, after a check of how deep it is nested and how much memory it takes.
 
 use serde_json::Value;
 use serde_json::error::Category;
 
-use super::Problem;
+use super::GltfError;
 use crate::load::memory_budget::Budget;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 use crate::progress::{Cancelled, Progress};
 
-/// How deep lists and objects may lie in one another. The specification's own need 8; `extras` may have more.
+/// How deep lists and objects may be nested. The specification itself needs 8 levels; `extras` may need more.
 const MAX_DEPTH: usize = 100;
 
-/// Bytes that are looked at without asking whether anybody still waits.
+/// How many bytes are scanned between two checks for cancellation.
 const PIECE: usize = 1 << 24;
 
-/// What a text becomes, at most, in bytes of memory: a member or an element, an object's first node of members, and that
-/// object once more as what is read of it.
+/// Memory for a member or an element, in bytes.
 const PER_VALUE: u64 = 72;
+/// Memory for an object's first node of members, in bytes.
 pub const PER_OBJECT: u64 = 640;
+/// Memory for what is read from an object, in bytes.
 const PER_READ: u64 = 400;
 
 /// Parses a text.
 ///
 /// # Errors
-/// [`Problem::NotGltf`] for what is no JSON or nested too deep, [`Problem::Document`] for what is too large, and
-/// [`Problem::Cancelled`].
-pub fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, Problem> {
-    // A byte order mark is not JSON, but some editors write it.
+/// [`GltfError::NotGltf`] for text that isn't JSON or is nested too deep, [`GltfError::Document`] for text that is too
+/// large, and [`GltfError::Cancelled`].
+pub fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, GltfError> {
+    // JSON has no byte order mark, but some editors write one.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let shape = Shape::of(text, progress)?;
+    let shape = JsonSize::of(text, progress)?;
     if shape.depth > MAX_DEPTH {
-        let reason = format!("its JSON is nested {} deep, and {MAX_DEPTH} are read", shape.depth);
-        return Err(Problem::NotGltf { reason });
+        let reason = format!("its JSON is nested {} levels deep, but at most {MAX_DEPTH} levels are read", shape.depth);
+        return Err(GltfError::NotGltf { reason });
     }
     let too_large =
-        |refused: MemoryRefused| Problem::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
+        |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
     budget.borrow(shape.values * PER_VALUE + shape.objects * PER_OBJECT).map_err(too_large)?;
     budget.hold(shape.objects * PER_READ).map_err(too_large)?;
-    serde_json::from_slice(text).map_err(|error| Problem::NotGltf { reason: reason(&error) })
+    serde_json::from_slice(text).map_err(|error| GltfError::NotGltf { reason: reason(&error) })
 }
 
-/// What a text's brackets and commas say.
+/// The size of a document, counted from brackets and commas.
 #[derive(Debug, Default, PartialEq, Eq)]
-struct Shape {
+struct JsonSize {
     depth: usize,
-    /// Not fewer than there are members and elements.
+    /// At least as many as there are members and elements.
     values: u64,
     objects: u64,
 }
 
-impl Shape {
+impl JsonSize {
     fn of(text: &[u8], progress: &Progress) -> Result<Self, Cancelled> {
         let mut scan = Scan::default();
         for piece in text.chunks(PIECE) {
@@ -60,10 +61,10 @@ impl Shape {
     }
 }
 
-/// A text as far as it was looked at.
+/// The state of a scan through a text.
 #[derive(Default)]
 struct Scan {
-    shape: Shape,
+    shape: JsonSize,
     depth: usize,
     in_string: bool,
     escaped: bool,
@@ -91,7 +92,8 @@ impl Scan {
     }
 }
 
-/// Why a text is no JSON: a file cut short is the most common, and the least plainly said.
+/// Returns why a text isn't JSON. A file that was cut short is the most common case, and serde_json's message for it
+/// isn't clear.
 fn reason(error: &serde_json::Error) -> String {
     match error.classify() {
         Category::Eof => format!("its JSON ends too early, at line {}, column {}", error.line(), error.column()),
@@ -104,18 +106,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn brackets_in_strings_are_none() {
-        let of = |text: &[u8]| Shape::of(text, &Progress::new()).expect("nobody cancels");
+    fn brackets_in_strings_do_not_count() {
+        let of = |text: &[u8]| JsonSize::of(text, &Progress::new()).expect("not cancelled");
         let shape = of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#);
-        assert_eq!(shape, Shape { depth: 3, values: 7, objects: 2 });
-        assert_eq!(of(b"]]]["), Shape { depth: 1, values: 1, objects: 0 });
+        assert_eq!(shape, JsonSize { depth: 3, values: 7, objects: 2 });
+        assert_eq!(of(b"]]]["), JsonSize { depth: 1, values: 1, objects: 0 });
     }
 
     #[test]
     fn depth_is_refused_with_both_numbers() {
         let deep = "[".repeat(MAX_DEPTH + 1);
         let said = parse(deep.as_bytes(), &Budget::unlimited(), &Progress::new()).unwrap_err().to_string();
-        assert!(said.contains("nested 101 deep, and 100 are read"), "{said}");
+        assert!(said.contains("nested 101 levels deep, but at most 100 levels are read"), "{said}");
         let allowed = format!("{}{}", "[".repeat(MAX_DEPTH), "]".repeat(MAX_DEPTH));
         assert!(parse(allowed.as_bytes(), &Budget::unlimited(), &Progress::new()).is_ok());
     }

@@ -1,4 +1,4 @@
-//! Materials: base colour and its texture, each made when a primitive first uses it.
+//! Reads materials: the base colour and its texture. Each is made when a primitive first uses it.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -14,14 +14,14 @@ use crate::load::uri::{self, Files};
 use crate::mesh::mesh_builder::MeshBuilder;
 use crate::mesh::{Material, Texture};
 
-/// The builder's index of a material, and the set of texture coordinates that goes with it.
+/// A material's index in the builder, and its texture coordinates.
 #[derive(Clone, Copy)]
 pub struct Resolved {
     pub index: usize,
     pub uvs: Uvs,
 }
 
-/// Which texture coordinates are read, and what becomes of them.
+/// Which texture coordinates a material uses, and how they are transformed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Uvs {
     /// The n of TEXCOORD_n.
@@ -29,16 +29,16 @@ pub struct Uvs {
     pub transform: Option<UvTransform>,
 }
 
-/// The materials in use so far.
+/// The materials that have been used so far.
 pub struct Materials<'a> {
     document: &'a Document,
     accessors: &'a Accessors<'a>,
     files: &'a Files<'a>,
     transforms: &'a [Option<UvTransform>],
     budget: &'a Budget,
-    /// By the document's index; none for the default material.
+    /// By the index in the document; none for the default material.
     resolved: HashMap<Option<usize>, Resolved>,
-    /// By the document's index of the image; none for one that can't be read.
+    /// By the image's index in the document; none for an image that can't be read.
     textures: HashMap<usize, Option<Arc<Texture>>>,
     pub warnings: Vec<String>,
 }
@@ -55,7 +55,7 @@ impl<'a> Materials<'a> {
         Self { document, accessors, files, transforms, budget, resolved, textures, warnings: Vec::new() }
     }
 
-    /// Finds a material, or adds it to the builder. A texture that is missing or broken becomes a warning.
+    /// Finds a material, or adds it to the builder. A texture that is missing or broken causes a warning.
     pub fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
         if let Some(&resolved) = self.resolved.get(&material.index()) {
             return resolved;
@@ -91,9 +91,9 @@ impl<'a> Materials<'a> {
         texture.ok()
     }
 
-    /// The bytes of an image file, wherever it is.
+    /// Returns the bytes of an image.
     fn read(&self, image: usize) -> Result<Cow<'_, [u8]>, String> {
-        // From the document's JSON: the crate's own access panics on an image without a type.
+        // Reads the document's JSON, since the crate's own access panics on an image without a type.
         let Some(json) = self.document.as_json().images.get(image) else {
             return Err(format!("there is no /images/{image}"));
         };

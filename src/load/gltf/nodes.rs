@@ -1,29 +1,30 @@
-//! Where nodes stand: the scene's nodes and everybody's global transform.
+//! Places the nodes of a document: their global transforms, and which ones the scene shows.
 
 use ::gltf::scene::Transform;
 use ::gltf::{Document, Node};
 use glam::{DMat4, Mat4};
 
-use super::Problem;
+use super::GltfError;
 use crate::mesh::rig::Placement;
 
-/// The nodes of a document in place.
+/// The nodes of a document with their places.
 pub struct Placed {
-    /// Each node's own space to the scene's. In f64, so that chains of nodes don't lose the last bits of an f32.
+    /// The transform from each node's own space to the scene's. In f64, so that chains of nodes don't lose the last
+    /// bits of an f32.
     pub global: Vec<DMat4>,
-    /// The nodes that the scene shows: parents before children, siblings in order, each once.
+    /// The nodes that the scene shows, each once: parents before children, siblings in order.
     pub shown: Vec<usize>,
     pub parents: Vec<Option<usize>>,
     /// All nodes, parents before children.
     pub order: Vec<usize>,
 }
 
-/// Places all nodes and lists those of the default scene: the one that the document names, else its first, else all
-/// nodes without a parent. No recursion: chains may be as long as the file.
+/// Places all nodes, and lists those of the default scene: the scene that the document names, or else its first scene,
+/// or else all nodes without a parent. Doesn't recurse, since chains of nodes may be long.
 ///
 /// # Errors
-/// [`Problem::Document`] for nodes with two parents and for those that are their own ancestors.
-pub fn place(document: &Document) -> Result<Placed, Problem> {
+/// [`GltfError::Document`] for a node with two parents, and for a node that is its own ancestor.
+pub fn place(document: &Document) -> Result<Placed, GltfError> {
     let nodes: Vec<Node> = document.nodes().collect();
     let parents = parents(&nodes)?;
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
@@ -41,24 +42,24 @@ pub fn place(document: &Document) -> Result<Placed, Problem> {
     Ok(Placed { global, shown: walk(&nodes, &roots), parents, order })
 }
 
-/// The parent of each node.
-fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, Problem> {
+/// Returns the parent of each node.
+fn parents(nodes: &[Node]) -> Result<Vec<Option<usize>>, GltfError> {
     let mut parents = vec![None; nodes.len()];
     for node in nodes {
         for (place, child) in node.children().enumerate() {
             let (child, parent) = (child.index(), node.index());
             if let Some(first) = parents[child].replace(parent) {
                 let pointer = format!("/nodes/{parent}/children/{place}");
-                let reason = format!("is {child}, which is among /nodes/{first}/children already");
-                return Err(Problem::Document { pointer, reason });
+                let reason = format!("is {child}, which is already among /nodes/{first}/children");
+                return Err(GltfError::Document { pointer, reason });
             }
         }
     }
     Ok(parents)
 }
 
-/// Says which nodes go round in a circle, if not all were reached from one without a parent.
-fn circle(parents: &[Option<usize>], reached: &[usize]) -> Problem {
+/// Returns an error that names a node of a cycle, for nodes that can't be reached from a node without a parent.
+fn circle(parents: &[Option<usize>], reached: &[usize]) -> GltfError {
     let mut met = vec![false; parents.len()];
     reached.iter().for_each(|&node| met[node] = true);
     let mut node = met.iter().position(|met| !met).unwrap_or(0);
@@ -66,7 +67,7 @@ fn circle(parents: &[Option<usize>], reached: &[usize]) -> Problem {
         node = parents[node].unwrap_or(node);
     }
     let reason = format!("lead back to node {node}, which would be its own ancestor");
-    Problem::Document { pointer: format!("/nodes/{node}/children"), reason }
+    GltfError::Document { pointer: format!("/nodes/{node}/children"), reason }
 }
 
 fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
@@ -84,7 +85,7 @@ fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
     order
 }
 
-/// A node's own transform.
+/// Returns a node's own transform.
 pub fn local(node: &Node) -> DMat4 {
     match node.transform() {
         Transform::Matrix { matrix } => Mat4::from_cols_array_2d(&matrix).as_dmat4(),
@@ -92,14 +93,14 @@ pub fn local(node: &Node) -> DMat4 {
     }
 }
 
-/// The same in parts; none if the file has it as a matrix.
+/// Returns a node's own transform as translation, rotation and scale; none if the file has a matrix.
 pub fn placement(node: &Node) -> Option<Placement> {
     let Transform::Decomposed { translation, rotation, scale } = node.transform() else { return None };
     let [translation, scale] = [translation, scale].map(|v| glam::Vec3::from(v).as_dvec3());
     Some(Placement { translation, rotation: glam::Quat::from_array(rotation).as_dquat(), scale })
 }
 
-/// How many morph targets a node's mesh has: those of the primitive with most.
+/// Returns the number of morph targets of a node's mesh: the greatest number of a primitive.
 pub fn target_count(node: &Node) -> usize {
     let primitives = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
     primitives.map(|primitive| primitive.morph_targets().count()).max().unwrap_or(0)

@@ -1,46 +1,48 @@
-//! A primitive's triangles: lists, strips and fans, indexed or not.
+//! Reads the triangles of a primitive: lists, strips and fans, with or without indices.
 
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive};
 
 use super::accessor::List;
-use super::binder::NodeBinder;
+use super::animated_vertices::AnimatedVertices;
 use super::materials::Resolved;
-use super::moving::Moving;
+use super::rig_builder::NodeBinder;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 
-pub use super::vertices::Pose;
-use super::vertices::{Source, Vertex, Vertices};
-use super::{Accessors, Problem, vertices};
-use crate::mesh::mesh_builder::{Kept, Mended, MeshBuilder};
+pub use super::vertices::NodePose;
+use super::vertices::{PrimitiveData, Vertex, Vertices};
+use super::{Accessors, GltfError, vertices};
+use crate::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 
-/// Reads primitives and remembers what was odd about them.
+/// Reads primitives, and counts what was repaired or left out.
 #[derive(Debug, Default)]
-pub struct Primitives {
+pub struct PrimitiveReader {
     read: usize,
     points: usize,
     lines: usize,
-    /// Primitives without normals, vertices with bad uvs or weights.
+    /// PrimitiveReader without normals.
     without_normals: usize,
+    /// Vertices with texture coordinates that aren't finite.
     bad_uvs: usize,
+    /// Vertices with unusable weights.
     bad_weights: usize,
-    /// Indices at the end of lists that make no whole triangle.
+    /// Indices at the end of a list that don't make a whole triangle.
     left_over: usize,
     /// Corners of triangles whose normal wasn't of unit length in the file.
     pub rescaled: u32,
 }
 
-/// What is read, and where it goes.
+/// A primitive that is to be read, and where it goes.
 pub struct Job<'a, 'b> {
     pub mesh: &'a Mesh<'a>,
     pub primitive: &'a Primitive<'a>,
-    pub pose: &'a Pose<'a>,
+    pub pose: &'a NodePose<'a>,
     pub material: Resolved,
     pub accessors: &'a Accessors<'a>,
     pub builder: &'b mut MeshBuilder,
 }
 
-/// The vertices of a primitive's triangles: as they follow each other without indices.
+/// The vertices of a primitive's triangles. Without indices they are in order.
 struct Indices<'a> {
     list: Option<List<'a, u32>>,
     count: usize,
@@ -52,8 +54,8 @@ impl Indices<'_> {
     }
 }
 
-impl Primitives {
-    /// Whether there are no triangles in it by its very kind; counts it then.
+impl PrimitiveReader {
+    /// Returns whether a primitive consists of points or lines, and counts it if so.
     pub fn skip(&mut self, primitive: &Primitive) -> bool {
         let count = match primitive.mode() {
             Mode::Points => &mut self.points,
@@ -67,14 +69,14 @@ impl Primitives {
     /// Adds the triangles of a primitive to the builder, in the scene's space, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// [`Problem::Accessor`], [`Problem::Primitive`] and [`Problem::TooLarge`].
-    pub fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), Problem> {
+    /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
+    pub fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
         let Job { mesh, primitive, pose, material, accessors, builder } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
-        let source = Source { primitive, name: &name, accessors, unpacked };
+        let source = PrimitiveData { primitive, name: &name, accessors, unpacked };
         let mut vertices = Vertices::new(source, pose, material.uvs)?;
-        let mut moving = binder.map(|binder| Moving::new(source, &vertices, binder));
+        let mut moving = binder.map(|binder| AnimatedVertices::new(source, &vertices, binder));
         let list = primitive.indices().map(|accessor| match unpacked {
             Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
             None => accessors.indices(&accessor, &format!("indices of {name}")),
@@ -82,11 +84,11 @@ impl Primitives {
         let list = list.transpose()?;
         let count = list.as_ref().map_or(vertices.count, List::len);
         let (indices, mode) = (Indices { list, count }, primitive.mode());
-        let (budget, too_large) = (accessors.budget, |refused: MemoryRefused| Problem::TooLarge {
+        let (budget, too_large) = (accessors.budget, |refused: MemoryRefused| GltfError::TooLarge {
             what: "the scene".to_owned(),
             reason: refused.into(),
         });
-        // Each vertex's corner with what is to be known of it, and a bit whether it is used.
+        // The number and the marks of each vertex's corner, and a bit that says whether it is used.
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
         let mut kept = KeptVertices::new(vertices.count);
@@ -94,7 +96,7 @@ impl Primitives {
             let vertex = vertices.read(i)?;
             let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, &vertices, &vertex.corner));
             if used[i / 64] & 1 << (i % 64) == 0 {
-                kept.push(Kept::default(), &vertex);
+                kept.push(StoredCorner::default(), &vertex);
                 continue;
             }
             builder.make_room(1, budget).map_err(too_large)?;
@@ -105,12 +107,12 @@ impl Primitives {
         for [a, b, c] in triangles(mode, count, |i| indices.get(i)) {
             let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
             self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
-            builder.kept_triangle(material.index, outward.map(|i| kept.get(i)));
+            builder.stored_triangle(material.index, outward.map(|i| kept.get(i)));
         }
         Ok(())
     }
 
-    fn count(&mut self, repairs: &vertices::Repairs, mode: Mode, indices: usize) {
+    fn count(&mut self, repairs: &vertices::VertexRepairs, mode: Mode, indices: usize) {
         self.read += 1;
         self.without_normals += usize::from(repairs.no_normals > 0);
         self.bad_uvs += repairs.bad_uvs;
@@ -120,7 +122,7 @@ impl Primitives {
         }
     }
 
-    /// What was left out or repaired, one sentence each; what the mesh's own repairs count is not among them.
+    /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub fn warnings(&self) -> Vec<String> {
         let sentences = [
             (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
@@ -134,7 +136,7 @@ impl Primitives {
         found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect()
     }
 
-    /// What there is in place of triangles.
+    /// Returns what the document holds instead of triangles.
     pub fn holds(&self, document: &Document) -> String {
         match (document.meshes().len(), self.points, self.lines) {
             (0, ..) => "the document has no meshes".to_owned(),
@@ -145,41 +147,41 @@ impl Primitives {
     }
 }
 
-/// What has become of a primitive's vertices.
+/// The corners of a primitive's vertices in the builder.
 struct KeptVertices {
     ids: Vec<u32>,
-    /// What was mended, and two bits more.
+    /// The corner's repairs, and two bits more.
     marks: Vec<u8>,
 }
 
 impl KeptVertices {
-    const MIRRORED: u8 = 1 << Mended::BITS;
-    const RESCALED: u8 = 2 << Mended::BITS;
+    const MIRRORED: u8 = 1 << CornerRepairs::BITS;
+    const RESCALED: u8 = 2 << CornerRepairs::BITS;
 
     fn new(count: usize) -> Self {
         Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
     }
 
-    fn push(&mut self, kept: Kept, vertex: &Vertex) {
+    fn push(&mut self, kept: StoredCorner, vertex: &Vertex) {
         let mark = |is: bool, bit: u8| if is { bit } else { 0 };
         self.ids.push(kept.id);
-        self.marks.push(kept.mended.0 | mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
+        self.marks.push(kept.repairs.0 | mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED));
     }
 
     fn has(&self, i: u32, mark: u8) -> bool {
         self.marks[i as usize] & mark != 0
     }
 
-    fn get(&self, i: u32) -> Kept {
-        let mended = Mended(self.marks[i as usize] & (Self::MIRRORED - 1));
-        Kept { id: self.ids[i as usize], mended }
+    fn get(&self, i: u32) -> StoredCorner {
+        let repairs = CornerRepairs(self.marks[i as usize] & (Self::MIRRORED - 1));
+        StoredCorner { id: self.ids[i as usize], repairs }
     }
 }
 
-/// A bit for each vertex that an index names.
+/// Returns a bit for each vertex that says whether an index names it.
 ///
 /// # Errors
-/// A clause: an index names none.
+/// A clause if an index isn't a vertex.
 fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
     if indices.list.is_none() {
         return Ok(vec![u64::MAX; count.div_ceil(64)]);
@@ -188,26 +190,26 @@ fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
     for i in 0..indices.count {
         let index = indices.get(i) as usize;
         if index >= count {
-            return Err(format!("uses vertex {index} of {count}, at index {i}"));
+            return Err(format!("uses vertex {index} at index {i}, but has {count} vertices"));
         }
         used[index / 64] |= 1 << (index % 64);
     }
     Ok(used)
 }
 
-/// A primitive's place in the document, for messages.
+/// Returns a primitive's place in the document, for messages.
 pub fn name(mesh: &Mesh, primitive: &Primitive) -> String {
     let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", crate::load::uri::shown(name)));
     format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
 }
 
-/// How many triangles there are of so many indices, at most.
+/// Returns the greatest number of triangles that so many indices make.
 pub fn most_triangles(mode: Mode, indices: usize) -> usize {
     if mode == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) }
 }
 
-/// Indices as triangles (specification, section 3.7.2.1). Triangles of a strip or fan that use a vertex twice only
-/// carry it to its next part and are dropped; those of a list are kept.
+/// Converts indices into triangles (specification, section 3.7.2.1). In a strip or fan, a triangle that uses a vertex
+/// twice only connects parts and is dropped; in a list, it is kept.
 fn triangles(mode: Mode, count: usize, at: impl Fn(usize) -> u32) -> impl Iterator<Item = [u32; 3]> {
     (0..most_triangles(mode, count)).filter_map(move |i| {
         let triangle = match mode {

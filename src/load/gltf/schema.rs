@@ -1,68 +1,75 @@
-//! What is read of a document, and what each of its members may be. Animations are [read elsewhere](super::animations).
+//! The members of a document that are read, and the values that each may have. [Animations](super::animations) aren't
+//! included.
 //!
 //! Source: glTF 2.0 specification, section 5 (properties reference).
 
 /// A member of an object.
 pub struct Field {
     pub name: &'static str,
-    pub kind: Kind,
+    pub kind: MemberKind,
     pub required: bool,
 }
 
-pub enum Kind {
-    /// Of one of the document's lists.
+/// The values that a member may have.
+pub enum MemberKind {
+    /// An index into one of the document's lists.
     Index(&'static str),
     Indices(&'static str),
+    /// A whole number.
     Whole {
         least: u64,
         most: u64,
     },
-    /// That an f32 holds.
+    /// A number that fits an f32.
     Number,
-    /// So many, or any number of them.
+    /// A list of numbers that fit an f32, with this length if there is one.
     Numbers(Option<usize>),
-    /// So many from one to another.
+    /// A list of `count` numbers from `least` to `most`.
     Within {
         count: usize,
         least: f64,
         most: f64,
     },
     Text,
-    /// Text, and nothing if it is something else.
+    /// Text; anything else is ignored.
     Name,
+    /// True or false.
     Flag,
+    /// One of these numbers.
     Code(&'static [u64]),
+    /// One of these words.
     Word(&'static [&'static str]),
     Object(&'static [Field]),
     Objects(&'static [Field]),
-    /// Accessors by name, of those names that are read.
+    /// Indices of accessors by attribute name; the function says which names are read.
     Attributes(fn(&str) -> bool),
+    /// A list of morph targets, each like `Attributes`.
     Targets(fn(&str) -> bool),
-    /// Numbers of whatever the names stand for.
-    Interner,
+    /// Whole numbers of 32 bits, by any name.
+    Ids,
 }
 
-use Kind::{
-    Attributes, Code, Flag, Index, Indices, Interner, Name, Number, Numbers, Object, Objects, Targets, Text, Whole,
-    Within, Word,
+use MemberKind::{
+    Attributes, Code, Flag, Ids, Index, Indices, Name, Number, Numbers, Object, Objects, Targets, Text, Whole, Within,
+    Word,
 };
 
-const fn needed(name: &'static str, kind: Kind) -> Field {
+const fn needed(name: &'static str, kind: MemberKind) -> Field {
     Field { name, kind, required: true }
 }
 
-const fn may(name: &'static str, kind: Kind) -> Field {
+const fn may(name: &'static str, kind: MemberKind) -> Field {
     Field { name, kind, required: false }
 }
 
 /// A number of bytes or elements.
-const COUNT: Kind = Whole { least: 0, most: u64::MAX };
+const COUNT: MemberKind = Whole { least: 0, most: u64::MAX };
 
-/// The extension that compresses buffer views, which marks buffers too.
+/// The extension that compresses buffer views. It also marks buffers.
 pub const MESHOPT: &str = "EXT_meshopt_compression";
 /// The extension that compresses primitives.
 pub const DRACO: &str = "KHR_draco_mesh_compression";
-/// The extension that moves texture coordinates.
+/// The extension that transforms texture coordinates.
 pub const TRANSFORM: &str = "KHR_texture_transform";
 
 pub static DOCUMENT: &[Field] = &[
@@ -102,7 +109,7 @@ static PRIMITIVE: &[Field] = &[
     may("extensions", Object(&[may(DRACO, Object(PACKED))])),
 ];
 
-static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Interner)];
+static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Ids)];
 
 static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
 
@@ -132,7 +139,7 @@ static TEXTURE_TRANSFORM: &[Field] = &[
 ];
 
 /// The n of TEXCOORD_n.
-const TEXTURE_COORDINATES: Kind = Whole { least: 0, most: u32::MAX as u64 };
+const TEXTURE_COORDINATES: MemberKind = Whole { least: 0, most: u32::MAX as u64 };
 
 static ACCESSOR: &[Field] = &[
     may("bufferView", Index("bufferViews")),

@@ -1,22 +1,22 @@
-//! Skins: joints, and their matrices at rest.
+//! Reads skins: joints, and their matrices at rest.
 
 use ::gltf::Skin;
 use glam::{DMat4, Mat4};
 
-use super::{Accessors, Problem};
+use super::{Accessors, GltfError};
 
 /// The joints of a skin.
 pub struct Joints {
-    /// Indices of the document's nodes.
+    /// Indices into the document's nodes.
     pub nodes: Vec<usize>,
-    /// From the mesh's bind pose to each joint's own space.
+    /// The transforms from the mesh's bind pose to each joint's own space.
     pub inverse_binds: Vec<DMat4>,
 }
 
 impl Joints {
     /// # Errors
-    /// [`Problem::Accessor`] when the inverse bind matrices can't be read or are fewer than the joints.
-    pub fn read(skin: &Skin, accessors: &Accessors) -> Result<Self, Problem> {
+    /// [`GltfError::Accessor`] if the inverse bind matrices can't be read, or are fewer than the joints.
+    pub fn read(skin: &Skin, accessors: &Accessors) -> Result<Self, GltfError> {
         let nodes: Vec<usize> = skin.joints().map(|joint| joint.index()).collect();
         let role = format!("inverse bind matrices of skin {}", skin.index());
         let inverse_binds = match skin.inverse_bind_matrices() {
@@ -25,7 +25,7 @@ impl Joints {
                 let matrices = accessors.numbers::<16>(&accessor, &role)?;
                 if matrices.len() < nodes.len() {
                     let reason = format!("has {} matrices for {} joints", matrices.len(), nodes.len());
-                    return Err(Problem::Accessor { accessor: accessor.index(), role, reason });
+                    return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
                 }
                 matrices.iter().map(|matrix| Mat4::from_cols_array(matrix).as_dmat4()).collect()
             }
@@ -33,8 +33,9 @@ impl Joints {
         Ok(Self { nodes, inverse_binds })
     }
 
-    /// For each joint the matrix that takes a vertex from the mesh's bind pose to the scene: the joint's global transform
-    /// times its inverse bind matrix. The skinned node's own transform plays no part (specification, section 3.7.3).
+    /// Returns, for each joint, the matrix that takes a vertex from the mesh's bind pose to the scene: the joint's
+    /// global transform times its inverse bind matrix. The skinned node's own transform isn't used (specification,
+    /// section 3.7.3).
     pub fn matrices(&self, global: &[DMat4]) -> Vec<DMat4> {
         let place = |&joint: &usize| global.get(joint).copied().unwrap_or(DMat4::IDENTITY);
         self.nodes.iter().map(place).zip(&self.inverse_binds).map(|(joint, inverse)| joint * *inverse).collect()

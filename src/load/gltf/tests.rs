@@ -1,7 +1,7 @@
+mod animations;
 mod compressed;
 mod files;
 mod hostile;
-mod moving;
 mod mutations;
 mod packed;
 pub use mutations::seeds;
@@ -14,16 +14,16 @@ use super::*;
 use crate::mesh::topology::Topology;
 use crate::mesh::{Mesh, Repairs};
 
-/// A document under construction: one buffer, a view and an accessor for each list.
+/// A document that is being built: one buffer, with a view and an accessor for each list.
 struct Draft {
     root: Value,
     bytes: Vec<u8>,
-    /// A second buffer.
+    /// Another buffer.
     fallback: Option<Value>,
 }
 
 impl Draft {
-    /// One scene of one node with one mesh, whose primitives are given later.
+    /// Returns a document with one scene, one node and one mesh, whose primitives are added later.
     fn new() -> Self {
         let root = json!({
             "asset": { "version": "2.0" },
@@ -81,14 +81,14 @@ impl Draft {
     fn document(&self) -> Value {
         let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&self.bytes));
         let mut root = self.root.clone();
-        // A test may have said something of its own.
+        // Unless the test has set this itself.
         let mut buffer = root["buffers"].get(0).cloned().unwrap_or(json!({ "byteLength": self.bytes.len() }));
         buffer["uri"] = json!(uri);
         root["buffers"] = [buffer].into_iter().chain(self.fallback.clone()).collect();
         root
     }
 
-    fn read(&self) -> Result<LoadedMesh, Problem> {
+    fn read(&self) -> Result<LoadedMesh, GltfError> {
         read_bytes(self.document().to_string().as_bytes())
     }
 
@@ -108,7 +108,7 @@ impl Draft {
 }
 
 /// Reads a document that names no files.
-fn read_bytes(bytes: &[u8]) -> Result<LoadedMesh, Problem> {
+fn read_bytes(bytes: &[u8]) -> Result<LoadedMesh, GltfError> {
     read(bytes.to_vec(), Path::new("nowhere"), "draft", &Limits::default(), &Progress::new())
 }
 
@@ -188,7 +188,7 @@ fn without_scenes_all_roots_are_shown() {
 #[test]
 fn normalised_integers_and_strides() {
     let mut draft = Draft::new();
-    // Quantised: 16-bit positions 8 bytes apart, 8-bit normals 4 bytes apart, 16-bit uvs.
+    // Quantised: positions of 16 bits 8 bytes apart, normals of 8 bits 4 bytes apart, and uvs of 16 bits.
     let shorts = [0_i16, 0, 0, 0, 32767, 0, 0, 0, 0, -32767, 0, 0];
     let bytes: Vec<u8> = shorts.iter().flat_map(|value| value.to_le_bytes()).collect();
     let at = draft.accessor(&bytes, 5122, "VEC3", 3);
@@ -221,7 +221,7 @@ fn sparse_values_replace_the_base_and_zeros() {
     };
     draft.root["accessors"][0]["sparse"] = sparse(places);
     assert_eq!(positions(&draft.read().unwrap())[2], [0.0, 3.0, 0.0]);
-    // A morph target that is zero but for one vertex.
+    // A morph target that moves one vertex only.
     let target = json!({ "componentType": 5126, "type": "VEC3", "count": 3, "sparse": sparse(places) });
     let target = draft.push("accessors", target);
     draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": target }]);
@@ -262,7 +262,7 @@ fn skinned_meshes_stand_at_rest() {
     attributes["JOINTS_0"] = json!(joints);
     attributes["WEIGHTS_0"] = json!(weights);
     draft.root["skins"] = json!([{ "joints": [1, 2], "inverseBindMatrices": binds }]);
-    // The skinned node's own translation must play no part.
+    // The translation of the skinned node must have no effect.
     draft.root["nodes"] = json!([
         { "mesh": 0, "skin": 0, "translation": [100.0, 0.0, 0.0] },
         { "children": [2], "translation": [0.0, 0.0, 1.0] },
@@ -282,14 +282,14 @@ fn bad_normals_are_made_and_counted() {
     draft.primitive(json!({ "attributes": { "POSITION": at, "NORMAL": normals } }));
     let mesh = draft.read().unwrap();
     assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
-    let replaced = "normals of no direction, replaced by ones that are smooth within 60 degrees: 2.";
+    let replaced = "normals without a direction, replaced by ones that are smooth within 60 degrees: 2.";
     assert_eq!(mesh.warnings, [replaced, "normals whose length isn't 1, brought to it: 1."]);
     assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
-    // A transform that has nothing to do with it.
+    // A transform makes no difference.
     draft.root["nodes"][0]["scale"] = json!([1.0, 3.0, -1.0]);
     let turned = draft.read().unwrap();
     assert_eq!((turned.repairs, turned.warnings), (mesh.repairs, mesh.warnings));
-    // One that leaves no direction: nothing counts twice.
+    // A transform that leaves no direction: each normal counts only once.
     draft.root["nodes"][0]["scale"] = json!([0.0, 0.0, 1.0]);
     assert_eq!(draft.read().unwrap().repairs, Repairs { normals_replaced: 3, ..Repairs::default() });
 }
@@ -311,7 +311,7 @@ fn repairs_are_counted_in_corners() {
 }
 
 #[test]
-fn morphing_is_no_fault_of_the_normals() {
+fn morphed_normals_are_not_counted_as_rescaled() {
     let mut draft = triangle();
     let target = draft.vectors(&[[0.0, 3.0, 3.0]; 3]);
     draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "NORMAL": target }]);

@@ -1,23 +1,23 @@
-//! A primitive's vertices in their rest pose, one after another: attributes read, morphed, then skinned or placed.
+//! Reads a primitive's vertices in their rest pose: attributes, morph targets, then the skin or the node's transform.
 
 use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3};
 
 use super::accessor::List;
+use super::decompressed_primitive::DecompressedPrimitive;
 use super::extensions::UvTransform;
 use super::materials::Uvs;
-use super::unpacked::Unpacked;
-use super::{Accessors, Problem};
-use crate::mesh::mesh_builder::LooseCorner;
-use crate::mesh::normals::Given;
+use super::{Accessors, GltfError};
+use crate::mesh::mesh_builder::InputCorner;
+use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::LARGEST_COORDINATE;
 
-/// How the primitive's node stands.
-pub struct Pose<'a> {
-    /// The node's own space to the scene's.
+/// The pose of a primitive's node.
+pub struct NodePose<'a> {
+    /// The transform from the node's own space to the scene's.
     pub global: DMat4,
-    /// The joints' matrices (see [`super::skin`]); empty without a skin.
+    /// The matrices of the joints (see [`super::skin`]); empty without a skin.
     pub joints: &'a [DMat4],
     /// The weights of the morph targets; missing ones are 0.
     pub weights: &'a [f32],
@@ -25,39 +25,40 @@ pub struct Pose<'a> {
 
 /// A vertex in the scene's space.
 pub struct Vertex {
-    pub corner: LooseCorner,
-    /// It went through a mirroring transform, so its triangles must be wound the other way.
+    pub corner: InputCorner,
+    /// Whether its transform mirrors, so that its triangles must be wound the other way.
     pub mirrored: bool,
-    /// Its normal has a direction, but wasn't of unit length in the file.
+    /// Whether its normal has a direction, but wasn't of unit length in the file.
     pub rescaled: bool,
 }
 
-/// What had to be mended, in vertices.
+/// Counts of repaired vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Repairs {
-    /// The primitive had no normals at all.
+pub struct VertexRepairs {
+    /// Vertices of a primitive without normals.
     pub no_normals: usize,
-    /// A uv was not finite and is (0, 0) now.
+    /// Vertices with texture coordinates that aren't finite, which became (0, 0).
     pub bad_uvs: usize,
-    /// Weights didn't sum to anything, or named a joint that isn't there; the vertex was left as the mesh has it.
+    /// Vertices whose weights don't add up to anything, or that name a joint that doesn't exist; they stay where the
+    /// mesh has them.
     pub bad_weights: usize,
 }
 
-/// What a morph target adds at weight 1.
-pub struct Target<'a> {
+/// The displacements by a morph target at weight 1.
+pub struct MorphTarget<'a> {
     pub positions: Option<List<'a, [f32; 3]>>,
     pub normals: Option<List<'a, [f32; 3]>>,
 }
 
-/// The joints of a skin that move each vertex, and by how much.
+/// The joints of a skin that move each vertex, and their weights.
 struct Influences<'a> {
     joints: List<'a, [f32; 4]>,
     weights: List<'a, [f32; 4]>,
 }
 
 impl Influences<'_> {
-    /// Puts a vertex's joints with weights that sum to 1, which quantised ones miss, into a list; or says that they are
-    /// unusable, of a skin with so many joints.
+    /// Collects the joints of a vertex, with weights that are scaled to add up to 1, since quantised weights don't
+    /// exactly. Returns false if they are unusable with a skin of `joint_count` joints.
     fn of(&self, vertex: usize, joint_count: usize, found: &mut Vec<(usize, f64)>) -> bool {
         let slots = self.joints.get(vertex).into_iter().zip(self.weights.get(vertex));
         let slots = slots.filter(|(_, weight)| *weight != 0.0);
@@ -68,29 +69,29 @@ impl Influences<'_> {
     }
 }
 
-/// Reads and poses a primitive's vertices, where they lie.
+/// Reads a primitive's vertices, and puts them into their rest pose.
 pub struct Vertices<'a> {
-    source: Source<'a>,
-    pose: &'a Pose<'a>,
+    source: PrimitiveData<'a>,
+    pose: &'a NodePose<'a>,
     transform: Option<UvTransform>,
     pub count: usize,
     positions: List<'a, [f32; 3]>,
     normals: Option<List<'a, [f32; 3]>>,
     uvs: Option<List<'a, [f32; 2]>>,
-    /// Of those that weigh something at rest.
-    targets: Vec<(f32, Target<'a>)>,
+    /// The morph targets with a weight other than 0 at rest.
+    targets: Vec<(f32, MorphTarget<'a>)>,
     influences: Option<Influences<'a>>,
-    /// Joints of the vertex that was read last; none if they are unusable.
+    /// The joints of the vertex that was read last; none if they are unusable.
     joints: Option<Vec<(usize, f64)>>,
-    pub repairs: Repairs,
+    pub repairs: VertexRepairs,
 }
 
 impl<'a> Vertices<'a> {
-    /// `uvs` says which texture coordinates.
+    /// Prepares to read; `uvs` says which texture coordinates.
     ///
     /// # Errors
-    /// [`Problem::Accessor`] and [`Problem::Primitive`].
-    pub fn new(source: Source<'a>, pose: &'a Pose<'a>, uvs: Uvs) -> Result<Self, Problem> {
+    /// [`GltfError::Accessor`] and [`GltfError::Primitive`].
+    pub fn new(source: PrimitiveData<'a>, pose: &'a NodePose<'a>, uvs: Uvs) -> Result<Self, GltfError> {
         let positions = source.primitive.get(&Semantic::Positions).ok_or_else(|| source.problem("has no positions"))?;
         let count = positions.count();
         let weights = pose.weights.iter().copied();
@@ -104,10 +105,10 @@ impl<'a> Vertices<'a> {
             uvs: source.attribute(Semantic::TexCoords(uvs.set), count)?,
             targets: weighed
                 .map(|(target, weight)| Ok((weight, source.target(&target, count)?)))
-                .collect::<Result<_, Problem>>()?,
+                .collect::<Result<_, GltfError>>()?,
             influences: source.influences(pose, count)?,
             joints: None,
-            repairs: Repairs::default(),
+            repairs: VertexRepairs::default(),
             source,
         })
     }
@@ -116,17 +117,18 @@ impl<'a> Vertices<'a> {
         self.influences.is_some()
     }
 
-    /// The joints that move the vertex that was read last.
+    /// Returns the joints that move the vertex that was read last.
     pub fn joints(&self) -> Option<&[(usize, f64)]> {
         self.joints.as_deref()
     }
 
-    /// A vertex's position and normal in the file, morphed as it is at rest or not at all.
+    /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if
+    /// `is_morphed`.
     pub fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
         let mut position = Vec3::from(self.positions.get(i));
         let mut normal = self.normals.as_ref().map(|normals| Vec3::from(normals.get(i)));
         let targets = if is_morphed { self.targets.as_slice() } else { &[] };
-        // Each times its weight (specification, section 3.7.2.2).
+        // Each displacement times its weight (specification, section 3.7.2.2).
         for (weight, target) in targets {
             if let Some(positions) = &target.positions {
                 position += Vec3::from(positions.get(i)) * *weight;
@@ -138,15 +140,15 @@ impl<'a> Vertices<'a> {
         (position, normal)
     }
 
-    /// A vertex; each is to be read once, as what is mended is counted.
+    /// Reads a vertex. Each must be read only once, since repairs are counted.
     ///
     /// # Errors
-    /// [`Problem::Primitive`]: it isn't anywhere.
-    pub fn read(&mut self, i: usize) -> Result<Vertex, Problem> {
+    /// [`GltfError::Primitive`] if its position isn't finite or is too far away.
+    pub fn read(&mut self, i: usize) -> Result<Vertex, GltfError> {
         let matrix = self.matrix(i);
         let (position, normal) = self.undeformed(i, true);
-        // Before morphing, which leaves no normal at unit length and is no fault.
-        let own = self.normals.as_ref().map(|normals| Given::new(normals.get(i).into()));
+        // The normal before morphing, which doesn't preserve unit length.
+        let own = self.normals.as_ref().map(|normals| GivenNormal::new(normals.get(i).into()));
         let position = matrix.transform_point3(position.as_dvec3()).as_vec3();
         if !position.is_finite() {
             return Err(self.source.problem(format!("has a position that isn't finite, at vertex {i}")));
@@ -155,7 +157,7 @@ impl<'a> Vertices<'a> {
             return Err(self.source.problem(format!("has a coordinate beyond {LARGEST_COORDINATE:e}, at vertex {i}")));
         }
         let linear = DMat3::from_mat4(matrix);
-        // One without a direction goes on as zero: the builder makes another and counts it.
+        // A normal without a direction becomes zero, which the builder replaces and counts.
         let normal = normal.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
         self.repairs.no_normals += usize::from(normal.is_none());
         let mut uv = self.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs.get(i).into());
@@ -166,12 +168,13 @@ impl<'a> Vertices<'a> {
             uv = Vec2::ZERO;
             self.repairs.bad_uvs += 1;
         }
-        let rescaled = matches!(own, Some(Given::Rescaled(_))) && normal != Some(Vec3::ZERO);
+        let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
-        Ok(Vertex { corner: LooseCorner { position, normal, uv }, mirrored, rescaled })
+        Ok(Vertex { corner: InputCorner { position, normal, uv }, mirrored, rescaled })
     }
 
-    /// A skinned vertex's own: the mean of its joints' by weight. Any other's is its node's.
+    /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't
+    /// skinned.
     fn matrix(&mut self, i: usize) -> DMat4 {
         let Some(influences) = &self.influences else { return self.pose.global };
         let mut joints = self.joints.take().unwrap_or_default();
@@ -186,49 +189,50 @@ impl<'a> Vertices<'a> {
     }
 }
 
-/// A normal through the inverse transpose of a linear map, of unit length; none if that has no direction.
+/// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no
+/// direction.
 fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
-    let normal = Given::new(normal).unit()?;
+    let normal = GivenNormal::new(normal).unit()?;
     if *linear == DMat3::IDENTITY {
         return Some(normal);
     }
-    // The cofactors are the inverse transpose times the determinant, and exist where the inverse doesn't.
+    // The cofactors are the inverse transpose times the determinant, and exist even where the inverse doesn't.
     let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
     let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
     let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
     (sign * (cofactors * normal.as_dvec3())).try_normalize().map(DVec3::as_vec3)
 }
 
-/// Where a primitive's attributes come from.
+/// The source of a primitive's attributes.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct PrimitiveData<'a> {
     pub primitive: &'a Primitive<'a>,
-    /// For messages.
+    /// The primitive's place in the document, for messages.
     pub name: &'a str,
     pub accessors: &'a Accessors<'a>,
-    /// If Draco compressed the primitive.
-    pub unpacked: Option<&'a Unpacked>,
+    /// The decompressed data, if Draco compressed the primitive.
+    pub unpacked: Option<&'a DecompressedPrimitive>,
 }
 
-impl<'a> Source<'a> {
-    pub fn problem(&self, reason: impl Into<String>) -> Problem {
-        Problem::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
+impl<'a> PrimitiveData<'a> {
+    pub fn problem(&self, reason: impl Into<String>) -> GltfError {
+        GltfError::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
     }
 
     /// # Errors
-    /// [`Problem::Accessor`].
-    pub fn target(&self, target: &::gltf::mesh::MorphTarget, count: usize) -> Result<Target<'a>, Problem> {
+    /// [`GltfError::Accessor`].
+    pub fn target(&self, target: &::gltf::mesh::MorphTarget, count: usize) -> Result<MorphTarget<'a>, GltfError> {
         let list = |accessor: Option<Accessor>, attribute| {
             accessor.map(|accessor| self.list(&accessor, attribute, count)).transpose()
         };
-        Ok(Target {
+        Ok(MorphTarget {
             positions: list(target.positions(), "POSITION of a morph target")?,
             normals: list(target.normals(), "NORMAL of a morph target")?,
         })
     }
 
-    /// None without a skin.
-    fn influences(&self, pose: &Pose, count: usize) -> Result<Option<Influences<'a>>, Problem> {
+    /// Returns the joints and weights; none without a skin.
+    fn influences(&self, pose: &NodePose, count: usize) -> Result<Option<Influences<'a>>, GltfError> {
         if pose.joints.is_empty() {
             return Ok(None);
         }
@@ -241,22 +245,22 @@ impl<'a> Source<'a> {
         &self,
         semantic: Semantic,
         count: usize,
-    ) -> Result<Option<List<'a, [f32; N]>>, Problem> {
+    ) -> Result<Option<List<'a, [f32; N]>>, GltfError> {
         let accessor = self.primitive.get(&semantic);
         accessor.map(|accessor| self.list(&accessor, &semantic.to_string(), count)).transpose()
     }
 
-    /// An attribute's values, as many as there are vertices.
+    /// Returns an attribute's values, of which there must be as many as vertices.
     fn list<const N: usize>(
         &self,
         accessor: &Accessor,
         attribute: &str,
         count: usize,
-    ) -> Result<List<'a, [f32; N]>, Problem> {
+    ) -> Result<List<'a, [f32; N]>, GltfError> {
         let role = format!("{attribute} of {}", self.name);
         if accessor.count() != count {
             let reason = format!("has {} elements for {count} vertices", accessor.count());
-            return Err(Problem::Accessor { accessor: accessor.index(), role, reason });
+            return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
         }
         match self.unpacked.and_then(|unpacked| unpacked.values(attribute)) {
             Some(values) => Ok(List::of(values, [0.0; N])),

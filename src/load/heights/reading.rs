@@ -1,4 +1,4 @@
-//! A height image from its file: how large it is before memory is taken for it, then its px, row by row.
+//! Reads a height image: first its size, to check the memory that it takes, then its pixels row by row.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -16,14 +16,15 @@ use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::heights::{HeightMap, angle_bytes};
 use crate::progress::{Cancelled, Progress};
 
-/// What comes before a PNG image's width and height, of 4 bytes each.
+/// The bytes before a PNG image's width and height, which have 4 bytes each.
 const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
 
-/// Reads a PNG or JPEG image: PNG row by row, so that a large one takes no more than what is kept of it; a JPEG, and a PNG
-/// that is interlaced, whole. The file's size is added to the budget, and `corners` are those of the mesh.
+/// Reads a PNG or JPEG image. A PNG is read row by row, so that a large image takes no more memory than its map; a
+/// JPEG, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `corners` is the number of
+/// corners of the mesh.
 ///
 /// # Errors
-/// It is no such image, or a larger one than is read; or `progress` was cancelled.
+/// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
 pub fn read_map(path: &Path, corners: usize, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
     progress.check()?;
     let image = ImageFile { path, corners, budget, progress };
@@ -33,17 +34,17 @@ pub fn read_map(path: &Path, corners: usize, budget: &Budget, progress: &Progres
     let size = png_size(&mut file).map_err(unread)?;
     image.check(size.unwrap_or_default())?;
     let length = about.len();
-    // Row by row, rows tell how far it is, and not what was read of the file besides.
+    // If rows are read one by one, they set the progress, and the number of bytes read doesn't.
     let told = size.is_none().then(|| progress.part(0.0, 0.6));
-    let mut reader = BufReader::new(Watched { file, length, read: 0, progress, told });
+    let mut reader = BufReader::new(ProgressReader { file, length, read: 0, progress, told });
     if size.is_some() && !is_interlaced(&mut reader).map_err(unread)? {
         return image.read_rows(reader, length);
     }
     image.read_whole(reader, length)
 }
 
-/// The brightness of px as they are stored, 8 or 16 bits a channel: the weights of Rec. 709, and no transfer function,
-/// since heights are no light. Gray images give their gray, in all its bits.
+/// Computes the brightness of pixels of 8 or 16 bits a channel, with the weights of Rec. 709 and no transfer function,
+/// since heights aren't light. Gray images keep their values with all bits.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
@@ -61,7 +62,7 @@ pub fn map_of_px(size: [u32; 2], color: ColorType, bytes: &[u8], progress: &Prog
     })
 }
 
-/// The brightness of each px of a line, of so many channels of 8 or 16 bits.
+/// Computes the brightness of each pixel of a row with `channels` channels of 8 bits, or of 16 bits if `is_wide`.
 fn brighten(line: &[u8], channels: usize, is_wide: bool, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
     let channel = |px: &[u8], index: usize| match is_wide {
         true => f32::from(of_bytes([px[2 * index], px[2 * index + 1]])) / 65535.0,
@@ -76,7 +77,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Where an image is read from, and who is told how far that is.
+/// An image file that is being read, with what reading it needs.
 struct ImageFile<'a> {
     path: &'a Path,
     corners: usize,
@@ -96,13 +97,13 @@ impl ImageFile<'_> {
         }
     }
 
-    /// Reading stops with an error where the job was told to stop: that is what is said then, else `error` is.
+    /// Returns the cancellation if the job was cancelled, since that stops reading with some error; otherwise `error`.
     fn stopped_or(&self, error: HeightError) -> HeightError {
         self.progress.check().map_or_else(HeightError::from, |()| error)
     }
 
-    /// A PNG image that isn't interlaced.
-    fn read_rows(&self, reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
+    /// Reads a PNG image that isn't interlaced.
+    fn read_rows(&self, reader: BufReader<ProgressReader>, length: u64) -> Result<HeightMap, HeightError> {
         let undecoded = |error: DecodingError| self.stopped_or(self.fail(error.to_string()));
         let mut decoder = png::Decoder::new(reader);
         decoder.set_ignore_iccp_chunk(true);
@@ -122,8 +123,8 @@ impl ImageFile<'_> {
         })
     }
 
-    /// Any image, all of whose px are in memory at once.
-    fn read_whole(&self, mut reader: BufReader<Watched>, length: u64) -> Result<HeightMap, HeightError> {
+    /// Reads any image by decoding all its pixels at once.
+    fn read_whole(&self, mut reader: BufReader<ProgressReader>, length: u64) -> Result<HeightMap, HeightError> {
         let undecoded = |error: ImageError| match error {
             ImageError::Unsupported(_) => self.fail("choose a PNG or JPEG image".to_owned()),
             error => self.stopped_or(self.fail(error.to_string())),
@@ -141,7 +142,7 @@ impl ImageFile<'_> {
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
         let coefficients = if is_jpeg { known.unwrap_or_else(|| most_coefficient_bytes(size)) } else { 0 };
-        // They are gone before a map is made of the px; a JPEG decoder has the file's own bytes, too.
+        // They are freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
         self.afford(size, length, count, coefficients)?;
         let mut bytes = vec![0; count as usize];
         decoder.read_image(&mut bytes).map_err(undecoded)?;
@@ -149,8 +150,8 @@ impl ImageFile<'_> {
         Ok(map_of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)
     }
 
-    /// Whether an image of this size takes no more than a load may: `px` bytes at once, and `decoding` before a map is made of
-    /// them, which is held.
+    /// Checks that the budget has room for an image of this size: `px` bytes of decoded pixels, `decoding` bytes while
+    /// it is decoded, and the map, which is held.
     fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
         let kept = HeightMap::bytes_to_build(size).saturating_add(angle_bytes(self.corners));
         let too_much = |refused: MemoryRefused| HeightError::TooMuch {
@@ -158,7 +159,7 @@ impl ImageFile<'_> {
             size,
             reason: refused.to_string(),
         };
-        // A decoder has the file's bytes too.
+        // A decoder keeps the file's bytes too.
         let all = px.saturating_add(kept.max(decoding)).saturating_add(length);
         let borrowed = self.budget.borrowed();
         self.budget.borrow(all).map_err(too_much)?;
@@ -167,7 +168,7 @@ impl ImageFile<'_> {
     }
 }
 
-/// What a PNG image says of its size first of all; none of another file. The file is at its start again.
+/// Returns the size in the header of a PNG image, or none for another file. Afterwards the file is at its start.
 fn png_size(file: &mut File) -> io::Result<Option<[u32; 2]>> {
     let mut start = Vec::new();
     file.by_ref().take(24).read_to_end(&mut start)?;
@@ -176,7 +177,7 @@ fn png_size(file: &mut File) -> io::Result<Option<[u32; 2]>> {
     Ok(numbers.map(|numbers| numbers.map(u32::from_be_bytes)))
 }
 
-/// What a PNG image says of the order of its px, behind its size, its depth and its colours. The file is at its start again.
+/// Returns whether the header of a PNG image says that it is interlaced. Afterwards the file is at its start.
 fn is_interlaced(file: &mut (impl Read + Seek)) -> io::Result<bool> {
     let mut start = Vec::new();
     file.by_ref().take(29).read_to_end(&mut start)?;
@@ -184,8 +185,8 @@ fn is_interlaced(file: &mut (impl Read + Seek)) -> io::Result<bool> {
     Ok(start.get(28).is_some_and(|&order| order != 0))
 }
 
-/// A file that knows how much of it was read, which it may tell, and reads no further once the job was told to stop.
-struct Watched<'a> {
+/// A file that stops reading once the job was cancelled, and reports how much of it was read if `told` is set.
+struct ProgressReader<'a> {
     file: File,
     length: u64,
     read: u64,
@@ -193,7 +194,7 @@ struct Watched<'a> {
     told: Option<Progress>,
 }
 
-impl Read for Watched<'_> {
+impl Read for ProgressReader<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.progress.check().map_err(io::Error::other)?;
         let count = self.file.read(buffer)?;
@@ -205,7 +206,7 @@ impl Read for Watched<'_> {
     }
 }
 
-impl Seek for Watched<'_> {
+impl Seek for ProgressReader<'_> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.read = self.file.seek(to)?;
         Ok(self.read)
@@ -220,7 +221,7 @@ mod tests {
 
     use super::*;
 
-    /// A file in the temporary folder, gone with its test.
+    /// A file in the temporary folder, which its test removes.
     struct Temporary(std::path::PathBuf);
 
     impl Temporary {
@@ -239,7 +240,7 @@ mod tests {
 
     fn of(image: &DynamicImage) -> HeightMap {
         let size = [image.width(), image.height()];
-        map_of_px(size, image.color(), image.as_bytes(), &Progress::new()).expect("nobody cancels")
+        map_of_px(size, image.color(), image.as_bytes(), &Progress::new()).expect("not cancelled")
     }
 
     fn png(image: &DynamicImage) -> Vec<u8> {
@@ -274,8 +275,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_is_refused_at_once_by_name_size_and_limit() {
-        // Its header alone: 8 bits gray, 20000 x 20000; nothing follows, so that nothing else can have refused it.
+    fn large_images_are_refused_with_name_size_and_limit() {
+        // Only its header, 8 bits gray, 20000 x 20000. Since nothing follows, only the size can have caused the
+        // refusal.
         let mut header = PNG_START.to_vec();
         header.extend([20_000_u32, 20_000].map(u32::to_be_bytes).as_flattened());
         header.extend([8, 0, 0, 0, 0]);
@@ -283,10 +285,9 @@ mod tests {
         let file = Temporary::new("large.png", &header);
         let error = read_map(&file.0, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         assert!(start.elapsed() < Duration::from_millis(100), "{:?}", start.elapsed());
-        let expected =
-            "is 20000 x 20000 px large, and at most 16384 px a side are read; scale it to 4096 px a side or less";
+        let expected = "has 20000 x 20000 px, but at most 16384 px a side are read; scale it to 4096 px a side or less";
         assert!(error.ends_with(expected) && error.contains("large.png"), "{error}");
-        // One px more than is read, with a decoder that would take it.
+        // One pixel more than is read; the decoder itself would read it.
         let wide = DynamicImage::new_luma8(MAX_SIZE + 1, 1);
         let file = Temporary::new("wide.png", &png(&wide));
         let error = read_map(&file.0, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();

@@ -1,6 +1,7 @@
-//! Copies of good files with bits, ends and numbers changed: a mesh or a sentence, never a panic, never long.
+//! Copies of good files with changed bits, ends and numbers. Each must give a mesh or an error, without a panic and
+//! within the time limit.
 //!
-//! `PNAEN_MUTATIONS` and `PNAEN_MUTATE` as for documents: see `load/gltf/tests/mutations.rs`.
+//! `PNAEN_MUTATIONS` and `PNAEN_MUTATE` work as for glTF documents: see `load/gltf/tests/mutations.rs`.
 
 use std::time::Duration;
 
@@ -8,7 +9,7 @@ use super::Format::{Obj, Ply, Stl};
 use super::{Format, Random, read, time};
 use crate::load::{self, obj, ply, stl};
 
-/// What takes the place of a number.
+/// The texts that replace a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
 
 pub fn originals() -> Vec<(Format, Vec<u8>)> {
@@ -23,7 +24,7 @@ pub fn originals() -> Vec<(Format, Vec<u8>)> {
     originals
 }
 
-/// The files that `PNAEN_MUTATE` names, of these formats.
+/// Returns the files of these formats that `PNAEN_MUTATE` names.
 fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
     crate::load::hostile_files::named_files().into_iter().filter_map(|path| {
         let format = match load::Format::of(&path).ok()? {
@@ -51,7 +52,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Replaces the first run of digits from there on.
+/// Replaces the first group of digits from a position on.
 fn replace_number(bytes: &mut Vec<u8>, from: usize, by: &str) {
     let Some(start) = bytes.iter().skip(from).position(u8::is_ascii_digit).map(|i| i + from) else { return };
     let length = bytes[start..].iter().take_while(|byte| byte.is_ascii_digit()).count();

@@ -1,4 +1,4 @@
-//! What fuzzers start from: small files of every format, kept beside the test that runs them. `PNAEN_UPDATE_SEEDS=1` writes them again.
+//! The seeds of the fuzz targets: small files of every format. `PNAEN_UPDATE_SEEDS=1` writes them.
 
 use std::path::Path;
 

@@ -1,10 +1,10 @@
-//! The materials of an OBJ file: described by files in its folder, each made when a face first wears it.
+//! The materials of an OBJ file. Files in its folder describe them; each is made when a face first uses it.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::mtl::{self, Described};
-use crate::load::faces::{Faces, counted};
+use super::mtl::{self, MtlMaterial};
+use crate::load::face_builder::{FaceBuilder, counted};
 use crate::load::images::decode_texture;
 use crate::load::memory_budget::Budget;
 use crate::load::read_error::ReadError;
@@ -12,22 +12,22 @@ use crate::load::text_lines::{shown, words};
 use crate::load::uri::Files;
 use crate::mesh::{Material, MemoryAccount, Texture};
 
-/// Material files that are read.
+/// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;
 
-/// What faces wear.
+/// The materials of the faces.
 pub struct Materials<'a> {
     files: &'a Files<'a>,
     budget: &'a Budget,
-    /// Names of the material files.
+    /// The names of the material files.
     libraries: Vec<String>,
-    described: HashMap<Vec<u8>, Described>,
-    /// What faces are to wear from here on; empty before the first `usemtl`.
+    described: HashMap<Vec<u8>, MtlMaterial>,
+    /// The name of the material that the next faces use; empty before the first `usemtl`.
     name: Vec<u8>,
-    /// The index of the material of that name, once a face wears it.
+    /// The index of that material, once a face uses it.
     index: Option<usize>,
     indices: HashMap<Vec<u8>, usize>,
-    /// By name; none for one that can't be read.
+    /// Textures by file name; none for one that can't be read.
     textures: HashMap<String, Option<Arc<Texture>>>,
     problems: Vec<String>,
     bad_statements: usize,
@@ -53,7 +53,7 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// `mtllib`: names of one file or several, which may have spaces in them.
+    /// Reads `mtllib`: the names of one or more files, which may contain spaces.
     pub fn add_library(&mut self, names: &[u8]) {
         let mut name = Vec::new();
         for word in words(names) {
@@ -83,7 +83,7 @@ impl<'a> Materials<'a> {
         match self.beside(&name).and_then(|bytes| mtl::read(&bytes)) {
             Ok((materials, bad)) => {
                 self.bad_statements += bad;
-                // The first of a name is the one, as in most programs.
+                // Of several materials with one name the first counts, as in most programs.
                 materials.into_iter().for_each(|material| {
                     self.described.entry(material.name.clone()).or_insert(material);
                 });
@@ -97,7 +97,7 @@ impl<'a> Materials<'a> {
         self.libraries.push(name);
     }
 
-    /// `usemtl`: what faces wear from here on.
+    /// Reads `usemtl`: the material of the next faces.
     pub fn enter(&mut self, name: &[u8]) {
         if self.name != name {
             self.name = name.to_vec();
@@ -105,11 +105,11 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// The index of what a face wears.
+    /// Returns the index of the next face's material.
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
-    pub fn current(&mut self, faces: &mut Faces) -> Result<usize, ReadError> {
+    pub fn current(&mut self, faces: &mut FaceBuilder) -> Result<usize, ReadError> {
         if let Some(index) = self.index.or_else(|| self.indices.get(&self.name).copied()) {
             self.index = Some(index);
             return Ok(index);
@@ -149,7 +149,7 @@ impl<'a> Materials<'a> {
         texture.ok()
     }
 
-    /// What is missing or broken, one sentence each.
+    /// Returns what is missing or broken, one sentence each.
     pub fn warnings(&mut self) -> Vec<String> {
         let mut warnings = std::mem::take(&mut self.problems);
         warnings.extend(counted([
@@ -160,7 +160,7 @@ impl<'a> Materials<'a> {
         warnings
     }
 
-    /// The bytes of a file in the folder or below it: as glTF's, whose names are URIs.
+    /// Reads a file in the OBJ file's folder or below it, under the same rules as a glTF document's URIs.
     fn beside(&self, name: &str) -> Result<Vec<u8>, String> {
         self.files.read(&name.replace('%', "%25").replace('\\', "/"), false)
     }

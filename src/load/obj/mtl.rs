@@ -1,31 +1,31 @@
-//! MTL: what a file next to an OBJ says of its materials, as far as colours go.
+//! Reads MTL, the material files of OBJ: the colours and colour textures of materials.
 //!
-//! Not by `tobj`, which drops a whole file for one statement that it can't read, and takes the options of `map_Kd` for a part
-//! of its name.
+//! The crate `tobj` isn't used. It drops a whole file because of one statement that it can't read, and takes the
+//! options of `map_Kd` for a part of the file name.
 
 use crate::load::text_lines::{Lines, first_word, number, numbers};
 
-/// A material as it is described.
+/// A material in a material file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Described {
+pub struct MtlMaterial {
     pub name: Vec<u8>,
-    /// Kd; linear.
+    /// Kd: the diffuse colour, linear.
     pub color: [f32; 3],
-    /// map_Kd: a file's name.
+    /// map_Kd: the file name of the diffuse texture.
     pub texture: Option<String>,
 }
 
-/// The materials of a file, and how many statements about colours can't be read.
+/// Reads the materials of a file. Also returns how many statements about colours can't be read.
 ///
 /// # Errors
-/// A clause that says what is wrong with all of it.
-pub fn read(bytes: &[u8]) -> Result<(Vec<Described>, usize), String> {
-    let (mut materials, mut bad) = (Vec::<Described>::new(), 0);
+/// A clause that says what is wrong with the whole file.
+pub fn read(bytes: &[u8]) -> Result<(Vec<MtlMaterial>, usize), String> {
+    let (mut materials, mut bad) = (Vec::<MtlMaterial>::new(), 0);
     let mut lines = Lines::new(bytes);
     while let Some(line) = lines.next().map_err(|fault| fault.to_string())? {
         let (word, rest) = first_word(line.text);
         if word == b"newmtl" {
-            materials.push(Described { name: rest.to_vec(), color: [1.0; 3], texture: None });
+            materials.push(MtlMaterial { name: rest.to_vec(), color: [1.0; 3], texture: None });
         }
         let Some(material) = materials.last_mut() else { continue };
         match word {
@@ -40,7 +40,7 @@ pub fn read(bytes: &[u8]) -> Result<(Vec<Described>, usize), String> {
     Ok((materials, bad))
 }
 
-/// The file's name behind options such as `-clamp on` or `-s 1 1 1`, all of which are ignored.
+/// Returns the file name after options such as `-clamp on` or `-s 1 1 1`, which are ignored.
 fn without_options(mut text: &[u8]) -> &[u8] {
     loop {
         let (word, mut rest) = first_word(text);
@@ -71,7 +71,7 @@ mod tests {
     fn colours_and_textures_are_read_and_the_rest_is_not() {
         let text = "# made by hand\r\nKd 1 0 0\r\nnewmtl old wood\r\nNs x\r\nKd 0.5 .25 2\r\nmap_Kd -s 1 1 1 -clamp on \
                     a b.png\r\nnewmtl plain\r\n\tKd spectral a.rfl\r\n";
-        let described = |name: &[u8], color, texture: Option<&str>| Described {
+        let described = |name: &[u8], color, texture: Option<&str>| MtlMaterial {
             name: name.to_vec(),
             color,
             texture: texture.map(str::to_owned),

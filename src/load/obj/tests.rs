@@ -1,20 +1,20 @@
-//! Files as programs and people write them.
+//! OBJ files as programs and people write them.
 
 use super::*;
-use crate::load::faces::tests::{POINTS, SIDES, assert_cube};
+use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> LoadedMesh {
     super::read(text.as_bytes().to_vec(), Path::new("nowhere"), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
-/// A cube of quadrilaterals without normals.
+/// A cube of quads without normals.
 pub fn cube() -> String {
     let vertices: String = POINTS.iter().map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
     let face = |side: &[usize; 4]| format!("f {} {} {} {}\n", side[0] + 1, side[1] + 1, side[2] + 1, side[3] + 1);
     format!("# made by a test\no cube\n{vertices}g sides\ns off\n{}", SIDES.iter().map(face).collect::<String>())
 }
 
-/// Something of everything.
+/// A file with every kind of statement.
 pub fn everything() -> String {
     "mtllib nowhere.mtl\nv 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 0.25 0\nv 0 1 0\nvt 0 0\nvt 1 1 0\nvn 0 0 1\nvn 0 1 0\ng a b\n\
      usemtl red\nf 1/1/1 2/2/2 \\\n 3//1 4 5/-1\ns 1\np 1 2\nl 1/1 2/2\nusemtl blue\nf -5 -4 -3\nf 1 3 5 # the last\n"
@@ -80,7 +80,7 @@ fn only_missing_normals_are_made() {
 
 #[test]
 fn concave_polygons_are_cut_inside() {
-    // An L, from a corner where a fan would reach outside.
+    // An L-shaped polygon, starting at a corner from which a fan would reach outside.
     let mesh = read("v 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nf 1 2 3 4 5 6\n");
     let area = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|corner| mesh.corners[corner as usize].position);
@@ -92,7 +92,7 @@ fn concave_polygons_are_cut_inside() {
 }
 
 #[test]
-fn what_is_no_face_is_left_out_and_counted() {
+fn small_faces_and_other_elements_are_left_out_and_counted() {
     let mesh =
         read("v 0 0 0\nv 1 0 0\nv 0 1 0\np 1 2\np 3\nl 1 2 3\ncurv 0 1 1 2\nsurf 0 1 0 1 1 2 3\nfrob 1\nf 1 2 3\n");
     let expected = [
@@ -106,7 +106,7 @@ fn what_is_no_face_is_left_out_and_counted() {
 }
 
 #[test]
-fn a_cancel_is_heard() {
+fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(

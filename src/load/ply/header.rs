@@ -1,6 +1,6 @@
-//! The header of a PLY file: what elements follow, and what each consists of.
+//! Reads the header of a PLY file: which elements follow, and which properties each has.
 
-use crate::load::read_error::{Place, ReadError};
+use crate::load::read_error::{FilePosition, ReadError};
 use crate::load::text_lines::{Line, Lines, shown};
 
 /// How values are written.
@@ -11,7 +11,7 @@ pub enum Encoding {
     BigEndian,
 }
 
-/// What a number is in binary.
+/// The type of a number in a binary file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scalar {
     I8,
@@ -39,7 +39,7 @@ impl Scalar {
         })
     }
 
-    /// In bytes.
+    /// Returns the size in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -50,9 +50,9 @@ impl Scalar {
     }
 }
 
-/// A value, or a list of them behind their count.
+/// A single value, or a list of values after their count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum PropertyKind {
     One(Scalar),
     List { count: Scalar, item: Scalar },
 }
@@ -60,7 +60,7 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Property<'a> {
     pub name: &'a [u8],
-    pub kind: Kind,
+    pub kind: PropertyKind,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -71,12 +71,13 @@ pub struct Element<'a> {
 }
 
 impl Element<'_> {
-    /// The size in binary of one whose lists are all empty, in bytes; and whether it has no lists.
+    /// Returns the least size of one such element in a binary file, in bytes, with all its lists empty; and whether it
+    /// has no lists.
     pub fn least(&self) -> (u64, bool) {
         let size = |property: &Property| match property.kind {
-            Kind::One(scalar) | Kind::List { count: scalar, .. } => scalar.size() as u64,
+            PropertyKind::One(scalar) | PropertyKind::List { count: scalar, .. } => scalar.size() as u64,
         };
-        let fixed = self.properties.iter().all(|property| matches!(property.kind, Kind::One(_)));
+        let fixed = self.properties.iter().all(|property| matches!(property.kind, PropertyKind::One(_)));
         (self.properties.iter().map(size).sum(), fixed)
     }
 }
@@ -84,7 +85,7 @@ impl Element<'_> {
 pub struct Header<'a> {
     pub encoding: Encoding,
     pub elements: Vec<Element<'a>>,
-    /// What follows it.
+    /// The lines after the header.
     pub lines: Lines<'a>,
 }
 
@@ -95,16 +96,16 @@ pub struct Header<'a> {
 pub fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     let is_ply = bytes.get(..4).is_some_and(|start| start.starts_with(b"ply") && start[3].is_ascii_whitespace());
     if !is_ply {
-        return Err(Place::Everywhere.fault("it is no PLY: its first line isn't \"ply\""));
+        return Err(FilePosition::Everywhere.error("it isn't a PLY file: its first line isn't \"ply\""));
     }
-    // What follows in binary may have any byte in it.
+    // A binary file may have any bytes after the header, so the header's first line tells how its lines end.
     let of_old_macs = bytes[3] == b'\r' && bytes.get(4) != Some(&b'\n');
     let mut lines = Lines::ending(bytes, if of_old_macs { b'\r' } else { b'\n' });
     let (mut encoding, mut elements) = (None, Vec::new());
     lines.next()?;
     while let Some(line) = lines.next()? {
         let mut words = line.words();
-        let fault = |reason: String| line.place().fault(reason);
+        let fault = |reason: String| line.place().error(reason);
         match words.next() {
             None | Some(b"comment" | b"obj_info") => {}
             Some(b"format") => encoding = Some(format(words.next()).map_err(fault)?),
@@ -119,10 +120,10 @@ pub fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
                 let encoding = encoding.ok_or_else(|| fault("the header has no format".to_owned()))?;
                 return Ok(Header { encoding, elements, lines });
             }
-            Some(word) => return Err(fault(format!("{} is no statement of a header", shown(word)))),
+            Some(word) => return Err(fault(format!("{} isn't a statement of a PLY header", shown(word)))),
         }
     }
-    Err(Place::Line(lines.count()).fault("the file ends within its header"))
+    Err(FilePosition::Line(lines.count()).error("the file ends within its header"))
 }
 
 fn format(word: Option<&[u8]>) -> Result<Encoding, String> {
@@ -131,7 +132,7 @@ fn format(word: Option<&[u8]>) -> Result<Encoding, String> {
         Some(b"binary_little_endian") => Ok(Encoding::LittleEndian),
         Some(b"binary_big_endian") => Ok(Encoding::BigEndian),
         other => Err(format!(
-            "the format is {}, where ascii, binary_little_endian or binary_big_endian is expected",
+            "the format is {} instead of ascii, binary_little_endian or binary_big_endian",
             shown(other.unwrap_or_default())
         )),
     }
@@ -140,25 +141,25 @@ fn format(word: Option<&[u8]>) -> Result<Encoding, String> {
 fn element<'a>(line: &Line<'a>) -> Result<Element<'a>, String> {
     let mut words = line.words().skip(1);
     let (Some(name), Some(count), None) = (words.next(), words.next(), words.next()) else {
-        return Err("an element has a name and a count".to_owned());
+        return Err("an element needs a name and a number".to_owned());
     };
     let number = std::str::from_utf8(count).ok().and_then(|count| count.parse().ok());
-    let count = number.ok_or_else(|| format!("{} is no count of elements", shown(count)))?;
+    let count = number.ok_or_else(|| format!("{} isn't a number of elements", shown(count)))?;
     Ok(Element { name, count, properties: Vec::new() })
 }
 
 fn property<'a>(line: &Line<'a>) -> Result<Property<'a>, String> {
     let words: Vec<_> = line.words().skip(1).take(5).collect();
-    let scalar = |name| Scalar::named(name).ok_or_else(|| format!("{} is no type", shown(name)));
+    let scalar = |name| Scalar::named(name).ok_or_else(|| format!("{} isn't a type of numbers", shown(name)));
     match words[..] {
         [b"list", count, item, name] => {
             let (count, item) = (scalar(count)?, scalar(item)?);
             if matches!(count, Scalar::F32 | Scalar::F64) {
-                return Err("the count of a list is no whole number".to_owned());
+                return Err("the type of a list's count isn't a type of whole numbers".to_owned());
             }
-            Ok(Property { name, kind: Kind::List { count, item } })
+            Ok(Property { name, kind: PropertyKind::List { count, item } })
         }
-        [kind, name] => Ok(Property { name, kind: Kind::One(scalar(kind)?) }),
-        _ => Err("a property has a type and a name, or is a list of two types and a name".to_owned()),
+        [kind, name] => Ok(Property { name, kind: PropertyKind::One(scalar(kind)?) }),
+        _ => Err("a property needs a type and a name; a list needs two types and a name".to_owned()),
     }
 }

@@ -1,15 +1,15 @@
-//! Files as programs write them, in all three encodings.
+//! PLY files as programs write them, in all three encodings.
 
 use header::{Encoding, Scalar};
 
 use super::*;
-use crate::load::faces::tests::{POINTS, SIDES, assert_cube};
+use crate::load::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
-/// Numbers in one of the encodings.
+/// Writes numbers in one of the encodings.
 struct Writer {
     encoding: Encoding,
     bytes: Vec<u8>,
@@ -58,7 +58,7 @@ const SCALARS: [(Scalar, &str); 8] = [
     (Scalar::F64, "float64"),
 ];
 
-/// A cube of quadrilaterals, with whatever else a file may have.
+/// A cube of quads, with other elements and properties that a file may have.
 pub fn cube(encoding: usize, position: usize, index: usize) -> Vec<u8> {
     let ((encoding, format), (position, of_position), (index, of_index)) =
         (ENCODINGS[encoding], SCALARS[position], SCALARS[index]);
@@ -124,7 +124,7 @@ fn normals_and_texture_coordinates_of_every_name_are_read() {
         assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
         assert_eq!(mesh.warnings, ["normals whose length isn't 1, brought to it: 3."]);
     }
-    // Two coordinates make no normal.
+    // Two coordinates don't make a normal.
     let mesh = read(TRIANGLE.replace("float nz", "float confidence").as_bytes());
     assert_eq!(mesh.repairs.normals_made, 3);
 }
@@ -139,7 +139,7 @@ fn faces_may_come_before_their_vertices() {
     assert_eq!(**read(text.as_bytes()).triangles, [[0, 1, 2]]);
 }
 
-/// Six vertices in two rows, and strips of them.
+/// Six vertices in two rows, and triangle strips of them.
 pub fn strip(indices: &str) -> String {
     let count = indices.split(' ').count();
     format!(
@@ -164,7 +164,7 @@ fn strips_alternate_begin_anew_and_are_stitched() {
 }
 
 #[test]
-fn a_cancel_is_heard() {
+fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(super::read(cube(1, 6, 4), "", &Limits::default(), &progress), Err(ReadError::Cancelled(_))));

@@ -1,21 +1,22 @@
-//! The values behind the header of a PLY file, in text and in binary: one element after another.
+//! Reads the values after the header of a PLY file, in text and in binary.
 
-use super::header::{Element, Encoding, Header, Kind, Scalar};
-use crate::load::read_error::{Place, ReadError};
+use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
+use crate::load::read_error::{FilePosition, ReadError};
 use crate::load::text_lines::{Line, Lines, number, shown, words};
 
-/// Where the next value is.
+/// The position of the next value.
 #[derive(Clone)]
 pub struct Values<'a> {
     encoding: Encoding,
-    /// What isn't read yet; of text, after the line of the element.
+    /// The lines that haven't been read; of a text file, those after the current element's line.
     lines: Lines<'a>,
-    /// The element's line and what is left of it, in text.
+    /// In a text file, the current element's line.
     line: Line<'a>,
+    /// In a text file, the rest of the current line.
     left: &'a [u8],
-    /// Of binary, the same.
+    /// In a binary file, the bytes that haven't been read.
     bytes: &'a [u8],
-    /// The file's size.
+    /// The file's size, in bytes.
     size: usize,
 }
 
@@ -26,27 +27,27 @@ impl<'a> Values<'a> {
         Self { encoding: header.encoding, bytes: lines.rest(), lines, line, left: &[], size }
     }
 
-    /// Where it is.
-    pub fn place(&self) -> Place {
+    /// Returns the position of the next value, for messages.
+    pub fn place(&self) -> FilePosition {
         match self.encoding {
-            Encoding::Text => Place::Line(self.line.number),
-            _ => Place::Byte(self.size - self.bytes.len()),
+            Encoding::Text => FilePosition::Line(self.line.number),
+            _ => FilePosition::Byte(self.size - self.bytes.len()),
         }
     }
 
-    /// How much of the file has been read, 0 to 1.
+    /// Returns how much of the file has been read, 0 to 1.
     pub fn fraction(&self) -> f32 {
         let left = if self.encoding == Encoding::Text { self.lines.rest() } else { self.bytes };
         1.0 - left.len() as f32 / self.size as f32
     }
 
-    /// Whether so many elements can follow at all: before memory is taken for them.
+    /// Checks that the rest of the file is large enough for the number of elements, before memory is taken for them.
     ///
     /// # Errors
     /// [`ReadError::Broken`].
     pub fn check(&self, element: &Element) -> Result<(), ReadError> {
         let (left, least) = match self.encoding {
-            // A digit and what ends it; the last may have no end.
+            // A digit and a separator, which the last value may lack.
             Encoding::Text => (self.lines.rest().len() + 1, 2 * element.properties.len() as u64),
             _ => (self.bytes.len(), element.least().0),
         };
@@ -55,15 +56,16 @@ impl<'a> Values<'a> {
             return Ok(());
         }
         let Element { name, count, .. } = element;
-        let needed = needed.map_or("more than any file has".to_owned(), |needed| format!("at least {needed}"));
+        let needed =
+            needed.map_or("more bytes than any file has".to_owned(), |needed| format!("at least {needed} bytes"));
         let reason = format!(
-            "the header says {count} of element {}, which take {needed} bytes, and {left} are left",
+            "the header says that there are {count} elements {}, which take {needed}, but {left} bytes are left",
             shown(name)
         );
-        Err(self.place().fault(reason))
+        Err(self.place().error(reason))
     }
 
-    /// Leaves out all of an element, checked before.
+    /// Skips an element, for which [`check`](Self::check) has succeeded.
     ///
     /// # Errors
     /// [`ReadError::Broken`].
@@ -93,18 +95,18 @@ impl<'a> Values<'a> {
         Ok(())
     }
 
-    /// Leaves out one value or list.
+    /// Skips one value or list.
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn skip_one(&mut self, kind: Kind) -> Result<(), ReadError> {
+    pub fn skip_one(&mut self, kind: PropertyKind) -> Result<(), ReadError> {
         match kind {
-            Kind::One(scalar) => self.next(scalar).map(drop),
-            Kind::List { count, item } if self.encoding == Encoding::Text => {
+            PropertyKind::One(scalar) => self.next(scalar).map(drop),
+            PropertyKind::List { count, item } if self.encoding == Encoding::Text => {
                 let count = self.count(count, item)?;
                 (0..count).try_for_each(|_| self.next(item).map(drop))
             }
-            Kind::List { count, item } => {
+            PropertyKind::List { count, item } => {
                 let count = self.count(count, item)?;
                 self.bytes = self.bytes.get(count * item.size()..).unwrap_or_default();
                 Ok(())
@@ -112,7 +114,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Goes to the next element, which is number `i`: in text, to its line.
+    /// Goes to element number `i`: in a text file, to its line.
     ///
     /// # Errors
     /// [`ReadError::Broken`] at the end of the file.
@@ -127,10 +129,10 @@ impl<'a> Values<'a> {
             }
         }
         let Element { name, count, .. } = element;
-        Err(self.place().fault(format!("the file ends after {i} of {count} of element {}", shown(name))))
+        Err(self.place().error(format!("the file ends after {i} of {count} elements {}", shown(name))))
     }
 
-    /// Says so if there is more in the line of an element than it consists of.
+    /// Checks that the line of an element has no further values.
     ///
     /// # Errors
     /// [`ReadError::Broken`].
@@ -139,11 +141,11 @@ impl<'a> Values<'a> {
             return Ok(());
         }
         let (all, more) = (words(self.line.text).count(), words(self.left).count());
-        let reason = format!("the line has {all} numbers, and the element {} has {}", shown(element.name), all - more);
-        Err(self.place().fault(reason))
+        let reason = format!("the line has {all} numbers, but the element {} has {}", shown(element.name), all - more);
+        Err(self.place().error(reason))
     }
 
-    /// The next value.
+    /// Returns the next value.
     ///
     /// # Errors
     /// [`ReadError::Broken`].
@@ -173,7 +175,7 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// How many values a list has, which are all there.
+    /// Reads the number of values of a list, and checks that the rest of the file or line has as many.
     ///
     /// # Errors
     /// [`ReadError::Broken`].
@@ -181,7 +183,7 @@ impl<'a> Values<'a> {
         let place = self.place();
         let said = self.next(count)?;
         if said < 0.0 || said.fract() != 0.0 || !said.is_finite() {
-            return Err(place.fault(format!("a list has {} values", plain(said))));
+            return Err(place.error(format!("a list says that it has {} values", plain(said))));
         }
         let (left, needed) = match self.encoding {
             Encoding::Text => (words(self.left).count(), said),
@@ -189,7 +191,7 @@ impl<'a> Values<'a> {
         };
         if needed > left as f64 {
             let unit = if self.encoding == Encoding::Text { "are in its line" } else { "bytes are left" };
-            return Err(place.fault(format!("a list has {} values, and {left} {unit}", plain(said))));
+            return Err(place.error(format!("a list says that it has {} values, but {left} {unit}", plain(said))));
         }
         Ok(said as usize)
     }
@@ -198,24 +200,24 @@ impl<'a> Values<'a> {
         let (word, rest) = crate::load::text_lines::first_word(self.left);
         if word.is_empty() {
             let count = words(self.line.text).count();
-            return Err(self.place().fault(format!("the line has {count} numbers, and the element has more")));
+            return Err(self.place().error(format!("the line has {count} numbers, but the element has more")));
         }
         self.left = rest;
-        // Twice as many digits as a position has: indices are exact.
+        // Parsed as f64, so that indices are exact.
         let wide = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
-        wide.ok_or_else(|| self.place().fault(number(word).err().unwrap_or_default()))
+        wide.ok_or_else(|| self.place().error(number(word).err().unwrap_or_default()))
     }
 
     fn take<const N: usize>(&mut self) -> Result<[u8; N], ReadError> {
         let Some((value, rest)) = self.bytes.split_first_chunk() else {
             let left = self.bytes.len();
-            return Err(self.place().fault(format!("a value takes {N} bytes, and {left} are left")));
+            return Err(self.place().error(format!("a value takes {N} bytes, but {left} are left")));
         };
         self.bytes = rest;
         Ok(*value)
     }
 
-    /// How many bytes there are after the last element.
+    /// Returns how many bytes follow the last element.
     pub fn left_over(&self) -> usize {
         match self.encoding {
             Encoding::Text => self.lines.rest().trim_ascii().len(),
@@ -224,7 +226,7 @@ impl<'a> Values<'a> {
     }
 }
 
-/// A number fit for a message, whatever it is.
+/// Formats a number for a message.
 pub fn plain(x: f64) -> String {
     if x == 0.0 || (1e-3..1e15).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }

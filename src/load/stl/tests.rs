@@ -1,13 +1,13 @@
-//! Files as programs write them, and what tells text from binary.
+//! STL files as programs write them, and how text is told from binary.
 
 use super::*;
-use crate::load::faces::tests::{POINTS, assert_cube, triangles};
+use crate::load::face_builder::tests::{POINTS, assert_cube, triangles};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), "cube", &Limits::default(), &Progress::new()).unwrap()
 }
 
-/// A cube of which every normal is nonsense.
+/// A cube with wrong normals.
 pub fn text() -> String {
     let vertex = |point: usize| format!("vertex {} {} {}\n", POINTS[point][0], POINTS[point][1], POINTS[point][2]);
     let facet = |t: &[usize; 3]| {
@@ -57,7 +57,7 @@ fn a_binary_file_may_begin_with_solid() {
     for header in [&b"solid cube"[..], b"solid\0cube", b"SOLID"] {
         assert_cube(&read(&binary(header)));
     }
-    // Its size no longer gives it away, but its zeros do.
+    // Its size doesn't show that it is binary any more, but its zeros do.
     let longer = [binary(b"solid cube"), b"made by a test".to_vec()].concat();
     let mesh = read(&longer);
     assert_cube(&mesh);
@@ -73,7 +73,7 @@ fn text_without_an_end_is_read_with_a_warning() {
 }
 
 #[test]
-fn a_cancel_is_heard() {
+fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     for bytes in [text().into_bytes(), binary(b"")] {

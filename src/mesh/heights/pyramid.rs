@@ -1,4 +1,4 @@
-//! A height image as ever smaller ones, and what each of them loses.
+//! Builds the levels of a height map, and measures how much detail each level loses.
 
 use std::num::NonZero;
 
@@ -6,19 +6,21 @@ use super::{HeightMap, MAX_KEPT, MAX_LEVELS};
 use crate::progress::{Cancelled, Progress};
 
 impl HeightMap {
-    /// Of rows from the top. Sides of more than 4,096 px are made smaller first. What is no image is one black px.
+    /// Makes a map from the pixels of an image, row by row from the top. Sides of more than 4,096 px are scaled down.
+    /// If `size` doesn't fit the pixels, the map is one black pixel.
     pub fn new(size: [u32; 2], heights: Vec<f32>) -> Self {
         let width = size[0] as usize;
         let is_image = width > 0 && heights.len() == width * size[1] as usize && !heights.is_empty();
         let (size, width, heights) = if is_image { (size, width, heights) } else { ([1, 1], 1, vec![0.0]) };
-        // It fails only when it is cancelled, and this progress is nobody else's.
-        Self::build::<Cancelled>(size, &Progress::new(), rows_of(&heights, width)).expect("nobody cancels")
+        // The only possible error is cancellation, and no other code has this handle.
+        Self::build::<Cancelled>(size, &Progress::new(), rows_of(&heights, width)).expect("not cancelled")
     }
 
-    /// Of what `row` writes for each row, at least one, from the top on. Beside the map it takes a quarter as much again.
+    /// Makes a map from rows that `row` writes one by one, from the top (at least one). While it is built, the map
+    /// takes up to a quarter more memory.
     ///
     /// # Errors
-    /// Those of `row`, and [`Cancelled`] when `progress` says so.
+    /// The errors of `row`, and [`Cancelled`] when `progress` says so.
     pub(crate) fn build<E: From<Cancelled>>(
         size: [u32; 2],
         progress: &Progress,
@@ -26,13 +28,13 @@ impl HeightMap {
     ) -> Result<Self, E> {
         let fitted = size.map(|side| side.min(MAX_KEPT));
         let sizes: Vec<[u32; 2]> = std::iter::successors(Some(fitted), |&size| halved(size)).collect();
-        // Exactly: what grows step by step takes twice as much.
+        // Exactly as much as is needed: a list that grows may take twice as much.
         let mut heights = Vec::with_capacity(sizes.iter().map(|&size| px_of(size)).sum());
         let mut done = 0.9;
         shrink(size, fitted, &progress.part(0.0, done), row, &mut heights)?;
         let mut start = 0;
         for pair in sizes.windows(2) {
-            // Each has a quarter of the px of the one before.
+            // Each level has a quarter of the pixels of the one before.
             let end = done + 0.75 * (1.0 - done);
             let mut next = Vec::with_capacity(px_of(pair[1]));
             let rows = rows_of(&heights[start..], pair[0][0] as usize);
@@ -44,13 +46,14 @@ impl HeightMap {
         Ok(Self { size: fitted, levels: sizes.len() as u32, repeats: false, heights })
     }
 
-    /// Bytes that building a map of an image of this size takes, the map among them.
+    /// Returns how many bytes it takes to build a map from an image of this size, the map included.
     pub(crate) fn bytes_to_build(size: [u32; 2]) -> u64 {
-        // All levels are 4/3 of the first, and the second is made beside them.
+        // All levels together have 4/3 of the pixels of the first, and level 1 is made in a list of its own.
         px_of(size.map(|side| side.min(MAX_KEPT))) as u64 * 4 * 19 / 12 + (64 << 10)
     }
 
-    /// How far each level, linearly interpolated, is from level 0 at most; no less for a coarser level.
+    /// Returns, for each level, the greatest difference between that level, interpolated linearly, and level 0. The
+    /// difference never decreases from level to level.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
@@ -59,7 +62,7 @@ impl HeightMap {
         let part = |level: usize| (level as f32 - 1.0) / (self.levels.max(2) - 1) as f32;
         for level in 1..MAX_LEVELS {
             detail[level] = detail[level - 1];
-            // Beyond the last level nothing more is lost than there.
+            // Beyond the last level, the difference stays what it is there.
             if level < self.levels as usize {
                 let lost = lost_detail(self, level as u32, &progress.part(part(level), part(level + 1)))?;
                 detail[level] = detail[level].max(lost);
@@ -69,13 +72,14 @@ impl HeightMap {
     }
 }
 
-/// The px of one side that one px of a shorter one is made of, and their weights, whose sum is 1.
+/// The pixels of a longer row that one pixel of a shorter row is made from, with their weights, which add up to 1.
 struct Taps {
     first: usize,
     weights: Vec<f32>,
 }
 
-/// Of each px of a side that is made shorter, or stays as long: by a triangle as wide as two of the longer px.
+/// Returns the weights for scaling a row of `from` pixels down to `to` pixels, or leaving it as it is. The filter is a
+/// triangle with a width of two pixels of the shorter row.
 fn taps(from: u32, to: u32) -> Vec<Taps> {
     let ratio = from as f32 / to as f32;
     let of = |i: u32| {
@@ -95,12 +99,12 @@ fn px_of([width, height]: [u32; 2]) -> usize {
     width as usize * height as usize
 }
 
-/// The size of the level below, if there is one.
+/// Returns the size of the next level, if there is one.
 fn halved(size: [u32; 2]) -> Option<[u32; 2]> {
     (size != [1, 1]).then(|| size.map(|side| (side / 2).max(1)))
 }
 
-/// Writes one row after another of what is in memory.
+/// Returns a function that writes one row of an image in memory after another.
 fn rows_of<E>(px: &[f32], width: usize) -> impl FnMut(&mut [f32]) -> Result<(), E> {
     let mut rows = px.chunks_exact(width);
     move |out| {
@@ -111,8 +115,8 @@ fn rows_of<E>(px: &[f32], width: usize) -> impl FnMut(&mut [f32]) -> Result<(), 
     }
 }
 
-/// Appends an image made smaller, or as large, to `out`. `row` writes each of its rows, from the top on: no more of them is in
-/// memory than the row at hand, and what is made of it and its neighbours.
+/// Scales an image down, or leaves it as it is, and appends it to `out`. `row` writes each row of the image, from the
+/// top. Only one row of the image is in memory at a time.
 fn shrink<E: From<Cancelled>>(
     from: [u32; 2],
     to: [u32; 2],
@@ -133,7 +137,7 @@ fn shrink<E: From<Cancelled>>(
         for (narrow, taps) in narrow.iter_mut().zip(&columns) {
             *narrow = taps.weights.iter().zip(&own[taps.first..]).map(|(weight, own)| weight * own).sum();
         }
-        // Both ends of what a row is made of only grow.
+        // The first and the last source row of a row never decrease from row to row.
         first += rows[first..].iter().take_while(|taps| taps.first + taps.weights.len() <= y).count();
         for (taps, out) in rows[first..].iter().zip(out[first * width..].chunks_mut(width)) {
             let Some(weight) = y.checked_sub(taps.first).and_then(|at| taps.weights.get(at)) else { break };
@@ -143,7 +147,7 @@ fn shrink<E: From<Cancelled>>(
     Ok(())
 }
 
-/// Fills rows of this width on all processors.
+/// Fills an image of this width row by row, on all processors.
 fn by_rows(
     out: &mut [f32],
     width: usize,
@@ -170,8 +174,9 @@ fn by_rows(
     })
 }
 
-/// The largest difference between px of level 0 and level `level` interpolated there. Where interpolation goes over a
-/// repeating image's border it says nothing: many don't quite meet there.
+/// Returns the greatest difference between the pixels of level 0 and level `level`, interpolated there. Pixels of a
+/// repeating image beyond the last centre of the level are left out: the opposite borders of many images don't quite
+/// match.
 fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, Cancelled> {
     let [width, height] = map.size.map(|side| side as usize);
     let [across, down] = map.level_size(level).map(|side| side as usize);
@@ -193,8 +198,9 @@ fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, 
     Ok(lost.into_iter().fold(0.0, f32::max))
 }
 
-/// For each of `count` px of level 0 along one side, between which two of a level's `own` it lies, and how far from the
-/// first; none beyond the last of a repeating one.
+/// For each of `count` pixels of level 0 along an axis, returns the two of a level's `own` pixels that it lies between,
+/// and how far it lies from the first of them towards the second, 0 to 1. Returns none for pixels of a repeating image
+/// that lie outside the level's pixel centres.
 fn places(count: usize, own: usize, repeats: bool) -> Vec<Option<(usize, usize, f32)>> {
     let place = |i: usize| {
         let at = (i as f32 + 0.5) / count as f32 * own as f32 - 0.5;
@@ -215,12 +221,12 @@ mod tests {
         assert_eq!((map.size, map.levels), ([5, 2], 3));
         assert_eq!([0, 1, 2].map(|level| map.level_size(level)), [[5, 2], [2, 1], [1, 1]]);
         assert_eq!(map.heights.len(), 10 + 2 + 1);
-        // The last is about the mean.
+        // The last level is about the mean.
         assert!((map.heights[12] - 0.5).abs() < 0.1, "{}", map.heights[12]);
     }
 
     #[test]
-    fn what_is_no_image_is_one_black_pixel() {
+    fn invalid_images_become_one_black_pixel() {
         for bad in [HeightMap::new([0, 0], Vec::new()), HeightMap::new([3, 3], vec![1.0; 4])] {
             assert_eq!((bad.size, bad.heights.as_slice()), ([1, 1], &[0.0][..]));
         }
@@ -237,7 +243,7 @@ mod tests {
         for to in [[37, 23], [18, 11], [37, 1], [5, 23], [1, 1]] {
             let mut own = Vec::new();
             let rows = rows_of::<Cancelled>(&heights, 37);
-            shrink(size, to, &Progress::new(), rows, &mut own).expect("nobody cancels");
+            shrink(size, to, &Progress::new(), rows, &mut own).expect("not cancelled");
             let peer = resize(&image, to[0], to[1], FilterType::Triangle).into_raw();
             let farthest = own.iter().zip(&peer).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
             assert!(own.len() == peer.len() && farthest < 1e-5, "{to:?}: {farthest}");
@@ -245,16 +251,16 @@ mod tests {
     }
 
     #[test]
-    fn detail_is_the_most_that_any_pixel_is_off() {
+    fn detail_is_the_greatest_error_of_a_pixel() {
         let map = HeightMap::new([8, 8], (0..64).map(|i| if i == 27 { 1.0 } else { 0.0 }).collect());
-        let detail = map.detail(&Progress::new()).expect("nobody cancels");
-        // One px among 64 that is white: all but its own share is lost.
+        let detail = map.detail(&Progress::new()).expect("not cancelled");
+        // One white pixel among 64: the coarser levels lose all but its share in the mean.
         assert!(detail[1] > 0.5 && detail[3] > 0.9 && detail[12] == detail[3], "{detail:?}");
         assert!(detail.is_sorted());
     }
 
     #[test]
-    fn both_stop_when_told_to() {
+    fn building_and_measuring_can_be_cancelled() {
         let progress = Progress::new();
         let map = HeightMap::new([64, 64], vec![0.5; 4096]);
         progress.cancel();

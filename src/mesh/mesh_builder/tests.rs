@@ -1,9 +1,9 @@
-//! Corners shared, mended and put in order.
+//! Building meshes: corners are merged, repaired and put in order.
 
 use super::*;
 
-fn corner(x: f32, y: f32) -> LooseCorner {
-    LooseCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
+fn corner(x: f32, y: f32) -> InputCorner {
+    InputCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn only_missing_normals_are_made() {
     assert_eq!(mesh.repairs, Repairs { normals_made: 1, ..Repairs::default() });
 }
 
-fn one(corners: [LooseCorner; 3]) -> Mesh {
+fn one(corners: [InputCorner; 3]) -> Mesh {
     let mut builder = MeshBuilder::new();
     let material = builder.material(Material::plain("plain", [1.0; 4]));
     builder.triangle(material, corners);

@@ -29,26 +29,27 @@ fn keys_are_joined_as_their_interpolation_says() {
 
 #[test]
 fn cubic_splines_have_their_values_and_slopes() {
-    // In-tangent, value, out-tangent of two keys two seconds apart.
+    // The in-tangent, value and out-tangent of two key frames, two seconds apart.
     let spline = keys(&[1.0, 3.0], &[9.0, 1.0, 3.0, -2.0, 5.0, 9.0], 1, Interpolation::CubicSpline);
     let at = |time| sampled(&spline, time)[0];
     assert_eq!((at(1.0), at(3.0), at(0.0), at(7.0)), (1.0, 5.0, 1.0, 5.0));
     let step = 1e-6;
     assert!(((at(1.0 + step) - at(1.0)) / step - 3.0).abs() < 1e-4);
     assert!(((at(3.0) - at(3.0 - step)) / step + 2.0).abs() < 1e-4);
-    // Hermite's middle: the mean of the values and an eighth of the slopes' difference, times the step.
+    // The middle of a Hermite curve: the mean of the values, plus an eighth of the difference of the slopes times the
+    // duration.
     assert!((at(2.0) - (3.0 + 2.0 * (3.0 + 2.0) / 8.0)).abs() < 1e-12);
 }
 
 #[test]
 fn rotations_go_the_shorter_way() {
     let turn = |degrees: f64| DQuat::from_rotation_z(degrees.to_radians());
-    // The same turn of 90 degrees, with other signs: as numbers it is far away.
+    // The same rotation by 90 degrees with the opposite signs: its components are far away.
     let far = -turn(90.0);
     let values = [turn(0.0), far].map(|q| q.to_array().map(|x| x as f32));
     let found = keys(&[0.0, 1.0], values.as_flattened(), 4, Interpolation::Linear).rotation(0.5);
     assert!(found.angle_between(turn(45.0)) < 1e-6, "{found}");
-    // Evenly, which the mean of the numbers isn't.
+    // The rotation's speed is constant, which it would not be for the mean of the components.
     let third = keys(&[0.0, 1.0], values.as_flattened(), 4, Interpolation::Linear).rotation(1.0 / 3.0);
     assert!(third.angle_between(turn(30.0)) < 1e-6, "{third}");
     let zero = keys(&[0.0, 1.0], &[0.0; 8], 4, Interpolation::Linear).rotation(0.5);
@@ -62,16 +63,16 @@ fn a_loop_comes_back_to_its_start() {
     assert_eq!(Clip { duration: 0.0, ..clip }.looped(5.0), 0.0);
 }
 
-fn mover(parent: Option<u32>, x: f64) -> Mover {
+fn node(parent: Option<u32>, x: f64) -> AnimatedNode {
     let rest = Placement { translation: dvec3(x, 0.0, 0.0), ..Placement::default() };
-    Mover { parent, between: DMat4::from_translation(DVec3::Y), rest, is_joint: false }
+    AnimatedNode { parent, between: DMat4::from_translation(DVec3::Y), rest, is_joint: false }
 }
 
 fn channel(target: u32, property: Property, keys: Keys) -> Channel {
     Channel { target, property, keys }
 }
 
-/// Two nodes, one below the other, and two morph targets.
+/// Two nodes, the second below the first, and two morph targets.
 fn rig() -> Rig {
     let grow = keys(&[0.0, 1.0], &[1.0, 1.0, 1.0, 1e30, 1.0, 1.0], 3, Interpolation::Linear);
     let walk = keys(&[0.0, 1.0], &[0.0, 0.0, 0.0, 8.0, 0.0, 0.0], 3, Interpolation::Linear);
@@ -79,10 +80,10 @@ fn rig() -> Rig {
     let clip = |channels| Clip { name: "clip".to_owned(), duration: 1.0, channels };
     let bindings = vec![Binding { position: [1e10, 0.0, 0.0], ..Binding::default() }];
     Rig {
-        movers: vec![mover(None, 1.0), mover(Some(0), 2.0)],
+        nodes: vec![node(None, 1.0), node(Some(0), 2.0)],
         joints: vec![
-            Joint { mover: Some(1), offset: DMat4::from_translation(DVec3::Z) },
-            Joint { mover: None, offset: DMat4::IDENTITY },
+            Joint { node: Some(1), offset: DMat4::from_translation(DVec3::Z) },
+            Joint { node: None, offset: DMat4::IDENTITY },
         ],
         morphs: vec![Morph { first_weight: 0, rest: vec![0.25, 0.75] }],
         clips: vec![
@@ -100,7 +101,7 @@ fn place(matrix: &JointMatrix) -> [f32; 3] {
 }
 
 #[test]
-fn a_pose_moves_what_hangs_on_what_moves() {
+fn a_pose_moves_nodes_and_their_children() {
     let rig = rig();
     let rest = rig.rest();
     assert_eq!((place(&rest.palette[0]), place(&rest.palette[1])), ([3.0, 2.0, 1.0], [0.0; 3]));
@@ -109,11 +110,11 @@ fn a_pose_moves_what_hangs_on_what_moves() {
     assert_eq!((place(&pose.palette[0]), place(&pose.palette[1])), ([6.0, 2.0, 1.0], [0.0; 3]));
     assert_eq!(pose.weights, [0.5, 0.5]);
     assert_eq!(rig.pose(Moment { clip: 7, time: 0.5 }), rest, "no such clip");
-    assert_eq!(rig.moved(&rig.clips[0]), Moved { joints: 0, nodes: 1, targets: 2 });
+    assert_eq!(rig.animated_counts(&rig.clips[0]), AnimatedCounts { joints: 0, nodes: 1, targets: 2 });
 }
 
 #[test]
-fn what_would_leave_f32_rests() {
+fn poses_beyond_f32_become_the_rest_pose() {
     let rig = rig();
     assert_ne!(rig.pose(Moment { clip: 1, time: 1e-9 }), rig.rest());
     assert_eq!(rig.pose(Moment { clip: 1, time: 1.0 }), rig.rest());
@@ -126,7 +127,7 @@ fn clips_of_one_name_are_told_apart_by_number() {
     let rig = Rig { clips: clips.map(clip).to_vec(), ..Rig::default() };
     let found = ["run", "run#1", "run#3", "run#4", "run#", "walk", "WALK", "walk#1"].map(|name| rig.clip(name));
     assert_eq!(found, [Some(0), Some(0), Some(5), None, None, Some(1), None, Some(1)]);
-    // A name of its own comes first.
+    // A clip whose name is exactly this comes first.
     assert_eq!(rig.clip("run#2"), Some(3));
     let found: Vec<_> = (0..clips.len()).map(|index| rig.clip(&rig.clip_name(index))).collect();
     assert_eq!(found, [0, 1, 3, 3, 4, 5].map(Some), "all but one that another clip is called");

@@ -1,4 +1,4 @@
-//! A vase of bicubic Bézier patches: the one shape that is made as modellers make theirs.
+//! A vase of bicubic Bézier patches, as modelling programs make them.
 
 use std::f64::consts::TAU;
 
@@ -7,16 +7,17 @@ use glam::{DVec3, Vec2};
 use super::{corner, quad};
 use crate::mesh::Corner;
 
-/// 4 by 4 control points: the first index runs around the vase, the second up.
+/// 4 by 4 control points. The first index runs around the vase, the second one upwards.
 pub(crate) type BezierNet = [[DVec3; 4]; 4];
 
-/// Patches around and up.
+/// The number of patches around the vase.
 const AROUND: usize = 5;
+/// The number of patches from bottom to top.
 const UP: usize = 3;
-/// Quads along a patch's side at level 0.
+/// The number of quads along a patch's side at level 0.
 const CELLS: usize = 2;
 
-/// Rings of a cubic spline's control points: height, radius, and how far the ring is moved to the right.
+/// The rings of control points of the cubic spline: height, radius, and how far the ring is moved along +X.
 const RINGS: [[f64; 3]; UP + 3] = [
     [-1.15, 0.62, 0.02],
     [-0.75, 0.55, 0.0],
@@ -25,12 +26,12 @@ const RINGS: [[f64; 3]; UP + 3] = [
     [0.7, 0.42, 0.1],
     [1.15, 0.8, 0.16],
 ];
-/// What a ring's radius is multiplied by from column to column, so that no two sides are alike.
+/// The factor of a ring's radius at each column, which makes all sides different.
 const LOBES: [f64; AROUND] = [1.0, 0.88, 1.1, 0.94, 1.06];
-/// Turn from one ring to the next, in turns.
+/// The rotation from one ring to the next, in turns.
 const TWIST: f64 = 0.02;
 
-/// Control point of the spline; columns repeat.
+/// Returns a control point of the spline. Columns repeat.
 fn control_point(column: usize, row: usize) -> DVec3 {
     let [height, radius, aside] = RINGS[row];
     let (sin, cos) = (TAU * (column as f64 / AROUND as f64 + TWIST * row as f64)).sin_cos();
@@ -38,8 +39,8 @@ fn control_point(column: usize, row: usize) -> DVec3 {
     DVec3::new(out * sin + aside, height, out * cos)
 }
 
-/// The patches, those of a column one after another upwards. Neighbours share position, tangents and curvature, since all
-/// are pieces of one uniform cubic spline.
+/// Returns the patches column by column, each from bottom to top. Neighbours share position, tangents and curvature,
+/// since all are pieces of one uniform cubic spline.
 pub(crate) fn patches() -> Vec<BezierNet> {
     let patch = |column: usize, row: usize| {
         let rows = [0, 1, 2, 3].map(|i| piece([0, 1, 2, 3].map(|j| control_point(column + i, row + j))));
@@ -49,12 +50,12 @@ pub(crate) fn patches() -> Vec<BezierNet> {
     (0..AROUND).flat_map(|column| (0..UP).map(move |row| patch(column, row))).collect()
 }
 
-/// The Bézier control points of the piece of a uniform cubic spline that four of its control points govern.
+/// Returns the Bézier control points of the piece of a uniform cubic spline that depends on these four control points.
 fn piece([a, b, c, d]: [DVec3; 4]) -> [DVec3; 4] {
     [(a + 4.0 * b + c) / 6.0, (2.0 * b + c) / 3.0, (b + 2.0 * c) / 3.0, (b + 4.0 * c + d) / 6.0]
 }
 
-/// Position and the derivatives by `u` (around) and `v` (up) that its normal is made of.
+/// Returns the position and the derivatives by `u` (around) and `v` (up), whose cross product is the normal.
 pub(crate) fn at(net: &BezierNet, u: f64, v: f64) -> [DVec3; 3] {
     let sum = |by_u: [f64; 4], by_v: [f64; 4]| {
         (0..4).map(|i| by_u[i] * (0..4).map(|j| by_v[j] * net[i][j]).sum::<DVec3>()).sum()
@@ -63,19 +64,19 @@ pub(crate) fn at(net: &BezierNet, u: f64, v: f64) -> [DVec3; 3] {
     [sum(at_u, at_v), sum(along_u, at_v), sum(at_u, along_v)]
 }
 
-/// Bernstein's cubics.
+/// Returns the cubic Bernstein polynomials at t.
 pub(crate) fn weights(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [s * s * s, 3.0 * s * s * t, 3.0 * s * t * t, t * t * t]
 }
 
-/// Their derivatives.
+/// Returns the derivatives of the cubic Bernstein polynomials at t.
 pub(crate) fn slopes(t: f64) -> [f64; 4] {
     let s = 1.0 - t;
     [-3.0 * s * s, 3.0 * s * (s - 2.0 * t), 3.0 * t * (2.0 * s - t), 3.0 * t * t]
 }
 
-/// Quads sampled from the patches.
+/// Samples the patches at quads.
 pub(super) fn vase(level: u32) -> Vec<[Corner; 3]> {
     let patches = patches();
     let cells = CELLS << level;

@@ -7,9 +7,9 @@ use glam::{Vec2, Vec3};
 use super::{corner, quad};
 use crate::mesh::Corner;
 
-/// Half a cube's side; its corners lie about one unit from the centre.
+/// Half of a cube's side, which puts its corners about 1 object unit from the centre.
 const HALF: f32 = 0.6;
-/// Radii of the ellipsoid along x, y and z.
+/// The radii of the ellipsoid along x, y and z.
 pub(crate) const ELLIPSOID: Vec3 = Vec3::new(1.0, 0.6, 0.8);
 
 pub(super) fn cube_split() -> Vec<[Corner; 3]> {
@@ -38,7 +38,7 @@ fn cube(normal: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<[Corner; 3]> {
     (0..3).flat_map(|k| [face(axes[k], axes[(k + 1) % 3]), face(-axes[k], axes[(k + 1) % 3])]).flatten().collect()
 }
 
-/// The icosahedron with each triangle cut into four `levels` times, points pushed out to the unit sphere.
+/// Returns the icosahedron with each triangle cut into four `levels` times, and all points moved to the unit sphere.
 pub(super) fn icosphere(levels: u32) -> Vec<[Corner; 3]> {
     let (mut points, mut triangles) = icosahedron();
     for _ in 0..levels {
@@ -49,13 +49,13 @@ pub(super) fn icosphere(levels: u32) -> Vec<[Corner; 3]> {
     triangles.into_iter().map(|triangle| triangle.map(at)).collect()
 }
 
-/// The icosphere stretched, with the normals of the ellipsoid that it lies on.
+/// Returns the icosphere, scaled along its axes, with the normals of the ellipsoid.
 pub(super) fn ellipsoid(levels: u32) -> Vec<[Corner; 3]> {
     let stretched = |c: Corner| corner(c.position * ELLIPSOID, c.position / ELLIPSOID, c.uv);
     icosphere(levels).into_iter().map(|triangle| triangle.map(stretched)).collect()
 }
 
-/// Four triangles for one. `middles` remembers each edge's middle point, so that neighbours share it.
+/// Cuts a triangle into four. `middles` remembers the middle point of each edge, so that neighbours share it.
 fn cut([a, b, c]: [usize; 3], points: &mut Vec<Vec3>, middles: &mut HashMap<[usize; 2], usize>) -> [[usize; 3]; 4] {
     let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(|[i, j]| {
         *middles.entry([i.min(j), i.max(j)]).or_insert_with(|| {
@@ -66,7 +66,7 @@ fn cut([a, b, c]: [usize; 3], points: &mut Vec<Vec3>, middles: &mut HashMap<[usi
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
 }
 
-/// Poles on the Y axis and two rings of five between them.
+/// Returns the icosahedron: two poles on the Y axis, and two rings of five points between them.
 fn icosahedron() -> (Vec<Vec3>, Vec<[usize; 3]>) {
     let height = 0.2_f32.sqrt();
     let ring = |k: usize, y: f32, turn: f32| {

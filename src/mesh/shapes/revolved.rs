@@ -7,16 +7,19 @@ use glam::{Vec2, Vec3};
 use super::{corner, quad};
 use crate::mesh::Corner;
 
-/// Sides of cylinder and cone at level 0, when slopes and caps are one row.
+/// The number of sides of cylinder and cone at level 0, where sides and caps have one row.
 const SIDES: usize = 12;
-/// Radius of cylinder and cone, and half their height.
+/// The radius of cylinder and cone.
 pub(crate) const RADIUS: f32 = 0.6;
+/// Half of the height of cylinder and cone.
 pub(crate) const HALF_HEIGHT: f32 = 0.75;
-/// Radius of the circle in the middle of the torus's tube, and the tube's.
+/// The radius of the circle in the middle of the torus's tube.
 pub(crate) const MAJOR: f32 = 0.7;
+/// The radius of the torus's tube.
 pub(crate) const MINOR: f32 = 0.3;
 
-/// The direction of column i of n around Y, from +Z towards +X; column n is column 0 to the last bit.
+/// Returns the direction of column i of n around the Y axis, from +Z towards +X. Column n equals column 0 to the last
+/// bit.
 fn around(i: usize, n: usize) -> Vec3 {
     let (sin, cos) = (TAU * (i % n) as f32 / n as f32).sin_cos();
     Vec3::new(sin, 0.0, cos)
@@ -53,7 +56,7 @@ pub(super) fn cylinder(level: u32) -> Vec<[Corner; 3]> {
 
 pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
     let (sides, rows) = (SIDES << level, 1 << level);
-    // The slope's normal: perpendicular to the line from the apex to the rim.
+    // The normal of a side: at right angles to the line from the apex to the base circle.
     let normal = |out: Vec3| out * (2.0 * HALF_HEIGHT) + Vec3::Y * RADIUS;
     let slope = |i: usize, j: usize| {
         let v = fraction(j, rows);
@@ -61,7 +64,7 @@ pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
         corner(position, normal(around(i, sides)), Vec2::new(fraction(i, sides), v))
     };
     let side = |i: usize| {
-        // Seen from the apex a side has one direction: that of its middle, half a column on.
+        // At the apex, a side has the normal of its middle, half a column farther.
         let apex = corner(
             Vec3::Y * HALF_HEIGHT,
             normal(around(2 * i + 1, 2 * sides)),
@@ -74,12 +77,12 @@ pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
     (0..sides).flat_map(side).chain(cap(-HALF_HEIGHT, level)).collect()
 }
 
-/// Column i of `sides` on a circle around Y.
+/// Returns column i of `sides` on a circle around the Y axis.
 fn ring(i: usize, sides: usize, radius: f32) -> Vec3 {
     around(i, sides) * radius
 }
 
-/// A disc around a middle point, facing away from the shape's centre.
+/// Returns a disc around the Y axis that faces away from the shape's centre.
 fn cap(y: f32, level: u32) -> impl Iterator<Item = [Corner; 3]> {
     let (sides, rows) = (SIDES << level, 1 << level);
     let normal = Vec3::Y * y;

@@ -1,4 +1,4 @@
-//! Saddle and Möbius strip: open patches.
+//! Saddle and Möbius strip: open surfaces.
 
 use std::f32::consts::{PI, TAU};
 
@@ -7,11 +7,11 @@ use glam::{Vec2, Vec3};
 use super::{corner, quad};
 use crate::mesh::Corner;
 
-/// Quads along each side of the saddle at level 0.
+/// The number of quads along each side of the saddle at level 0.
 const CELLS: usize = 6;
-/// Half the side of the saddle's square.
+/// Half of the side of the saddle's square.
 pub(crate) const SADDLE_HALF: f32 = 0.8;
-/// Quads along and across the Möbius strip.
+/// The number of quads along and across the Möbius strip.
 const LENGTH: usize = 24;
 const WIDTH: usize = 2;
 
@@ -27,7 +27,7 @@ pub(super) fn saddle(level: u32) -> Vec<[Corner; 3]> {
 
 pub(super) fn moebius() -> Vec<[Corner; 3]> {
     let node = |i: usize, j: usize| {
-        // The last column is the first one upside down: the same positions to the last bit, normals flipped.
+        // The last column is the first one upside down: the same positions to the last bit, with opposite normals.
         let (column, row, flip) = if i == LENGTH { (0, WIDTH - j, -1.0) } else { (i, j, 1.0) };
         let uv = Vec2::new(i as f32 / LENGTH as f32, j as f32 / WIDTH as f32);
         let turn = TAU * column as f32 / LENGTH as f32;
@@ -38,11 +38,11 @@ pub(super) fn moebius() -> Vec<[Corner; 3]> {
     grid(LENGTH, WIDTH, node)
 }
 
-/// Position and normal at an angle around the Y axis and a distance from the middle line, which has radius 0.7.
+/// Returns position and normal at an angle around the Y axis and a distance from the middle line, which has radius 0.7.
 fn moebius_at(turn: f32, across: f32) -> (Vec3, Vec3) {
     let out = Vec3::new(turn.sin(), 0.0, turn.cos());
     let along = Vec3::new(turn.cos(), 0.0, -turn.sin());
-    // Half a twist a turn.
+    // Half a twist in one turn.
     let (sin, cos) = (turn * PI / TAU).sin_cos();
     let rung = out * cos + Vec3::Y * sin;
     let rung_change = (Vec3::Y * cos - out * sin) / 2.0 + along * cos;
@@ -50,7 +50,8 @@ fn moebius_at(turn: f32, across: f32) -> (Vec3, Vec3) {
     (out * 0.7 + rung * across, rung.cross(ahead))
 }
 
-/// A grid of quads; the node (i, j) lies at column i, row j, and rows run to the left of columns seen from outside.
+/// Returns a grid of quads. `node(i, j)` lies at column i and row j; seen from outside, row numbers increase to the
+/// left of the direction in which column numbers increase.
 fn grid(columns: usize, rows: usize, node: impl Fn(usize, usize) -> Corner) -> Vec<[Corner; 3]> {
     let mut triangles = Vec::with_capacity(2 * columns * rows);
     for i in 0..columns {

@@ -85,9 +85,9 @@ fn edges_are_of_the_expected_kinds() {
     assert_eq!(counts(Shape::CubeSmooth), EdgeCounts { smooth: 18, ..none });
     assert_eq!(counts(Shape::Icosphere), EdgeCounts { smooth: 120, ..none });
     assert_eq!(counts(Shape::Torus), EdgeCounts { smooth: 384 - 24, seam: 24, ..none });
-    // Two rims of 12 creases, one seam down the wall.
+    // Two circles of 12 creases, and one seam along the side.
     assert_eq!(counts(Shape::Cylinder), EdgeCounts { smooth: 72 - 25, split: 24, seam: 1, ..none });
-    // The rim, and the 12 slopes whose sides disagree at the apex.
+    // The base circle, and the 12 edges between sides, whose normals differ at the apex.
     assert_eq!(counts(Shape::Cone), EdgeCounts { smooth: 12, split: 24, ..none });
     assert_eq!(counts(Shape::Saddle), EdgeCounts { smooth: 96, boundary: 24, ..none });
     assert_eq!(counts(Shape::Moebius), EdgeCounts { smooth: 118, split: 2, boundary: 48, ..none });
@@ -134,7 +134,8 @@ fn boundary_loops(topology: &Topology) -> usize {
 fn every_level_of_every_shape_fits_into_what_a_load_may_take() {
     for shape in Shape::ALL.into_iter().filter(|shape| shape.has_levels()) {
         let mesh = shape.build_at(1);
-        // Each level has four times as many of all; with its topology a mesh takes 92 bytes a triangle where all corners are shared.
+        // Each level has four times as much of everything. With its topology, a mesh whose corners are all shared takes
+        // 92 bytes a triangle.
         let (times, corners) =
             (4_usize.pow(MAX_LEVEL - 1), 68 * mesh.corners.len().saturating_sub(mesh.triangles.len() / 2));
         let bytes = times * (92 * mesh.triangles.len() + corners);

@@ -1,54 +1,58 @@
-//! Chains of open edges beside another one, as where a curved surface changes its density.
+//! Finds chains of boundary edges beside another boundary edge, as where a curved surface changes its density.
 
 use glam::DVec3;
 
-use super::line::Line;
+use super::line_segment::LineSegment;
 use super::{TRIES, corners, open_edges};
 use crate::mesh::{Edge, Topology};
 
-/// How far from the straight edge a chain's points may lie, as a part of its length.
+/// The greatest distance of a chain's points from the straight edge, as a part of its length.
 const WIDTH: f64 = 1.0 / 8.0;
 
-/// How high the edge's triangle and the chain's must be at least, and how far beyond the edge the third corners of the
-/// latter, as a part of its length: more than what rounding makes of a sliver, or of a corner on the edge.
+/// The least height of the triangles of the edge and of the chain, and the least distance beyond the edge of the third
+/// corners of the chain's triangles, as parts of the edge's length. It is more than rounding makes of a sliver, or of a
+/// corner on the edge.
 const HEIGHT: f64 = 1e-3;
 
-/// Steps that are taken for each boundary edge on average. A mesh's chains have no more edges than its boundary, and
-/// at most 32 others are tried at each point: more is edges on top of each other, where trying all would be quadratic.
+/// The number of search steps for each boundary edge on average. A mesh's chains have no more edges than its boundary,
+/// and at most 32 other edges are tried at each point. A mesh that needs more steps is a heap of edges on top of each
+/// other, where trying all would take quadratic time.
 const STEPS: usize = 64;
 
-/// All boundary edges, by their points.
-pub(super) struct Chains<'a> {
+/// All boundary edges by their points, and the state of a search.
+pub(super) struct ChainSearch<'a> {
     topology: &'a Topology,
-    /// For each point and one more, where its links start.
+    /// Where the links of each point start, and the end of the last.
     starts: Vec<u32>,
     links: Vec<Link>,
-    /// For each point, the last edge whose search came there.
+    /// For each point, the last edge whose search reached it.
     seen: Vec<u32>,
+    /// The path that is being searched.
     path: Vec<Step>,
     steps_left: usize,
 }
 
-/// A boundary edge as it is seen from one of its points.
+/// A boundary edge, seen from one of its points.
 #[derive(Clone, Copy, Debug, Default)]
 struct Link {
+    /// The point at its other end.
     to: u32,
     patch: u32,
-    /// The third corner's point of its triangle.
+    /// The point of the third corner of its triangle.
     third: u32,
 }
 
-/// A point of a chain in the making.
+/// A point on the path that is being searched.
 #[derive(Clone, Copy, Debug)]
 struct Step {
     point: u32,
-    /// Where along the edge it lies.
+    /// The point's position along the edge, 0 to 1.
     t: f64,
     /// How many of its links have been tried.
     tried: usize,
 }
 
-impl<'a> Chains<'a> {
+impl<'a> ChainSearch<'a> {
     pub fn new(topology: &'a Topology) -> Self {
         let mut starts = vec![0; topology.points.len() + 1];
         let mut open = 0;
@@ -69,19 +73,19 @@ impl<'a> Chains<'a> {
         }
     }
 
-    /// Adds the points inside the first chain found beside an edge, if there is one.
+    /// Adds the points inside the first chain that is found beside an edge, if there is one.
     pub fn find(&mut self, number: u32, edge: &Edge, points: &mut Vec<u32>) {
-        let Some(beside) = Beside::of(self.topology, edge) else { return };
-        if self.walk(number, &beside) && self.is_no_leaf() {
+        let Some(coarse) = CoarseEdge::of(self.topology, edge) else { return };
+        if self.walk(number, &coarse) && self.is_no_leaf() {
             points.extend(self.path.iter().skip(1).map(|step| step.point));
         }
     }
 
-    /// Looks for a chain: `path` then holds its points but the last. Depth first; whether a link may follow another
-    /// depends on the point between them only, so no point need be visited twice.
-    fn walk(&mut self, number: u32, beside: &Beside) -> bool {
+    /// Searches for a chain, depth first; `path` then holds its points except the last. Whether a link may follow
+    /// another depends only on the point between them, so no point is visited twice.
+    fn walk(&mut self, number: u32, coarse: &CoarseEdge) -> bool {
         self.path.clear();
-        self.path.push(Step { point: beside.ends[0], t: 0.0, tried: 0 });
+        self.path.push(Step { point: coarse.ends[0], t: 0.0, tried: 0 });
         while let Some(step) = self.path.last_mut() {
             let from = *step;
             let Some(&link) = links_at(&self.starts, &self.links, from.point).get(from.tried) else {
@@ -93,8 +97,8 @@ impl<'a> Chains<'a> {
             }
             self.steps_left -= 1;
             step.tried += 1;
-            let Some(t) = beside.follows(self.topology, &from, &link) else { continue };
-            if link.to == beside.ends[1] {
+            let Some(t) = coarse.follows(self.topology, &from, &link) else { continue };
+            if link.to == coarse.ends[1] {
                 return true;
             }
             if self.seen[link.to as usize] != number {
@@ -105,7 +109,7 @@ impl<'a> Chains<'a> {
         false
     }
 
-    /// Whether no triangle of the path has its third corner on the path.
+    /// Returns whether the third corner of each triangle on the path lies off the path.
     fn is_no_leaf(&self) -> bool {
         let mut points: Vec<_> = self.path.iter().map(|step| step.point).collect();
         points.sort_unstable();
@@ -114,7 +118,7 @@ impl<'a> Chains<'a> {
     }
 }
 
-/// The boundary edges of every point, in their order.
+/// Returns the boundary edges of every point, point by point.
 fn links(topology: &Topology, starts: &[u32]) -> Vec<Link> {
     let mut links = vec![Link::default(); starts.last().map_or(0, |&end| end as usize)];
     let mut next = starts.to_vec();
@@ -130,55 +134,56 @@ fn links(topology: &Topology, starts: &[u32]) -> Vec<Link> {
     links
 }
 
-/// The first few of a point's links.
+/// Returns the first few links of a point.
 fn links_at<'a>(starts: &[u32], links: &'a [Link], point: u32) -> &'a [Link] {
     let [start, end] = [point, point + 1].map(|point| starts[point as usize] as usize);
     &links[start..end.min(start + TRIES)]
 }
 
-/// The point of the boundary edge's triangle that isn't the edge's.
+/// Returns the point of a boundary edge's triangle that isn't on the edge.
 fn third(topology: &Topology, edge: &Edge) -> u32 {
     let [a, b] = topology.edge_points(edge);
     corners(topology, edge).into_iter().find(|point| ![a, b].contains(point)).unwrap_or(a)
 }
 
-/// An edge, and what may run beside it.
-struct Beside {
-    line: Line,
+/// An edge that chains are searched beside.
+struct CoarseEdge {
+    line: LineSegment,
     length: f64,
     ends: [u32; 2],
     patch: u32,
     third: u32,
-    /// From the edge to its triangle's third corner, at right angles to it, of length 1.
+    /// The unit direction from the edge to the third corner of its triangle, at right angles to the edge.
     side: DVec3,
 }
 
-impl Beside {
-    /// Nothing for an edge whose triangle is a sliver over it.
+impl CoarseEdge {
+    /// Returns none for an edge whose triangle is a sliver.
     fn of(topology: &Topology, edge: &Edge) -> Option<Self> {
-        let (line, third) = (Line::of(topology, edge), third(topology, edge));
+        let (line, third) = (LineSegment::of(topology, edge), third(topology, edge));
         let up = line.across(topology.points[third as usize].as_dvec3());
         let (length, height) = (line.length(), up.length());
         let patch = topology.sides[edge.first_side as usize].patch();
-        let beside = Self { line, length, ends: topology.edge_points(edge), patch, third, side: up / height };
-        (height > HEIGHT * length).then_some(beside)
+        let coarse = Self { line, length, ends: topology.edge_points(edge), patch, third, side: up / height };
+        (height > HEIGHT * length).then_some(coarse)
     }
 
-    /// Where along the edge a link ends, if it goes on from a step in a chain.
+    /// Returns the position along the edge, 0 to 1, where a link ends, if the link can continue the chain.
     fn follows(&self, topology: &Topology, from: &Step, link: &Link) -> Option<f64> {
         if link.patch == self.patch || link.to == self.third {
             return None;
         }
         let at = |point: u32| topology.points[point as usize].as_dvec3();
-        // Exactly 1 at the end, where rounding would let points lie beyond it.
+        // Exactly 1 at the end; rounding could put points of the chain beyond it.
         let (t, distance) = if link.to == self.ends[1] { (1.0, 0.0) } else { self.line.project(at(link.to)) };
         let onwards = t > from.t && (t < 1.0 || link.to == self.ends[1]) && distance <= WIDTH * self.length;
-        let line = Line { ends: [at(from.point), at(link.to)] };
+        let line = LineSegment { ends: [at(from.point), at(link.to)] };
         (onwards && self.is_opposite(&line, link.third, at(link.third))).then_some(t)
     }
 
-    /// Whether a triangle over a link of the chain lies on the other side of the edge than the edge's own.
-    fn is_opposite(&self, link: &Line, third: u32, place: DVec3) -> bool {
+    /// Returns whether the triangle at a link of the chain lies on the other side of the edge than the edge's own
+    /// triangle.
+    fn is_opposite(&self, link: &LineSegment, third: u32, place: DVec3) -> bool {
         let depth = (self.line.ends[0] - place).dot(self.side);
         let height = -link.across(place).dot(self.side);
         !self.ends.contains(&third) && depth.min(height) > HEIGHT * self.length

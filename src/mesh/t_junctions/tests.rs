@@ -3,9 +3,9 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::mesh::shapes::Shape;
-use crate::mesh::{Corner, Mesh, joins};
+use crate::mesh::{Corner, Mesh, weld_previews};
 
-/// Triangles over corners at these places.
+/// Makes triangles with corners at these positions.
 fn mesh(places: &[Vec3], triangles: &[[u32; 3]]) -> Mesh {
     let corner = |&position: &Vec3| Corner { position, normal: Vec3::Z, uv: Vec2::ZERO };
     Mesh { corners: places.iter().map(corner).collect(), triangles: triangles.to_vec().into(), ..Mesh::default() }
@@ -19,7 +19,8 @@ fn found(topology: &Topology) -> Vec<TJunction> {
     t_junctions(topology, &Progress::new()).unwrap()
 }
 
-/// Two columns of quads that meet at x = 1: one quad high on the left, `parts` on the right, over `scale` units.
+/// Two columns of quads that meet at x = 1: one quad on the left, and `parts` above each other on the right, both
+/// `scale` units high.
 fn strip(parts: u32, scale: f32) -> Topology {
     let mut places = vec![Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(1.0, 1.0, 0.0)];
     let mut triangles = vec![[0, 2, 3], [0, 3, 1]];
@@ -68,8 +69,8 @@ fn shapes_have_none() {
     assert_eq!(found(&topology(&square, &[[0, 1, 2], [0, 1, 2]])), [], "duplicates close each other");
 }
 
-/// A triangle whose edge runs from 0 to 1 along x, and one whose tip is at `tip`. The bounding diagonal is about 3, the
-/// tolerance 3e-5.
+/// A triangle with an edge from 0 to 1 along x, and one with a corner at `tip`. The bounding diagonal is about 3, so
+/// the tolerance is about 3e-5.
 fn touched(tip: Vec3) -> Vec<TJunction> {
     let places =
         [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 2.0, 0.0), tip, Vec3::new(0.4, -0.2, 2.0), Vec3::new(0.6, -0.2, 2.0)];
@@ -77,7 +78,7 @@ fn touched(tip: Vec3) -> Vec<TJunction> {
 }
 
 #[test]
-fn near_misses_are_none() {
+fn near_misses_are_not_t_junctions() {
     let hit = touched(Vec3::new(0.25, 0.0, 0.0));
     assert_eq!((hit.len(), hit[0].point, hit[0].t, hit[0].distance), (1, 3, 0.25, 0.0));
     let near = touched(Vec3::new(0.25, -2e-5, 0.0));
@@ -93,7 +94,8 @@ fn near_misses_are_none() {
     assert_eq!(touched(Vec3::X), [], "a shared point");
 }
 
-/// A patch of a cylinder of 6 by 6 quads in two halves, the second moved along the seam by a part of the diagonal.
+/// A part of a cylinder with 6 by 6 quads in two halves. The second half is moved along the seam by a part of the
+/// diagonal.
 fn cut_cylinder(part: f32) -> Mesh {
     let at = |i: u32, j: u32| {
         let (sin, cos) = (i as f32 / 4.0).sin_cos();
@@ -116,7 +118,7 @@ fn a_seam_that_a_weld_tolerance_closes_has_none() {
         let mesh = cut_cylinder(part);
         let topology = Topology::build(&mesh, &Progress::new()).unwrap();
         assert_eq!(found(&topology), [], "moved by {part}");
-        let joins = joins(&mesh, None, &Progress::new()).unwrap();
+        let joins = weld_previews(&mesh, None, &Progress::new()).unwrap();
         assert!(joins.iter().any(|join| (join.edges, join.collapsed) == (12, 0)), "moved by {part}: {joins:?}");
     }
     let halfway = cut_cylinder(0.0625);
@@ -128,16 +130,16 @@ fn the_tolerance_itself_counts() {
     // An edge of length 1 along x, and a point that no edge uses.
     let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.0, 1.0, 0.5), Vec3::ONE / 4.0];
     let topology = topology(&places, &[[0, 1, 2]]);
-    let straight = Straight::new(&topology);
-    let (near, weld) = (straight.tolerance, straight.welds[5]);
+    let on_edges = PointsOnEdges::new(&topology);
+    let (near, weld) = (on_edges.tolerance, on_edges.welds[5]);
     assert!((near - 1.5e-5).abs() < 1e-9 && (weld - 1.5e-2).abs() < 1e-6);
     let edge = &topology.edges[0];
-    let inside = |x: f64, y: f64| straight.is_inside(edge, &Line::of(&topology, edge), 3, DVec3::new(x, y, 0.0));
+    let inside = |x: f64, y: f64| on_edges.is_inside(edge, &LineSegment::of(&topology, edge), 3, DVec3::new(x, y, 0.0));
     assert!(inside(0.5, near) && !inside(0.5, near.next_up()));
     assert!(!inside(weld, 0.0) && inside(weld.next_up(), 0.0));
 }
 
-/// A triangle over an edge of length 1, and one below whose side runs along it from `x` for `length`.
+/// A triangle over an edge of length 1, and one below it with a side along that edge from `x`, `length` long.
 fn lapped(x: f32, length: f32) -> usize {
     let tips = [Vec3::X * x, Vec3::X * (x + length), Vec3::new(x, -1.0, 0.0)];
     let [a, b, c] = tips;
@@ -146,7 +148,7 @@ fn lapped(x: f32, length: f32) -> usize {
 
 #[test]
 fn what_a_weld_would_collapse_is_no_near_miss() {
-    // The diagonal is about 2.2: tolerances of 2.2e-3 and 2.2e-2.
+    // The diagonal is about 2.2, so two of the tolerances are 2.2e-3 and 2.2e-2.
     assert_eq!(lapped(0.001, 0.4), 1, "only the far end lies inside");
     assert_eq!(lapped(0.001, 0.005), 1, "as a weld of 2.2e-3 moves ends by less than half the side");
     assert_eq!(lapped(0.001, 0.004), 2, "which would collapse");
@@ -154,7 +156,7 @@ fn what_a_weld_would_collapse_is_no_near_miss() {
 }
 
 #[test]
-fn a_slivers_own_corner_is_none() {
+fn a_slivers_own_corner_is_not_a_t_junction() {
     let places = [Vec3::ZERO, Vec3::X, Vec3::new(0.5, 1e-7, 0.0)];
     assert_eq!(found(&topology(&places, &[[0, 1, 2]])), []);
 }
@@ -166,9 +168,10 @@ fn a_long_edge_along_many_short_ones() {
     assert!(found.windows(2).all(|pair| pair[0].t < pair[1].t));
 }
 
-/// Many loose triangles from an apex to a rim: long edges that all meet, and points on one spot or along a line.
-fn loose_fan(n: u32, rim: impl Fn(u32) -> Vec3) -> Topology {
-    let places: Vec<_> = (0..n).flat_map(|i| [Vec3::ZERO, rim(2 * i), rim(2 * i + 1)]).collect();
+/// Many triangles from an apex to `base` that share no corners. Their long edges meet at the apex, and their other
+/// points lie in one place or along a line.
+fn loose_fan(n: u32, base: impl Fn(u32) -> Vec3) -> Topology {
+    let places: Vec<_> = (0..n).flat_map(|i| [Vec3::ZERO, base(2 * i), base(2 * i + 1)]).collect();
     let triangles: Vec<_> = (0..n).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     topology(&places, &triangles)
 }
@@ -185,15 +188,15 @@ fn long_edges_and_crowded_spots_stay_fast() {
 #[test]
 fn a_fan_of_300_000_triangles() {
     let n = 300_000;
-    let rim = |i: u32| Vec2::from((i as f32 * 2e-5).sin_cos()).extend(0.0);
-    let places: Vec<_> = (0..=n).map(|i| if i == n { Vec3::Z } else { rim(i) }).collect();
+    let base = |i: u32| Vec2::from((i as f32 * 2e-5).sin_cos()).extend(0.0);
+    let places: Vec<_> = (0..=n).map(|i| if i == n { Vec3::Z } else { base(i) }).collect();
     let triangles: Vec<_> = (0..n - 1).map(|i| [n, i, i + 1]).collect();
     assert_eq!(found(&topology(&places, &triangles)).len(), 0);
 }
 
 #[test]
 fn edges_on_top_of_each_other_are_cut_off() {
-    // Every triangle's edge from 0 to x = i passes all lower points.
+    // Each triangle's edge from 0 to x = i passes all points before it.
     let n = 3_000;
     let triangles: Vec<_> = (0..n).map(|i| [0, i + 1, n + 1 + i]).collect();
     let above = (0..n).map(|i| Vec3::new(0.0, 1.0, i as f32));
@@ -202,16 +205,16 @@ fn edges_on_top_of_each_other_are_cut_off() {
 }
 
 #[test]
-fn a_cancel_is_heard() {
+fn cancelling_stops_the_work() {
     let progress = Progress::new();
     let topology = strip(3, 1.0);
     progress.cancel();
     assert_eq!(t_junctions(&topology, &progress), Err(Cancelled));
 }
 
-/// All boundary edges against all boundary points.
+/// Tests all boundary edges against all boundary points.
 fn slow(topology: &Topology) -> Vec<(u32, u32)> {
-    let straight = Straight::new(topology);
+    let on_edges = PointsOnEdges::new(topology);
     let open = || open_edges(topology);
     let at = |point: u32| topology.points[point as usize].as_dvec3();
     let mut found = Vec::new();
@@ -219,8 +222,8 @@ fn slow(topology: &Topology) -> Vec<(u32, u32)> {
         let mut points: Vec<u32> = open().flat_map(|(_, other)| topology.edge_points(other)).collect();
         points.sort_unstable();
         points.dedup();
-        let line = Line::of(topology, edge);
-        points.retain(|&point| straight.is_inside(edge, &line, point, at(point)));
+        let line = LineSegment::of(topology, edge);
+        points.retain(|&point| on_edges.is_inside(edge, &line, point, at(point)));
         found.extend(points.into_iter().map(|point| (i, point)));
     }
     found
@@ -228,22 +231,22 @@ fn slow(topology: &Topology) -> Vec<(u32, u32)> {
 
 proptest! {
     #[test]
-    fn the_tree_finds_what_trying_all_finds(
+    fn the_tree_finds_the_same_as_a_slow_search(
         places in prop::collection::vec((prop::array::uniform3(-3_i8..4), -3_i8..4), 3..40),
         triangles in prop::collection::vec(prop::array::uniform3(0_usize..40), 1..30),
     ) {
-        // Whole places, so that many lie on edges, moved by about the tolerance.
+        // Whole coordinates, so that many positions lie on edges, moved by about the tolerance.
         let places: Vec<_> = places
             .iter()
             .map(|&(place, off)| Vec3::from(place.map(f32::from)) + Vec3::Y * (3e-5 * f32::from(off)))
             .collect();
         let triangles: Vec<_> = triangles.iter().map(|t| t.map(|i| (i % places.len()) as u32)).collect();
         let topology = topology(&places, &triangles);
-        let straight = Straight::new(&topology);
+        let on_edges = PointsOnEdges::new(&topology);
         let mut found = Vec::new();
         for (i, edge) in open_edges(&topology) {
             let mut points = Vec::new();
-            straight.find(edge, &mut points);
+            on_edges.find(edge, &mut points);
             points.sort_unstable();
             found.extend(points.into_iter().map(|point| (i, point)));
         }

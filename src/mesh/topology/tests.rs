@@ -7,7 +7,7 @@ use super::*;
 use crate::mesh::Material;
 use crate::mesh::shapes::Shape;
 
-/// A mesh whose corner i lies at (i, i * i, 0); `corners` repeats points by giving their number.
+/// A mesh whose point i lies at (i, i * i, 0). `corners` holds the point of each corner.
 fn mesh(corners: &[u32], triangles: &[[u32; 3]]) -> Mesh {
     let corner = |&point: &u32| Corner {
         position: Vec3::new(point as f32, (point * point) as f32, 0.0),
@@ -32,7 +32,7 @@ fn points_of_edges(topology: &Topology) -> Vec<[u32; 2]> {
     topology.edges.iter().map(|edge| topology.edge_points(edge)).collect()
 }
 
-/// What must hold for every topology.
+/// Checks what must hold for every topology.
 fn check(mesh: &Mesh, topology: &Topology) {
     assert_eq!(topology.sides.len(), 3 * topology.patches.len());
     assert_eq!(topology.patches.len() + topology.degenerate as usize, mesh.triangles.len());
@@ -129,19 +129,19 @@ fn a_fan_of_300_000_triangles() {
         normal: Vec3::Z,
         uv: Vec2::ZERO,
     };
-    // The apex once as the lowest point, once as the highest.
+    // The apex is the lowest point in one mesh, and the highest in the other.
     for apex in [0, n + 1] {
         let mut corners: Vec<_> = (1..=n + 1).map(corner).collect();
         corners.insert(apex as usize, corner(0));
-        let rim = |i: u32| if apex == 0 { i + 1 } else { i };
-        let triangles: Vec<_> = (0..n).map(|i| [apex, rim(i), rim(i + 1)]).collect();
+        let base = |i: u32| if apex == 0 { i + 1 } else { i };
+        let triangles: Vec<_> = (0..n).map(|i| [apex, base(i), base(i + 1)]).collect();
         let topology = build(&Mesh { corners, triangles: triangles.into(), ..Mesh::default() });
         let counts = topology.edge_counts();
         assert_eq!((counts.smooth, counts.boundary), (n - 1, n + 2));
     }
 }
 
-/// A mesh of two triangles that share an edge but for a gap along x.
+/// Two triangles that would share an edge but for a gap along x.
 fn split_square(scale: f32, gap: f32) -> Mesh {
     let mut mesh = mesh(&[0, 1, 2, 3, 4, 5], &[[0, 1, 2], [3, 4, 5]]);
     let at = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 0.0], [1.0 + gap, 1.0], [0.0, 1.0]];
@@ -178,7 +178,7 @@ fn triangles_that_the_tolerance_flattens_are_degenerate() {
 }
 
 #[test]
-fn a_cancel_is_heard() {
+fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(Topology::build(&Shape::Torus.build(), &progress).is_err());
@@ -213,7 +213,7 @@ proptest! {
         let mesh = mesh(&points, &triangles);
         let topology = build(&mesh);
         check(&mesh, &topology);
-        // The same edges, the slow way.
+        // Counts the same edges with a simple, slow method.
         let mut uses: HashMap<[u32; 2], u32> = HashMap::new();
         for patch in 0..topology.patches.len() as u32 {
             let p = topology.patch_points(patch);

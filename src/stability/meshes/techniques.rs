@@ -5,9 +5,9 @@ use std::sync::Arc;
 use glam::{DMat4, Vec2, Vec3, vec3};
 
 use super::{corner, mesh, triangles};
-use crate::mesh::mesh_builder::LooseCorner;
+use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::rig::{
-    Binding, Channel, Clip, Delta, Interpolation, Joint, Keys, Morph, Mover, Placement, Property, Reach,
+    AnimatedNode, Binding, Channel, Clip, Delta, Interpolation, Joint, Keys, Morph, Placement, Property, Reach,
 };
 use crate::mesh::{Corner, HeightMap, Heights, Mesh, Rig, Shape};
 
@@ -62,7 +62,7 @@ pub fn height_seams() -> Mesh {
     let triangles = triangles(Shape::Torus).into_iter().map(|(_, corners)| {
         let shift =
             if corners.iter().map(quarter).max().unwrap_or(0) % 2 == 0 { Vec2::ZERO } else { Vec2::new(0.37, 0.21) };
-        corners.map(|c| LooseCorner { uv: c.uv + shift, ..LooseCorner::from(c) })
+        corners.map(|c| InputCorner { uv: c.uv + shift, ..InputCorner::from(c) })
     });
     displaced(mesh(triangles))
 }
@@ -93,9 +93,9 @@ pub fn moving() -> Mesh {
         rig.deltas.push(Delta { position: swell.to_array(), weight: 0, ..Delta::default() });
         rig.alike.push(0);
     }
-    let mover = |parent| Mover { parent, between: DMat4::IDENTITY, rest: Placement::default(), is_joint: true };
-    rig.movers = vec![mover(None), mover(Some(0))];
-    rig.joints = [0, 1].map(|mover| Joint { mover: Some(mover), offset: DMat4::IDENTITY }).to_vec();
+    let node = |parent| AnimatedNode { parent, between: DMat4::IDENTITY, rest: Placement::default(), is_joint: true };
+    rig.nodes = vec![node(None), node(Some(0))];
+    rig.joints = [0, 1].map(|node| Joint { node: Some(node), offset: DMat4::IDENTITY }).to_vec();
     rig.morphs = vec![Morph { first_weight: 0, rest: vec![0.0] }];
     let keys = |values: &[f32], width| Keys {
         times: vec![0.0, 1.0, 2.0],

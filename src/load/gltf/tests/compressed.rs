@@ -1,15 +1,15 @@
-//! Extensions that are read: compressed buffer views, in every mode and with every filter, by data that meshoptimizer's own
-//! encoders made; quantised attributes; texture coordinates that are transformed.
+//! Extensions that are read: compressed buffer views in every mode and with every filter, from meshoptimizer's own
+//! encoders; quantised attributes; and transformed texture coordinates.
 
 use ::meshopt as encoder;
 
 use super::*;
 use crate::load::gltf::schema::MESHOPT;
 
-/// Points along a side of the grid.
+/// The number of points along a side of the grid.
 const SIDE: u16 = 9;
 
-/// A draft whose views may be compressed: into buffer 0, with a fallback that has no data as buffer 1.
+/// Adds a view that is compressed in buffer 0, with the fallback buffer 1, which has no data.
 fn add(draft: &mut Draft, bytes: &[u8], stride: usize, length: usize, mode: &str, filter: &str) -> usize {
     let plain = draft.view(bytes);
     let view = draft.root["bufferViews"].as_array_mut().unwrap().remove(plain);
@@ -32,7 +32,7 @@ fn accessor(draft: &mut Draft, view: usize, component: u32, kind: &str, count: u
     draft.push("accessors", accessor)
 }
 
-/// With the buffer for those who can't decompress.
+/// Adds the fallback buffer.
 fn finish(draft: &mut Draft) {
     draft.root["extensionsRequired"] = json!([MESHOPT, "KHR_mesh_quantization"]);
     draft.fallback = Some(json!({ "byteLength": 1 << 20, "extensions": { MESHOPT: { "fallback": true } } }));
@@ -72,7 +72,7 @@ fn a_compressed_grid_is_the_plain_one() {
     let mesh = grid().read().unwrap();
     let corner = |i: u32| corners()[i as usize];
     let expected: Vec<_> = triangles().into_iter().map(corner).map(|[x, y, z, _]| [x, y, z].map(f32::from)).collect();
-    // The codec may turn a triangle round, not over.
+    // The encoder may rotate a triangle's corners, but not flip it.
     let turned = |at: &[[f32; 3]]| -> Vec<[[f32; 3]; 3]> {
         let least = |t: [[f32; 3]; 3]| {
             (0..3).map(|k| [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]).reduce(|a, b| if a < b { a } else { b })

@@ -7,7 +7,7 @@ use super::*;
 use crate::load::{LoadError, load};
 use crate::progress::Cancelled;
 
-/// A triangle whose material wears an image.
+/// A triangle whose material has an image.
 fn textured(image: Value) -> Draft {
     let mut draft = triangle();
     let uvs = draft.floats("VEC2", &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
@@ -63,7 +63,7 @@ fn missing_and_broken_textures_are_warnings() {
     assert!(elsewhere.read().unwrap().warnings[0].contains("texture 0 has no PNG or JPEG"));
 }
 
-/// A folder of this test's own, removed at the end.
+/// A folder for one test, which is removed at the end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -117,7 +117,7 @@ fn files_that_are_named_have_the_same_limit() {
     std::fs::write(folder.0.join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
     let load = |file| load(&path, &Limits { file, ..Limits::default() }, &Progress::new());
     let said = load(own).unwrap_err().to_string();
-    let expected = format!("data.bin has {} bytes, and {own} are read at most", own + data);
+    let expected = format!("data.bin has {} bytes, but at most {own} are read", own + data);
     assert!(said.contains("/buffers/0 (data.bin) can't be read") && said.contains(&expected), "{said}");
     let mesh = load(own + data).unwrap();
     let said = mesh.warnings.first().unwrap();

@@ -1,7 +1,8 @@
-//! Copies of documents with bits flipped, ends cut off, bytes swapped and numbers replaced: each a mesh or a sentence, within
-//! a second.
+//! Copies of documents with flipped bits, cut ends, swapped bytes and replaced numbers. Each must give a mesh or an
+//! error, within a second.
 //!
-//! `PNAEN_MUTATIONS=10000` tries so many; `PNAEN_MUTATE=a.glb:b.gltf` those files too, each read where it lies.
+//! `PNAEN_MUTATIONS=10000` tries that many copies; `PNAEN_MUTATE=a.glb:b.gltf` also tries these files, each in its own
+//! folder.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -11,15 +12,15 @@ use super::*;
 use crate::load::Format;
 use crate::load::hostile_files::{Random, named_files, time};
 
-/// Copies that every run of the tests tries.
+/// The number of copies in every run of the tests.
 const COPIES: usize = 300;
-/// What a number in the JSON becomes.
+/// The numbers that replace a number of the JSON.
 const NUMBERS: [&str; 8] =
     ["0", "-1", "2147483648", "4294967295", "4611686018427387904", "18446744073709551615", "1e308", "0.5"];
-/// Longer files would make all others wait.
+/// The greatest length of a file; longer files would take too much of the time.
 const LONGEST: usize = 16 << 20;
 
-/// A document, and where it lies.
+/// A document and its folder.
 struct Subject {
     name: String,
     bytes: Vec<u8>,
@@ -54,7 +55,7 @@ fn subjects() -> Vec<Subject> {
     subjects
 }
 
-/// Small documents that fuzzers start from: the target, a name, and the bytes.
+/// Returns small documents for fuzzers to start from: the target, a name, and the bytes.
 pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     let drafts = [
         ("triangle", triangle()),
@@ -70,7 +71,7 @@ pub fn seeds() -> Vec<(&'static str, String, Vec<u8>)> {
     drafts.into_iter().flat_map(both).collect()
 }
 
-/// A triangle with a skin, a morph target, a strip of indices and sparse values: something of everything.
+/// A triangle with a skin, a morph target, a strip of indices and sparse values.
 fn rich() -> Draft {
     let mut draft = triangle();
     let (places, indices) = (draft.view(&[2]), draft.indices(&[0, 1, 2]));
@@ -94,7 +95,7 @@ fn rich() -> Draft {
     draft
 }
 
-/// Where the JSON lies.
+/// Returns the range of the JSON.
 fn json_of(bytes: &[u8]) -> std::ops::Range<usize> {
     if glb::is_glb(bytes) { glb::parts(bytes).map_or(0..0, |parts| parts.json) } else { 0..bytes.len() }
 }
@@ -109,7 +110,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
         match random.below(8) {
             0 => bytes[random.below(length)] ^= 1 << random.below(8),
             1 => {
-                // Half of the cuts are near the end, where most is read before.
+                // Half of the cuts are near the end, after most of the document.
                 let cut = if random.below(2) == 0 { random.below(length) } else { random.below(64).min(length) };
                 bytes.truncate(length - cut);
             }
@@ -125,7 +126,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Replaces a number of the JSON; the lengths of a `.glb` stay true.
+/// Replaces a number of the JSON; the lengths in a `.glb` stay correct.
 fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
     let json = json_of(bytes);
     let is_start = |i: usize| bytes[i].is_ascii_digit() && matches!(bytes[i - 1], b':' | b',' | b'[' | b' ');
@@ -154,7 +155,7 @@ fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
 fn mutations_become_a_mesh_or_a_sentence() {
     let copies = std::env::var("PNAEN_MUTATIONS").ok().and_then(|count| count.parse().ok()).unwrap_or(COPIES);
     let subjects = subjects();
-    // Of documents that Draco packed hardly a changed copy is one still, so that they are counted apart.
+    // Nearly all changed copies of documents with Draco data are refused, so they are counted separately.
     let (mut meshes, mut packed, mut others, mut slowest) = (0, 0, 0, Duration::ZERO);
     for copy in 0..copies {
         let subject = &subjects[copy % subjects.len()];

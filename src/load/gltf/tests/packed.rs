@@ -1,28 +1,30 @@
-//! Primitives that Draco compressed, by data that the library's own encoder made: both ways of coding, every attribute that is
-//! read, and documents that have the same data beside.
+//! Primitives that are compressed with Draco, by the crate's own encoder: both encoding methods, every attribute that
+//! is read, and documents that also have uncompressed data.
 
 use draco_core::{
-    DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh as Packed, MeshEncoder, PointAttribute,
+    DataType, EncoderBuffer, EncoderOptions, GeometryAttributeType as Kind, Mesh as DracoExtension, MeshEncoder,
+    PointAttribute,
 };
 
 use super::*;
 use crate::load::gltf::schema::DRACO;
 
-/// Squares along a side of the grid.
+/// The number of squares along a side of the grid.
 const SIDE: u16 = 8;
 
-/// Whether vertices keep their order.
+/// The order of the vertices in the compressed data.
 #[derive(Clone, Copy, Debug, PartialEq)]
+/// The order before compression.
 pub enum Order {
     Kept,
-    /// As edges lead from one to the next.
+    /// The order in which the encoder visits them, from edge to edge.
     Walked,
 }
 
-/// Vertices and triangles, to be compressed.
+/// Vertices and triangles to compress.
 #[derive(Default)]
 pub struct Stream {
-    mesh: Packed,
+    mesh: DracoExtension,
     vertices: usize,
     options: EncoderOptions,
     pub ids: Vec<u32>,
@@ -30,7 +32,7 @@ pub struct Stream {
 
 impl Stream {
     pub fn new(vertices: usize, triangles: &[[u32; 3]], order: Order) -> Self {
-        let (mut mesh, mut options) = (Packed::new(), EncoderOptions::new());
+        let (mut mesh, mut options) = (DracoExtension::new(), EncoderOptions::new());
         mesh.set_num_points(vertices);
         mesh.try_set_num_faces(triangles.len()).unwrap();
         triangles.iter().enumerate().for_each(|(i, triangle)| mesh.set_face_from_indices(i, *triangle));
@@ -38,7 +40,7 @@ impl Stream {
         Self { mesh, vertices, options, ids: Vec::new() }
     }
 
-    /// So many numbers a vertex. Floats are kept to so many bits, or as they are.
+    /// Adds an attribute of `width` numbers a vertex. Floats keep this number of bits, or all of them.
     pub fn attribute(&mut self, kind: Kind, width: u8, data: DataType, bytes: &[u8], bits: Option<i32>) {
         let mut attribute = PointAttribute::new();
         attribute.init(kind, width, data, false, self.vertices);
@@ -62,7 +64,7 @@ fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// An accessor that has nothing but what it says.
+/// Adds an accessor without data.
 fn accessor(draft: &mut Draft, component: u32, kind: &str, count: usize) -> usize {
     draft.push("accessors", json!({ "componentType": component, "type": kind, "count": count }))
 }
@@ -78,7 +80,7 @@ fn corners() -> Vec<[u16; 3]> {
     (0..next * next).map(|i| [i % next * 100, i / next * 100, i * i % 7]).collect()
 }
 
-/// A grid of whole positions, normals that all say the same, and texture coordinates.
+/// A grid with integer positions, equal normals, and texture coordinates.
 pub fn grid(order: Order) -> Draft {
     let (corners, triangles) = (corners(), triangles());
     let mut stream = Stream::new(corners.len(), &triangles, order);
@@ -102,7 +104,8 @@ pub fn grid(order: Order) -> Draft {
     draft
 }
 
-/// Triangles from their least corner on, in order: a codec may turn them round, not over, and bring them in any order.
+/// Rotates each triangle to its least corner and sorts them: an encoder may rotate triangles but not flip them, and may
+/// change their order.
 fn sorted(at: &[[f32; 3]]) -> Vec<[[f32; 3]; 3]> {
     let least = |t: &[[f32; 3]; 3]| {
         (0..3).map(|k| [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]).reduce(|a, b| if a < b { a } else { b })
@@ -130,7 +133,7 @@ fn a_packed_grid_is_the_plain_one() {
 
 #[test]
 fn seams_cut_what_is_packed() {
-    // Two triangles that share an edge, whose texture coordinates don't.
+    // Two triangles that share an edge, with different texture coordinates.
     let at = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let uvs = [0.0, 0.0, 0.25, 0.0, 0.0, 0.25, 0.5, 0.5, 0.75, 0.75, 1.0, 1.0];
     let mut stream = Stream::new(6, &[[0, 1, 2], [3, 4, 5]], Order::Walked);
@@ -158,9 +161,10 @@ fn seams_cut_what_is_packed() {
     }
 }
 
-/// A cube of side 1 with texture coordinates that part at every edge, by Google's own encoder (1.5.7, level 10, 11 bits).
+/// A cube of side 1 whose texture coordinates differ at every edge, from Google's own encoder (1.5.7, level 10, 11
+/// bits).
 #[test]
-fn what_the_reference_packs_is_read() {
+fn data_from_googles_encoder_is_read() {
     let mut draft = Draft::new();
     let view = draft.view(include_bytes!("cube.drc"));
     let (uv, position) = (accessor(&mut draft, 5126, "VEC2", 24), accessor(&mut draft, 5126, "VEC3", 24));
@@ -180,7 +184,7 @@ fn what_the_reference_packs_is_read() {
     });
     assert!((volume.sum::<f32>() - 1.0).abs() < 1e-4);
     for corner in &mesh.corners {
-        // Sides lie beside one another in the image: which one, and where on it.
+        // The sides of the cube are next to each other in the image. This computes which side it is, and where on it.
         let side = (0..6).find(|i| corner.normal[i / 2] == [-1.0, 1.0][i % 2]).expect("a normal along an axis");
         let on = [(side / 2 + 1) % 3, (side / 2 + 2) % 3].map(|axis| corner.position[axis]);
         let uv = Vec2::new(side as f32 / 8.0 + on[0] / 8.0, on[1] / 4.0);
@@ -188,11 +192,11 @@ fn what_the_reference_packs_is_read() {
     }
 }
 
-/// A triangle that a joint lifts by one, compressed with its joints and weights, whose morph target isn't.
+/// A triangle that a joint lifts by one, compressed with its joints and weights. Its morph target isn't compressed.
 pub fn skinned() -> Draft {
     let mut stream = Stream::new(3, &[[0, 1, 2]], Order::Kept);
     stream.attribute(Kind::Position, 3, DataType::Float32, &floats(TRIANGLE.as_flattened()), None);
-    // Wider than its accessor says, as some exporters write them.
+    // With more bits than the accessor says, as some exporters write them.
     let joints: Vec<u8> = [1_u16, 0, 0, 0].repeat(3).into_iter().flat_map(u16::to_le_bytes).collect();
     stream.attribute(Kind::Generic, 4, DataType::Uint16, &joints, None);
     let weights = [255_u8, 0, 0, 0].repeat(3);
@@ -240,7 +244,7 @@ fn data_beside_are_read_unless_draco_is_required() {
 }
 
 #[test]
-fn one_mesh_on_many_nodes_and_one_that_nobody_shows() {
+fn one_mesh_on_many_nodes_and_a_hidden_one() {
     let mut draft = grid(Order::Walked);
     let mut broken = draft.root["meshes"][0].clone();
     broken["primitives"][0]["extensions"][DRACO]["attributes"] = json!({});

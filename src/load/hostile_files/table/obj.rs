@@ -1,6 +1,6 @@
 //! OBJ.
 
-use super::Gets::{Mended, Refused};
+use super::Gets::{Refused, Repaired};
 use super::{Case, case};
 use crate::load::hostile_files::Format::Obj;
 
@@ -13,128 +13,45 @@ macro_rules! obj {
 
 pub fn cases() -> Vec<Case> {
     vec![
-        case(Obj, "", Refused("no triangles: it has no vertices")),
-        (
-            Obj,
-            vec![0xff; 1000].into(),
-            Refused("no triangles: it has no vertices, and 1 statements that OBJ doesn't have"),
-        ),
-        obj!(
-            "p 1 2 3\n",
-            Refused(
-                "no triangles: it holds 3 positions, 3 points (p), 0 lines (l), and 0 free-form curves and surfaces"
-            )
-        ),
-        obj!(
-            "l 1 2\nl 2 3\n",
-            Refused(
-                "no triangles: it holds 3 positions, 0 points (p), 2 lines (l), and 0 free-form curves and surfaces"
-            )
-        ),
-        obj!(
-            "surf 0 1 0 1 1 2 3\n",
-            Refused(
-                "no triangles: it holds 3 positions, 0 points (p), 0 lines (l), and 1 free-form curves and surfaces"
-            )
-        ),
-        obj!(
-            "f 1 2\nf 1\nf\n",
-            Refused(
-                "no triangles: it holds 3 positions, 0 points (p), 0 lines (l), and 0 free-form curves and surfaces, and 3 faces of fewer than 3 corners"
-            )
-        ),
-        obj!("f 1 2 9\n", Refused("line 4: the face uses position 9, and there are 3; export the model again")),
-        obj!(
-            "f 1 2 0\n",
-            Refused("line 4: the face uses position 0, and they are counted from 1; export the model again")
-        ),
-        obj!(
-            "f 1 2 -4\nv 1 1 1\n",
-            Refused("line 4: the face uses position -4, and 3 are above it; export the model again")
-        ),
-        obj!(
-            "f 1 2 4611686018427387904\n",
-            Refused("line 4: the face uses position 4611686018427387904, and there are 3; export the model again")
-        ),
-        obj!(
-            "f 1 2 -9223372036854775808\n",
-            Refused("line 4: the face uses position -9223372036854775808, and 3 are above it; export the model again")
-        ),
-        obj!(
-            "f 1 2 99999999999999999999\n",
-            Refused("line 4: \"99999999999999999999\" is no number of a position; export the model again")
-        ),
-        obj!(
-            "vn 0 0 1\nf 1//9223372036854775807 2 3\n",
-            Refused("line 5: the face uses normal 9223372036854775807, and there are 1; export the model again")
-        ),
-        obj!(
-            "f 1/1 2 3\n",
-            Refused("line 4: the face uses texture coordinate 1, and there are 0; export the model again")
-        ),
-        obj!(
-            "f 1/2/3/4 2 3\n",
-            Refused("line 4: \"1/2/3/4\" is no corner, such as 1, 1/2, 1//3 or 1/2/3; export the model again")
-        ),
-        obj!("f a b c\n", Refused("line 4: \"a\" is no number of a position; export the model again")),
-        obj!("f 1.0 2 3\n", Refused("line 4: \"1.0\" is no number of a position; export the model again")),
-        case(Obj, "v 0 0 0\nv 1 0\n", Refused("line 2: v needs 3 numbers, and there are 2; export the model again")),
-        case(Obj, "v 0 0 zero\n", Refused("line 1: \"zero\" is no number; export the model again")),
-        case(
-            Obj,
-            "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n",
-            Refused("line 4: the face has a position that isn't finite; export the model again"),
-        ),
-        case(
-            Obj,
-            "v 0 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n",
-            Refused("line 4: the face has a position that isn't finite; export the model again"),
-        ),
-        case(
-            Obj,
-            "v 0 0 0\nv 2e37 0 0\nv 0 1 0\nf 1 2 3\n",
-            Refused("line 4: the face has a coordinate beyond 1e37; export the model again"),
-        ),
-        obj!("vt nan 0\nvt\n", Refused("line 5: vt needs 1 numbers, and there are 0; export the model again")),
-        case(
-            Obj,
-            format!("# {}", "x".repeat(100_000_000)),
-            Refused("line 1: the line has 100000002 bytes, and at most 4194304 are read; export the model again"),
-        ),
+        case(Obj, "", Refused("Empty | vertices")),
+        (Obj, vec![0xff; 1000].into(), Refused("Empty | vertices | 1 | statements")),
+        obj!("p 1 2 3\n", Refused("Empty | 3 positions | 3 points | 0 lines")),
+        obj!("l 1 2\nl 2 3\n", Refused("Empty | 3 positions | 0 points | 2 lines")),
+        obj!("surf 0 1 0 1 1 2 3\n", Refused("Empty | 3 positions | 0 lines | 1 free-form")),
+        obj!("f 1 2\nf 1\nf\n", Refused("Empty | 3 positions | 0 lines | 3 faces | 3 corners")),
+        obj!("f 1 2 9\n", Refused("Broken | line 4 | position 9 | 3")),
+        obj!("f 1 2 0\n", Refused("Broken | line 4 | position 0 | 1")),
+        obj!("f 1 2 -4\nv 1 1 1\n", Refused("Broken | line 4 | -4 | 3")),
+        obj!("f 1 2 4611686018427387904\n", Refused("Broken | line 4 | 4611686018427387904 | 3")),
+        obj!("f 1 2 -9223372036854775808\n", Refused("Broken | line 4 | -9223372036854775808 | 3")),
+        obj!("f 1 2 99999999999999999999\n", Refused("Broken | line 4 | \"99999999999999999999\" | position")),
+        obj!("vn 0 0 1\nf 1//9223372036854775807 2 3\n", Refused("Broken | line 5 | normal 9223372036854775807 | 1")),
+        obj!("f 1/1 2 3\n", Refused("Broken | line 4 | texture coordinate 1 | 0")),
+        obj!("f 1/2/3/4 2 3\n", Refused("Broken | line 4 | \"1/2/3/4\" | corner")),
+        obj!("f a b c\n", Refused("Broken | line 4 | \"a\" | position")),
+        obj!("f 1.0 2 3\n", Refused("Broken | line 4 | \"1.0\" | position")),
+        case(Obj, "v 0 0 0\nv 1 0\n", Refused("Broken | line 2 | 3 numbers | 2")),
+        case(Obj, "v 0 0 zero\n", Refused("Broken | line 1 | \"zero\"")),
+        case(Obj, "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Broken | line 4 | position | finite")),
+        case(Obj, "v 0 0 0\nv 1e308 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Broken | line 4 | position | finite")),
+        case(Obj, "v 0 0 0\nv 2e37 0 0\nv 0 1 0\nf 1 2 3\n", Refused("Broken | line 4 | 1e37 | coordinate")),
+        obj!("vt nan 0\nvt\n", Refused("Broken | line 5 | 1 numbers | 0")),
+        case(Obj, format!("# {}", "x".repeat(100_000_000)), Refused("Broken | line 1 | 100000002 | 4194304")),
         case(
             Obj,
             format!("v 1 1 1\nf {}", "\\\n".repeat(8_000_000)),
-            Refused("line 4194305: the line has 4194305 bytes, and at most 4194304 are read; export the model again"),
+            Refused("Broken | line 4194305 | 4194305 | 4194304"),
         ),
-        case(Obj, many_materials(), Refused("it has more than 65536 materials; split it into several files")),
-        obj!("f 1 2 3 \\", Mended(1, "faces without normals")),
-        obj!("vt nan 0\nf 1/1 2/1 3\n", Mended(1, "uvs that aren't finite, replaced by (0, 0): 2.")),
-        obj!(
-            "vn nan 0 0\nvn 0 0 0\nf 1//1 2//2 3//2\n",
-            Mended(1, "normals of no direction, replaced by ones that are smooth within 60 degrees: 3.")
-        ),
-        obj!(
-            "mtllib ../../secret.mtl\nf 1 2 3\n",
-            Mended(
-                1,
-                "the material file \"../../secret.mtl\" is left out: it leads out of a folder, with ..; only files in the document's folder and below are read"
-            )
-        ),
-        obj!(
-            "mtllib /dev/zero\nf 1 2 3\n",
-            Mended(
-                1,
-                "the material file \"/dev/zero\" is left out: it is an absolute path; only files in the document's folder and below are read"
-            )
-        ),
-        (
-            Obj,
-            b"g \xff\xfe\nusemtl \xff\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".into(),
-            Mended(1, "materials that no material file describes, shown white: 1."),
-        ),
-        obj!("f 1 2 2 1\nf 1 1 1 1\nf 1 2 3\n", Mended(1, "faces of fewer than 3 corners, left out: 2.")),
-        obj!("v 2 0 0\nv 3 0 0\nf 1 2 4 5\n", Mended(2, "cut into triangles that may overlap: 1.")),
-        case(Obj, comb(12_000), Mended(23_999, "cut into triangles that may overlap: 1.")),
+        case(Obj, many_materials(), Refused("TooMany | 65536 | materials")),
+        obj!("f 1 2 3 \\", Repaired(1, "faces without normals")),
+        obj!("vt nan 0\nf 1/1 2/1 3\n", Repaired(1, "uvs that aren't finite | 2")),
+        obj!("vn nan 0 0\nvn 0 0 0\nf 1//1 2//2 3//2\n", Repaired(1, "normals without a direction | 3")),
+        obj!("mtllib ../../secret.mtl\nf 1 2 3\n", Repaired(1, "\"../../secret.mtl\" is left out")),
+        obj!("mtllib /dev/zero\nf 1 2 3\n", Repaired(1, "\"/dev/zero\" is left out")),
+        (Obj, b"g \xff\xfe\nusemtl \xff\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".into(), Repaired(1, "materials | 1")),
+        obj!("f 1 2 2 1\nf 1 1 1 1\nf 1 2 3\n", Repaired(1, "faces of fewer than 3 corners | 2")),
+        obj!("v 2 0 0\nv 3 0 0\nf 1 2 4 5\n", Repaired(2, "may overlap | 1")),
+        case(Obj, comb(12_000), Repaired(23_999, "may overlap | 1")),
     ]
 }
 

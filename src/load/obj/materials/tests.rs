@@ -1,4 +1,4 @@
-//! Material files and textures in a model's folder, and what isn't there.
+//! Material files and textures in a model's folder, and missing ones.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use crate::files::Limits;
 use crate::load::{LoadedMesh, load};
 use crate::progress::Progress;
 
-/// A folder of this test's own, removed at the end.
+/// A folder for one test, which is removed at the end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -20,7 +20,7 @@ impl Folder {
         std::fs::write(self.0.join(name), bytes).unwrap();
     }
 
-    /// A triangle for each material, in a file that begins so.
+    /// Reads a file with this start and a triangle for each material.
     fn read(&self, start: &str, materials: &[&str]) -> LoadedMesh {
         let faces: String = materials.iter().map(|name| format!("usemtl {name}\nf 1/1/1 2/1/1 3/1/1\n")).collect();
         let text = format!("{start}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n{faces}");
@@ -65,7 +65,7 @@ fn colours_and_textures_come_from_files_in_the_folder() {
 }
 
 #[test]
-fn what_is_missing_broken_or_elsewhere_is_a_warning() {
+fn missing_and_broken_files_cause_warnings() {
     let folder = Folder::new("obj-missing");
     folder.write("m.mtl", b"newmtl a\nKd x\nmap_Kd ../up.png\nnewmtl b\nmap_Kd maps/b.png\nnewmtl c\nmap_Kd c.png\n");
     folder.write("c.png", b"no image");
@@ -90,7 +90,7 @@ fn what_is_missing_broken_or_elsewhere_is_a_warning() {
 }
 
 #[test]
-fn a_flood_of_material_files_ends() {
+fn only_64_material_files_are_read() {
     let folder = Folder::new("obj-flood");
     let libraries: String = (0..1000).map(|i| format!("mtllib {}.mtl\n", i % 100)).collect();
     let warnings = folder.read(&libraries, &["a"]).warnings;

@@ -22,7 +22,7 @@ fn count(triangles: &[[Vec3; 3]]) -> usize {
     found(&topology(triangles)).len()
 }
 
-/// Rows of quads over z from 0 to 4, `density` of them a unit, from x to `to`, each corner put where `place` says.
+/// Rows of quads over z from 0 to 4, `density` of them per unit, from `x` to `to`; `place` moves each corner.
 fn column(density: u32, x: f32, to: f32, place: impl Fn(Vec2) -> Vec3) -> Triangles {
     let rows = (0..4 * density).flat_map(|row| {
         let [z, next] = [row, row + 1].map(|row| row as f32 / density as f32);
@@ -32,7 +32,7 @@ fn column(density: u32, x: f32, to: f32, place: impl Fn(Vec2) -> Vec3) -> Triang
     rows.collect()
 }
 
-/// A wavy surface: heights over x and z.
+/// A wavy surface: its heights over x and z.
 fn wave(at: Vec2) -> Vec3 {
     vec3(at.x, 0.25 * (1.5 * at.y + at.x).sin(), at.y)
 }
@@ -88,7 +88,7 @@ fn winding_and_order_make_no_difference() {
 
 #[test]
 fn a_ring_in_a_ring() {
-    // A seam that curves within its surface: seen from outside, the points lie inside the coarse side's triangles.
+    // A seam that curves within its surface: seen from outside, its points lie inside the triangles of the coarse side.
     let turned = |at: Vec2| Vec2::from_angle(at.y * std::f32::consts::TAU / 4.0 / 3.0) * (2.0 + at.x);
     for inwards in [1.0, -1.0] {
         let ring = seam(2, |at| turned(Vec2::new(inwards * at.x, at.y)).extend(0.0));
@@ -100,8 +100,8 @@ fn a_ring_in_a_ring() {
 fn a_seam_at_a_fold_of_sixty_degrees() {
     let tilt = Mat3::from_rotation_z(60_f32.to_radians());
     let place = |at: Vec2| {
-        let rim = vec3(0.0, 0.2 * (1.5 * at.y).sin(), at.y);
-        rim + if at.x > 0.0 { tilt * Vec3::X * at.x } else { Vec3::X * at.x }
+        let crest = vec3(0.0, 0.2 * (1.5 * at.y).sin(), at.y);
+        crest + if at.x > 0.0 { tilt * Vec3::X * at.x } else { Vec3::X * at.x }
     };
     assert_eq!(count(&seam(2, place)), 4);
 }
@@ -115,7 +115,7 @@ fn an_ordinary_border_has_none() {
     }
 }
 
-/// A fan or strip of triangles over the edge from 0 to 1 along x and points above it.
+/// A fan or strip of triangles over the edge from 0 to 1 along x and the points above it.
 fn ribbon(above: &[Vec3], split: usize) -> Triangles {
     let mut triangles = vec![[Vec3::ZERO, Vec3::X, above[split]]];
     triangles.extend((0..split).map(|k| [Vec3::ZERO, above[k + 1], above[k]]));
@@ -130,7 +130,7 @@ fn a_thin_ribbon_has_none() {
         assert_eq!(count(&ribbon(&arch, split)), 0, "fanned to {split}");
     }
     assert_eq!(count(&column(1, 0.0, 0.05, wave)), 0, "quads");
-    // Points inside, so that third corners are none of the border's.
+    // The strip also has points inside, so that no third corner lies on its border.
     let middle = [0.3, 0.7].map(|x| vec3(x, 0.02, 0.0));
     let ([p, q, r, s], [m, n]) = (arch, middle);
     let filled = [
@@ -158,7 +158,8 @@ fn a_leaf_has_none() {
 
 #[test]
 fn isolated_slivers_have_none() {
-    // A chain of triangles as long as the edge below it: they go down by more than a thousandth, by less, or go up.
+    // A chain of triangles that is as long as the edge below it. The triangles go down by more than a thousandth, by
+    // less, or go up.
     let [p, q] = [vec3(0.3, -0.03, 0.0), vec3(0.7, -0.03, 0.0)];
     let slivers = |y: f32| [[Vec3::ZERO, p, p.midpoint(Vec3::ZERO) + Vec3::Y * y], [p, q, p.midpoint(q) + Vec3::Y * y]];
     for y in [-0.01, -9e-4, 1e-4, 0.02] {
@@ -177,7 +178,7 @@ fn an_edge_of_a_sliver_has_none() {
     }
 }
 
-/// A triangle over the edge from 0 to 1 along x, and two below that leave a hole as deep as `depth` between.
+/// A triangle over the edge from 0 to 1 along x, and two below it that leave a hole of this depth between.
 fn hole(depth: f32) -> Triangles {
     let (low, far) = (vec3(0.5, -depth, 0.0), vec3(0.5, -2.0, 0.0));
     vec![[Vec3::ZERO, Vec3::X, vec3(0.5, 1.0, 0.0)], [Vec3::ZERO, far, low], [Vec3::X, low, far]]
@@ -208,7 +209,7 @@ fn points_must_come_in_order_between_the_ends() {
 
 #[test]
 fn a_path_that_ends_blindly_hides_no_chain() {
-    // Beside the chain another open edge starts at the same point, which leads nowhere.
+    // At the start of the chain another open edge starts too, which leads nowhere.
     let blind = [Vec3::ZERO, vec3(0.4, 0.0, 0.05), vec3(0.1, -1.0, 1.0)];
     for triangles in [[hole(0.05), vec![blind]].concat(), [vec![blind], hole(0.05)].concat()] {
         assert_eq!(count(&triangles), 1);
@@ -225,7 +226,7 @@ fn chains_of_many_points_and_many_paths_stay_fast() {
     let below = (0..n).map(|i| [arc(i), arc(i).with_y(-1.0), arc(i + 1)]);
     let over = [Vec3::ZERO, Vec3::X, Vec3::ONE];
     assert_eq!(count(&[over].into_iter().chain(below).collect::<Vec<_>>()), n as usize - 1);
-    // A line of open edges under thousands of long ones, none of which meets it again.
+    // A row of open edges under thousands of long ones that never meet it again.
     let lines = (0..3_000).flat_map(|i| {
         let [x, next, far] = [i, i + 1, i + 4_000].map(|i| i as f32);
         let [x, next, end] = [Vec3::X * x, Vec3::X * next, vec3(far, 400.0, 0.0)];

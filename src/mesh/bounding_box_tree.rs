@@ -1,18 +1,18 @@
-//! A tree of boxes over places: what lies near a segment, however long it is.
+//! A tree of bounding boxes over positions: finds what lies near a segment, however long the segment is.
 
 use glam::DVec3;
 
-/// Places in a box that is not divided further.
+/// The greatest number of positions in a box without children.
 const LEAF: usize = 8;
 
-/// Places with a number each, in boxes that are halved along their longest side until few are left.
-pub(super) struct Tree {
+/// Numbered positions in a tree of boxes. A box is halved along its longest side until few positions are left.
+pub(super) struct BoundingBoxTree {
     places: Vec<(DVec3, u32)>,
-    /// A node comes before those below it.
+    /// Each node comes before its children.
     nodes: Vec<Node>,
 }
 
-/// A box around the places `start..end`. Its halves, if it has any, are the next node and the node `second`.
+/// A box around the positions `start..end`. Its children, if it has any, are the next node and the node `second`.
 struct Node {
     min: DVec3,
     max: DVec3,
@@ -21,8 +21,8 @@ struct Node {
     second: Option<usize>,
 }
 
-impl Tree {
-    /// Takes n log n steps, wherever the places lie.
+impl BoundingBoxTree {
+    /// Builds the tree. Takes about n log n steps, wherever the positions lie.
     pub fn new(mut places: Vec<(DVec3, u32)>) -> Self {
         let mut nodes = Vec::new();
         if !places.is_empty() {
@@ -31,12 +31,12 @@ impl Tree {
         Self { places, nodes }
     }
 
-    /// Calls `visit` with every place within `reach` of the segment from a to b, and with others near by.
+    /// Calls `visit` with every position within `reach` of the segment from a to b, and with some others nearby.
     pub fn near_segment(&self, [a, b]: [DVec3; 2], reach: f64, mut visit: impl FnMut(DVec3, u32)) {
         let mut open = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(i) = open.pop() {
             let node = &self.nodes[i];
-            // Twice the reach: rounding must not lose what lies exactly at it.
+            // Twice the reach, so that rounding doesn't lose positions that lie exactly at it.
             if !crosses([a, b], node.min - 2.0 * reach, node.max + 2.0 * reach) {
                 continue;
             }
@@ -48,7 +48,8 @@ impl Tree {
     }
 }
 
-/// Orders places into nodes; `start` is how many places come before them. The depth is the logarithm of their number.
+/// Sorts positions into nodes; `start` is the number of positions before these. The depth is the logarithm of their
+/// number.
 fn divide(places: &mut [(DVec3, u32)], start: usize, nodes: &mut Vec<Node>) {
     let min = places.iter().fold(DVec3::INFINITY, |min, (place, _)| min.min(*place));
     let max = places.iter().fold(DVec3::NEG_INFINITY, |max, (place, _)| max.max(*place));
@@ -65,7 +66,7 @@ fn divide(places: &mut [(DVec3, u32)], start: usize, nodes: &mut Vec<Node>) {
     }
 }
 
-/// Whether a segment has a place in a box.
+/// Returns whether a segment has a point in a box.
 fn crosses([a, b]: [DVec3; 2], min: DVec3, max: DVec3) -> bool {
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
     for axis in 0..3 {
@@ -89,10 +90,10 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn nothing_and_one_spot() {
+    fn empty_trees_and_trees_of_one_position() {
         let count = |places: Vec<(DVec3, u32)>| {
             let mut count = 0;
-            Tree::new(places).near_segment([DVec3::ZERO, DVec3::X], 0.0, |_, _| count += 1);
+            BoundingBoxTree::new(places).near_segment([DVec3::ZERO, DVec3::X], 0.0, |_, _| count += 1);
             count
         };
         assert_eq!(count(Vec::new()), 0);
@@ -105,13 +106,13 @@ mod tests {
         let places = (0..40_000).map(|i| (DVec3::new(f64::from(i % 200), f64::from(i / 200), 0.0), i)).collect();
         let mut count = 0;
         let across = [DVec3::new(-1.0, 10.4, 0.0), DVec3::new(300.0, 30.6, 0.0)];
-        Tree::new(places).near_segment(across, 0.01, |_, _| count += 1);
+        BoundingBoxTree::new(places).near_segment(across, 0.01, |_, _| count += 1);
         assert!(count < 1500, "{count} of 40000");
     }
 
     proptest! {
         #[test]
-        fn whatever_lies_within_reach_is_visited(
+        fn all_positions_within_reach_are_visited(
             places in prop::collection::vec(prop::array::uniform3(-9_i8..9), 0..60),
             ends in prop::array::uniform2(prop::array::uniform3(-9_i8..9)),
             reach in 0_u8..4,
@@ -120,7 +121,7 @@ mod tests {
             let reach = f64::from(reach);
             let places = places.iter().zip(0..).map(|(place, i)| (DVec3::from(place.map(f64::from)), i)).collect::<Vec<_>>();
             let mut visited = Vec::new();
-            Tree::new(places.clone()).near_segment([a, b], reach, |_, i| visited.push(i));
+            BoundingBoxTree::new(places.clone()).near_segment([a, b], reach, |_, i| visited.push(i));
             visited.sort_unstable();
             prop_assert!(visited.windows(2).all(|pair| pair[0] < pair[1]), "visited twice");
             for (place, i) in places {

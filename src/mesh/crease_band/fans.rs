@@ -1,4 +1,4 @@
-//! Fans: the corners around a point that hang together by edges, and the one normal that each gets.
+//! Fans: the corners around a point that are connected by edges, and the one normal that each fan gets.
 
 use glam::{DVec3, Vec3};
 
@@ -6,14 +6,15 @@ use crate::mesh::union_find::UnionFind;
 use crate::mesh::weld::plus_zero3;
 use crate::mesh::{Mesh, Side, Topology};
 
-/// Shorter sums of unit normals than this are what rounding leaves of normals that cancel.
+/// A sum of unit normals that is shorter than this is what rounding leaves of normals that cancel.
 const CANCELLED: f64 = 1e-6;
 
-/// All fans of a mesh. UnionFind of a mesh that meet in a point without an edge have a fan each: there is nothing to tear.
+/// All fans of a mesh. Parts of a mesh that meet in a point without a common edge have a fan each, since nothing can
+/// tear between them.
 pub struct Fans {
-    /// The fan of every patch's every corner, at 3 * patch + k.
+    /// The fan of each corner k of each patch, at 3 * patch + k.
     fan_of: Vec<u32>,
-    /// The normal that a fan's corners share from now on; none if they have but one.
+    /// For each fan, the normal that its corners will share; none if they have the same normal already.
     normals: Vec<Option<Vec3>>,
 }
 
@@ -42,17 +43,17 @@ impl Fans {
         Self { fan_of, normals }
     }
 
-    /// Whether there is a fan whose normals differ.
+    /// Returns whether there is a fan whose corners have different normals.
     pub fn any_split(&self) -> bool {
         self.normals.iter().any(Option::is_some)
     }
 
-    /// What corner `k` of a patch shares with its fan; none if nothing is split there.
+    /// Returns the normal that corner `k` of a patch shares with its fan; none if the fan's normals don't differ.
     pub fn normal(&self, patch: u32, k: usize) -> Option<Vec3> {
         self.normals[self.fan_of[slot(patch, k) as usize] as usize]
     }
 
-    /// The same at an end of a side, 0 or 1 in its edge's own direction.
+    /// Returns the same as [`normal`](Self::normal) for an end of a side: 0 or 1, in its edge's own direction.
     pub fn normal_at(&self, side: &Side, end: usize) -> Option<Vec3> {
         self.normal(side.patch(), corner_at(side, end))
     }
@@ -62,14 +63,14 @@ fn slot(patch: u32, k: usize) -> u32 {
     3 * patch + k as u32
 }
 
-/// Which of its patch's corners a side has at an end of its edge, 0 to 2.
+/// Returns which of its patch's corners a side has at an end of its edge, 0 to 2.
 pub fn corner_at(side: &Side, end: usize) -> usize {
     let k = side.index();
     if (end == 0) != side.reversed() { k } else { (k + 1) % 3 }
 }
 
-/// The mean of distinct normals at unit length: how many corners have each doesn't matter, so neither does how faces are
-/// triangulated. One of them where they cancel.
+/// Returns the normalised mean of the distinct normals, or one of them where they cancel. How many corners have the
+/// same normal doesn't matter, so the result doesn't depend on how faces are triangulated.
 pub fn shared(normals: impl Iterator<Item = Vec3>) -> Vec3 {
     let mut keys: Vec<_> = normals.map(key).collect();
     keys.sort_unstable();
@@ -77,7 +78,7 @@ pub fn shared(normals: impl Iterator<Item = Vec3>) -> Vec3 {
     mean(keys.into_iter())
 }
 
-/// Equal normals as equal keys.
+/// Returns the bits of a normal, which are the same for equal normals (-0 equals 0).
 fn key(normal: Vec3) -> [u32; 3] {
     plus_zero3(normal).to_array().map(f32::to_bits)
 }
@@ -90,7 +91,7 @@ fn mean(keys: impl Iterator<Item = [u32; 3]> + Clone) -> Vec3 {
     if keys.count() > 1 && whole() { sum.normalize().as_vec3() } else { first }
 }
 
-/// A weighted sum of unit normals at unit length; the first where they cancel.
+/// Returns a weighted sum of unit normals, normalised; or the first normal where they cancel.
 pub fn blend(normals: impl IntoIterator<Item = (f64, Vec3)>) -> Vec3 {
     let mut first = None;
     let mut sum = DVec3::ZERO;

@@ -1,41 +1,42 @@
-//! Points that lie on straight open edges.
+//! Finds points that lie on straight open edges.
 
 use glam::DVec3;
 
-use super::line::Line;
+use super::line_segment::LineSegment;
 use super::{TRIES, corners, open_edges};
+use crate::mesh::bounding_box_tree::BoundingBoxTree;
 use crate::mesh::bounds::Bounds;
-use crate::mesh::grid::Grid;
-use crate::mesh::joins::TOLERANCES;
-use crate::mesh::tree::Tree;
+use crate::mesh::spatial_hash::SpatialHash;
+use crate::mesh::weld_preview::TOLERANCES;
 use crate::mesh::{Edge, Topology};
 
-/// How near a point must be to an edge, as a part of the bounding diagonal.
+/// The greatest distance of a point from an edge, as a part of the bounding diagonal.
 const NEAR: f64 = 1e-5;
 
-/// All boundary points, and what tells a near miss from a T-junction. Lengths in object units.
-pub(super) struct Straight<'a> {
+/// All boundary points, and the lengths that tell points that nearly meet from T-junctions, in object units.
+pub(super) struct PointsOnEdges<'a> {
     topology: &'a Topology,
-    tree: Tree,
+    tree: BoundingBoxTree,
+    /// [`NEAR`] as a length.
     pub tolerance: f64,
     /// [`TOLERANCES`] as lengths.
     pub welds: [f64; TOLERANCES.len()],
-    /// The length of the shortest boundary edge at each point.
+    /// For each point, the length of its shortest boundary edge.
     shortest: Vec<f64>,
 }
 
-impl<'a> Straight<'a> {
+impl<'a> PointsOnEdges<'a> {
     pub fn new(topology: &'a Topology) -> Self {
         let bounds = Bounds::of(topology.points.iter().copied());
         let tolerance = bounds.part(NEAR);
         let shortest = shortest(topology);
-        let tree = Tree::new(boundary_points(topology, &shortest, tolerance));
+        let tree = BoundingBoxTree::new(boundary_points(topology, &shortest, tolerance));
         Self { topology, tree, tolerance, welds: TOLERANCES.map(|weld| bounds.part(weld.into())), shortest }
     }
 
-    /// Adds the points on an edge.
+    /// Adds the points that lie on an edge.
     pub fn find(&self, edge: &Edge, points: &mut Vec<u32>) {
-        let line = Line::of(self.topology, edge);
+        let line = LineSegment::of(self.topology, edge);
         self.tree.near_segment(line.ends, self.tolerance, |place, point| {
             if self.is_inside(edge, &line, point, place) {
                 points.push(point);
@@ -43,8 +44,8 @@ impl<'a> Straight<'a> {
         });
     }
 
-    /// Whether a point lies on an edge, is no near miss of its ends and no corner of its triangle.
-    pub fn is_inside(&self, edge: &Edge, line: &Line, point: u32, place: DVec3) -> bool {
+    /// Returns whether a point lies on an edge, nearly meets neither end, and is no corner of the edge's triangle.
+    pub fn is_inside(&self, edge: &Edge, line: &LineSegment, point: u32, place: DVec3) -> bool {
         let (t, distance) = line.project(place);
         let ends = self.topology.edge_points(edge).into_iter().zip(line.ends);
         t > 0.0
@@ -54,8 +55,8 @@ impl<'a> Straight<'a> {
             && ends.into_iter().all(|(end, at)| !self.nearly_meet(point, end, place.distance(at)))
     }
 
-    /// Whether two points so far apart are what a weld is for. It may move either end of an edge by its tolerance: an
-    /// edge longer than twice that survives.
+    /// Returns whether a weld should join two points at this distance. A weld may move either end of an edge by its
+    /// tolerance, so an edge that is longer than twice the tolerance survives.
     fn nearly_meet(&self, a: u32, b: u32, distance: f64) -> bool {
         let shortest = self.shortest[a as usize].min(self.shortest[b as usize]);
         let weld = self.welds.into_iter().find(|weld| distance <= *weld);
@@ -63,11 +64,11 @@ impl<'a> Straight<'a> {
     }
 }
 
-/// The length of the shortest boundary edge at each point, infinite where there is none.
+/// Returns the length of the shortest boundary edge at each point; infinite where there is none.
 fn shortest(topology: &Topology) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; topology.points.len()];
     for (_, edge) in open_edges(topology) {
-        let length = Line::of(topology, edge).length();
+        let length = LineSegment::of(topology, edge).length();
         topology
             .edge_points(edge)
             .into_iter()
@@ -76,11 +77,11 @@ fn shortest(topology: &Topology) -> Vec<f64> {
     shortest
 }
 
-/// The ends of all boundary edges, each once, but only so many on one spot.
+/// Returns the ends of all boundary edges, each once, but only the first few in any one place.
 fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec<(DVec3, u32)> {
-    let mut spots = Grid::new(tolerance);
+    let mut spots = SpatialHash::new(tolerance);
     let place_of = |point: u32| topology.points[point as usize].as_dvec3();
-    // How many were tried on a point's spot, that point among them.
+    // For each point, how many points have been counted in its place, itself included.
     let mut tried = vec![0_usize; topology.points.len()];
     let open = (0..topology.points.len() as u32).filter(|&point| shortest[point as usize].is_finite());
     let few = open.filter(|&point| {

@@ -1,4 +1,4 @@
-//! A grid over space: what lies within reach of a place, without looking at everything.
+//! A spatial hash: finds the items near a position without looking at all of them.
 
 use std::hash::BuildHasher;
 
@@ -7,29 +7,29 @@ use glam::DVec3;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
-/// For each cell of space the latest thing that was put there, by its number. Where things lie is asked of whoever has them, so
-/// that a cell takes no more than 5 to 12 bytes.
+/// For each occupied cell of space, the number of the item that was added last. The caller keeps the items' positions
+/// and passes a function that returns them, so that a cell takes only 5 to 12 bytes.
 ///
-/// Cells are counted in f64 and are never turned into integers: however large coordinates are beside the reach, no
-/// count overflows, and different f32 positions never end up in one cell for want of digits.
-pub(super) struct Grid {
+/// Cell coordinates are f64 numbers and never become integers. So no coordinate overflows, however large positions are
+/// compared with the reach, and different f32 positions never share a cell for lack of digits.
+pub(super) struct SpatialHash {
     reach: f64,
     cells: HashTable<u32>,
     hasher: RandomState,
 }
 
-impl Grid {
-    /// A grid for questions about what lies within `reach` (above 0), in object units. Cells are two reaches wide.
+impl SpatialHash {
+    /// Makes an empty table for queries within `reach` (above 0, in object units). Cells are two reaches wide.
     pub fn new(reach: f64) -> Self {
         Self { reach, cells: HashTable::new(), hasher: RandomState::default() }
     }
 
-    /// What is in the cell around a place.
+    /// Returns the item in the cell of a position.
     pub fn at(&self, place: DVec3, place_of: impl Fn(u32) -> DVec3) -> Option<u32> {
         self.find(self.key(place), &place_of)
     }
 
-    /// Puts a thing where it lies. What was there before.
+    /// Adds an item to the cell of its position. Returns the item that the cell had before.
     pub fn put(&mut self, id: u32, place_of: impl Fn(u32) -> DVec3) -> Option<u32> {
         let Self { reach, cells, hasher } = self;
         let key = |id: u32| key(cell(*reach, place_of(id)));
@@ -43,7 +43,7 @@ impl Grid {
         }
     }
 
-    /// What is in the cells that hold all that is within reach of a place: up to 27 but mostly 8.
+    /// Returns the items of all cells that reach within `reach` of a position: up to 27 cells, but usually 8.
     pub fn near(&self, place: DVec3, place_of: impl Fn(u32) -> DVec3) -> impl Iterator<Item = u32> {
         let [x, y, z] = place.to_array().map(|x| self.touched(x));
         let cells = (0..27).filter_map(move |i| Some([x[i / 9]?, y[i / 3 % 3]?, z[i % 3]?]));
@@ -58,8 +58,8 @@ impl Grid {
         key(cell(self.reach, place))
     }
 
-    /// The cells within reach along one axis, each once. The middle one is listed too: rounding can put the outer ones
-    /// two apart.
+    /// Returns the cells within reach along one axis, each once. The middle cell is included because rounding can put
+    /// the outer two cells two apart.
     fn touched(&self, x: f64) -> [Option<f64>; 3] {
         let [low, middle, high] = [x - self.reach, x, x + self.reach].map(|x| cell_along(self.reach, x));
         [Some(low), (middle != low).then_some(middle), (high != middle).then_some(high)]
@@ -74,7 +74,7 @@ fn cell_along(reach: f64, x: f64) -> f64 {
     (x / (2.0 * reach)).floor()
 }
 
-/// Equal cells as equal bits: adding 0 makes +0 of -0.
+/// Returns the bits of a cell's coordinates, which are the same for equal cells: adding 0 turns -0 into +0.
 fn key(cell: [f64; 3]) -> [u64; 3] {
     cell.map(|x| (x + 0.0).to_bits())
 }
@@ -84,11 +84,11 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Things where they lie, and for each the one before it in its cell.
-    struct Put<'a>(&'a [DVec3], Grid, Vec<Option<u32>>);
+    /// Positions of items, the table, and for each item the one before it in its cell.
+    struct Put<'a>(&'a [DVec3], SpatialHash, Vec<Option<u32>>);
 
     fn put(places: &[DVec3], reach: f64) -> Put<'_> {
-        let mut grid = Grid::new(reach);
+        let mut grid = SpatialHash::new(reach);
         let before = (0..places.len()).map(|id| grid.put(id as u32, |id| places[id as usize])).collect();
         Put(places, grid, before)
     }
@@ -110,13 +110,13 @@ mod tests {
     }
 
     #[test]
-    fn far_apart_is_not_near_however_small_the_reach() {
+    fn distant_positions_are_not_near_however_small_the_reach() {
         let places = [DVec3::splat(1e30)];
         assert_eq!(found(&put(&places, 1e-45), DVec3::splat(f64::from(1e30_f32.next_up()))), [0; 0]);
     }
 
     #[test]
-    fn the_latest_is_there_and_tells_of_the_one_before() {
+    fn a_cell_holds_the_latest_item_and_returns_the_one_before() {
         let places = [0.1, 0.2, 7.0, 0.3].map(DVec3::splat);
         let Put(_, grid, before) = put(&places, 1.0);
         assert_eq!(before, [None, Some(0), None, Some(1)]);
@@ -128,12 +128,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn whatever_lies_within_reach_is_found(
+        fn all_items_within_reach_are_found(
             places in prop::collection::vec(prop::array::uniform3(-40_i32..40), 1..40),
             reach in 1_u32..9,
             scale in -120_i32..120,
         ) {
-            // Whole numbers times a power of two: many places lie on the borders of cells.
+            // Whole numbers times a power of two: many positions lie on the boundaries of cells.
             let scale = f64::from(scale).exp2();
             let reach = f64::from(reach) * scale;
             let places = places.iter().map(|p| DVec3::from(p.map(f64::from)) * scale).collect::<Vec<_>>();

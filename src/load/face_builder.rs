@@ -1,41 +1,46 @@
-//! Faces of files that have no document, as triangles: checked, cut, counted.
+//! Builds a mesh from the faces of OBJ, STL and PLY files: checks them, cuts polygons into triangles, and counts
+//! repairs.
 
 use glam::{Vec2, Vec3};
 
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
-use super::read_error::{Place, ReadError};
+use super::read_error::{FilePosition, ReadError};
 use super::warnings::repair_warnings;
 use crate::mesh::Material;
 use crate::mesh::build_limits::MAX_TRIANGLES;
-use crate::mesh::mesh_builder::{LooseCorner, MeshBuilder};
-use crate::mesh::polygon::{self, Cut, triangulate};
+use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use crate::mesh::polygon::{self, CutQuality, triangulate};
 use crate::mesh::rig::LARGEST_COORDINATE;
 use crate::progress::Progress;
 
-/// A file of more materials than this is refused: each takes memory, and a draw.
+/// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
 const MAX_MATERIALS: usize = 1 << 16;
 
-/// A face of more corners than this is refused.
+/// The greatest number of corners of a face. A file with a larger face is refused.
 pub const MAX_CORNERS: usize = 1 << 19;
 
-/// What a mesh is made of meanwhile.
-pub struct Faces<'a> {
+/// The mesh that is being built, and counts of what was repaired or left out.
+pub struct FaceBuilder<'a> {
     memory: &'a Budget,
     builder: MeshBuilder,
     materials: usize,
     triangles: usize,
     work: polygon::WorkBudget,
-    /// Faces of fewer than 3 corners, corners on the place of the one before, faces cut somehow.
+    /// FaceBuilder with fewer than 3 corners.
     too_small: usize,
+    /// Corners at the position of the corner before them.
     repeated: usize,
+    /// Polygons whose triangles may overlap.
     somehow: usize,
+    /// Corners with texture coordinates that aren't finite.
     bad_uvs: usize,
+    /// The triangles of the polygon that is being cut.
     cut: Vec<[usize; 3]>,
 }
 
-impl<'a> Faces<'a> {
-    /// For a file of so many bytes.
+impl<'a> FaceBuilder<'a> {
+    /// Starts a mesh from a file of `bytes` bytes.
     pub fn new(bytes: usize, memory: &'a Budget) -> Self {
         Self {
             memory,
@@ -51,7 +56,7 @@ impl<'a> Faces<'a> {
         }
     }
 
-    /// Adds a material, for [`add`](Self::add).
+    /// Adds a material and returns its index for [`add`](Self::add).
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
@@ -63,18 +68,24 @@ impl<'a> Faces<'a> {
         Ok(self.builder.material(material))
     }
 
-    /// There will be about so many triangles more, and distinct corners.
+    /// Announces that about `triangles` more triangles, and about `corners` more distinct corners, will be added.
     pub fn expect(&mut self, triangles: usize, corners: usize) {
         self.builder.expect(triangles.saturating_mul(3), corners);
     }
 
-    /// Adds a face of any number of corners; what can be mended is, in `corners` too. `place` is where the file has it.
+    /// Adds a face with any number of corners. Corners that can be repaired are repaired, in `corners` too. `place` is
+    /// the face's position in the file.
     ///
     /// # Errors
-    /// [`ReadError::Broken`] for positions that no mesh can have, [`ReadError::TooMany`].
-    pub fn add(&mut self, material: usize, corners: &mut Vec<LooseCorner>, place: Place) -> Result<(), ReadError> {
+    /// [`ReadError::Broken`] for a position that isn't finite or too far away, and [`ReadError::TooMany`].
+    pub fn add(
+        &mut self,
+        material: usize,
+        corners: &mut Vec<InputCorner>,
+        place: FilePosition,
+    ) -> Result<(), ReadError> {
         for corner in corners.iter_mut() {
-            check(corner.position).map_err(|reason| place.fault(reason))?;
+            check(corner.position).map_err(|reason| place.error(reason))?;
             if !corner.uv.is_finite() {
                 corner.uv = Vec2::ZERO;
                 self.bad_uvs += 1;
@@ -104,7 +115,7 @@ impl<'a> Faces<'a> {
         Ok(())
     }
 
-    fn cut(&mut self, material: usize, corners: &[LooseCorner]) {
+    fn cut(&mut self, material: usize, corners: &[InputCorner]) {
         if let Ok(triangle) = corners.try_into() {
             self.builder.triangle(material, triangle);
             return;
@@ -112,13 +123,13 @@ impl<'a> Faces<'a> {
         let outline: Vec<Vec3> = corners.iter().map(|corner| corner.position).collect();
         self.cut.clear();
         let cut = triangulate(&outline, &mut self.work, &mut self.cut);
-        self.somehow += usize::from(cut == Cut::Somehow);
+        self.somehow += usize::from(cut == CutQuality::MayOverlap);
         for triangle in &self.cut {
             self.builder.triangle(material, triangle.map(|i| corners[i]));
         }
     }
 
-    /// The mesh. `holds` is what the file has in place of triangles, `warnings` what else is to be known.
+    /// Builds the mesh. `holds` says what the file has instead if it has no triangles; `warnings` are the reader's own.
     ///
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
@@ -139,10 +150,10 @@ impl<'a> Faces<'a> {
         warnings.extend(counted([
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
             (self.too_small, "faces of fewer than 3 corners, left out"),
-            (self.repeated, "corners of polygons where the one before is, left out"),
+            (self.repeated, "corners of polygons at the position of the corner before, left out"),
             (
                 self.somehow,
-                "polygons without area, or whose sides cross, or too large, cut into triangles that may overlap",
+                "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap",
             ),
         ]));
         let (mesh, _) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
@@ -151,7 +162,7 @@ impl<'a> Faces<'a> {
     }
 }
 
-/// A sentence for each of what there is some of.
+/// Returns a sentence for each count that isn't 0.
 pub fn counted(sentences: impl IntoIterator<Item = (usize, &'static str)>) -> impl Iterator<Item = String> {
     let found = sentences.into_iter().filter(|(count, _)| *count > 0);
     found.map(|(count, sentence)| format!("{sentence}: {count}."))

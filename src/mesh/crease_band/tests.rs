@@ -11,29 +11,29 @@ fn topology(mesh: &Mesh) -> Topology {
     Topology::build(mesh, &Progress::new()).unwrap()
 }
 
-/// With a rim, of a mesh whose points are welded within a tolerance.
-fn rimmed_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, Rim) {
+/// Returns a mesh with a crease band, after welding its points within a tolerance.
+fn banded_within(mesh: &Mesh, weld: f32, width: f32) -> (Mesh, Topology, CreaseBand) {
     let progress = Progress::new();
     let before = Topology::build_within(mesh, weld, &progress).unwrap();
-    let (made, after, rim) = with_rim(mesh, &before, width, &Unlimited, &progress).unwrap();
+    let (made, after, band) = with_crease_band(mesh, &before, width, &Unlimited, &progress).unwrap();
     assert_eq!(after.edges, topology(&made).edges);
     for edge in &after.edges {
         let normals = |side: &Side| after.side_corners(side).map(|corner| made.corners[corner as usize].normal);
         let sides = after.edge_sides(edge);
         assert!(sides.iter().all(|side| normals(side) == normals(&sides[0])), "{} {width}: {edge:?}", mesh.name);
     }
-    (made, after, rim)
+    (made, after, band)
 }
 
-fn rimmed(mesh: &Mesh, width: f32) -> (Mesh, Topology, Rim) {
-    rimmed_within(mesh, 0.0, width)
+fn banded(mesh: &Mesh, width: f32) -> (Mesh, Topology, CreaseBand) {
+    banded_within(mesh, 0.0, width)
 }
 
 fn mesh_of(triangles: impl IntoIterator<Item = [Corner; 3]>) -> Mesh {
     let mut builder = MeshBuilder::new();
     let material = builder.material(Material::plain("plain", [1.0; 4]));
     for triangle in triangles {
-        builder.triangle(material, triangle.map(LooseCorner::from));
+        builder.triangle(material, triangle.map(InputCorner::from));
     }
     builder.finish(String::new(), &Progress::new()).unwrap()
 }
@@ -75,13 +75,15 @@ fn euler(topology: &Topology) -> i64 {
 
 #[test]
 fn a_cube_gets_cells_at_its_points_and_strips_along_its_edges() {
-    // 0.1 wide: every face is a square of 1.2 with one of 1.0 in its middle, its edges are cut 0.1 from both ends.
+    // With a width of 0.1, each face is a square of 1.2 around a square of 1.0, and each edge is cut 0.1 from both
+    // ends.
     let cube = Shape::CubeSplit.build();
-    let (mesh, topology, rim) = rimmed(&cube, 0.1 / cube.bounds().diagonal());
-    assert_eq!((rim.creases, rim.narrowed), (12, 0));
-    // Of a half face: the middle's half, and along two creases two triangles in the strip and one at each end.
+    let (mesh, topology, band) = banded(&cube, 0.1 / cube.bounds().diagonal());
+    assert_eq!((band.creases, band.narrowed), (12, 0));
+    // For each triangle (half a face): half of the middle square, and along each of two creases two triangles in the
+    // strip and one at each end.
     assert_eq!((mesh.triangles.len(), topology.degenerate), (12 * 9, 0));
-    // The cube's points, two on each edge, four on each face.
+    // The cube's points, two on each edge, and four on each face.
     assert_eq!((topology.points.len(), euler(&topology)), (8 + 24 + 24, 2));
     let kinds = EdgeCounts { smooth: 162 - 36, seam: 36, ..EdgeCounts::default() };
     assert_eq!(topology.edge_counts(), kinds, "each of twelve creases is three edges with a uv square on either side");
@@ -93,7 +95,7 @@ fn a_cube_gets_cells_at_its_points_and_strips_along_its_edges() {
     }
     for Corner { position, normal, .. } in &mesh.corners {
         assert!(normal.is_normalized());
-        // Of as many faces as meet there the mean: as steep towards each of them.
+        // The mean of the normals of all faces that meet there: equally steep towards each of them.
         let outward = (*normal * position.signum()).to_array();
         let faces: Vec<_> = (0..3).filter(|&axis| position[axis].abs() > 0.55).map(|axis| outward[axis]).collect();
         assert!(!faces.is_empty() && faces.iter().all(|x| (x - faces[0]).abs() < 1e-6), "{position} {normal}");
@@ -104,7 +106,7 @@ fn a_cube_gets_cells_at_its_points_and_strips_along_its_edges() {
 #[test]
 fn a_cubes_uvs_are_those_of_its_faces() {
     let cube = Shape::CubeSplit.build();
-    let (mesh, ..) = rimmed(&cube, 0.03);
+    let (mesh, ..) = banded(&cube, 0.03);
     let per_area = |triangle: [Corner; 3]| {
         let [a, b, c] = triangle.map(|corner| corner.uv.as_dvec2());
         (b - a).perp_dot(c - a) / 2.0 / area(triangle).length()
@@ -112,7 +114,7 @@ fn a_cubes_uvs_are_those_of_its_faces() {
     let expected = per_area(triangles(&cube).next().unwrap());
     for triangle in triangles(&mesh) {
         assert!((per_area(triangle) / expected - 1.0).abs() < 1e-3);
-        // A face's uvs are linear in its positions: its middle is the middle of the square.
+        // A face's texture coordinates are linear in its positions, so its centre is the centre of the uv square.
         for Corner { position, uv, .. } in triangle {
             let out = position.abs().max_element();
             assert!((out - 0.6).abs() < 1e-6 && uv.min_element() >= 0.0 && uv.max_element() <= 1.0);
@@ -122,34 +124,36 @@ fn a_cubes_uvs_are_those_of_its_faces() {
 
 #[test]
 fn triangles_beside_one_crease_and_at_a_crease_are_counted_by_hand() {
-    // A wall's triangle has its crease's strip of two, what is left in two, and the corner that touches the other rim.
-    // A cap's has a strip of two and the rest. On a rim only two faces meet, so that it isn't cut.
-    let (mesh, topology, rim) = rimmed(&Shape::Cylinder.build(), 0.01);
-    assert_eq!((mesh.triangles.len(), rim.creases, rim.narrowed), (24 * 5 + 24 * 3, 24, 0));
+    // A triangle of the wall has a strip of two for its crease, two for what is left, and one where its corner touches
+    // the other circle of creases. A triangle of a cap has a strip of two and the rest: on the circle only two faces
+    // meet, so its other edges aren't cut.
+    let (mesh, topology, band) = banded(&Shape::Cylinder.build(), 0.01);
+    assert_eq!((mesh.triangles.len(), band.creases, band.narrowed), (24 * 5 + 24 * 3, 24, 0));
     assert_eq!((topology.edge_counts().split, euler(&topology), topology.is_closed_and_oriented()), (0, 2, true));
     let height = |corner: &Corner| corner.position.y.abs();
     let width = 0.01 * Shape::Cylinder.build().bounds().diagonal();
     let wall = mesh.corners.iter().filter(|corner| corner.normal.y == 0.0);
     let expected = 0.75 - width;
     assert!(wall.into_iter().all(|c| (height(c) - expected).abs() < 1e-6), "the wall's own normals begin in one line");
-    // A cone's side is creased all around: its middle, a strip of two, and two of four that are cut at both ends.
-    let (mesh, topology, rim) = rimmed(&Shape::Cone.build(), 0.01);
-    assert_eq!((mesh.triangles.len(), rim.creases), (12 * 11 + 12 * 3, 24));
+    // A triangle of the cone's slope is creased on all sides: its middle, a strip of two at the circle, and strips of
+    // four at the two creases that are cut at both ends.
+    let (mesh, topology, band) = banded(&Shape::Cone.build(), 0.01);
+    assert_eq!((mesh.triangles.len(), band.creases), (12 * 11 + 12 * 3, 24));
     assert_eq!((topology.edge_counts().split, euler(&topology), topology.is_closed_and_oriented()), (0, 2, true));
     let apex: Vec<_> = mesh.corners.iter().filter(|corner| corner.position.y > 0.74).map(|c| c.normal).collect();
     assert!(!apex.is_empty() && apex.iter().all(|normal| normal.distance(Vec3::Y) < 1e-6));
 }
 
 #[test]
-fn nothing_turns_over_however_wide() {
+fn no_triangle_turns_over_however_wide_the_band() {
     for shape in Shape::ALL {
         let before = shape.build();
         for width in [1e-7, 1e-3, 0.02, WIDEST] {
-            let (mesh, topology, _) = rimmed(&before, width);
+            let (mesh, topology, _) = banded(&before, width);
             let name = format!("{shape:?} {width}");
             assert_eq!(topology.degenerate, 0, "{name}");
             assert!((areas(&mesh) / areas(&before) - 1.0).abs() < 1e-5, "{name}");
-            // Triangles that turned over would count twice in the area, but not in a side's own normals.
+            // Triangles that turned over would count twice in the area, but not in the sum of a side's surface normals.
             for triangle in triangles(&mesh) {
                 let face = area(triangle).normalize().as_vec3();
                 let own = triangle.iter().map(|corner| corner.normal.dot(face)).sum::<f32>();
@@ -160,19 +164,19 @@ fn nothing_turns_over_however_wide() {
 }
 
 #[test]
-fn a_wide_rim_is_narrowed_and_counts_where() {
-    let (_, topology, rim) = rimmed(&Shape::Cylinder.build(), 0.1);
-    assert!(rim.narrowed > 0 && topology.is_closed_and_oriented());
-    assert_eq!(rimmed(&Shape::Cylinder.build(), 0.01).2.narrowed, 0);
+fn a_wide_band_is_narrowed_and_counted() {
+    let (_, topology, band) = banded(&Shape::Cylinder.build(), 0.1);
+    assert!(band.narrowed > 0 && topology.is_closed_and_oriented());
+    assert_eq!(banded(&Shape::Cylinder.build(), 0.01).2.narrowed, 0);
 }
 
 #[test]
 fn without_creases_a_mesh_stays_as_it_is() {
     for shape in [Shape::Torus, Shape::Icosphere, Shape::CubeSmooth, Shape::Saddle] {
         let before = shape.build();
-        let (mesh, _, rim) = rimmed(&before, 0.05);
+        let (mesh, _, band) = banded(&before, 0.05);
         assert_eq!((&mesh.corners, &mesh.triangles, &mesh.name), (&before.corners, &before.triangles, &before.name));
-        assert_eq!((rim.creases, rim.narrowed), (0, 0));
+        assert_eq!((band.creases, band.narrowed), (0, 0));
     }
 }
 
@@ -188,10 +192,10 @@ fn roof(left: [Vec3; 2], right: [Vec3; 2]) -> Mesh {
 
 #[test]
 fn a_crease_may_end_at_a_point() {
-    // Split at the origin only, as at the end of a dart: from the other end its strip is one triangle.
+    // The normals are split at the origin only, as at the end of a dart. At the other end the strip is one triangle.
     let slant = Vec3::new(0.0, 0.6, 0.8);
-    let (mesh, topology, rim) = rimmed(&roof([slant, Vec3::Z], [Vec3::Z; 2]), 0.05);
-    assert_eq!((rim.creases, mesh.triangles.len(), topology.points.len()), (1, 2 * 2, 6));
+    let (mesh, topology, band) = banded(&roof([slant, Vec3::Z], [Vec3::Z; 2]), 0.05);
+    assert_eq!((band.creases, mesh.triangles.len(), topology.points.len()), (1, 2 * 2, 6));
     let at = |position: Vec3| {
         let normals = mesh.corners.iter().filter(|c| c.position == position).map(|c| c.normal).collect::<Vec<_>>();
         assert_eq!(normals.len(), 1, "{normals:?} at {position}");
@@ -205,7 +209,7 @@ fn a_crease_may_end_at_a_point() {
 
 #[test]
 fn normals_that_cancel_leave_one_of_them() {
-    let (mesh, topology, _) = rimmed(&roof([Vec3::Z; 2], [Vec3::NEG_Z; 2]), 0.05);
+    let (mesh, topology, _) = banded(&roof([Vec3::Z; 2], [Vec3::NEG_Z; 2]), 0.05);
     assert_eq!(topology.edge_counts().split, 0);
     assert!(mesh.corners.iter().all(|corner| corner.normal.is_normalized()));
 }
@@ -215,18 +219,18 @@ fn parts_that_meet_in_a_point_have_nothing_to_tear() {
     let corner = |x: f32, y: f32, normal| Corner { position: Vec3::new(x, y, 0.0), normal, uv: Vec2::ZERO };
     let wing = |s: f32, n: Vec3| [corner(0.0, 0.0, n), corner(s, 0.0, n), corner(s, s, n)];
     let before = mesh_of([wing(1.0, Vec3::Z), wing(-1.0, Vec3::X)]);
-    let (mesh, ..) = rimmed(&before, 0.05);
+    let (mesh, ..) = banded(&before, 0.05);
     assert_eq!((mesh.corners, mesh.triangles), (before.corners, before.triangles));
 }
 
 #[test]
-fn front_and_back_of_a_leaf_stay_two() {
+fn the_two_sides_of_a_leaf_stay_separate() {
     let corner = |x: f32, y: f32, normal| Corner { position: Vec3::new(x, y, 0.0), normal, uv: Vec2::ZERO };
     let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| move |normal| corner(x, y, normal));
     let [front, back] = [Vec3::Z, Vec3::NEG_Z];
-    let (mesh, topology, rim) = rimmed(&mesh_of([[a(front), b(front), c(front)], [b(back), a(back), c(back)]]), 0.02);
+    let (mesh, topology, band) = banded(&mesh_of([[a(front), b(front), c(front)], [b(back), a(back), c(back)]]), 0.02);
     assert!(topology.is_closed_and_oriented());
-    assert_eq!((rim.creases, mesh.triangles.len(), topology.points.len()), (3, 2 * 7, 3 + 2 * 3));
+    assert_eq!((band.creases, mesh.triangles.len(), topology.points.len()), (3, 2 * 7, 3 + 2 * 3));
     for (point, normal) in mesh.corners.iter().map(|corner| (corner.position, corner.normal)) {
         let on_rim = point.x == 0.0 || point.y == 0.0 || point.x + point.y > 0.999;
         assert!(on_rim || normal == front || normal == back);
@@ -242,7 +246,7 @@ fn parts_that_lie_on_each_other_agree_where_their_cuts_meet() {
         triangles(&roof([Vec3::Y; 2], [Vec3::NEG_X; 2]))
             .map(|triangle| triangle.map(|corner| Corner { position: corner.position * 0.5, ..corner })),
     );
-    let points = |mesh: &Mesh| rimmed(mesh, 0.02 / mesh.bounds().diagonal()).1.points.len();
+    let points = |mesh: &Mesh| banded(mesh, 0.02 / mesh.bounds().diagonal()).1.points.len();
     let both = mesh_of(triangles(&large).chain(triangles(&small)));
     // They share the origin and, on both open edges from there, the cuts near it.
     assert_eq!(points(&both), points(&large) + points(&small) - 3);
@@ -255,10 +259,10 @@ fn materials_keep_their_triangles_together() {
     let names = ["front", "back", "sides"];
     let materials = names.map(|name| builder.material(Material::plain(name, [1.0; 4])));
     for (i, triangle) in triangles(&cube).enumerate() {
-        builder.triangle(materials[(i / 2).min(2)], triangle.map(LooseCorner::from));
+        builder.triangle(materials[(i / 2).min(2)], triangle.map(InputCorner::from));
     }
     let before = builder.finish("cube".to_owned(), &Progress::new()).unwrap();
-    let (mesh, ..) = rimmed(&before, 0.05);
+    let (mesh, ..) = banded(&before, 0.05);
     let ranges: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.triangles.clone())).collect();
     assert_eq!(ranges, [("front", 0..18), ("back", 18..36), ("sides", 36..108)]);
     assert_eq!(mesh.name, "cube");
@@ -268,27 +272,27 @@ fn materials_keep_their_triangles_together() {
 fn what_was_welded_within_a_tolerance_stays_welded() {
     let case = CASES.iter().find(|case| case.name == "near-seam").unwrap();
     let before = (case.mesh)();
-    let (_, exact, _) = rimmed(&before, 0.01);
-    let (_, welded, _) = rimmed_within(&before, case.weld, 0.01);
+    let (_, exact, _) = banded(&before, 0.01);
+    let (_, welded, _) = banded_within(&before, case.weld, 0.01);
     assert!(!exact.is_closed_and_oriented() && welded.is_closed_and_oriented());
-    let (mesh, narrow, _) = rimmed_within(&before, 0.01, 1e-3);
+    let (mesh, narrow, _) = banded_within(&before, 0.01, 1e-3);
     assert!(narrow.edge_counts().split == 0 && !mesh.triangles.is_empty());
 }
 
 #[test]
-fn every_case_loses_its_splits_and_stays_whole() {
+fn no_split_normals_are_left_and_meshes_stay_whole() {
     for case in &CASES {
         let before = (case.mesh)();
         let progress = Progress::new();
         let old = Topology::build_within(&before, case.weld, &progress).unwrap();
         for width in [1e-4, 0.02] {
-            let (mesh, new, rim) = rimmed_within(&before, case.weld, width);
+            let (mesh, new, band) = banded_within(&before, case.weld, width);
             let name = format!("{} {width}", case.name);
             assert_eq!(new.edge_counts().split, 0, "{name}");
             assert_eq!(new.is_closed_and_oriented(), old.is_closed_and_oriented(), "{name}");
             assert!((boundary_length(&new) - boundary_length(&old)).abs() <= 1e-5 * boundary_length(&old), "{name}");
             assert!(
-                rim.creases > 0 || (old.edge_counts().split == 0 && mesh.triangles.len() == before.triangles.len())
+                band.creases > 0 || (old.edge_counts().split == 0 && mesh.triangles.len() == before.triangles.len())
             );
             if old.is_closed_and_oriented() {
                 assert_eq!(euler(&new), euler(&old), "{name}");
@@ -297,7 +301,7 @@ fn every_case_loses_its_splits_and_stays_whole() {
     }
 }
 
-/// A closed shape with normals of its own at every corner, a few of them alike.
+/// A closed shape whose corners all have normals of their own, a few of them equal.
 fn ragged(shape: Shape, picks: &[u8]) -> Mesh {
     let directions = [Vec3::X, Vec3::NEG_X, Vec3::new(0.6, 0.8, 0.0), Vec3::new(0.0, -0.6, 0.8)];
     let mut pick = picks.iter().cycle();
@@ -313,10 +317,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn soups_lose_all_their_splits(seed in 0_u32..100_000, width in 1e-5_f32..0.1) {
+    fn triangle_soups_lose_all_split_normals(seed in 0_u32..100_000, width in 1e-5_f32..0.1) {
         let before = soup(seed);
         let old = topology(&before);
-        let (mesh, new, _) = rimmed(&before, width);
+        let (mesh, new, _) = banded(&before, width);
         prop_assert_eq!(new.edge_counts().split, 0);
         let open = |topology: &Topology| topology.edge_counts().boundary;
         prop_assert!(open(&new) <= 3 * open(&old), "{} of {}", open(&new), open(&old));
@@ -334,14 +338,14 @@ proptest! {
     ) {
         let before = ragged(shape, &picks);
         let old = topology(&before);
-        let (mesh, new, _) = rimmed(&before, width);
+        let (mesh, new, _) = banded(&before, width);
         prop_assert!(new.is_closed_and_oriented());
         prop_assert_eq!((new.edge_counts().split, new.degenerate), (0, 0));
         prop_assert_eq!(euler(&new), euler(&old));
         let at = Vec3::splat(0.1).as_dvec3();
         prop_assert!((volume(&mesh, at) / volume(&before, at) - 1.0).abs() < 1e-5);
         prop_assert!((areas(&mesh) / areas(&before) - 1.0).abs() < 1e-5);
-        // One normal at each point, since every point here has one fan.
+        // One normal on each point, since every point has one fan here.
         let mut normals = HashMap::new();
         let (_, points) = weld::weld(mesh.corners.iter().map(|corner| corner.position));
         for (corner, point) in mesh.corners.iter().zip(points) {
@@ -351,10 +355,10 @@ proptest! {
 }
 
 #[test]
-fn a_cancel_is_heard() {
+fn cancelling_stops_the_work() {
     let progress = Progress::new();
     let cube = Shape::CubeSplit.build();
     let topology = topology(&cube);
     progress.cancel();
-    assert!(matches!(with_rim(&cube, &topology, 0.01, &Unlimited, &progress), Err(BuildError::Cancelled(_))));
+    assert!(matches!(with_crease_band(&cube, &topology, 0.01, &Unlimited, &progress), Err(BuildError::Cancelled(_))));
 }

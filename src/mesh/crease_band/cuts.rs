@@ -1,43 +1,44 @@
-//! Where edges are cut, once for all their sides.
+//! Computes where edges are cut, once for all sides of an edge.
 
 use glam::{DVec3, Vec3};
 
 use super::fans::{Fans, blend, corner_at, shared};
 use crate::mesh::{Edge, Mesh, Side, Topology};
 
-/// The largest part of an edge between an end and its cut.
+/// The greatest part of an edge between an end and the cut near it.
 const LARGEST_PART: f64 = 1.0 / 3.0;
-/// The least width, in units of the last place of the largest coordinate.
+/// The least width, in units in the last place (ULP) of the largest coordinate.
 const LEAST_ULP: f64 = 8.0;
-/// Beside a crease that an edge meets at an acute angle, its cut is farther along it, so that the rim is as wide there: up
-/// to twice as far, which is enough for 30 degrees.
+/// An edge that meets a crease at an acute angle is cut farther from its end, so that the band beside the crease keeps
+/// its width. The distance is divided by the angle's sine, but by no less than this: half, which is enough for 30
+/// degrees.
 const LEAST_SINE: f64 = 0.5;
 
-/// A point on an edge, and the normal of all its sides there.
+/// A point on an edge, and the normal that all its sides have there.
 #[derive(Clone, Copy, Debug)]
 pub struct Cut {
-    /// How far from the end that it is near, as a part of the edge.
+    /// The distance from the end near it, as a part of the edge's length.
     pub part: f32,
     pub position: Vec3,
     pub normal: Vec3,
 }
 
-/// An edge's cuts near its ends, in its own direction.
+/// The cuts of an edge near its ends, in its own direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EdgeCuts {
     pub is_creased: bool,
     pub ends: [Option<Cut>; 2],
 }
 
-/// All edges' cuts.
+/// The cuts of all edges.
 pub struct Cuts {
-    /// For each of the topology's edges.
+    /// One for each of the topology's edges.
     pub edges: Vec<EdgeCuts>,
-    /// Edges that are too short for the width.
+    /// The number of edges that are too short for the width.
     pub narrowed: u32,
 }
 
-/// A width relative to the bounding diagonal, in object units.
+/// Converts a width relative to the bounding diagonal into object units.
 pub fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f64 {
     let largest = topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
     let least = LEAST_ULP * f64::from(largest) * f64::from(f32::EPSILON);
@@ -45,7 +46,7 @@ pub fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f64 {
 }
 
 impl Cuts {
-    /// `width` is in object units.
+    /// Cuts all edges. `width` is in object units.
     pub fn of(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
         let is_creased = |edge: &Edge| {
             let sides = topology.edge_sides(edge);
@@ -65,7 +66,7 @@ impl Cuts {
                 let (from, to) = if end == 0 { (a, b) } else { (b, a) };
                 let position = from.lerp(to, part).as_vec3();
                 let at = |side: &Side| along(mesh, topology, side, end, part);
-                // Where f32 has no room for a cut, it is the point itself.
+                // In f32, a cut so near the end may be the end point itself.
                 let is_apart = position.as_dvec3() != from;
                 let normal = fans.normal_at(&sides[0], end).filter(|_| !is_apart);
                 let normal = normal.unwrap_or_else(|| shared(sides.iter().map(at)));
@@ -75,25 +76,26 @@ impl Cuts {
         cuts
     }
 
-    /// Edges that had split normals.
+    /// Returns the number of edges with split normals.
     pub fn creases(&self) -> u32 {
         self.edges.iter().filter(|edge| edge.is_creased).count() as u32
     }
 
-    /// How far from an end an edge is cut, in widths; none if it isn't.
+    /// Returns how far from an end an edge is cut, as a multiple of the width; none if it isn't cut there.
     fn reach(&self, mesh: &Mesh, topology: &Topology, fans: &Fans, edge: &Edge, end: usize) -> Option<f64> {
         let sides = topology.edge_sides(edge);
         let normal_there = fans.normal_at(&sides[0], end)?;
         if !self.edges[sides[0].edge as usize].is_creased {
             return Some(sides.iter().map(|side| self.slant(topology, side, end)).fold(1.0, f64::max));
         }
-        // Where more meets than its own sides the crease is cut too: what the point's normal bends stays near the point.
+        // Where the point's fan has more normals than this crease's sides, the crease is cut too: so the normal of the
+        // whole fan only bends the surface near the point.
         let own = shared(sides.iter().map(|side| normal(mesh, topology, side, end)));
         (own != normal_there).then_some(1.0)
     }
 
-    /// How far along a side its edge must be cut for the rim of the crease beside it, at an end, in widths; 1 if that is
-    /// none.
+    /// Returns how far from an end an edge must be cut so that the band of the creased edge beside it, on this side,
+    /// keeps its width. The result is a multiple of the width: 1 if that other edge has no crease.
     fn slant(&self, topology: &Topology, side: &Side, end: usize) -> f64 {
         let k = corner_at(side, end);
         let other = if k == side.index() { (k + 2) % 3 } else { k };
@@ -107,17 +109,17 @@ impl Cuts {
     }
 }
 
-/// The sine of the angle between two vectors.
+/// Returns the sine of the angle between two vectors.
 fn sine(a: DVec3, b: DVec3) -> f64 {
     a.normalize().cross(b.normalize()).length()
 }
 
-/// A side's normal at an end of its edge.
+/// Returns a side's normal at an end of its edge.
 fn normal(mesh: &Mesh, topology: &Topology, side: &Side, end: usize) -> Vec3 {
     mesh.corners[topology.side_corners(side)[end] as usize].normal
 }
 
-/// A side's normal at a part of its edge from an end.
+/// Returns a side's normal at a part of its edge's length from an end.
 fn along(mesh: &Mesh, topology: &Topology, side: &Side, end: usize, part: f64) -> Vec3 {
     blend([(1.0 - part, normal(mesh, topology, side, end)), (part, normal(mesh, topology, side, 1 - end))])
 }

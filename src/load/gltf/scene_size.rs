@@ -1,4 +1,4 @@
-//! How much a scene will be, before any of it is read: what a document repeats is what a small file asks much with.
+//! Computes the size of a scene before it is read: with a mesh on many nodes, a small file can ask for much memory.
 
 use std::collections::HashMap;
 
@@ -7,83 +7,84 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Semantic};
 
 use super::nodes::Placed;
-use super::{Accessors, Problem, primitive};
+use super::{Accessors, GltfError, primitive};
 use crate::load::memory_budget::Budget;
 use crate::mesh::build_limits::MAX_TRIANGLES;
 use crate::mesh::interner::Interner;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 
-/// Vertices, displacements of them and indices that are read at most, each as often as it is used.
+/// The greatest number of vertices, their displacements and indices, each counted as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
 
-/// Memory for a corner and for a triangle while they are gathered, in bytes (see [`crate::load::memory_budget`]), and for what moves a
-/// corner.
+/// Memory for a corner while the mesh is built, in bytes (see [`crate::load::memory_budget`]).
 const PER_CORNER: u64 = 32;
+/// Memory for a triangle while the mesh is built, in bytes.
 const PER_TRIANGLE: u64 = 12;
-/// What a vertex counts that is nowhere: it takes time, and no file brings it.
+/// What a vertex without data in the file counts as, in bytes: it takes time, and adds nothing to the file's size.
 const PER_ZERO: u64 = 100;
+/// Memory for the binding of a corner of an animated mesh, in bytes.
 const PER_BOUND: u64 = 240;
-/// As much as reading a primitive takes beside its elements, and a node.
+/// Memory for reading a primitive and its node, in bytes, besides its elements.
 const PER_PRIMITIVE: u64 = 200;
 
-/// Of a mesh, or of all that is shown.
+/// The size of a mesh, or of all that is shown.
 #[derive(Clone, Copy, Debug, Default)]
-struct Extent {
+struct SceneSize {
     triangles: u64,
-    /// Distinct ones: at most, or where nothing is said of it as many as a closed surface has.
+    /// The number of distinct corners: the greatest possible, or without indices that of a closed surface.
     corners: u64,
-    /// Vertices of triangles, at most.
+    /// The greatest number of vertices that triangles use.
     vertices: u64,
-    /// Those of which the file holds nothing.
+    /// Vertices without data in the file.
     zeros: u64,
     elements: u64,
     primitives: u64,
 }
 
-/// Makes sure that all that is shown is there, and that there is room for it, which is held. How many vertices of
-/// triangles there are at most, and how many distinct corners there may be.
+/// Checks that the data of everything that is shown is there, and that the budget has room for it. Returns the greatest
+/// number of vertices of triangles, and of distinct corners.
 ///
 /// # Errors
-/// [`Problem::Accessor`], and [`Problem::TooLarge`].
+/// [`GltfError::Accessor`], and [`GltfError::TooLarge`].
 pub fn check(
     document: &Document,
     placed: &Placed,
     accessors: &Accessors,
     budget: &Budget,
     moves: bool,
-) -> Result<[usize; 2], Problem> {
-    let mut known: HashMap<usize, Extent> = HashMap::new();
-    let mut all = Extent::default();
+) -> Result<[usize; 2], GltfError> {
+    let mut known: HashMap<usize, SceneSize> = HashMap::new();
+    let mut all = SceneSize::default();
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
         let Some(mesh) = node.mesh() else { continue };
-        let extent = match known.get(&mesh.index()) {
-            Some(extent) => *extent,
+        let size = match known.get(&mesh.index()) {
+            Some(size) => *size,
             None => {
-                let extent = Extent::of(&mesh, accessors)?;
-                known.insert(mesh.index(), extent);
-                extent
+                let size = SceneSize::of(&mesh, accessors)?;
+                known.insert(mesh.index(), size);
+                size
             }
         };
-        all.add(extent);
+        all.add(size);
         let joints = node.skin().map_or(0, |skin| skin.joints().len() as u64);
         all.elements = all.elements.saturating_add(joints);
     }
     let refuse = |count: u64, what: &str, most: u64| {
-        let reason = format!("{count} {what}, and {most} are read at most");
-        Err(Problem::TooLarge { what: "the scene has".to_owned(), reason })
+        let reason = format!("{count} {what}, but at most {most} are read");
+        Err(GltfError::TooLarge { what: "the scene has".to_owned(), reason })
     };
     if all.triangles > MAX_TRIANGLES {
         return refuse(all.triangles, "triangles", MAX_TRIANGLES);
     }
     if all.elements > MAX_ELEMENTS {
-        return refuse(all.elements, "vertices, displacements of them and indices", MAX_ELEMENTS);
+        return refuse(all.elements, "vertices, displacements of vertices and indices", MAX_ELEMENTS);
     }
     let moving = if moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
     let read = Interner::bytes_for(all.corners as usize) + all.triangles * PER_TRIANGLE;
-    // All triangles in one list, when the buffers are no longer held.
+    // All triangles are put into one list after the buffers have been freed.
     let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
     let finished = if all.primitives > 1 { finished } else { 0 };
-    let too_large = |refused: MemoryRefused| Problem::TooLarge {
+    let too_large = |refused: MemoryRefused| GltfError::TooLarge {
         what: format!("the scene of {} triangles", all.triangles),
         reason: refused.into(),
     };
@@ -91,21 +92,21 @@ pub fn check(
     let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + read.max(finished);
     let borrowed = budget.borrowed();
     budget.hold(beside).and_then(|()| budget.borrow(ahead)).map_err(too_large)?;
-    // That was a look ahead: the builder takes it as it goes.
+    // This was only a check: the builder takes the memory as it goes.
     budget.give_back_to(borrowed);
     Ok([all.vertices as usize, all.corners as usize])
 }
 
-impl Extent {
-    fn of(mesh: &Mesh, accessors: &Accessors) -> Result<Self, Problem> {
-        let mut extent = Self::default();
+impl SceneSize {
+    fn of(mesh: &Mesh, accessors: &Accessors) -> Result<Self, GltfError> {
+        let mut size = Self::default();
         for primitive in mesh.primitives() {
-            extent.primitives += 1;
+            size.primitives += 1;
             let Some(positions) = primitive.get(&Semantic::Positions).filter(|_| is_read(primitive.mode())) else {
                 continue;
             };
             let name = primitive::name(mesh, &primitive);
-            // What was decompressed is there, and as much as the accessors say.
+            // The size of decompressed data has been compared with the accessors.
             let is_unpacked = accessors.unpacked.contains_key(&[mesh.index(), primitive.index()]);
             let check = |accessor: &Accessor, role: &str| match is_unpacked {
                 true => Ok(()),
@@ -121,7 +122,7 @@ impl Extent {
             let triangles = primitive::most_triangles(primitive.mode(), indices as usize) as u64;
             let used = vertices.min(triangles.saturating_mul(3));
             let targets = primitive.morph_targets().len() as u64;
-            extent.add(Self {
+            size.add(Self {
                 triangles,
                 corners: if primitive.indices().is_some() { used } else { used.min(triangles / 2 + 2) },
                 vertices: used,
@@ -130,7 +131,7 @@ impl Extent {
                 primitives: 0,
             });
         }
-        Ok(extent)
+        Ok(size)
     }
 
     fn add(&mut self, other: Self) {

@@ -1,20 +1,20 @@
-//! Corners, each once.
+//! A list of distinct corners.
 
 use crate::mesh::Corner;
 use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::interner::Interner;
 
-/// Corners that differ in some bit, or in what they are bound to, in the order of their first appearance.
+/// Corners that differ in some bit or in their binding, in the order of their first appearance.
 #[derive(Default)]
-pub struct Distinct {
+pub struct DistinctCorners {
     pub corners: Vec<Corner>,
-    /// None at all while all are 0.
+    /// The binding of each corner; empty while all are 0.
     pub bindings: Vec<u32>,
     ids: Interner,
 }
 
-impl Distinct {
-    /// The number of a corner, which is the next one if it is new.
+impl DistinctCorners {
+    /// Returns the number of a corner. A new corner gets the next number.
     pub fn id(&mut self, corner: Corner, binding: u32) -> u32 {
         let (corners, bindings) = (&self.corners, &self.bindings);
         let (id, is_new) = self.ids.number(key(&corner, binding), |id| key_of(corners, bindings, id));
@@ -28,12 +28,12 @@ impl Distinct {
         id
     }
 
-    /// How many more there is room for.
+    /// Returns how many more corners there is room for.
     pub fn room(&self) -> usize {
         self.ids.room().min(self.corners.capacity() - self.corners.len())
     }
 
-    /// Makes room for exactly so many more.
+    /// Makes room for exactly `more` further corners.
     ///
     /// # Errors
     /// [`MemoryRefused`].
@@ -51,7 +51,7 @@ impl Distinct {
         Ok(())
     }
 
-    /// No more are told apart: the table goes.
+    /// Frees the table that finds equal corners: no more corners will be added.
     pub fn close(&mut self, budget: &dyn MemoryAccount) {
         budget.release(self.ids.bytes());
         self.ids = Interner::default();
@@ -62,7 +62,7 @@ fn key_of(corners: &[Corner], bindings: &[u32], id: u32) -> (u64, u64, u64, u64,
     key(&corners[id as usize], bindings.get(id as usize).copied().unwrap_or_default())
 }
 
-/// All of a corner; no normal is what no number is.
+/// Returns all bits of a corner and its binding. A missing normal is NaN, and equals other missing ones.
 fn key(corner: &Corner, binding: u32) -> (u64, u64, u64, u64, u32) {
     let pair = |a: f32, b: f32| u64::from(a.to_bits()) << 32 | u64::from(b.to_bits());
     let Corner { position: p, normal: n, uv } = corner;

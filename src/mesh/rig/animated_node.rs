@@ -1,26 +1,28 @@
-//! Nodes that clips move.
+//! The nodes that clips move.
 
 use glam::{DMat4, DQuat, DVec3};
 
 use super::clip::{Channel, Property, unit};
 
-/// A node that a clip moves. Nodes that none does are folded into `between`.
+/// A node that a clip moves. The transforms of nodes that no clip moves are part of `between`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mover {
-    /// The nearest node above it that a clip moves, an index that is lower than its own.
+pub struct AnimatedNode {
+    /// The nearest ancestor that a clip moves. Its index is lower than this node's.
     pub parent: Option<u32>,
-    /// From where this node is placed to the parent's own space; to the scene's without one.
+    /// The transform from the space that `rest` places this node in to the parent's own space, or to the scene's
+    /// without a parent.
     pub between: DMat4,
+    /// The node's own transform while no clip moves it.
     pub rest: Placement,
-    /// Whether it moves a joint of a skin, itself or one below it.
+    /// Whether the node, or a node below it, is a joint of a skin.
     pub is_joint: bool,
 }
 
-/// A node's own transform, in parts.
+/// A node's own transform, as translation, rotation and scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     pub translation: DVec3,
-    /// Of any length.
+    /// Not always of unit length.
     pub rotation: DQuat,
     pub scale: DVec3,
 }
@@ -36,7 +38,7 @@ impl Placement {
         DMat4::from_scale_rotation_translation(self.scale, unit(self.rotation), self.translation)
     }
 
-    /// Replaces the part that the channel is for.
+    /// Replaces the part of the transform that the channel moves by its value at a time, in s.
     pub(super) fn animate(&mut self, channel: &Channel, time: f64) {
         match channel.property {
             Property::Translation => {

@@ -1,31 +1,31 @@
-//! A primitive's vertices, bound to what moves them.
+//! Binds the vertices of a primitive of an animated mesh.
 
-use super::Problem;
-use super::binder::{Frame, MAX_BOUND, NodeBinder, Undeformed};
-use super::vertices::{Source, Target, Vertices};
+use super::GltfError;
+use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
+use super::vertices::{MorphTarget, PrimitiveData, Vertices};
 use crate::mesh::MemoryAccount;
-use crate::mesh::mesh_builder::LooseCorner;
+use crate::mesh::mesh_builder::InputCorner;
 use crate::mesh::rig::Delta;
 
-/// Memory for a displacement of a vertex that is bound, and for telling it from others, in bytes.
+/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
 const PER_DELTA: u64 = 250;
 
-pub struct Moving<'a, 'b, 'c> {
+pub struct AnimatedVertices<'a, 'b, 'c> {
     binder: &'b mut NodeBinder<'c>,
-    frame: Frame,
-    source: Source<'a>,
+    frame: VertexFrame,
+    source: PrimitiveData<'a>,
     /// Where the node's weights start, if a clip changes them.
     first_weight: Option<u32>,
-    /// Those whose weights that are.
-    targets: Vec<Target<'a>>,
-    /// The vertex's that is being bound.
+    /// The morph targets of those weights.
+    targets: Vec<MorphTarget<'a>>,
+    /// The displacements of the vertex that is being bound.
     deltas: Vec<Delta>,
-    /// Displacements of vertices so far.
+    /// The number of displacements so far.
     found: usize,
 }
 
-impl<'a, 'b, 'c> Moving<'a, 'b, 'c> {
-    pub fn new(source: Source<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
+impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
+    pub fn new(source: PrimitiveData<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
         let (frame, first_weight) = (binder.frame(vertices.is_skinned()), binder.first_weight());
         let mut moving =
             Self { binder, frame, source, first_weight, targets: Vec::new(), deltas: Vec::new(), found: 0 };
@@ -39,29 +39,30 @@ impl<'a, 'b, 'c> Moving<'a, 'b, 'c> {
     }
 
     /// # Errors
-    /// In words: they can't be read, or there are too many.
-    fn read_targets(&mut self, count: usize) -> Result<Vec<Target<'a>>, String> {
+    /// A clause if the targets can't be read, or if there are too many.
+    fn read_targets(&mut self, count: usize) -> Result<Vec<MorphTarget<'a>>, String> {
         let targets = self.source.primitive.morph_targets();
         self.binder.look_at(targets.clone().count().saturating_mul(count))?;
-        let targets: Result<_, Problem> = targets.map(|target| self.source.target(&target, count)).collect();
+        let targets: Result<_, GltfError> = targets.map(|target| self.source.target(&target, count)).collect();
         targets.map_err(|problem| problem.to_string())
     }
 
-    /// The number of the binding of the vertex that was read last.
-    pub fn bind(&mut self, i: usize, vertices: &Vertices, corner: &LooseCorner) -> u32 {
+    /// Returns the number of the binding of the vertex that was read last.
+    pub fn bind(&mut self, i: usize, vertices: &Vertices, corner: &InputCorner) -> u32 {
         if let Err(problem) = self.displace(i) {
             self.binder.give_up(problem);
         }
         let (position, normal) = vertices.undeformed(i, self.first_weight.is_none());
         let normal = normal.unwrap_or_default();
-        let vertex = Undeformed { position, normal, influences: vertices.joints(), deltas: &mut self.deltas };
+        let vertex = UndeformedVertex { position, normal, influences: vertices.joints(), deltas: &mut self.deltas };
         self.binder.bind(&self.frame, vertex, corner)
     }
 
-    /// Gathers what each target of weight 1 adds to a vertex, of those that move or turn it; 0 for what isn't finite.
+    /// Collects the displacements of a vertex by the targets that move or turn it, at weight 1. Components that aren't
+    /// finite become 0.
     ///
     /// # Errors
-    /// In words: it is too much.
+    /// A clause if they take too much memory.
     fn displace(&mut self, i: usize) -> Result<(), String> {
         self.deltas.clear();
         let Some(first_weight) = self.first_weight else { return Ok(()) };

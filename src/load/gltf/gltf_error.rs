@@ -1,12 +1,12 @@
-//! What can be wrong with a glTF document.
+//! Errors in glTF documents.
 
 use crate::mesh::build_limits::BuildError;
 use crate::progress::Cancelled;
 
-/// Why a glTF document became no mesh. The file's own path is not part of the message. Places in the document are JSON
-/// pointers (RFC 6901).
+/// Why a glTF document could not be loaded. The message doesn't contain the file's path. Places in the document are
+/// JSON pointers (RFC 6901).
 #[derive(Debug, thiserror::Error)]
-pub enum Problem {
+pub enum GltfError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error("not a glTF 2.0 document: {reason}; export the model again as glTF 2.0")]
@@ -21,15 +21,15 @@ pub enum Problem {
     Accessor { accessor: usize, role: String, reason: String },
     #[error("{primitive} {reason}; export the model again")]
     Primitive { primitive: String, reason: String },
-    #[error("{pointer} {reason}; decompress the model first (gltf-transform, for one, can)")]
-    Packed { pointer: String, reason: String },
+    #[error("{pointer} {reason}; decompress the model first, for example with gltf-transform")]
+    Draco { pointer: String, reason: String },
     #[error("{what} {reason}; split the model into several files")]
     TooLarge { what: String, reason: String },
     #[error("no triangles: {holds}")]
     Empty { holds: String },
 }
 
-impl From<BuildError> for Problem {
+impl From<BuildError> for GltfError {
     fn from(error: BuildError) -> Self {
         match error {
             BuildError::Cancelled(cancelled) => cancelled.into(),

@@ -1,4 +1,4 @@
-//! What one triangle is cut into.
+//! Cuts one triangle into pieces.
 
 use std::collections::HashMap;
 
@@ -9,11 +9,11 @@ use super::fans::{Fans, blend};
 use super::on_point;
 use crate::mesh::{Corner, Mesh, Topology};
 
-/// The largest part of the way from a corner to the middle of the incircle.
+/// The greatest part of the way from a corner to the centre of the incircle.
 const LARGEST_PART: f64 = 0.5;
 
-/// How much narrower, as a part of the width, the rim inside each further triangle on the same three points is: front and
-/// back of a leaf then keep edges and normals of their own.
+/// By how much the band inside each further triangle on the same three points is narrower, as a part of the width. So
+/// the two sides of a thin sheet keep edges and normals of their own.
 const TWIN_STEP: f64 = 0.125;
 
 /// Cuts patches into pieces.
@@ -22,46 +22,48 @@ pub struct Cutter<'a> {
     topology: &'a Topology,
     fans: &'a Fans,
     cuts: &'a Cuts,
-    /// Object units.
+    /// The band's width, in object units.
     width: f64,
+    /// See [`twins`].
     twins: HashMap<u32, u32>,
-    /// Triangles that were too small for the width.
+    /// The number of triangles that are too small for the width.
     pub narrowed: u32,
 }
 
-/// Where a triangle is cut back to at a corner.
+/// How a triangle is cut back at a corner.
 #[derive(Clone, Copy)]
 enum Inset {
-    /// It isn't.
+    /// It isn't cut there.
     None,
-    /// A point inside, off two creased sides.
+    /// To a point inside, away from two creased sides.
     Inside(Corner),
-    /// A point on the side that isn't creased.
+    /// To a point on the one of its sides that isn't creased.
     On(Corner),
-    /// The corner is cut off: points on the side that comes in and on the one that goes out.
+    /// The corner is cut off between two points: one on the side that ends there, one on the side that starts there.
     Off([Corner; 2]),
 }
 
-/// A patch with all that is known of it.
-struct Whole {
-    /// Its corners on the topology's points, with their own normals.
+/// A patch with everything that its pieces are computed from.
+struct CutPatch {
+    /// Its corners, on the topology's points, with their own normals.
     own: [Corner; 3],
-    /// The same with the normals that they share with their fans.
+    /// The same corners with the normals that their fans share.
     shared: [Corner; 3],
-    /// Whether a fan's normals were split at the corner.
+    /// Whether the normals of the corner's fan differ.
     is_split: [bool; 3],
+    /// Whether side k is creased.
     is_creased: [bool; 3],
-    /// On side k, near its start and near its end.
+    /// The cuts on side k, near its start and near its end.
     cuts: [[Option<Corner>; 2]; 3],
 }
 
 impl<'a> Cutter<'a> {
-    /// `width` is in object units.
+    /// Prepares to cut patches. `width` is in object units.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, fans: &'a Fans, cuts: &'a Cuts, width: f64) -> Self {
         Self { mesh, topology, fans, cuts, width, twins: twins(topology), narrowed: 0 }
     }
 
-    /// Calls `add` with each of a patch's pieces: what is left of it, then the strips along creased sides.
+    /// Calls `add` with each piece of a patch: first what the cuts leave of it, then the strips along creased sides.
     pub fn pieces(&mut self, patch: u32, add: &mut dyn FnMut([Corner; 3])) {
         let whole = self.whole(patch);
         let part = self.inside_part(patch, &whole);
@@ -74,7 +76,7 @@ impl<'a> Cutter<'a> {
                 Inset::Off(both) => rest.extend(both),
             }
         }
-        // Convex, with no three corners in a line: at most two lie on any side.
+        // The outline is convex, and no three corners lie on a line, since at most two lie on any side.
         for pair in rest[1..].windows(2) {
             add([rest[0], pair[0], pair[1]]);
         }
@@ -88,7 +90,7 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    fn whole(&self, patch: u32) -> Whole {
+    fn whole(&self, patch: u32) -> CutPatch {
         let Self { mesh, topology, fans, cuts, .. } = self;
         let own = topology.patch_corners(patch).map(|corner| on_point(mesh, topology, corner));
         let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize]);
@@ -99,7 +101,7 @@ impl<'a> Cutter<'a> {
             Some(Corner { position: cut.position, normal: cut.normal, uv: from.uv.lerp(to.uv, cut.part) })
         };
         let normals = [0, 1, 2].map(|k| fans.normal(patch, k));
-        Whole {
+        CutPatch {
             own,
             shared: [0, 1, 2].map(|k| Corner { normal: normals[k].unwrap_or(own[k].normal), ..own[k] }),
             is_split: normals.map(|normal| normal.is_some()),
@@ -108,8 +110,8 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    /// The part of the way from a corner to the middle of the incircle that keeps a point so far from both sides.
-    fn inside_part(&mut self, patch: u32, whole: &Whole) -> f64 {
+    /// Returns which part of the way from a corner to the incircle's centre moves a point by the width from both sides.
+    fn inside_part(&mut self, patch: u32, whole: &CutPatch) -> f64 {
         if (0..3).all(|k| !whole.has_inside(k)) {
             return 0.0;
         }
@@ -122,7 +124,7 @@ impl<'a> Cutter<'a> {
     }
 }
 
-/// Which of the patches on the same three points a patch is, where it isn't the first.
+/// Numbers the patches that have the same three points: 1 for the second, 2 for the third. The first isn't listed.
 fn twins(topology: &Topology) -> HashMap<u32, u32> {
     let points = |index: u32| {
         let mut points = topology.patch_points(index);
@@ -135,8 +137,8 @@ fn twins(topology: &Topology) -> HashMap<u32, u32> {
     groups.flat_map(|group| group.iter().zip(0..).skip(1)).map(|(&(_, patch), rank)| (patch, rank)).collect()
 }
 
-impl Whole {
-    /// Whether corner `k` is cut back from two creased sides.
+impl CutPatch {
+    /// Returns whether corner `k` is cut back from two creased sides.
     fn has_inside(&self, k: usize) -> bool {
         self.is_split[k] && self.is_creased[k] && self.is_creased[(k + 2) % 3]
     }
@@ -147,7 +149,7 @@ impl Whole {
         if self.has_inside(k) {
             return Inset::Inside(self.inside(k, part));
         }
-        // An edge that isn't creased is cut where its end is split, for all its sides.
+        // An edge without a crease is cut, for all its sides, at an end with split normals.
         match (self.is_creased[before], self.is_creased[k], cut_before, cut_after) {
             (false, true, Some(cut), _) | (true, false, _, Some(cut)) => Inset::On(cut),
             (false, false, Some(before), Some(after)) => Inset::Off([before, after]),
@@ -155,8 +157,8 @@ impl Whole {
         }
     }
 
-    /// A part of the way from corner `k` to the middle of the incircle, whose weight by corner is the length of the side
-    /// opposite it.
+    /// Returns the point at a part of the way from corner `k` to the incircle's centre. Each corner's weight in that
+    /// centre is the length of the opposite side.
     fn inside(&self, k: usize, part: f64) -> Corner {
         let p = self.own.map(|corner| corner.position.as_dvec3());
         let opposite = [0, 1, 2].map(|i| p[(i + 1) % 3].distance(p[(i + 2) % 3]));
@@ -168,7 +170,7 @@ impl Whole {
         let position: DVec3 = p[k] + offset(next) + offset(last);
         let position: Vec3 = position.as_vec3();
         if position == self.own[k].position {
-            // f32 has no room for it.
+            // In f32, the point would be the corner itself.
             return self.shared[k];
         }
         let weights = [(k, 1.0 - weight(next) - weight(last)), (next, weight(next)), (last, weight(last))];
@@ -177,7 +179,7 @@ impl Whole {
         Corner { position, normal, uv }
     }
 
-    /// The triangles between creased side `k` and the cut that runs along it.
+    /// Adds the triangles between the creased side `k` and the cut along it.
     fn strip(&self, k: usize, insets: &[Inset; 3], add: &mut dyn FnMut([Corner; 3])) {
         let next = (k + 1) % 3;
         let inner = |k: usize| match insets[k] {
@@ -196,7 +198,7 @@ impl Whole {
         }
         match (inner_from, inner_to) {
             (Some(inner_from), Some(inner_to)) => {
-                // The diagonal that can't leave the strip, however wide it is at either end.
+                // This diagonal can't leave the strip, however wide it is at either end.
                 if matches!((insets[k], insets[next]), (Inset::Inside(_), Inset::On(_))) {
                     add([from, to, inner_from]);
                     add([to, inner_to, inner_from]);

@@ -4,13 +4,14 @@ use glam::DVec3;
 
 use crate::mesh::{Edge, Topology};
 
-/// A line with a length, in object units. In f64: squares of very small or large lengths leave f32.
+/// A straight segment with a length above 0, in object units. In f64, since squares of very small or large lengths
+/// leave f32.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct LineSegment {
     pub ends: [DVec3; 2],
 }
 
-impl Line {
+impl LineSegment {
     pub fn of(topology: &Topology, edge: &Edge) -> Self {
         Self { ends: topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3()) }
     }
@@ -23,13 +24,14 @@ impl Line {
         self.way().length()
     }
 
-    /// Where along the line a place lies, 0 at its start and 1 at its end, and how far from it.
+    /// Returns where along the segment a position lies, 0 at its start and 1 at its end, and its distance from the
+    /// line.
     pub fn project(&self, place: DVec3) -> (f64, f64) {
         let t = (place - self.ends[0]).dot(self.way()) / self.way().length_squared();
         (t, place.distance(self.ends[0] + t * self.way()))
     }
 
-    /// From the line to a place, at right angles to the line.
+    /// Returns the vector from the line to a position, at right angles to the line.
     pub fn across(&self, place: DVec3) -> DVec3 {
         let (t, _) = self.project(place);
         place - (self.ends[0] + t * self.way())

@@ -1,4 +1,4 @@
-//! Faces one by one, and the cube that every format must be able to say.
+//! Single faces, and the cube that every format can describe.
 
 use super::*;
 use crate::mesh::Mesh;
@@ -9,15 +9,16 @@ use crate::mesh::topology::Topology;
 pub const POINTS: [[i8; 3]; 8] =
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
 
-/// Its sides, counter-clockwise seen from outside.
+/// The sides of the cube, counter-clockwise seen from outside.
 pub const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
 
-/// Its triangles.
+/// Returns the triangles of the cube.
 pub fn triangles() -> Vec<[usize; 3]> {
     SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
 }
 
-/// Whether a mesh is that cube, with the topology of the one that is made in code: its normals may be given or made.
+/// Checks that a mesh is the cube and has the topology of the cube that is made in code. Its normals may be from the
+/// file or computed.
 pub fn assert_cube(mesh: &Mesh) {
     let topology = |mesh: &Mesh| Topology::build(mesh, &Progress::new()).unwrap();
     let (expected, found) = (topology(&Shape::CubeSplit.build()), topology(mesh));
@@ -32,17 +33,17 @@ pub fn assert_cube(mesh: &Mesh) {
     }
 }
 
-fn corners(places: &[[f32; 2]]) -> Vec<LooseCorner> {
-    let corner = |&[x, y]: &[f32; 2]| LooseCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO };
+fn corners(places: &[[f32; 2]]) -> Vec<InputCorner> {
+    let corner = |&[x, y]: &[f32; 2]| InputCorner { position: Vec3::new(x, y, 0.0), normal: None, uv: Vec2::ZERO };
     places.iter().map(corner).collect()
 }
 
 fn added(places: &[&[[f32; 2]]]) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::unlimited();
-    let mut faces = Faces::new(0, &budget);
+    let mut faces = FaceBuilder::new(0, &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     for places in places {
-        faces.add(material, &mut corners(places), Place::Line(7))?;
+        faces.add(material, &mut corners(places), FilePosition::Line(7))?;
     }
     faces.finish("faces", "nothing".to_owned(), vec!["said first.".to_owned()], &Progress::new())
 }
@@ -52,11 +53,14 @@ fn corners_on_one_place_are_left_out_of_polygons_and_kept_in_triangles() {
     let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mesh = added(&[&[a, a, b, c, c, d, a], &[a, a, b]]).unwrap();
     assert_eq!(mesh.triangles.len(), 3);
-    assert_eq!(mesh.warnings, ["said first.", "corners of polygons where the one before is, left out: 3."]);
+    assert_eq!(
+        mesh.warnings,
+        ["said first.", "corners of polygons at the position of the corner before, left out: 3."]
+    );
 }
 
 #[test]
-fn faces_that_are_none_are_left_out() {
+fn faces_with_fewer_than_three_corners_are_left_out() {
     let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
     let mesh = added(&[&[], &[a], &[a, b], &[a, b, b, a], &[a, b, c]]).unwrap();
     assert_eq!(mesh.triangles.len(), 1);

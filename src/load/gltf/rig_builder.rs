@@ -1,58 +1,58 @@
-//! What a mesh becomes besides triangles if it can move: nodes and skins as joints, vertices as bindings to them.
+//! Builds the rig of an animated mesh: nodes and skins become joints, and vertices are bound to them.
 
 use std::collections::HashMap;
 
 use ::gltf::Document;
 use glam::{DMat4, Vec3};
 
-use super::hanging::{Hang, carries_shown, hang};
+use super::attachment::{self, Attachment, carries_shown};
+use super::binding_space::{BindingSpace, untwisted};
 use super::nodes::{self, Placed};
 use super::skin;
-use super::space::{Space, untwisted};
 use crate::mesh::Mesh;
-use crate::mesh::mesh_builder::LooseCorner;
-use crate::mesh::normals::Given;
-use crate::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Mover, Property, Reach, Rig};
+use crate::mesh::mesh_builder::InputCorner;
+use crate::mesh::normals::GivenNormal;
+use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Property, Reach, Rig};
 
-/// Vertices, and displacements of them, that are bound at most: no memory is taken out of proportion.
+/// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub const MAX_BOUND: usize = 1 << 24;
-/// Elements of morph targets that are looked at.
+/// The greatest number of elements of morph targets that are read.
 const MAX_DISPLACED: usize = 1 << 28;
 
-/// Gathers bindings, node by node, and makes a [`Rig`] of them.
-pub struct Binder {
-    /// Their targets are movers and morphs.
+/// Collects bindings, node by node, and builds a [`Rig`] of them.
+pub struct RigBuilder {
+    /// The targets of their channels are `nodes` and `morphs`.
     clips: Vec<Clip>,
-    movers: Vec<Mover>,
-    /// What moves each node of the document, and how the node stands beneath that.
-    hangs: Vec<Hang>,
+    nodes: Vec<AnimatedNode>,
+    /// For each node of the document, the animated node that moves it.
+    attachments: Vec<Attachment>,
     morphs: Vec<Morph>,
-    /// Of nodes whose morph targets' weights a clip changes.
+    /// For each node whose morph targets a clip weights, its index in `morphs`.
     node_morphs: HashMap<usize, usize>,
     joints: Vec<Joint>,
     joint_ids: HashMap<(Option<u32>, [u64; 16]), u32>,
-    bound: Vec<Bound>,
+    bound: Vec<BoundVertex>,
     bound_ids: HashMap<[u32; 8], u32>,
-    /// Numbers of lists that are told apart.
+    /// Numbers for distinct lists of joints, weights and displacements.
     lists: HashMap<Vec<u32>, u32>,
     deltas: Vec<Delta>,
-    /// Elements of morph targets that have been looked at.
+    /// How many elements of morph targets have been read.
     displaced: usize,
-    /// Why there can be no rig.
+    /// Why no rig can be built.
     problem: Option<String>,
 }
 
-/// A vertex to be deformed.
-struct Bound {
+/// A vertex that will be deformed.
+struct BoundVertex {
     binding: Binding,
     alike: u32,
-    /// Whether its normal is to be found from the one that its corner gets.
+    /// Whether its normal must be computed from the one that its corner gets.
     without_normal: bool,
 }
 
-impl Binder {
-    /// None if none of the clips (whose targets are nodes of the document) moves anything that is shown; those that don't
-    /// are among the warnings.
+impl RigBuilder {
+    /// Prepares for some clips, whose targets are nodes of the document. Returns none if no clip moves anything that is
+    /// shown. Adds a warning for each clip that doesn't.
     pub fn new(clips: Vec<Clip>, document: &Document, placed: &Placed, warnings: &mut Vec<String>) -> Option<Self> {
         if clips.is_empty() {
             return None;
@@ -63,11 +63,11 @@ impl Binder {
         }
         let carries = carries_shown(document, placed);
         moved.iter_mut().zip(&carries).for_each(|(moved, carries)| *moved &= carries);
-        let (movers, hangs) = hang(document, placed, &moved);
+        let (nodes, attachments) = attachment::attachments(document, placed, &moved);
         let mut binder = Self {
             clips: Vec::new(),
-            movers,
-            hangs,
+            nodes,
+            attachments,
             morphs: Vec::new(),
             node_morphs: HashMap::new(),
             joints: Vec::new(),
@@ -91,7 +91,7 @@ impl Binder {
         (!binder.clips.is_empty()).then_some(binder)
     }
 
-    /// The nodes that are shown and whose weights a clip changes.
+    /// Adds the morph targets of the nodes that are shown and whose weights a clip changes.
     fn add_morphs(&mut self, clips: &[Clip], document: &Document, placed: &Placed) {
         let mut weighed = vec![false; placed.global.len()];
         for channel in clips.iter().flat_map(|clip| &clip.channels) {
@@ -108,13 +108,13 @@ impl Binder {
         }
     }
 
-    /// The clip with those channels that move something shown, and their targets.
+    /// Keeps a clip's channels that move something shown, and replaces their targets by indices into the rig.
     fn retargeted(&self, mut clip: Clip, moved: &[bool]) -> Clip {
         clip.channels.retain_mut(|channel| {
             let node = channel.target as usize;
             let target = match channel.property {
                 Property::Weights => self.node_morphs.get(&node).map(|&morph| morph as u32),
-                _ => self.hangs[node].mover.filter(|_| moved[node]),
+                _ => self.attachments[node].node.filter(|_| moved[node]),
             };
             channel.target = target.unwrap_or_default();
             target.is_some()
@@ -122,23 +122,23 @@ impl Binder {
         clip
     }
 
-    /// For the vertices of a node's mesh.
+    /// Returns a binder for the vertices of a node's mesh.
     pub fn node<'a>(&'a mut self, node: usize, skin: Option<&'a skin::Joints>) -> NodeBinder<'a> {
         for &joint in skin.map_or(&[][..], |skin| &skin.nodes) {
-            if let Some(Hang { mover: Some(mover), .. }) = self.hangs.get(joint) {
-                self.movers[*mover as usize].is_joint = true;
+            if let Some(Attachment { node: Some(node), .. }) = self.attachments.get(joint) {
+                self.nodes[*node as usize].is_joint = true;
             }
         }
         let skin_joints = vec![None; skin.map_or(0, |skin| skin.nodes.len())];
         NodeBinder { node, skin, skin_joints, binder: self }
     }
 
-    /// There will be no rig. The first reason stays.
+    /// Gives up building a rig. The first reason is reported.
     fn give_up(&mut self, reason: String) {
         self.problem.get_or_insert(reason);
     }
 
-    /// The rig of a mesh whose corners have these bindings; a warning in its place if there can't be one.
+    /// Builds the rig of a mesh whose corners have these bindings. If that is impossible, returns a warning.
     pub fn finish(self, mesh: &Mesh, corners: &[u32]) -> Result<Rig, String> {
         if let Some(problem) = self.problem {
             return Err(format!("animations are left out: {problem}."));
@@ -147,7 +147,7 @@ impl Binder {
             bindings: corners.iter().map(|&id| self.bound[id as usize].binding).collect(),
             alike: corners.iter().map(|&id| self.bound[id as usize].alike).collect(),
             deltas: self.deltas,
-            movers: self.movers,
+            nodes: self.nodes,
             joints: self.joints,
             morphs: self.morphs,
             clips: self.clips,
@@ -164,7 +164,7 @@ impl Binder {
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {
-        let key = (joint.mover, joint.offset.to_cols_array().map(|x| (x + 0.0).to_bits()));
+        let key = (joint.node, joint.offset.to_cols_array().map(|x| (x + 0.0).to_bits()));
         *self.joint_ids.entry(key).or_insert_with(|| {
             self.joints.push(joint);
             self.joints.len() as u32 - 1
@@ -176,8 +176,8 @@ impl Binder {
         *self.lists.entry(list).or_insert(next)
     }
 
-    /// The number of a binding; equal ones have the same.
-    fn bind(&mut self, mut bound: Bound, deltas: &[Delta]) -> u32 {
+    /// Returns the number of a binding; equal bindings have the same number.
+    fn bind(&mut self, mut bound: BoundVertex, deltas: &[Delta]) -> u32 {
         let bits = |v: [f32; 3]| v.map(|x| (x + 0.0).to_bits());
         let Binding { position, normal, joints, weights, .. } = bound.binding;
         let list = |vector: fn(&Delta) -> [f32; 3]| {
@@ -207,29 +207,30 @@ impl Binder {
 pub struct NodeBinder<'a> {
     node: usize,
     skin: Option<&'a skin::Joints>,
-    /// The palette's indices of the skin's joints that have been met.
+    /// For each joint of the skin, its index in the palette once it is used.
     skin_joints: Vec<Option<u32>>,
-    binder: &'a mut Binder,
+    binder: &'a mut RigBuilder,
 }
 
-/// A vertex, not deformed.
-pub struct Undeformed<'a> {
+/// A vertex before it is deformed.
+pub struct UndeformedVertex<'a> {
     pub position: Vec3,
     pub normal: Vec3,
-    /// The joints of its skin that move it; none if they are unusable.
+    /// The joints of its skin that move it, with their weights; none if they are unusable.
     pub influences: Option<&'a [(usize, f64)]>,
-    /// What morph targets add to it.
+    /// Its displacements by morph targets.
     pub deltas: &'a mut [Delta],
 }
 
-/// What a primitive's vertices are bound to, if they have no joints of a skin, and from where.
-pub struct Frame {
+/// The joint and the space of a primitive's vertices. Skinned vertices have joints of their own.
+pub struct VertexFrame {
     rigid: Option<u32>,
-    space: Space,
+    space: BindingSpace,
 }
 
 impl NodeBinder<'_> {
-    /// Where the node's weights start, if a clip changes them: its morph targets aren't added once and for all then.
+    /// Returns where the node's weights start if a clip changes them. Its morph targets are then applied in each pose,
+    /// and not once at rest.
     pub fn first_weight(&self) -> Option<u32> {
         let morph = self.binder.node_morphs.get(&self.node)?;
         Some(self.binder.morphs[*morph].first_weight)
@@ -238,7 +239,7 @@ impl NodeBinder<'_> {
     /// Counts elements of morph targets that are about to be read.
     ///
     /// # Errors
-    /// In words: there are too many.
+    /// A clause if there are too many.
     pub fn look_at(&mut self, elements: usize) -> Result<(), String> {
         self.binder.displaced = self.binder.displaced.saturating_add(elements);
         if self.binder.displaced > MAX_DISPLACED {
@@ -247,23 +248,23 @@ impl NodeBinder<'_> {
         Ok(())
     }
 
-    /// There will be no rig. The first reason stays.
+    /// Gives up building a rig. The first reason is reported.
     pub fn give_up(&mut self, reason: String) {
         self.binder.give_up(reason);
     }
 
-    /// For a primitive's vertices.
-    pub fn frame(&mut self, is_skinned: bool) -> Frame {
-        let hang = self.binder.hangs[self.node];
+    /// Returns the joint and the space of a primitive's vertices.
+    pub fn frame(&mut self, is_skinned: bool) -> VertexFrame {
+        let attachment = self.binder.attachments[self.node];
         if is_skinned {
-            return Frame { rigid: None, space: Space::new(DMat4::IDENTITY) };
+            return VertexFrame { rigid: None, space: BindingSpace::new(DMat4::IDENTITY) };
         }
-        let rigid = self.binder.joint(Joint { mover: hang.mover, offset: DMat4::IDENTITY });
-        Frame { rigid: Some(rigid), space: Space::new(hang.below) }
+        let rigid = self.binder.joint(Joint { node: attachment.node, offset: DMat4::IDENTITY });
+        VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below) }
     }
 
-    /// The number of a vertex's binding. `corner` is the vertex at rest.
-    pub fn bind(&mut self, frame: &Frame, vertex: Undeformed, corner: &LooseCorner) -> u32 {
+    /// Returns the number of a vertex's binding. `corner` is the vertex at rest.
+    pub fn bind(&mut self, frame: &VertexFrame, vertex: UndeformedVertex, corner: &InputCorner) -> u32 {
         if self.binder.problem.is_some() {
             return 0;
         }
@@ -271,17 +272,17 @@ impl NodeBinder<'_> {
             Some(joint) => ([joint, 0, 0, 0], [1.0, 0.0, 0.0, 0.0]),
             None => self.influences(vertex.influences.unwrap_or_default()),
         };
-        let without_normal = corner.normal.is_none_or(|normal| Given::new(normal).unit().is_none());
+        let without_normal = corner.normal.is_none_or(|normal| GivenNormal::new(normal).unit().is_none());
         let normal = if without_normal { Vec3::ZERO } else { vertex.normal };
         if without_normal {
             vertex.deltas.iter_mut().for_each(|delta| delta.normal = [0.0; 3]);
         }
         let (position, normal) = frame.space.take(vertex.position, normal, vertex.deltas);
         let binding = Binding { position, normal, joints, weights, ..Binding::default() };
-        self.binder.bind(Bound { binding, alike: 0, without_normal }, vertex.deltas)
+        self.binder.bind(BoundVertex { binding, alike: 0, without_normal }, vertex.deltas)
     }
 
-    /// A skinned vertex's joints in the palette's order, each once, with weights that sum to 1.
+    /// Returns a skinned vertex's joints, each once and in the palette's order, with weights that add up to 1.
     fn influences(&mut self, found: &[(usize, f64)]) -> ([u32; 4], [f32; 4]) {
         let mut slots: Vec<(u32, f64)> = Vec::with_capacity(4);
         for &(joint, weight) in found {
@@ -293,8 +294,8 @@ impl NodeBinder<'_> {
         }
         slots.sort_unstable_by_key(|(id, _)| *id);
         if slots.is_empty() {
-            // As the vertex stands at rest: where its mesh has it.
-            slots.push((self.binder.joint(Joint { mover: None, offset: DMat4::IDENTITY }), 1.0));
+            // The vertex stays where it is at rest.
+            slots.push((self.binder.joint(Joint { node: None, offset: DMat4::IDENTITY }), 1.0));
         }
         let (mut joints, mut weights) = ([0; 4], [0.0; 4]);
         for (i, (joint, weight)) in slots.into_iter().enumerate().take(4) {
@@ -309,8 +310,9 @@ impl NodeBinder<'_> {
         }
         let of_skin = self.skin.and_then(|skin| Some((*skin.nodes.get(joint)?, *skin.inverse_binds.get(joint)?)));
         let (node, inverse_bind) = of_skin.unwrap_or((usize::MAX, DMat4::IDENTITY));
-        let hang = self.binder.hangs.get(node).copied().unwrap_or(Hang { mover: None, below: DMat4::IDENTITY });
-        let id = self.binder.joint(Joint { mover: hang.mover, offset: hang.below * inverse_bind });
+        let attachment =
+            self.binder.attachments.get(node).copied().unwrap_or(Attachment { node: None, below: DMat4::IDENTITY });
+        let id = self.binder.joint(Joint { node: attachment.node, offset: attachment.below * inverse_bind });
         if let Some(known) = self.skin_joints.get_mut(joint) {
             *known = Some(id);
         }

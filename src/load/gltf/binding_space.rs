@@ -1,18 +1,18 @@
-//! Vertices before they are deformed, in the space of what moves them.
+//! Transforms vertices into the space that the matrices of their joints start from.
 
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
 use crate::mesh::rig::{Binding, Delta, Pose};
 
-/// From a mesh's own space to that of what moves it.
-pub struct Space {
+/// The transform from a mesh's own space to that of the animated node that it is attached to.
+pub struct BindingSpace {
     matrix: DMat4,
     linear: DMat3,
-    /// For normals; no entry is larger than 1.
+    /// The matrix for normals; no entry is larger than 1.
     cofactors: DMat3,
 }
 
-impl Space {
+impl BindingSpace {
     pub fn new(matrix: DMat4) -> Self {
         let linear = DMat3::from_mat4(matrix);
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
@@ -23,8 +23,8 @@ impl Space {
         Self { matrix, linear, cofactors: cofactors * scale }
     }
 
-    /// A vertex, and what morph targets add to it. The normal comes out at unit length, if it has a direction, and what is
-    /// added to it in the same proportion.
+    /// Transforms a vertex, and its displacements by morph targets. The normal is scaled to unit length if it has a
+    /// direction, and its displacements by the same factor.
     pub fn take(&self, position: Vec3, normal: Vec3, deltas: &mut [Delta]) -> ([f32; 3], [f32; 3]) {
         let is_there = self.matrix == DMat4::IDENTITY;
         let turned = if is_there { normal.as_dvec3() } else { self.cofactors * normal.as_dvec3() };
@@ -42,13 +42,13 @@ impl Space {
     }
 }
 
-/// Zero for what no f32 holds.
+/// Returns zero for a vector that doesn't fit f32.
 fn finite(vector: DVec3) -> [f32; 3] {
     let vector = vector.as_vec3();
     if vector.is_finite() { vector.to_array() } else { [0.0; 3] }
 }
 
-/// What a binding's normal must be for it to be `normal` in a pose: through the transpose of its matrix.
+/// Returns the normal of a binding that becomes `normal` in a pose: the transpose of its blended matrix times `normal`.
 pub fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
     let mut sum = DVec3::ZERO;
     for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {

@@ -1,9 +1,9 @@
-//! A rim along creases, under PN triangles: nothing is left to tear.
+//! Crease bands, under PN triangles: nothing is left to tear.
 
 use pnaen::engine::{Preparation, load};
 use pnaen::load::Source;
 use pnaen::measure::Measured;
-use pnaen::mesh::{Shape, Topology, Unlimited, with_rim};
+use pnaen::mesh::{Shape, Topology, Unlimited, with_crease_band};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene};
 use pnaen::settings::{ARENA_BYTES, Settings};
@@ -15,9 +15,13 @@ use crate::stability::{measured, scene_of};
 
 const SIZE: [u32; 2] = [320, 240];
 
-fn rimmed(shape: Shape, rim: f32) -> Scene {
-    let loaded = load(&Source::Shape(shape), &Preparation { rim, ..Preparation::default() }, &Progress::default())
-        .expect("shapes always load");
+fn banded(shape: Shape, width: f32) -> Scene {
+    let loaded = load(
+        &Source::Shape(shape),
+        &Preparation { crease_band: width, ..Preparation::default() },
+        &Progress::default(),
+    )
+    .expect("shapes always load");
     engine().scene(&loaded, ARENA_BYTES).expect("shapes are small")
 }
 
@@ -39,8 +43,8 @@ fn pn_tears_without_a_rim_and_is_whole_with_one() {
                 factor: 5.3,
                 ..Tessellation::default()
             });
-            for (rim, is_whole) in [(0.0, false), (1e-3, true), (0.02, true)] {
-                let mut scene = rimmed(shape, rim);
+            for (width, is_whole) in [(0.0, false), (1e-3, true), (0.02, true)] {
+                let mut scene = banded(shape, width);
                 let camera = camera(&scene);
                 let found = measured(&mut scene, &pn, &camera);
                 let leaking = leaks(&mut scene, &found, &camera);
@@ -49,9 +53,9 @@ fn pn_tears_without_a_rim_and_is_whole_with_one() {
                 assert_eq!(
                     (cracks.different_bits == 0, leaking == 0),
                     (is_whole, is_whole),
-                    "{shape} {partitioning:?} {rim}"
+                    "{shape} {partitioning:?} {width}"
                 );
-                assert!(!is_whole || cracks.different_normals == 0, "{shape} {partitioning:?} {rim}");
+                assert!(!is_whole || cracks.different_normals == 0, "{shape} {partitioning:?} {width}");
             }
         }
     }
@@ -63,7 +67,7 @@ fn with_a_rim_pn_is_whole_on_whatever_breaks_tessellators() {
     let cases = CASES.iter().map(|case| (case.name, (case.mesh)(), case.weld));
     for (name, mesh, weld) in cases.chain((0..8).map(|seed| ("soup", soup(seed), 0.0))) {
         let welded = Topology::build_within(&mesh, weld, &progress).expect("nobody cancels");
-        let (mesh, ..) = with_rim(&mesh, &welded, 0.01, &Unlimited, &progress).expect("nobody cancels");
+        let (mesh, ..) = with_crease_band(&mesh, &welded, 0.01, &Unlimited, &progress).expect("nobody cancels");
         let mut scene = scene_of(mesh, 0.0);
         let camera = camera(&scene);
         for edges in [Edges::PerEdge, Edges::AsPublished] {

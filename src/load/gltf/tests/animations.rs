@@ -1,14 +1,14 @@
-//! Documents that move, and animations that are left out.
+//! Animated documents, and animations that are left out.
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::rig::Moved;
+use crate::mesh::rig::AnimatedCounts;
 use crate::mesh::{Moment, Rig};
 use crate::tessellate::deform;
 
 impl Draft {
-    /// An animation of one channel, linear between keys.
+    /// Adds an animation with one channel, linear between key frames.
     fn animate(&mut self, node: usize, path: &str, kind: &str, times: &[f32], values: &[f32]) {
         let (input, output) = (self.floats("SCALAR", times), self.floats(kind, values));
         let animation = json!({
@@ -39,7 +39,7 @@ fn posed(mesh: &Mesh, time: f64) -> Mesh {
     deform(mesh, &topology(mesh), &rig(mesh).pose(Moment { clip: 0, time })).0
 }
 
-/// The pose at rest must be what was read at rest.
+/// Checks that the pose at rest is the mesh that was read.
 fn assert_rests(mesh: &Mesh) {
     let deformed = deform(mesh, &topology(mesh), &rig(mesh).rest()).0;
     for (own, read) in deformed.corners.iter().zip(&mesh.corners) {
@@ -61,7 +61,7 @@ fn skinned() -> Draft {
     draft.root["skins"] = json!([{ "joints": [1, 2], "inverseBindMatrices": binds }]);
     draft.root["nodes"] =
         json!([{ "mesh": 0, "skin": 0, "translation": [9, 9, 9] }, { "children": [2] }, { "translation": [1, 0, 0] }]);
-    // A quarter turn about Y, of the joint in vertex 1.
+    // A quarter turn around Y of the joint that moves vertex 1.
     let half = 0.5_f32.sqrt();
     draft.animate(2, "rotation", "VEC4", &[0.0, 1.0], &[0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half]);
     draft
@@ -73,7 +73,7 @@ fn skins_follow_their_joints() {
     assert_rests(&mesh);
     assert_eq!(positions(&mesh), TRIANGLE);
     let bent = posed(&mesh, 1.0);
-    // Vertex 2 is half of itself, and half of itself turned about (1, 0, 0): (1, 1, 1).
+    // Vertex 2 is half at its own position, and half at this one turned around (1, 0, 0), which is (1, 1, 1).
     let expected = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.5]];
     for (own, expected) in positions(&bent).into_iter().zip(expected) {
         assert!(Vec3::from(own).distance(expected.into()) < 1e-6, "{own:?} {expected:?}");
@@ -83,7 +83,7 @@ fn skins_follow_their_joints() {
     assert!(normals[2].distance(Vec3::new(1.0, 0.0, 1.0).normalize()) < 1e-6, "{normals:?}");
     let clip = &rig(&mesh).clips[0];
     assert_eq!((clip.name.as_str(), clip.duration), ("animation 0", 1.0));
-    assert_eq!(rig(&mesh).moved(clip), Moved { joints: 1, nodes: 0, targets: 0 });
+    assert_eq!(rig(&mesh).animated_counts(clip), AnimatedCounts { joints: 1, nodes: 0, targets: 0 });
 }
 
 #[test]
@@ -99,14 +99,14 @@ fn morph_targets_follow_their_weights() {
     assert!(positions(&mesh).iter().all(|[_, _, z]| *z == 2.0), "half of the target, and the node");
     let bent = posed(&mesh, 1.0);
     assert!(positions(&bent).iter().all(|[_, _, z]| *z == 4.0));
-    // (3, 0, 1), through the inverse of the scale.
+    // (3, 0, 1) transformed by the inverse of the scale.
     let expected = Vec3::new(3.0, 0.0, 0.5).normalize();
     assert!(bent.corners.iter().all(|corner| corner.normal.distance(expected) < 1e-6));
-    assert_eq!(rig(&mesh).moved(&rig(&mesh).clips[0]), Moved { joints: 0, nodes: 0, targets: 2 });
+    assert_eq!(rig(&mesh).animated_counts(&rig(&mesh).clips[0]), AnimatedCounts { joints: 0, nodes: 0, targets: 2 });
 }
 
 #[test]
-fn nodes_carry_what_hangs_below_them() {
+fn nodes_move_their_children() {
     let mut draft = triangle();
     draft.root["scenes"] = json!([{ "nodes": [1] }]);
     draft.root["nodes"] = json!([
@@ -123,11 +123,11 @@ fn nodes_carry_what_hangs_below_them() {
         assert!(end.position.distance(start.position + 8.0 * Vec3::Z) < 1e-5);
         assert!(end.normal.distance(rest.normal) < 1e-6);
     }
-    assert_eq!(rig(&mesh).moved(&rig(&mesh).clips[0]), Moved { joints: 0, nodes: 1, targets: 0 });
+    assert_eq!(rig(&mesh).animated_counts(&rig(&mesh).clips[0]), AnimatedCounts { joints: 0, nodes: 1, targets: 0 });
 }
 
 #[test]
-fn normals_that_are_made_turn_too() {
+fn computed_normals_turn_too() {
     let mut draft = skinned();
     draft.root["meshes"][0]["primitives"][0]["attributes"].as_object_mut().unwrap().remove("NORMAL");
     draft.root["nodes"][1]["rotation"] = json!([0.5, 0.5, 0.5, 0.5]);
@@ -137,7 +137,7 @@ fn normals_that_are_made_turn_too() {
     assert_rests(&mesh);
 }
 
-/// Two triangles with an edge in common, on a node each.
+/// Two triangles with a common edge, on a node each.
 fn touching() -> Draft {
     let mut draft = triangle();
     let (at, n) =
@@ -149,7 +149,7 @@ fn touching() -> Draft {
 }
 
 #[test]
-fn what_moves_apart_is_not_welded() {
+fn corners_that_move_apart_are_not_welded() {
     let points = |moved: Option<usize>, tolerance: f32| {
         let mut draft = touching();
         if let Some(node) = moved {
@@ -182,14 +182,14 @@ fn morph_targets_that_part_an_edge_part_its_points() {
 }
 
 #[test]
-fn bad_animations_are_left_out_and_told() {
+fn bad_animations_are_left_out_with_a_warning() {
     let changes: [(&str, Value, &str); 14] = [
-        ("/samplers/0/input", json!(77), "channel 0 names accessor 77, and /accessors has 4"),
+        ("/samplers/0/input", json!(77), "channel 0 names accessor 77, but /accessors has 4"),
         ("/samplers/0/input", json!("no"), "it can't be read (invalid type: string \"no\", expected usize)"),
-        ("/samplers/0/interpolation", json!("CUBIC"), "channel 0 has an interpolation \"CUBIC\", which isn't known"),
+        ("/samplers/0/interpolation", json!("CUBIC"), "channel 0 has the unknown interpolation \"CUBIC\""),
         ("/samplers/0/interpolation", json!("CUBICSPLINE"), "channel 0 has 6 numbers for 2 keys of 9"),
         ("/channels/0/sampler", json!(3), "channel 0 uses sampler 3 of 1"),
-        ("/channels/0/target/node", json!(9), "channel 0 moves node 9, and /nodes has 1"),
+        ("/channels/0/target/node", json!(9), "channel 0 moves node 9, but /nodes has 1"),
         (
             "/channels/0/target/path",
             json!("rotation"),
@@ -199,9 +199,9 @@ fn bad_animations_are_left_out_and_told() {
         ("/accessors/2/count", json!(1), "channel 0 has 6 numbers for 1 keys of 3"),
         ("/accessors/2/count", json!(4), "which needs 16 bytes of /bufferViews/2, which has 8"),
         ("/accessors/3/count", json!(1u64 << 60), "takes the document beyond 67108864 animated numbers"),
-        ("/nodes/0/matrix", json!(glam::Mat4::IDENTITY.to_cols_array()), "moves node 0, which is placed by a matrix"),
-        ("/times", json!([2.0, 2.0]), "channel 0 has times that don't rise from 0 or later"),
-        ("/times", json!([-1.0, 2.0]), "channel 0 has times that don't rise from 0 or later"),
+        ("/nodes/0/matrix", json!(glam::Mat4::IDENTITY.to_cols_array()), "moves node 0, whose transform is a matrix"),
+        ("/times", json!([2.0, 2.0]), "channel 0 has times that are negative or don't increase"),
+        ("/times", json!([-1.0, 2.0]), "channel 0 has times that are negative or don't increase"),
     ];
     for (pointer, value, expected) in changes {
         let mut draft = triangle();
@@ -234,7 +234,7 @@ fn values_that_are_no_numbers_are_left_out() {
 }
 
 #[test]
-fn what_moves_nothing_shown_is_left_out() {
+fn animations_of_hidden_nodes_are_left_out() {
     let mut draft = triangle();
     draft.push("nodes", json!({ "name": "camera" }));
     draft.move_node(1);
@@ -274,7 +274,7 @@ fn bad_morph_targets_leave_the_mesh_at_rest() {
 #[test]
 fn targets_without_end_take_no_memory() {
     let mut draft = triangle();
-    // Many targets of one long list of zeros, which takes no bytes in the file but for one value.
+    // Many targets with one long list of zeros, which takes no bytes in the file except for one value.
     let (places, values) = (draft.view(&[0]), draft.view(&[0; 12]));
     let zeros = json!({
         "componentType": 5126, "type": "VEC3", "count": 1 << 18,
@@ -301,7 +301,7 @@ fn targets_without_end_take_no_memory() {
 
 proptest! {
     #[test]
-    fn no_document_that_moves_brings_it_down(
+    fn random_animated_documents_never_panic(
         number in 0_usize..200,
         value in prop_oneof![any::<i64>().prop_map(|x| json!(x)), any::<f64>().prop_map(|x| json!(x)), Just(json!([])), Just(json!("x"))],
         byte in any::<(prop::sample::Index, u8)>(),

@@ -1,4 +1,4 @@
-//! What a weld tolerance would do, before one chooses it.
+//! What welding within various tolerances would change, for choosing one.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -12,18 +12,18 @@ use crate::progress::{Cancelled, Progress};
 
 /// What welding within a tolerance changes, compared with the exact weld.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Joins {
-    /// Relative to the bounding diagonal.
+pub struct WeldPreview {
+    /// The tolerance, relative to the bounding diagonal.
     pub tolerance: f32,
-    /// Boundary edges of the exact topology that are joined to another: their side ends up on an edge with two sides
-    /// or more. Edges of triangles that collapse are not among them.
+    /// Boundary edges of the exact topology that the weld connects to another: afterwards their side belongs to an edge
+    /// with two sides or more. Edges of triangles that collapse don't count.
     pub edges: u32,
-    /// Triangles that are patches of the exact topology and degenerate within the tolerance.
+    /// Triangles that are patches of the exact topology and degenerate after the weld.
     pub collapsed: u32,
 }
 
-impl fmt::Display for Joins {
-    /// In words, without the tolerance.
+impl fmt::Display for WeldPreview {
+    /// Writes the changes as text, without the tolerance.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match (self.edges, self.collapsed) {
             (0, 0) => write!(f, "joins nothing"),
@@ -33,42 +33,48 @@ impl fmt::Display for Joins {
     }
 }
 
-/// The tolerances that are tried, relative to the bounding diagonal: from what the last bits of f32 leave open to what
-/// visibly changes a mesh.
+/// The tolerances to try, relative to the bounding diagonal: from the rounding of f32 to distances that visibly change
+/// a mesh.
 pub const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
-/// What each of [`TOLERANCES`] would join and collapse, in their order. `exact` is the mesh's topology without a tolerance, where
-/// there is one already. Of the welded meshes no edges are made
-/// but those that were open; `progress` goes from 0 to 1 meanwhile.
+/// Returns how many edges a weld within each of [`TOLERANCES`] would join, and how many triangles it would collapse, in
+/// their order. `exact` is the mesh's topology without a tolerance, if the caller has it. To save time and memory, no
+/// topology is built for the welded meshes: only the edges that were open are looked up in them. `progress` goes from 0
+/// to 1.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
-pub fn joins(mesh: &Mesh, exact: Option<&Topology>, progress: &Progress) -> Result<Vec<Joins>, Cancelled> {
+pub fn weld_previews(
+    mesh: &Mesh,
+    exact: Option<&Topology>,
+    progress: &Progress,
+) -> Result<Vec<WeldPreview>, Cancelled> {
     progress.set(0.0);
     progress.check()?;
     let exact = match exact {
         Some(exact) => Exact::of(exact),
-        // Gone before anything is welded.
+        // This topology is freed before anything is welded.
         None => Exact::of(&Topology::build(mesh, progress)?),
     };
-    let mut joins = Vec::with_capacity(TOLERANCES.len());
+    let mut previews = Vec::with_capacity(TOLERANCES.len());
     for tolerance in TOLERANCES {
-        let part = (joins.len() + 1) as f32 / (TOLERANCES.len() + 1) as f32;
+        let part = (previews.len() + 1) as f32 / (TOLERANCES.len() + 1) as f32;
         progress.set(part);
         progress.check()?;
         let (_, corner_points) = weld_corners(mesh, tolerance);
         progress.check()?;
         let [edges, collapsed] = exact.welded(mesh, &corner_points);
-        joins.push(Joins { tolerance, edges, collapsed });
+        previews.push(WeldPreview { tolerance, edges, collapsed });
     }
     progress.set(1.0);
-    Ok(joins)
+    Ok(previews)
 }
 
-/// What is asked of the exact topology.
+/// The facts about the exact topology that the welded meshes are compared with.
 struct Exact {
-    /// Boundary edges: a triangle, and which of its sides.
+    /// Boundary edges: the triangle, and which of its sides.
     open: Vec<(u32, u8)>,
+    /// The number of degenerate triangles.
     degenerate: u32,
 }
 
@@ -82,10 +88,10 @@ impl Exact {
         Self { open: open.collect(), degenerate: topology.degenerate }
     }
 
-    /// How many boundary edges share theirs where corners lie on these points, and how many triangles collapse.
+    /// Returns how many boundary edges are joined, and how many triangles collapse, if corners lie on these points.
     fn welded(&self, mesh: &Mesh, corner_points: &[u32]) -> [u32; 2] {
         let points = |triangle: &[u32; 3]| triangle.map(|corner| corner_points[corner as usize]);
-        // By its points, the lower first: how many sides an edge has that some boundary edge becomes.
+        // For each edge that a boundary edge becomes, given by its points (the lower first), the number of its sides.
         let key = |points: [u32; 3], side: usize| {
             let [a, b] = [points[side], points[(side + 1) % 3]];
             [a.min(b), a.max(b)]
@@ -121,7 +127,7 @@ mod tests {
     use crate::mesh::Corner;
     use crate::mesh::shapes::Shape;
 
-    /// Triangles with corners of their own.
+    /// Triangles that share no corners.
     fn soup(triangles: &[[[f32; 2]; 3]]) -> Mesh {
         let corner = |&[x, y]: &[f32; 2]| Corner { position: Vec3::new(x, y, 0.0), normal: Vec3::Z, uv: Vec2::ZERO };
         let corners = triangles.as_flattened().iter().map(corner).collect();
@@ -130,16 +136,16 @@ mod tests {
     }
 
     fn counts(mesh: &Mesh) -> Vec<[u32; 2]> {
-        let joins = joins(mesh, None, &Progress::new()).unwrap();
+        let joins = weld_previews(mesh, None, &Progress::new()).unwrap();
         assert!(joins.iter().map(|join| join.tolerance).eq(TOLERANCES));
         let exact = Topology::build(mesh, &Progress::new()).unwrap();
-        assert_eq!(joins, super::joins(mesh, Some(&exact), &Progress::new()).unwrap());
+        assert_eq!(joins, super::weld_previews(mesh, Some(&exact), &Progress::new()).unwrap());
         joins.iter().map(|join| [join.edges, join.collapsed]).collect()
     }
 
     #[test]
     fn a_gap_joins_from_the_first_tolerance_that_spans_it() {
-        // A square of diagonal 1.41 in two halves, 1e-4 apart.
+        // The two halves of a square with a diagonal of 1.41, 1e-4 apart.
         let gap = 1e-4;
         let mesh = soup(&[[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], [[0.0, gap], [1.0, 1.0 + gap], [0.0, 1.0]]]);
         assert_eq!(counts(&mesh), [[0, 0], [0, 0], [0, 0], [2, 0], [2, 0], [2, 0]]);
@@ -147,7 +153,8 @@ mod tests {
 
     #[test]
     fn what_collapses_is_not_joined() {
-        // A sliver 1e-3 wide and 1e-4 too high between two halves: it joins both, then vanishes, and they meet.
+        // A sliver, 1e-3 wide and 1e-4 too high, between two halves. First a weld joins it to both; with a larger
+        // tolerance it collapses and the halves meet.
         let (w, gap) = (1e-3, 1e-4);
         let mesh = soup(&[
             [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
@@ -173,17 +180,17 @@ mod tests {
     }
 
     #[test]
-    fn they_are_told_in_words() {
-        let words = |edges, collapsed| Joins { tolerance: 1e-5, edges, collapsed }.to_string();
+    fn previews_are_written_as_text() {
+        let words = |edges, collapsed| WeldPreview { tolerance: 1e-5, edges, collapsed }.to_string();
         assert_eq!(words(0, 0), "joins nothing");
         assert_eq!(words(12, 0), "joins 12 edges");
         assert_eq!(words(0, 3), "joins 0 edges, collapses 3 triangles");
     }
 
     #[test]
-    fn a_cancel_is_heard() {
+    fn cancelling_stops_the_work() {
         let progress = Progress::new();
         progress.cancel();
-        assert_eq!(joins(&Shape::Torus.build(), None, &progress), Err(Cancelled));
+        assert_eq!(weld_previews(&Shape::Torus.build(), None, &progress), Err(Cancelled));
     }
 }
