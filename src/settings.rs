@@ -9,7 +9,7 @@ use glam::{Mat4, Vec2};
 
 use crate::mesh::Mesh;
 use crate::tessellate::{
-    Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface, reach,
+    Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, Surface, displacement_reach,
 };
 
 pub use overlays::{Colors, Control, Overlay, Overlays};
@@ -171,7 +171,7 @@ impl Settings {
 
     /// How far heights move any point of a mesh at most, in object units.
     pub fn reach(&self, mesh: &Mesh) -> f32 {
-        reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
+        displacement_reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
     }
 
     /// What the tessellation depends on, seen from `view`.

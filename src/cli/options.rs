@@ -15,7 +15,9 @@ use crate::load::HeightSource;
 use crate::mesh::{Bounds, Mesh};
 use crate::render::Camera;
 use crate::settings::{ARENA_BYTES, Settings, TOLERANCE_RANGE};
-use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, fit_budget};
+use crate::tessellate::{
+    Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, tolerance_within_budget,
+};
 
 pub use values::{
     CameraOption, Distances, Place, Size, color, factor, fraction, height_scale, model, partitioning, picture, pixels,
@@ -213,7 +215,7 @@ impl SurfaceOptions {
         let Some(most) = self.max_triangles else { return Ok(settings) };
         let largest = *TOLERANCE_RANGE.end();
         let tried = settings.tolerance..=largest;
-        let fits = fit_budget(tried, most, |tolerance| count(&Settings { tolerance, ..settings }))?;
+        let fits = tolerance_within_budget(tried, most, |tolerance| count(&Settings { tolerance, ..settings }))?;
         let Some(tolerance) = fits else {
             let least = count(&Settings { tolerance: largest, ..settings })?;
             return Err(CliError::Budget { most, least, largest });

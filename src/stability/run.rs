@@ -17,7 +17,9 @@ use crate::mesh::{Bounds, Mesh, Moment, Pose, Topology, t_junctions};
 use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, Posed, bounds_through, tessellate};
+use crate::tessellate::{
+    Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, PosedMesh, bounds_through, tessellate,
+};
 
 /// How much is tried, and where.
 #[derive(Clone, Debug)]
@@ -183,7 +185,7 @@ impl<'a> Running<'a> {
         let mut worst = Worst::default();
         for Trial { pose, settings, camera, .. } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
-            let (mesh, topology) = Posed::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
+            let (mesh, topology) = PosedMesh::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
             let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
             let asked = AskedFactors::new(settings.edges, settings.convention, out.edge_factors.clone());
             self.take(&mut worst, &Measured::of(&mesh, &topology, asked, &out), &settings, &view);
