@@ -1,28 +1,34 @@
-// Which points the triangles inside a patch join, each in closed form from its number.
-// Twin of src/tessellate/connectivity.rs, which says what each function means.
+// Connectivity: which points the triangles inside a patch join. Each triangle is computed from its number alone. Twin:
+// src/tessellate/connectivity.rs.
 
+// Which of the 31 places before a side's middle have a point. Points appear in the order of a breadth-first bisection:
+// place 16, then 8 and 24, then 4, 12, 20, 28, and so on.
 struct TransitionPlaces {
     shift: u32,
     extra: u32,
 }
 
+// Returns the places of a side with this many points in half of it.
 fn transition_places(half_points: u32) -> TransitionPlaces {
     let top = firstLeadingBit(max(half_points, 1u));
     return TransitionPlaces(5u - top, max(half_points, 1u) - (1u << top));
 }
 
+// Returns the number of points at places 1 to `place`.
 fn points_up_to(places: TransitionPlaces, place: u32) -> u32 {
     return (place >> places.shift) + min(places.extra, (((2u * place) >> places.shift) + 1u) >> 1u);
 }
 
+// Returns `place + skip` if both sides together have at most `count` points up to there, else `place`.
 fn skip_places(inner: TransitionPlaces, outer: TransitionPlaces, place: u32, skip: u32, count: u32) -> u32 {
     let further = place + skip;
     let fits = points_up_to(inner, further) + points_up_to(outer, further) <= count;
     return select(place, further, fits);
 }
 
+// Returns triangle `t` of those before the middle of a side.
 fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> TransitionStep {
-    // The edge's first segment comes before all places.
+    // The first triangle is the one on the edge's first segment, before place 1.
     let first = min(outer_half, 1u);
     if t < first {
         return TransitionStep(0u, 0u, false, false);
@@ -30,14 +36,14 @@ fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Transit
     let count = t - first;
     let inner_places = transition_places(inner_half);
     let outer_places = transition_places(outer_half);
-    // Bisection over the 31 places, unrolled.
+    // A bisection over the 31 places, unrolled.
     var place = skip_places(inner_places, outer_places, 0u, 16u, count);
     place = skip_places(inner_places, outer_places, place, 8u, count);
     place = skip_places(inner_places, outer_places, place, 4u, count);
     place = skip_places(inner_places, outer_places, place, 2u, count);
     place = skip_places(inner_places, outer_places, place, 1u, count);
 
-    // The triangle belongs to the next place, where the inner side goes first.
+    // The triangle belongs to the next place. If both sides have a point there, the inner side's triangle comes first.
     let inner = points_up_to(inner_places, place);
     let outer = points_up_to(outer_places, place);
     let inner_steps = points_up_to(inner_places, place + 1u) - inner;
@@ -45,6 +51,7 @@ fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Transit
     return TransitionStep(select(inner + inner_steps, inner, along_inner), first + outer, along_inner, along_inner);
 }
 
+// Returns triangle `t` of those inside the first ring.
 fn regular_triangle(outer: u32, n: u32, t: u32) -> vec3<u32> {
     let rings = rings_before(n - 2u, t / 6u);
     let ring = rings + 2u;
@@ -60,7 +67,7 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> vec3<u32> {
     let side = u32(in_ring >= per_side) + u32(in_ring >= 2u * per_side);
     let q = in_ring - side * per_side;
 
-    // Every triangle has point h of the inner side, point h + 1 of the outer, and a third beside one of these.
+    // Every triangle joins point h of the inner side, point h + 1 of the outer side, and a neighbour of one of them.
     let h = q >> 1u;
     let odd = (q & 1u) == 1u;
     let early = q <= 2u * ((inner_segments + 1u) >> 1u);

@@ -1,4 +1,6 @@
-// Which edge each factor belongs to, and which corner each weight. Twin: src/tessellate/convention.rs.
+// Conventions between hull and domain shader: which edge each tessellation factor is for, and which corner each
+// barycentric weight belongs to. Twin: src/tessellate/convention.rs. Side k of a patch runs from corner k to corner k +
+// 1.
 
 const CONVENTION_D3D11: u32 = 0u;
 const CONVENTION_AMD_PN: u32 = 1u;
@@ -6,7 +8,7 @@ const CONVENTION_EDGE_ORDER: u32 = 2u;
 const CONVENTION_ROTATED: u32 = 3u;
 const CONVENTION_MIRRORED: u32 = 4u;
 
-// The side (k runs from corner k to corner k + 1) whose factor the hull shader writes as factor i.
+// Returns the side (0 to 2) whose factor the hull shader writes as factor `i` (0 to 2).
 fn factor_side(convention: u32, i: u32) -> u32 {
     if convention == CONVENTION_D3D11 {
         return (i + 1u) % 3u;
@@ -20,7 +22,7 @@ fn factor_side(convention: u32, i: u32) -> u32 {
     return i;
 }
 
-// The corner that the domain shader weighs with weight i: u, v, w.
+// Returns the corner (0 to 2) that the domain shader multiplies by weight `i` (0, 1, 2 for u, v, w).
 fn weight_corner(convention: u32, i: u32) -> u32 {
     if convention == CONVENTION_AMD_PN {
         return (i + 1u) % 3u;
@@ -31,12 +33,14 @@ fn weight_corner(convention: u32, i: u32) -> u32 {
     return i;
 }
 
-// The side on which the domain shader puts the edge that the tessellator cuts by factor i.
+// Returns the side that the tessellator cuts by factor `i` in the domain shader's order: the side opposite the corner
+// that weight `i` belongs to.
 fn domain_side(convention: u32, i: u32) -> u32 {
     return (weight_corner(convention, i) + 1u) % 3u;
 }
 
-// U and V on corners 0 and 1 of what the tessellator gives as U and V.
+// Returns the weights of corners 0 and 1 for a domain point that the tessellator gives as U and V. All are 16.16 fixed
+// point; the weight of corner 2 is the rest of 1.
 fn corner_weights(convention: u32, domain: vec2<u32>) -> vec2<u32> {
     let w = FIXED_ONE - domain.x - domain.y;
     if convention == CONVENTION_AMD_PN {

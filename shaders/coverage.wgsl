@@ -1,32 +1,36 @@
-// Which triangles cover no sample of the picture, wherever rounding puts their corners. Twin: src/tessellate/coverage.rs.
+// A conservative test for triangles that cover no sample of the picture, however the rasteriser rounds their corners.
+// Twin: src/tessellate/coverage.rs.
 
+// The picture that triangles are drawn into.
 struct CoverageView {
     clip_from_object: mat4x4<f32>,
-    // How far clip coordinates may be off for every unit that a position is from the origin along each axis.
+    // The rounding error of clip coordinates for each unit of a position's distance from the origin along each axis.
     slack: mat4x4<f32>,
     // Width and height in px.
     viewport: vec2<f32>,
-    // 1 or 4.
+    // Samples per pixel: 1 or 4.
     sample_count: u32,
-    // 1 where what faces away isn't drawn either.
+    // 1 if back faces are not drawn, else 0.
     fronts_only: u32,
-    // How far a corner is moved when it is rounded to the rasteriser's grid, in px.
+    // The largest distance in px by which the rasteriser moves a corner when it rounds it to its subpixel grid.
     snap: f32,
 }
 
-// A corner on screen.
+// A triangle's corner on screen.
 struct ScreenCorner {
-    // Px from the upper left.
+    // The position in px from the picture's upper left corner.
     at: vec2<f32>,
-    // How far from there it may be rasterised along x and along y, in px. Below 0 where it may be nearer than the near
-    // plane.
+    // The largest distance in px between `at` and the rasterised corner, along x and along y. Negative if the corner
+    // may be nearer than the near plane.
     reach: f32,
 }
 
-// Samples lie in rows, one a pixel in each: how many rows a pixel has (1 or 4), and how far a row's samples are from their
-// pixels' left. A row is half a row's height below its upper side. So have it Vulkan, Metal and Direct3D.
+// The x coordinates of samples within their pixel, in px. A pixel has as many rows of samples as samples (1 or 4), with
+// one sample in each row, half a row's height below the row's upper edge. These are the standard positions of Vulkan,
+// Metal and Direct3D.
 const ROW_SAMPLES: array<f32, 4> = array<f32, 4>(0.375, 0.875, 0.125, 0.625);
 
+// Projects a position in object units to the screen, and bounds the error of the projection.
 fn screen_corner(view: CoverageView, position: vec3<f32>) -> ScreenCorner {
     let clip = view.clip_from_object * vec4<f32>(position, 1.0);
     let off = view.slack * vec4<f32>(abs(position), 1.0);
@@ -40,34 +44,36 @@ fn screen_corner(view: CoverageView, position: vec3<f32>) -> ScreenCorner {
     return ScreenCorner(half_size + place * vec2<f32>(half_size.x, -half_size.y), view.snap + max(reach.x, reach.y));
 }
 
+// Returns the z coordinate of the cross product.
 fn cross_2d(a: vec2<f32>, b: vec2<f32>) -> f32 {
     return a.x * b.y - a.y * b.x;
 }
 
-fn taxicab(a: vec2<f32>) -> f32 {
+// Returns the Manhattan length.
+fn manhattan_length(a: vec2<f32>) -> f32 {
     return abs(a.x) + abs(a.y);
 }
 
-// Whether a triangle faces away, wherever its corners are within reach. Y goes down.
-fn turns_away(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32) -> bool {
+// Returns whether a triangle is a back face wherever its corners are within `reach` px of `a`, `b` and `c`. Y points
+// down.
+fn is_back_face(a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32) -> bool {
     let ab = b - a;
     let ac = c - a;
-    return cross_2d(ab, ac) > 2.0 * reach * (taxicab(ab) + taxicab(ac) + 4.0 * reach);
+    return cross_2d(ab, ac) > 2.0 * reach * (manhattan_length(ab) + manhattan_length(ac) + 4.0 * reach);
 }
 
-// Whether a triangle may cover a place within its box if its corners are within reach: twice the areas that the place spans
-// with its sides have one sign then.
+// Returns whether a triangle whose corners are within `reach` px of `a`, `b` and `c` may cover the place `at`.
 fn may_cover(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, c: vec2<f32>, reach: f32) -> bool {
     let to_a = a - at;
     let to_b = b - at;
     let to_c = c - at;
     let areas = vec3<f32>(cross_2d(to_a, to_b), cross_2d(to_b, to_c), cross_2d(to_c, to_a));
-    let lengths = vec3<f32>(taxicab(to_a), taxicab(to_b), taxicab(to_c));
+    let lengths = vec3<f32>(manhattan_length(to_a), manhattan_length(to_b), manhattan_length(to_c));
     let change = reach * (lengths + lengths.yzx + 2.0 * reach);
     return all(areas >= -change) || all(areas <= change);
 }
 
-// How far a row's samples are from their pixels' left.
+// Returns the x coordinate within their pixel of the samples in row `row`, in px.
 fn row_sample(view: CoverageView, row: f32) -> f32 {
     if view.sample_count == 1u {
         return 0.5;
@@ -75,7 +81,8 @@ fn row_sample(view: CoverageView, row: f32) -> f32 {
     return ROW_SAMPLES[u32(row) & 3u];
 }
 
-// Whether nothing of a triangle can be seen. Triangles of more than two px either way are not looked at closely.
+// Returns whether no part of a triangle can be seen. Of triangles larger than 2 px in x or y it only tests whether they
+// lie outside the picture or are back faces.
 fn covers_nothing(view: CoverageView, a: ScreenCorner, b: ScreenCorner, c: ScreenCorner) -> bool {
     if min(min(a.reach, b.reach), c.reach) < 0.0 {
         return false;
@@ -86,13 +93,13 @@ fn covers_nothing(view: CoverageView, a: ScreenCorner, b: ScreenCorner, c: Scree
     if any(high < vec2<f32>(0.0)) || any(low > view.viewport) {
         return true;
     }
-    if view.fronts_only != 0u && turns_away(a.at, b.at, c.at, reach) {
+    if view.fronts_only != 0u && is_back_face(a.at, b.at, c.at, reach) {
         return true;
     }
     if any(high - low > vec2<f32>(2.0)) {
         return false;
     }
-    // Above the picture and left of it are no samples.
+    // Rows above the picture have no samples.
     let rows = f32(view.sample_count);
     let last = high.y * rows - 0.5;
     for (var row = ceil(max(low.y, 0.0) * rows - 0.5); row <= last; row += 1.0) {

@@ -1,9 +1,10 @@
-// A corner's position and normal through the mean of its joints' matrices. Twin: src/tessellate/deform.rs.
+// Linear blend skinning: a corner's position and normal are transformed by the weighted mean of its joints' matrices.
+// Twin: src/tessellate/deform.rs.
 
-// A corner before it is deformed.
+// A corner at rest: what morph targets and joints are applied to.
 struct Binding {
     position: vec3<f32>,
-    // Its run of `deltas`.
+    // The corner's first element of `deltas`, of which it has `delta_count`.
     first_delta: u32,
     normal: vec3<f32>,
     delta_count: u32,
@@ -11,21 +12,21 @@ struct Binding {
     weights: vec4<f32>,
 }
 
-// What a morph target of weight 1 adds to a corner.
+// The displacement of a corner by a morph target of weight 1. `weight` is the index of the target's weight.
 struct Delta {
     position: vec3<f32>,
     weight: u32,
     normal: vec3<f32>,
 }
 
-// The first three rows of a matrix, whose fourth is (0, 0, 0, 1).
+// The first three rows of an affine matrix, whose fourth row is (0, 0, 0, 1).
 struct JointMatrix {
     x: vec4<f32>,
     y: vec4<f32>,
     z: vec4<f32>,
 }
 
-// The mean of four matrices by weight.
+// Returns the weighted sum of four matrices. The weights add up to 1.
 fn blend(a: JointMatrix, b: JointMatrix, c: JointMatrix, d: JointMatrix, weights: vec4<f32>) -> JointMatrix {
     return JointMatrix(
         a.x * weights.x + b.x * weights.y + c.x * weights.z + d.x * weights.w,
@@ -34,6 +35,7 @@ fn blend(a: JointMatrix, b: JointMatrix, c: JointMatrix, d: JointMatrix, weights
     );
 }
 
+// Transforms a position.
 fn deform_position(matrix: JointMatrix, position: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(
         dot(matrix.x.xyz, position) + matrix.x.w,
@@ -42,23 +44,25 @@ fn deform_position(matrix: JointMatrix, position: vec3<f32>) -> vec3<f32> {
     );
 }
 
-// Through the cofactors, which are the inverse transpose times the determinant, and exist where the inverse doesn't.
+// Transforms a unit normal by the cofactor matrix. If the result has no direction, returns `normal` itself.
 fn deform_normal(matrix: JointMatrix, normal: vec3<f32>) -> vec3<f32> {
-    // Scaled, so that no product of two entries leaves f32.
-    let scale = 1.0 / max(max(largest(matrix.x.xyz), largest(matrix.y.xyz)), max(largest(matrix.z.xyz), 1e-30));
+    // Scale the matrix, so that no product of two entries overflows or underflows.
+    let largest_xy = max(largest_component(matrix.x.xyz), largest_component(matrix.y.xyz));
+    let scale = 1.0 / max(largest_xy, max(largest_component(matrix.z.xyz), 1e-30));
     let x = matrix.x.xyz * scale;
     let y = matrix.y.xyz * scale;
     let z = matrix.z.xyz * scale;
     let turned = vec3<f32>(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
-    return unit_of(turned * select(1.0, -1.0, dot(x, cross(y, z)) < 0.0), normal);
+    return scaled_unit_or(turned * select(1.0, -1.0, dot(x, cross(y, z)) < 0.0), normal);
 }
 
-// At unit length; `otherwise` where there is no direction.
-fn unit_of(vector: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
-    let length = largest(vector);
+// Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.
+fn scaled_unit_or(vector: vec3<f32>, otherwise: vec3<f32>) -> vec3<f32> {
+    let length = largest_component(vector);
     return unit_or(vector * (1.0 / max(length, 1e-30)), otherwise);
 }
 
-fn largest(vector: vec3<f32>) -> f32 {
+// Returns the largest absolute value of the components.
+fn largest_component(vector: vec3<f32>) -> f32 {
     return max(abs(vector.x), max(abs(vector.y), abs(vector.z)));
 }

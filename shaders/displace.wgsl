@@ -1,21 +1,23 @@
-// Displacement: how high a surface stands at a texture coordinate, and how it is shaded there. Twin:
-// src/tessellate/displace.rs.
+// Displacement: heights that are read from an image at texture coordinates, and the normals of the displaced surface.
+// Twin: src/tessellate/displace.rs.
 
 const DISPLACEMENT_OFF: u32 = 0u;
 const DISPLACEMENT_ON: u32 = 1u;
 const DISPLACEMENT_AS_PUBLISHED: u32 = 2u;
 const DISPLACEMENT_PER_PATCH: u32 = 3u;
 
-// All maps' heights in one row, broken into rows of this many.
+// The heights of all maps are one list, which fills the rows of the texture `heights`, each of this many texels.
 const HEIGHTS_ACROSS: u32 = 4096u;
 
 @group(0) @binding(20) var heights: texture_2d<f32>;
 @group(0) @binding(21) var<uniform> maps: array<HeightMap, MAX_MAPS>;
 
+// Returns the fractional part of a texture coordinate, which repeats the image.
 fn wrapped(x: f32) -> f32 {
     return x - floor(x);
 }
 
+// Returns the index of a mip level's first height in the map's list.
 fn level_start(map: HeightMap, level: u32) -> u32 {
     var start = 0u;
     for (var l = 0u; l < level; l++) {
@@ -24,26 +26,30 @@ fn level_start(map: HeightMap, level: u32) -> u32 {
     return start;
 }
 
+// Returns the height at an index of the map's list.
 fn fetch_height(map: HeightMap, index: u32) -> f32 {
     let i = map.start + index;
     return textureLoad(heights, vec2<u32>(i % HEIGHTS_ACROSS, i / HEIGHTS_ACROSS), 0).r;
 }
 
-fn pixel_place(map: HeightMap, x: f32, size: u32) -> f32 {
+// Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
+// images that repeat, `size` is added, so that the result isn't negative.
+fn pixel_coordinate(map: HeightMap, x: f32, size: u32) -> f32 {
     if map.repeats != 0u {
         return wrapped(x) * f32(size) + f32(size) - 0.5;
     }
     return clamp(x * f32(size) - 0.5, 0.0, f32(size - 1u));
 }
 
+// Returns the height of a mip level at a texture coordinate, bilinearly interpolated.
 fn bilinear_height(map: HeightMap, level: u32, uv: vec2<f32>) -> f32 {
     let width = max(map.size.x >> level, 1u);
     let height = max(map.size.y >> level, 1u);
-    let x = pixel_place(map, uv.x, width);
-    let y = pixel_place(map, uv.y, height);
+    let x = pixel_coordinate(map, uv.x, width);
+    let y = pixel_coordinate(map, uv.y, height);
     let left = u32(x) % width;
     let upper = u32(y) % height;
-    // Beyond the last px of an image that ends there nothing is asked for.
+    // Images that don't repeat give weight 0 to a px beyond the last one.
     let right = (left + 1u) % width;
     let lower = (upper + 1u) % height;
     let start = level_start(map, level);
@@ -58,6 +64,7 @@ fn bilinear_height(map: HeightMap, level: u32, uv: vec2<f32>) -> f32 {
     return above + (below - above) * down;
 }
 
+// Returns the height at a texture coordinate, linearly interpolated between the two mip levels around `level`.
 fn height_at(map: HeightMap, level: f32, uv: vec2<f32>) -> f32 {
     let least = u32(level);
     let part = level - f32(least);
@@ -68,6 +75,7 @@ fn height_at(map: HeightMap, level: f32, uv: vec2<f32>) -> f32 {
     return fine + (bilinear_height(map, least + 1u, uv) - fine) * part;
 }
 
+// Returns the derivatives of the height by both texture coordinates, as central differences over one px of the level.
 fn height_slopes(map: HeightMap, level: f32, uv: vec2<f32>) -> vec2<f32> {
     let px = exp2(level) / vec2<f32>(map.size);
     let across = vec2<f32>(0.5 * px.x, 0.0);
@@ -77,15 +85,21 @@ fn height_slopes(map: HeightMap, level: f32, uv: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(along_x / px.x, along_y / px.y);
 }
 
+// Returns the mip level at which one px is as long as a segment of an edge. The edge is `texels` px of level 0 long and
+// is cut into `segments`.
 fn segment_level(map: HeightMap, texels: f32, segments: f32) -> f32 {
     let level = log2(max(texels, 1e-6) / segments);
     return clamp(level, 0.0, f32(map.levels - 1u));
 }
 
+// Returns the distance between two texture coordinates in px of level 0.
 fn texel_length(map: HeightMap, a: vec2<f32>, b: vec2<f32>) -> f32 {
     return length((b - a) * vec2<f32>(map.size));
 }
 
+// Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions` and
+// w = 1 - u - v. `direction` is that unit vector, and `length` is the length of the sum. Zero if the sum is nearly
+// zero.
 fn direction_slopes(directions: array<vec3<f32>, 3>, direction: vec3<f32>, length: f32) -> array<vec3<f32>, 2> {
     let along_u = directions[0] - directions[2];
     let along_v = directions[1] - directions[2];
@@ -97,13 +111,16 @@ fn direction_slopes(directions: array<vec3<f32>, 3>, direction: vec3<f32>, lengt
     return array<vec3<f32>, 2>(flat_u * (1.0 / length), flat_v * (1.0 / length));
 }
 
-// Of both texture coordinates over a flat triangle, each times twice its area; and that.
+// The gradients of both texture coordinates over a flat triangle, each times `area`, which is twice the triangle's
+// area.
 struct UvGradients {
     u: vec3<f32>,
     v: vec3<f32>,
     area: f32,
 }
 
+// Returns the gradients of both texture coordinates over a flat triangle, each times twice the triangle's area, and
+// twice that area.
 fn uv_gradients(corners: array<vec3<f32>, 3>, uvs: array<vec2<f32>, 3>) -> UvGradients {
     let none = UvGradients(vec3<f32>(0.0), vec3<f32>(0.0), 0.0);
     let along = corners[1] - corners[0];
@@ -113,6 +130,7 @@ fn uv_gradients(corners: array<vec3<f32>, 3>, uvs: array<vec2<f32>, 3>) -> UvGra
     if size == 0.0 {
         return none;
     }
+    // Scale the sides, so that products of very short or very long ones neither underflow nor overflow.
     let a = along * (1.0 / size);
     let b = beside * (1.0 / size);
     let facing = cross(a, b);
@@ -132,7 +150,8 @@ fn uv_gradients(corners: array<vec3<f32>, 3>, uvs: array<vec2<f32>, 3>) -> UvGra
     );
 }
 
-// Mikkelsen 2008, the surface gradient.
+// Returns the unit normal of a surface that is shaded with `normal` and whose height has this gradient (Mikkelsen 2008,
+// the surface gradient). The gradient points uphill in object space; its length is the slope.
 fn raised_normal(gradient: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     return unit_or(normal - (gradient - normal * dot(gradient, normal)), normal);
 }

@@ -1,9 +1,11 @@
-// Domain points and triangles of a patch, each one in closed form from its number.
-// Twin of src/tessellate/domain.rs, which says what each function means. Goes with factors.wgsl,
-// rings.wgsl and subtriangulation.wgsl, and with connectivity.wgsl, or patterns.wgsl in its place.
+// Domain points and triangles of a patch, each computed from its number alone. Twin: src/tessellate/domain.rs, which
+// describes the pattern. Needs factors.wgsl, rings.wgsl and subtriangulation.wgsl, and connectivity.wgsl or
+// connectivity_table.wgsl in its place.
 
+// Two thirds in 16.16 fixed point, rounded down as in the specification.
 const FIXED_TWO_THIRDS: u32 = 0xaaaau;
 
+// A row of points, prepared for `row_location`.
 struct DomainRow {
     half: u32,
     odd: u32,
@@ -13,19 +15,25 @@ struct DomainRow {
     fine_step: u32,
 }
 
+// Returns the length of one of `segments` equal segments in 16.16 fixed point: 1 / segments, rounded half up. There are
+// at most 128 segments.
 fn segment_length(segments: u32) -> u32 {
     return u32((f32(2u * FIXED_ONE + segments) + 0.5) / f32(2u * segments));
 }
 
+// Clears the highest set bit of a number, which must not be zero.
 fn drop_top_bit(value: u32) -> u32 {
     return value ^ (1u << firstLeadingBit(value));
 }
 
+// Returns the point of each half after which the next new point grows. New points come in the order of a breadth-first
+// bisection.
 fn row_split(whole: u32, odd: u32) -> u32 {
     let v = whole - odd;
     return select(2u * drop_top_bit(v) + 1u, 0u, v == 0u);
 }
 
+// Prepares the row of a factor's word.
 fn domain_row(word: u32) -> DomainRow {
     let factor = half_factor(word);
     let whole = factor >> 16u;
@@ -42,6 +50,7 @@ fn domain_row(word: u32) -> DomainRow {
     );
 }
 
+// Returns where point `p` of a row lies, from 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
 fn row_location(row: DomainRow, p: u32) -> u32 {
     if row.odd == 0u && p == row.half {
         return FIXED_HALF;
@@ -59,6 +68,7 @@ const PATTERN_RINGS: u32 = 0u;
 const PATTERN_MINIMAL: u32 = 1u;
 const PATTERN_SUBTRIANGULATED: u32 = 2u;
 
+// A patch's factors, prepared for `domain_point` and `domain_triangle`.
 struct DomainPlan {
     factors: PatchFactors,
     kind: u32,
@@ -69,6 +79,7 @@ struct DomainPlan {
     row: DomainRow,
 }
 
+// Prepares the pattern of a patch that isn't culled.
 fn domain_plan(factors: PatchFactors) -> DomainPlan {
     let row = domain_row(factors.inside);
     let start1 = segments(factors.outside.x);
@@ -81,6 +92,7 @@ fn domain_plan(factors: PatchFactors) -> DomainPlan {
     return DomainPlan(factors, kind, start1, start2, outer, inside_segments(factors.inside), row);
 }
 
+// Returns (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
 fn domain_point(plan: DomainPlan, i: u32) -> vec2<u32> {
     if plan.kind == PATTERN_SUBTRIANGULATED {
         return subtriangulation_point(plan.n, i);
@@ -91,8 +103,10 @@ fn domain_point(plan: DomainPlan, i: u32) -> vec2<u32> {
     return inner_point(plan.row, plan.n, i - plan.outer);
 }
 
+// Returns point `i` of the outline, which starts at V == 1 with the edge U == 0. Each edge's last point is the next
+// one's first.
 fn outer_point(plan: DomainPlan, i: u32) -> vec2<u32> {
-    // One row, chosen first: on a GPU the points of three edges then take one path.
+    // Choose the row first, so that on a GPU the points of all three edges take the same branch.
     let side = u32(i >= plan.start1) + u32(i >= plan.start2);
     let edges = plan.factors.outside;
     let word = select(select(edges.x, edges.y, side == 1u), edges.z, side == 2u);
@@ -101,6 +115,7 @@ fn outer_point(plan: DomainPlan, i: u32) -> vec2<u32> {
     return select(select(vec2<u32>(0u, x), vec2<u32>(x, 0u), side == 1u), vec2<u32>(x, FIXED_ONE - x), side == 2u);
 }
 
+// Returns point `i` of the rings inside, which are cut from `row` with `n` segments.
 fn inner_point(row: DomainRow, n: u32, i: u32) -> vec2<u32> {
     let rings = rings_before(n - 1u, i / 3u);
     let ring = rings + 1u;
@@ -118,6 +133,7 @@ fn inner_point(row: DomainRow, n: u32, i: u32) -> vec2<u32> {
     return select(beside, vec2<u32>(along, FIXED_ONE - along - across), side == 2u);
 }
 
+// Returns the corners of triangle `t`, below `triangle_count(factors)`, as point numbers, clockwise.
 fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     if plan.kind == PATTERN_MINIMAL {
         return vec3<u32>(0u, 1u, 2u);
@@ -132,6 +148,7 @@ fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     return regular_triangle(plan.outer, plan.n, t - transition);
 }
 
+// Returns triangle `t` between an edge and the first ring. The second half of a side mirrors the first.
 fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
     let inner_half = row.half - row.odd;
     let outer_half = half_segments(edge) - odd_parity(edge);
@@ -140,7 +157,7 @@ fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> Tr
     let before = inner_half - 1u + outer_half;
     let after_middle = t + before >= total;
     if t >= before && !after_middle {
-        // The middle: an odd inside's triangle, then an odd edge's.
+        // In the middle there is a triangle if the inside is odd, then one if the edge is odd.
         let along_inner = t == before && row.odd == 1u;
         return TransitionStep(inner_half - 1u + (t - before), outer_half, along_inner, true);
     }
@@ -156,6 +173,7 @@ fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> Tr
     );
 }
 
+// Returns triangle `t` of those between the outline and the first ring, whose numbers of segments may differ.
 fn transition_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     let inner_segments = plan.n - 2u;
     let start1 = plan.start1;

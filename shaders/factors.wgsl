@@ -1,8 +1,8 @@
-// Tessellation factors, from what an application asks for to what the fixed-function tessellator works with.
-// Twin of src/tessellate/factors.rs, which says what each function means.
+// Tessellation factors: from the numbers that a hull shader writes to the fixed-point words that the fixed-function
+// tessellator works with, and the numbers of points and triangles that they give. Twin: src/tessellate/factors.rs.
 //
-// Integer arithmetic throughout: WGSL lets a compiler assume that no f32 is NaN or infinite and flush denormals, so
-// comparisons on f32 could not tell a culled patch from a drawn one.
+// Everything here is integer arithmetic. WGSL lets a compiler assume that no f32 is NaN or infinite, and flush
+// denormals, so comparisons of f32 numbers couldn't tell a culled patch from one that is drawn.
 
 const PARTITIONING_INTEGER: u32 = 0u;
 const PARTITIONING_POW2: u32 = 1u;
@@ -24,24 +24,30 @@ const BITS_INFINITY: u32 = 0x7f800000u;
 const BITS_ONE_AND_HALF_STEP: u32 = 0x3f800040u;
 const BITS_ONE_AND_STEP: u32 = 0x3f800080u;
 
-// `inside` fills the vec3's fourth word: 16 bytes, as in Rust.
+// `inside` takes the fourth word of the vec3, so the struct has 16 bytes, as in Rust.
 struct PatchFactors {
     outside: vec3<u32>,
     inside: u32,
 }
 
+// Returns whether an `f32` with these bits is greater than zero. Denormals are; NaN isn't.
 fn positive_bits(bits: u32) -> bool {
     return bits - 1u < BITS_INFINITY;
 }
 
+// Returns the smallest factor of a partitioning, as `f32` bits.
 fn factor_lower_bound(partitioning: u32) -> u32 {
     return select(BITS_ONE, BITS_TWO, partitioning == PARTITIONING_FRACTIONAL_EVEN);
 }
 
+// Returns the largest factor of a partitioning, as `f32` bits.
 fn factor_upper_bound(partitioning: u32) -> u32 {
     return select(BITS_64, BITS_63, partitioning == PARTITIONING_FRACTIONAL_ODD);
 }
 
+// Returns the word of a factor of 1 to 64, given as `f32` bits. The factor is rounded up to a whole number or, in the
+// fractional partitionings, to the nearest 1/65536 with ties to even. Its parity is that of the partitioning, or of the
+// whole number.
 fn factor_word(partitioning: u32, bits: u32) -> u32 {
     let exponent = (bits >> 23u) - 127u;
     let mantissa = (bits & 0x7fffffu) | 0x800000u;
@@ -56,12 +62,15 @@ fn factor_word(partitioning: u32, bits: u32) -> u32 {
     return fixed | select(0u, FACTOR_ODD, partitioning == PARTITIONING_FRACTIONAL_ODD);
 }
 
+// Returns the word of an inside factor: as `factor_word`, but a whole 1 counts as even, since it acts as 2.
 fn inside_word(partitioning: u32, bits: u32) -> u32 {
     let word = factor_word(partitioning, bits);
     let even_one = partitioning != PARTITIONING_FRACTIONAL_ODD && word == (FACTOR_ODD | FIXED_ONE);
     return select(word, FIXED_ONE, even_one);
 }
 
+// Returns what the tessellator makes of a patch's factors (sections 11.7.3 to 11.7.10). `edges` are the factors of the
+// edges U == 0, V == 0 and W == 0.
 fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
     let bits = bitcast<vec3<u32>>(edges);
     if !(positive_bits(bits.x) && positive_bits(bits.y) && positive_bits(bits.z)) {
@@ -76,7 +85,7 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
         let word = factor_word(partitioning, largest);
         return PatchFactors(vec3<u32>(word), word | SUBTRIANGULATED);
     }
-    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
+    // An odd patch with a divided edge needs a ring inside, though it may have collapsed to a point.
     let splits = partitioning == PARTITIONING_FRACTIONAL_ODD && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = select(low, BITS_ONE_AND_STEP, splits);
     let inside_bits = select(0u, bitcast<u32>(inside), positive_bits(bitcast<u32>(inside)));
@@ -90,60 +99,75 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
     );
 }
 
+// Returns the factor that a shader compiler passes to the tessellator under pow2: clamped to 1 to 64, then rounded up
+// to a power of two. Factors that cull a patch (NaN, zero, negative numbers) are returned unchanged.
 fn round_pow2(factor: f32) -> f32 {
     let bits = bitcast<u32>(factor);
     if !positive_bits(bits) {
         return factor;
     }
     let clamped = clamp(bits, BITS_ONE, BITS_64);
-    // A carry out of the mantissa lands in the exponent.
+    // The sum carries from the mantissa into the exponent.
     return bitcast<f32>((clamped + 0x7fffffu) & 0x7f800000u);
 }
 
+// Returns whether the patch is culled: it has no points and no triangles.
 fn patch_is_culled(factors: PatchFactors) -> bool {
     return factors.outside.x == 0u;
 }
 
+// Returns whether the patch is cut by uniform subtriangulation instead of Direct3D's tessellator.
 fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
     return !patch_is_culled(factors) && (factors.inside & SUBTRIANGULATED) != 0u;
 }
 
+// Returns whether all factors are 1, so that the patch is one triangle.
 fn patch_is_minimal(factors: PatchFactors) -> bool {
     let edges_are_one = all(factors.outside == vec3<u32>(FACTOR_ODD | FIXED_ONE));
     return edges_are_one && (factors.inside & FACTOR_VALUE) == FIXED_ONE;
 }
 
+// Returns whether the patch is drawn and all its factors are below 2: without tessellation it would look nearly the
+// same.
 fn patch_is_low(factors: PatchFactors) -> bool {
     let edges_are_low = all((factors.outside & vec3<u32>(FACTOR_VALUE)) < vec3<u32>(2u * FIXED_ONE));
     return !patch_is_culled(factors) && edges_are_low && (factors.inside & FACTOR_VALUE) < 2u * FIXED_ONE;
 }
 
+// Returns 1 if the word's parity is odd, else 0.
 fn odd_parity(word: u32) -> u32 {
     return word >> 31u;
 }
 
+// Returns the number of segments from an end of a row to its middle, in 16.16 fixed point. The fraction is how far the
+// newest segment has grown. The middle segment of an odd row counts as a whole one.
 fn half_factor(word: u32) -> u32 {
     let half = ((word & FACTOR_VALUE) + 1u) >> 1u;
     let rounds_up = odd_parity(word) == 1u || half == FIXED_HALF;
     return select(half, half + FIXED_HALF, rounds_up);
 }
 
+// Returns `half_factor` rounded up: the segments of half a row, with the middle one of an odd row.
 fn half_segments(word: u32) -> u32 {
     return (half_factor(word) + (FIXED_ONE - 1u)) >> 16u;
 }
 
+// Returns the number of segments of an edge: one less than its points.
 fn segments(word: u32) -> u32 {
     return 2u * half_segments(word) - odd_parity(word);
 }
 
+// Returns the number of segments inside: at least 3 if odd, at least 2 if even.
 fn inside_segments(word: u32) -> u32 {
     return max(segments(word), 2u + odd_parity(word));
 }
 
+// Returns the number of points on the patch's outline.
 fn outer_count(factors: PatchFactors) -> u32 {
     return segments(factors.outside.x) + segments(factors.outside.y) + segments(factors.outside.z);
 }
 
+// Returns the number of domain points of the patch.
 fn point_count(factors: PatchFactors) -> u32 {
     if patch_is_culled(factors) {
         return 0u;
@@ -155,11 +179,12 @@ fn point_count(factors: PatchFactors) -> u32 {
         let n = segments(factors.inside);
         return ((n + 1u) * (n + 2u)) >> 1u;
     }
-    // The rings inside hold 3 R^2 points (odd) or 3 R (R + 1) + 1 (even, with the centre), R = (n - 1) / 2.
+    // With R = (n - 1) / 2 rounded down, the rings inside have 3 R^2 points if n is odd, and 3 R (R + 1) + 1 if it is even.
     let n = inside_segments(factors.inside);
     return outer_count(factors) + ((3u * (n - 1u) * (n - 1u) + 1u) >> 2u);
 }
 
+// Returns the number of triangles of the patch.
 fn triangle_count(factors: PatchFactors) -> u32 {
     if patch_is_culled(factors) {
         return 0u;

@@ -2,6 +2,7 @@
 //
 // The loops are unrolled by hand, since some compilers keep loops, and then keep the arrays that they index in memory.
 
+// Returns the control net of a patch.
 fn load_net(patch_index: u32) -> ControlNet {
     let own = patch_at(patch_index);
     let curves = array<CurveNet, 3>(

@@ -1,4 +1,5 @@
-// How many segments an edge gets. Twin: src/tessellate/lod.rs.
+// Level of detail: the tessellation factor of an edge, by its length on screen or its distance from the eye. Twin:
+// src/tessellate/lod.rs. LOD by error is in error.wgsl.
 
 const LOD_UNIFORM: u32 = 0u;
 const LOD_PAPER: u32 = 1u;
@@ -9,25 +10,26 @@ const LOD_DISTANCE: u32 = 4u;
 struct LodView {
     clip_from_object: mat4x4<f32>,
     half_viewport: vec2<f32>,
-    // How far what is emitted may be from the surface: it is displaced.
+    // The largest distance in object units by which displacement moves a point.
     reach: f32,
     eye: vec3<f32>,
     radius: f32,
 }
 
-// Divides by w as the paper does, so points behind the eye land on the wrong side.
+// Returns a position on screen, from the middle of the view, in segments of `pixels_per_segment` px.
 fn project_and_scale(view: LodView, pixels_per_segment: f32, position: vec3<f32>) -> vec2<f32> {
     let clip = view.clip_from_object * vec4<f32>(position, 1.0);
     return clip.xy / clip.w * view.half_viewport / pixels_per_segment;
 }
 
-// At least 1, and 1 for NaN, which is told by its bits.
-fn at_least_one(length: f32) -> f32 {
+// Returns `length`, but 1 if it is less than 1 or NaN. The length of an edge through the eye's plane may be NaN.
+fn max_with_one(length: f32) -> f32 {
     let is_nan = (bitcast<u32>(length) & 0x7fffffffu) > 0x7f800000u;
     return select(length, 1.0, is_nan || length < 1.0);
 }
 
-// ComputeEdgeLOD of the PN-AEN white paper, in the edge's own direction.
+// Returns the white paper's factor of an edge with these four control points (`ComputeEdgeLOD` of McDonald and Kilgard
+// 2010): the length of its control polygon on screen, in segments. The points must be in the edge's own direction.
 fn paper_edge_factor(
     view: LodView,
     pixels_per_segment: f32,
@@ -40,24 +42,28 @@ fn paper_edge_factor(
     let pab = project_and_scale(view, pixels_per_segment, ab);
     let pba = project_and_scale(view, pixels_per_segment, ba);
     let pb = project_and_scale(view, pixels_per_segment, b);
-    return at_least_one(distance(pa, pab) + distance(pab, pba) + distance(pba, pb));
+    return max_with_one(distance(pa, pab) + distance(pab, pba) + distance(pba, pb));
 }
 
-// Depth is reversed: z = w on the near plane.
+// Returns whether a clip-space position lies on the near plane or beyond. Depth is reversed: z = w on the near plane.
 fn beyond_near(clip: vec4<f32>) -> bool {
     return clip.z <= clip.w;
 }
 
+// Returns the gradient of a clip-space coordinate (0 to 3 for x, y, z, w) in object space.
 fn clip_row(view: LodView, row: u32) -> vec3<f32> {
     let m = view.clip_from_object;
     return vec3<f32>(m[0][row], m[1][row], m[2][row]);
 }
 
+// Returns how many px an object unit across the view covers at depth w = 1.
 fn pixels_per_unit(view: LodView) -> f32 {
     return max(length(clip_row(view, 0u)) * view.half_viewport.x, length(clip_row(view, 1u)) * view.half_viewport.y);
 }
 
-// The control polygon at the nearest depth of the sphere around it; 1 if all of that is nearer than the near plane.
+// Returns the factor of an edge that isn't completely beyond the near plane: the length of its control polygon in
+// segments, as if it lay across the view at the nearest depth of a sphere around the control points. If the whole
+// sphere is nearer than the near plane, the factor is 1.
 fn near_edge_factor(
     view: LodView,
     pixels_per_segment: f32,
@@ -76,9 +82,10 @@ fn near_edge_factor(
     }
     let nearest = max(clip.w - radius * length(depth), clip.z);
     let polygon = distance(a, ab) + distance(ab, ba) + distance(ba, b);
-    return at_least_one(polygon * pixels_per_unit(view) / nearest / pixels_per_segment);
+    return max_with_one(polygon * pixels_per_unit(view) / nearest / pixels_per_segment);
 }
 
+// Returns `paper_edge_factor` if all four control points lie beyond the near plane, otherwise `near_edge_factor`.
 fn edge_length_factor(
     view: LodView,
     pixels_per_segment: f32,
@@ -95,11 +102,14 @@ fn edge_length_factor(
     return near_edge_factor(view, pixels_per_segment, a, ab, ba, b);
 }
 
-fn distance_at(view: LodView, factor: f32, near: f32, far: f32, p: vec3<f32>) -> f32 {
+// Returns the factor of a point `p` in object units: `factor` up to a distance of `near` bounding radii from the eye, 1
+// from `far` bounding radii on, and linear between.
+fn point_distance_factor(view: LodView, factor: f32, near: f32, far: f32, p: vec3<f32>) -> f32 {
     let part = (far - distance(p, view.eye) / view.radius) / (far - near);
     return 1.0 + (factor - 1.0) * clamp(part, 0.0, 1.0);
 }
 
+// Returns the factor of an edge under LOD by distance: the mean of the factors at its ends.
 fn distance_factor(view: LodView, factor: f32, near: f32, far: f32, a: vec3<f32>, b: vec3<f32>) -> f32 {
-    return at_least_one(0.5 * (distance_at(view, factor, near, far, a) + distance_at(view, factor, near, far, b)));
+    return max_with_one(0.5 * (point_distance_factor(view, factor, near, far, a) + point_distance_factor(view, factor, near, far, b)));
 }

@@ -1,30 +1,37 @@
-// Normals that a surface is shaded with. Twin: src/tessellate/normal.rs.
+// Shading normals of emitted vertices, and how they are packed. Weights are 16.16 fixed point. Twin:
+// src/tessellate/normal.rs.
 
 const NORMALS_LINEAR: u32 = 0u;
 const NORMALS_QUADRATIC: u32 = 1u;
 const NORMALS_SURFACE: u32 = 2u;
 
+// Weighted sums of unit normals that are shorter than this are rounding errors: the normals cancel.
 const CANCELLED: f32 = 1e-6;
 
-// A weighted sum of normals at unit length, or the one with the greatest weight where they cancel.
+// Returns a weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) if they cancel.
 fn unit_or(sum: vec3<f32>, nearest: vec3<f32>) -> vec3<f32> {
     let length_squared = dot(sum, sum);
     return select(nearest, sum * inverseSqrt(length_squared), length_squared > CANCELLED * CANCELLED);
 }
 
+// Returns the linearly interpolated unit normal at weights `u` and `v` of a patch, or the normal of the nearest corner
+// if the normals cancel.
 fn linear_normal(normals: array<vec3<f32>, 3>, u: u32, v: u32) -> vec3<f32> {
     let w = FIXED_ONE - u - v;
     let nearest = select(select(normals[2], normals[1], v >= w), normals[0], u >= v && u >= w);
     return unit_or(normals[0] * (f32(u) * UNIT) + normals[1] * (f32(v) * UNIT) + normals[2] * (f32(w) * UNIT), nearest);
 }
 
-// Called in the edge's own direction only.
+// Returns the linearly interpolated unit normal at `t` on an edge whose ends have normals `a` and `b`. The arguments
+// must be in the edge's own direction, as for edge_position.
 fn edge_normal(a: vec3<f32>, b: vec3<f32>, t: u32) -> vec3<f32> {
     let nearest = select(b, a, 2u * t <= FIXED_ONE);
     return unit_or(a * (f32(FIXED_ONE - t) * UNIT) + b * (f32(t) * UNIT), nearest);
 }
 
-// h110 and so on, unit length (Vlachos et al. 2001, section 3.3).
+// Returns the control normal in the middle of an edge (h110 of Vlachos et al. 2001, section 3.3): the sum of the
+// normals at the ends, mirrored in the plane perpendicular to the edge, at unit length. It is `at_a` if the sum
+// cancels.
 fn middle_normal(a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, at_b: vec3<f32>) -> vec3<f32> {
     let along = b - a;
     let size = max(max(abs(along.x), abs(along.y)), abs(along.z));
@@ -32,10 +39,13 @@ fn middle_normal(a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, at_b: vec3<f32>) -
     if size == 0.0 {
         return unit_or(sum, at_a);
     }
+    // Scale the edge, so that its square neither underflows nor overflows: only its direction matters.
     let direction = along * (1.0 / size);
     return unit_or(sum - direction * (2.0 * dot(direction, sum) / dot(direction, direction)), at_a);
 }
 
+// Returns the quadratically interpolated unit normal at weights `u` and `v` of a patch with these corners (Vlachos et
+// al. 2001, section 3.3), or the linearly interpolated one if the sum cancels.
 fn quadratic_normal(corners: array<vec3<f32>, 3>, normals: array<vec3<f32>, 3>, u: u32, v: u32) -> vec3<f32> {
     let x = f32(u) * UNIT;
     let y = f32(v) * UNIT;
@@ -49,7 +59,8 @@ fn quadratic_normal(corners: array<vec3<f32>, 3>, normals: array<vec3<f32>, 3>, 
     return unit_or(sum, linear_normal(normals, u, v));
 }
 
-// Called in the edge's own direction only.
+// Returns the quadratically interpolated unit normal at `t` on the edge from `a` to `b`. The arguments must be in the
+// edge's own direction, as for edge_position.
 fn quadratic_edge_normal(a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, at_b: vec3<f32>, t: u32) -> vec3<f32> {
     let x = f32(FIXED_ONE - t) * UNIT;
     let y = f32(t) * UNIT;
@@ -57,6 +68,8 @@ fn quadratic_edge_normal(a: vec3<f32>, b: vec3<f32>, at_a: vec3<f32>, at_b: vec3
     return unit_or(sum, edge_normal(at_a, at_b, t));
 }
 
+// Returns the unit normal of a surface with these tangents along u and v, or `otherwise` if they are parallel or one is
+// zero.
 fn facing_or(tangents: array<vec3<f32>, 2>, otherwise: vec3<f32>) -> vec3<f32> {
     let along_u = tangents[0];
     let along_v = tangents[1];
@@ -68,24 +81,28 @@ fn facing_or(tangents: array<vec3<f32>, 2>, otherwise: vec3<f32>) -> vec3<f32> {
     return unit_or(cross(along_u * (1.0 / size_u), along_v * (1.0 / size_v)), otherwise);
 }
 
+// Returns the unit normal of the surface itself at weights `u` and `v`, or `otherwise` where it has none.
 fn surface_normal(surface: u32, net: ControlNet, u: u32, v: u32, otherwise: vec3<f32>) -> vec3<f32> {
     return facing_or(patch_tangents(surface, net, u, v), otherwise);
 }
 
-// Octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
+// Packs a unit normal into 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
+// The error is less than 0.004 degrees.
 fn pack_normal(normal: vec3<f32>) -> u32 {
     let flat = normal * (1.0 / (abs(normal.x) + abs(normal.y) + abs(normal.z)));
-    let folded = (1.0 - abs(flat.yx)) * vec2<f32>(toward(flat.x), toward(flat.y));
+    let folded = (1.0 - abs(flat.yx)) * vec2<f32>(sign_not_zero(flat.x), sign_not_zero(flat.y));
     return pack2x16snorm(select(flat.xy, folded, flat.z < 0.0));
 }
 
+// Returns the unit normal that was packed.
 fn unpack_normal(bits: u32) -> vec3<f32> {
     let at = unpack2x16snorm(bits);
     let z = 1.0 - abs(at.x) - abs(at.y);
     let back = max(-z, 0.0);
-    return normalize(vec3<f32>(at.x - toward(at.x) * back, at.y - toward(at.y) * back, z));
+    return normalize(vec3<f32>(at.x - sign_not_zero(at.x) * back, at.y - sign_not_zero(at.y) * back, z));
 }
 
-fn toward(x: f32) -> f32 {
+// Returns 1 for zero and positive numbers, else -1.
+fn sign_not_zero(x: f32) -> f32 {
     return select(-1.0, 1.0, x >= 0.0);
 }

@@ -62,10 +62,10 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
 fn counted(index: u32) -> vec2<u32> {
     let patch_index = slab.first_patch + index;
     let net = needed_net(patch_index);
-    let why = unseen(params.clip, params.culls_back == 1u, params.view, net);
+    let why = cull_reason(params.clip, params.culls_back == 1u, params.view, net);
     var factors: PatchFactors;
     factors.inside = why;
-    if why == SEEN {
+    if why == NOT_CULLED {
         let written = hull_factors(patch_index, net);
         factors = process(params.partitioning, written.xyz, written.w);
     }
@@ -102,7 +102,7 @@ fn hull_factors_main(
     let index = grid_index(workgroup, workgroups, local);
     if index < params.patch_count {
         let net = needed_net(index);
-        if unseen(params.clip, params.culls_back == 1u, params.view, net) == SEEN {
+        if cull_reason(params.clip, params.culls_back == 1u, params.view, net) == NOT_CULLED {
             written_factors[index] = hull_factors(index, net);
         }
     }

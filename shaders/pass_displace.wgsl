@@ -1,5 +1,5 @@
 // Displaces the vertices of one chunk after they were emitted, and turns their normals: one invocation a vertex. Twin:
-// src/tessellate/relief.rs.
+// src/tessellate/mesh_displacement.rs.
 
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> slab: Slab;
@@ -39,7 +39,7 @@ fn spot(u: u32, v: u32) -> Spot {
             return Spot(AT_CORNER, k, 0u);
         }
     }
-    let at = place(u, v);
+    let at = outline_place(u, v);
     if at.side < 3u {
         return Spot(ON_SIDE, at.side, at.t);
     }

@@ -15,8 +15,8 @@
 // All vertices' places, then all their details: see Vertex.
 @group(0) @binding(9) var<storage, read_write> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(10) var<storage, read_write> indices: array<u32>;
-// Which points triangles join: see patterns.wgsl.
-@group(0) @binding(11) var<storage, read> patterns: array<u32>;
+// Which points triangles join: see connectivity_table.wgsl.
+@group(0) @binding(11) var<storage, read> connectivity_table: array<u32>;
 @group(1) @binding(0) var<uniform> chunk_index: u32;
 
 // How normals are made, NORMALS_*. Each way has a pipeline of its own, without the registers that the others need.
@@ -181,7 +181,7 @@ fn patch_vertex(hull: HullPatch, u: u32, v: u32) -> DomainVertex {
 }
 
 fn store_vertex(index: u32, patch_index: u32, hull: HullPatch, uv: vec2<u32>) {
-    let at = place(uv.x, uv.y);
+    let at = outline_place(uv.x, uv.y);
     var made: DomainVertex;
     if at.side == 3u || params.edges == EDGES_AS_PUBLISHED {
         made = patch_vertex(hull, uv.x, uv.y);

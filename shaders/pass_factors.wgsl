@@ -39,12 +39,12 @@ fn curve_factor(index: u32) -> f32 {
 }
 
 // The factor that the heights along a curve need: those of one height image, or of all images on its edge's sides.
-fn relief_of(index: u32, curve_index: u32, map: u32) -> f32 {
+fn heights_factor(index: u32, curve_index: u32, map: u32) -> f32 {
     let curve = curves[curve_index];
     let a = points[curve.points[0]].xyz;
     let b = points[curve.points[1]].xyz;
     let net = curve_nets[curve_index];
-    let sight = edge_sight(params.view, a, net.ab, net.ba, b);
+    let bounds = edge_bounds(params.view, a, net.ab, net.ba, b);
     let turn = distance(shares[curve.points[0]].direction, shares[curve.points[1]].direction);
     let scale = abs(params.height_scale);
     var factor = 1.0;
@@ -53,7 +53,7 @@ fn relief_of(index: u32, curve_index: u32, map: u32) -> f32 {
         let own = shares[at];
         if own.map > 0u && (map == ALL_MAPS || map == own.map) {
             let detail = details[own.map - 1u];
-            factor = max(factor, relief_factor(params.view, sight, params.tolerance, own.texels, turn, scale, detail));
+            factor = max(factor, displacement_factor(params.view, bounds, params.tolerance, own.texels, turn, scale, detail));
         }
         at = own.next;
         if at == 0u {
@@ -72,12 +72,12 @@ fn lod_factor(index: u32, map: u32) -> f32 {
         for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
             factor = max(factor, curve_factor(curve));
             if params.lod == LOD_ERROR && params.displacement != 0u {
-                factor = max(factor, relief_of(index, curve, map));
+                factor = max(factor, heights_factor(index, curve, map));
             }
         }
     }
     if params.lod == LOD_ERROR {
-        return level(params.partitioning, factor);
+        return nesting_factor(params.partitioning, factor);
     }
     return select(factor, round_pow2(factor), params.partitioning == PARTITIONING_POW2);
 }

@@ -26,8 +26,8 @@ fn curve_nets_main(
     // The mean over the curve's sides of each side's own proposal.
     var ab = vec3<f32>(0.0);
     var ba = vec3<f32>(0.0);
-    var around_a: Meeting;
-    var around_b: Meeting;
+    var around_a: DistinctNormals;
+    var around_b: DistinctNormals;
     for (var i = 0u; i < curve.side_count; i++) {
         let side = curve_sides[curve.first_side + i];
         let at_a = corners[side.x].normal;
@@ -35,8 +35,8 @@ fn curve_nets_main(
         let proposed = side_control_points(params.surface, params.alpha, a, b, at_a, at_b);
         ab += proposed[0];
         ba += proposed[1];
-        around_a = meet(around_a, at_a);
-        around_b = meet(around_b, at_b);
+        around_a = add_normal(around_a, at_a);
+        around_b = add_normal(around_b, at_b);
     }
     let share = 1.0 / f32(curve.side_count);
     var net = CurveNet(ab * share, ba * share);

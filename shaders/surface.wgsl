@@ -1,7 +1,7 @@
-// Control nets and the surfaces they make. Twin: src/tessellate/surface.rs.
+// Control nets, and the evaluation of the surfaces that they define. Twin: src/tessellate/surface.rs.
 //
-// Weights follow the PN-AEN white paper: u belongs to corner 0, v to corner 1, w to corner 2.
-// Domain coordinates are 16.16 fixed point, FIXED_ONE = 65536.
+// Weights follow the PN-AEN white paper: u belongs to corner 0, v to corner 1, w to corner 2. Domain coordinates are
+// 16.16 fixed point, FIXED_ONE = 65536.
 
 const UNIT: f32 = 1.0 / 65536.0;
 
@@ -14,7 +14,9 @@ const SURFACE_PHONG_AEN: u32 = 5u;
 const SURFACE_NAGATA: u32 = 6u;
 const SURFACE_NAGATA_AEN: u32 = 7u;
 
-// Called in the edge's own direction only: the two sides then run one computation on the same bits.
+// Returns the point at `t` (16.16 fixed point) on the edge from `a` to `b` with control points `ab` (near a) and `ba`
+// (near b), in object units. The arguments must be in the edge's own direction: then all sides do the same arithmetic
+// on the same bits, and get the same point.
 fn edge_position(surface: u32, a: vec3<f32>, ab: vec3<f32>, ba: vec3<f32>, b: vec3<f32>, t: u32) -> vec3<f32> {
     let y = f32(t) * UNIT;
     let x = f32(FIXED_ONE - t) * UNIT;
@@ -24,12 +26,15 @@ fn edge_position(surface: u32, a: vec3<f32>, ab: vec3<f32>, ba: vec3<f32>, b: ve
     return a * (x * x * x) + ab * (3.0 * x * x * y) + ba * (3.0 * x * y * y) + b * (y * y * y);
 }
 
+// b300 b030 b003; on sides 0, 1 and 2, near their starts and ends, b210 b120, b021 b012, b102 b201; b111.
 struct ControlNet {
     corners: array<vec3<f32>, 3>,
     edges: array<vec3<f32>, 6>,
     center: vec3<f32>,
 }
 
+// Returns the point of a patch at weights `u` and `v` (16.16 fixed point; w is the rest of 1), in object units (Vlachos
+// et al. 2001, equation 1).
 fn patch_position(surface: u32, net: ControlNet, u: u32, v: u32) -> vec3<f32> {
     let x = f32(u) * UNIT;
     let y = f32(v) * UNIT;
@@ -49,7 +54,8 @@ fn patch_position(surface: u32, net: ControlNet, u: u32, v: u32) -> vec3<f32> {
         + net.center * (6.0 * x * y * z);
 }
 
-// Along u, along v.
+// Returns the derivatives of a patch's position by u and by v (w = 1 - u - v) at weights `u` and `v`: its tangents, in
+// object units.
 fn patch_tangents(surface: u32, net: ControlNet, u: u32, v: u32) -> array<vec3<f32>, 2> {
     let x = f32(u) * UNIT;
     let y = f32(v) * UNIT;
@@ -64,6 +70,7 @@ fn patch_tangents(surface: u32, net: ControlNet, u: u32, v: u32) -> array<vec3<f
     let b102 = net.edges[4];
     let b201 = net.edges[5];
     let b111 = net.center;
+    // The derivatives are quadratic Bézier triangles of differences of control points, times 3.
     let xx = 3.0 * x * x;
     let xy = 6.0 * x * y;
     let yy = 3.0 * y * y;
@@ -85,30 +92,34 @@ fn patch_tangents(surface: u32, net: ControlNet, u: u32, v: u32) -> array<vec3<f
     return array<vec3<f32>, 2>(along_u, along_v);
 }
 
+// Returns the linearly interpolated texture coordinate at weights `u` and `v` of a patch.
 fn linear_uv(uvs: array<vec2<f32>, 3>, u: u32, v: u32) -> vec2<f32> {
     return uvs[0] * (f32(u) * UNIT) + uvs[1] * (f32(v) * UNIT) + uvs[2] * (f32(FIXED_ONE - u - v) * UNIT);
 }
 
+// Returns the linearly interpolated texture coordinate at `t` (16.16 fixed point) on an edge whose ends have `a` and
+// `b`.
 fn edge_uv(a: vec2<f32>, b: vec2<f32>, t: u32) -> vec2<f32> {
     return a * (f32(FIXED_ONE - t) * UNIT) + b * (f32(t) * UNIT);
 }
 
-// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; side 3 is the inside.
-struct Place {
+// A point on a patch's outline: the side, and the weight of the side's end. Side 3 means inside the patch.
+struct OutlinePlace {
     side: u32,
     t: u32,
 }
 
-fn place(u: u32, v: u32) -> Place {
+// Returns where the domain point (u, v, w) lies on the patch's outline.
+fn outline_place(u: u32, v: u32) -> OutlinePlace {
     let w = FIXED_ONE - u - v;
     if w == 0u {
-        return Place(0u, v);
+        return OutlinePlace(0u, v);
     }
     if u == 0u {
-        return Place(1u, w);
+        return OutlinePlace(1u, w);
     }
     if v == 0u {
-        return Place(2u, u);
+        return OutlinePlace(2u, u);
     }
-    return Place(3u, 0u);
+    return OutlinePlace(3u, 0u);
 }

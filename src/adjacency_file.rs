@@ -1,4 +1,4 @@
-//! PN-AEN index buffers as files: JSON with all that indices mean, or the bare indices.
+//! PN-AEN index buffers as files: JSON that lists what the indices refer to, or the bare indices.
 
 use std::fmt;
 use std::path::Path;
@@ -9,22 +9,23 @@ use thiserror::Error;
 use crate::mesh::adjacency::Layout;
 use crate::mesh::{Mesh, Topology};
 
-/// What a file of indices is.
+/// The format of a file of indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Indices, the corners that they speak of, and the triangle of each patch
+    /// Indices, the corners that they refer to, and the triangle of each patch
     Json,
-    /// Nothing but the indices, 32 bits each, unsigned, little-endian
+    /// The indices only: unsigned 32-bit integers, little-endian
     Bin,
 }
 
 impl Format {
-    /// What is written into a file of that name.
+    /// Returns the format that is written into a file of this name: bare indices for .bin, otherwise JSON.
     pub fn of_name(path: &Path) -> Self {
         if ends_in(path, "bin") { Self::Bin } else { Self::Json }
     }
 
-    /// What a file holds. Text has no zero bytes, and indices have some unless all are beyond 16 million.
+    /// Returns the format of a file that is read. Text has no zero bytes, and bare indices have some unless all of them
+    /// are beyond 16 million.
     fn of_file(path: &Path, bytes: &[u8]) -> Self {
         let is_text = bytes.trim_ascii_start().starts_with(b"{") && !bytes.contains(&0);
         if is_text || ends_in(path, "json") { Self::Json } else { Self::Bin }
@@ -35,10 +36,10 @@ fn ends_in(path: &Path, ending: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(ending))
 }
 
-/// Why a file is no index buffer of the mesh.
+/// Why a file isn't an index buffer of the mesh.
 #[derive(Debug, PartialEq, Eq, Error)]
 pub enum Fault {
-    #[error("this is no JSON as the adjacency command writes it ({0})")]
+    #[error("this is not JSON as the adjacency command writes it ({0})")]
     Json(String),
     #[error("it has {given} indices a patch, but {computed} are computed: --indices says how many")]
     Layout { given: usize, computed: usize },
@@ -57,13 +58,13 @@ pub enum Fault {
     Range { patch: usize, index: u32, last: usize },
 }
 
-/// What may be behind a wrong size.
+/// A possible reason for a wrong size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hint {
     None,
-    /// It is that of another layout.
+    /// The size is that of another layout.
     Layout(Layout),
-    /// There are as many patches as triangles, though some of those are degenerate.
+    /// There are as many patches as triangles, although some triangles are degenerate and have no patch.
     Degenerate,
 }
 
@@ -77,24 +78,24 @@ impl fmt::Display for Hint {
     }
 }
 
-/// The document. Lists that a file leaves out are not compared.
+/// The JSON document. Lists that a file leaves out are not compared with the mesh.
 #[derive(Debug, Serialize, Deserialize)]
 struct Document {
     indices_per_patch: usize,
-    /// Of the corners, which indices count: where their points are, in object units.
+    /// For each corner, which is what indices refer to, the position of its point in object units.
     positions: Option<Vec<[f32; 3]>>,
     normals: Option<Vec<[f32; 3]>>,
     uvs: Option<Vec<[f32; 2]>>,
-    /// The mesh's own index buffer: the corners of every triangle, degenerate ones too.
+    /// The mesh's own index buffer: the corners of every triangle, with degenerate ones.
     triangles: Option<Vec<[u32; 3]>>,
-    /// The triangle that each patch is. Degenerate ones have no patch.
+    /// The index of each patch's triangle. Degenerate triangles have no patch.
     patch_triangles: Option<Vec<u32>>,
     patches: Vec<Vec<u32>>,
 }
 
 impl Document {
     fn new(mesh: &Mesh, topology: &Topology, layout: Layout, indices: &[u32]) -> Self {
-        // Under a weld tolerance a corner's point is elsewhere than the corner was, and it is points that are tessellated.
+        // A weld tolerance moves corners to their points, and the points are what is tessellated.
         let position = |&point: &u32| topology.points[point as usize].to_array();
         Self {
             indices_per_patch: layout.per_patch(),
@@ -107,8 +108,9 @@ impl Document {
         }
     }
 
-    /// # Errors
-    /// A list that isn't the mesh's.
+    /// Compares the lists with the mesh's.
+    ///
+    /// # Errors A list differs.
     fn check_lists(&self, mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<(), Fault> {
         let own = Self::new(mesh, topology, layout, &[]);
         same("positions", &self.positions, &own.positions)?;
@@ -128,25 +130,23 @@ fn same<T: PartialEq>(list: &'static str, given: &Option<Vec<T>>, own: &Option<V
     Err(Fault::List { list, at })
 }
 
-/// JSON of a mesh's indices, with a line end. Numbers read back exactly.
+/// Returns a JSON document of a mesh's indices, with a line end. Numbers are written so that they read back exactly.
 ///
-/// # Errors
-/// There are none: no key here is anything but a name.
+/// # Errors None occur: every key is a plain name.
 pub fn to_json(mesh: &Mesh, topology: &Topology, layout: Layout, indices: &[u32]) -> serde_json::Result<String> {
     let text = serde_json::to_string(&Document::new(mesh, topology, layout, indices))?;
     Ok(text + "\n")
 }
 
-/// The bare indices.
+/// Returns the bare indices.
 pub fn to_bin(indices: &[u32]) -> Vec<u8> {
     indices.iter().flat_map(|index| index.to_le_bytes()).collect()
 }
 
-/// Reads the indices of a mesh's patches from what was in a file, JSON or bare: JSON if the name ends in .json or it
-/// looks like it.
+/// Reads the indices of a mesh's patches from a file's bytes. The file is JSON if its name ends in .json or its text
+/// starts with a brace, otherwise bare indices.
 ///
-/// # Errors
-/// They are not the indices of this mesh's patches in this layout.
+/// # Errors The file doesn't hold the indices of this mesh's patches in this layout.
 pub fn read(path: &Path, bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<Vec<u32>, Fault> {
     let indices = match Format::of_file(path, bytes) {
         Format::Json => read_json(bytes, mesh, topology, layout)?,
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_read_back() {
+    fn indices_are_read_back() {
         for (mesh, topology) in Shape::ALL.map(shape) {
             for layout in Layout::ALL {
                 let indices = layout.indices(&topology);
@@ -242,9 +242,9 @@ mod tests {
         assert_eq!(to_bin(&[1, 0x0403_0201]), [1, 0, 0, 0, 1, 2, 3, 4]);
     }
 
-    /// 123 is the byte of an opening brace.
+    /// Byte 123 is an opening brace.
     #[test]
-    fn indices_that_look_like_a_brace_are_no_text() {
+    fn bare_indices_that_start_with_a_brace_are_not_taken_for_json() {
         let bin = to_bin(&[123, 5, 6]);
         assert_eq!(Format::of_file("indices".as_ref(), &bin), Format::Bin);
         assert_eq!(Format::of_file("indices".as_ref(), b" {\"patches\": []}"), Format::Json);
@@ -252,10 +252,10 @@ mod tests {
         assert_eq!(Format::of_file("indices.bin".as_ref(), b""), Format::Bin);
     }
 
-    /// meshoptimizer as a peer, by way of a file. The Möbius strip's join runs the wrong way, which meshoptimizer takes for
-    /// a boundary: that much is found.
+    /// Compares with a file of meshoptimizer's indices. Where the Möbius strip is joined, neighbours run along their edge in
+    /// the same direction, which meshoptimizer takes for a boundary: the differences there are found.
     #[test]
-    fn a_file_of_meshoptimizer_is_equal_where_neighbours_run_against_each_other() {
+    fn meshoptimizers_indices_are_equal_where_neighbours_are_wound_alike() {
         for source in Shape::ALL {
             let (mesh, topology) = shape(source);
             let positions: Vec<u8> =
@@ -265,7 +265,7 @@ mod tests {
             let read = read("theirs".as_ref(), &to_bin(&theirs), &mesh, &topology, Layout::Twelve).unwrap();
             let computed = Layout::Twelve.indices(&topology);
             let differences = index_differences(&mesh, &topology, Layout::Twelve, &read, &computed);
-            // Two edges wide.
+            // The join consists of two edges, each with two sides.
             let expected = if source == Shape::Moebius { 4 } else { 0 };
             assert_eq!(differences.len(), expected, "{}: {differences:?}", source.name());
             assert!(differences.iter().all(|difference| matches!(difference.part, Part::Side(_))), "{differences:?}");
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_tells_the_triangle_of_each_patch() {
+    fn a_document_lists_the_triangle_of_each_patch() {
         let (mesh, topology) = with_degenerate();
         let indices = Layout::Six.indices(&topology);
         let json: serde_json::Value =
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_lie_on_their_points_under_a_tolerance() {
+    fn positions_are_those_of_points_under_a_weld_tolerance() {
         let (mut mesh, _) = with_degenerate();
         Arc::make_mut(&mut mesh.triangles)[2] = [4, 3, 2];
         mesh.corners.push(Corner { position: glam::vec3(1.0, 1e-4, 0.0), ..mesh.corners[1] });
@@ -296,7 +296,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_told_apart() {
+    fn every_fault_has_its_error() {
         let (mesh, topology) = with_degenerate();
         let fault = |bytes: &[u8], layout| read("file".as_ref(), bytes, &mesh, &topology, layout).unwrap_err();
         let size = |bytes, hint| Fault::Size { bytes, expected: 72, patches: 2, per_patch: 9, hint };
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_of_another_mesh_is_told_by_its_lists() {
+    fn a_document_of_another_mesh_is_recognised_by_its_lists() {
         let (mesh, topology) = with_degenerate();
         let indices = Layout::Nine.indices(&topology);
         let json = to_json(&mesh, &topology, Layout::Nine, &indices).unwrap();

@@ -19,7 +19,7 @@ use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_ba
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Settings, SplitSide};
-use crate::tessellate::{Inputs, PatchFactors, Posed, Tessellated};
+use crate::tessellate::{Inputs, PatchFactors, PosedMesh, Tessellated};
 
 pub use measurements::{MeasurementResults, Measurements};
 
@@ -47,7 +47,7 @@ impl Loaded {
     pub fn posed(&self, moment: Option<Moment>) -> Self {
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
         let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
-        let (mesh, topology) = Posed::new(mesh, topology, pose).deformed();
+        let (mesh, topology) = PosedMesh::new(mesh, topology, pose).deformed();
         Self { mesh, topology, ..self.clone() }
     }
 }

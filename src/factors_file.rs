@@ -1,18 +1,20 @@
-//! Factors as a CSV file, a line a triangle: what a hull shader of ours or of another engine wrote.
+//! Tessellation factors as CSV files, with a line for each patch: what the hull shader of this program or of another
+//! engine wrote.
 
 use thiserror::Error;
 
 use crate::mesh::Topology;
 use crate::tessellate::HullFactors;
 
-/// The first line: the index of the triangle, TessFactor[0..2] and InsideTessFactor.
+/// The first line. `patch` is the index of the triangle, `e0` to `e2` are TessFactor[0..2], `inside` is
+/// InsideTessFactor.
 const HEADER: [&str; 5] = ["patch", "e0", "e1", "e2", "inside"];
 
-/// What is wrong with a file, and where.
+/// An error in a file of factors, and its line.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("line {line}: {fault}")]
 pub struct FactorsError {
-    /// From 1 on.
+    /// The line, counted from 1.
     pub line: usize,
     pub fault: Fault,
 }
@@ -30,7 +32,7 @@ pub enum Fault {
     Number { column: &'static str, text: String },
     #[error("there is no patch {patch}: the mesh has {count} triangles, counted from 0")]
     Beyond { patch: u32, count: usize },
-    #[error("patch {patch} is here again, after line {first}")]
+    #[error("patch {patch} occurs twice; its first line is {first}")]
     Again { patch: u32, first: usize },
     #[error("the file ends without a line for patch {first}{}", and_more(*.others))]
     Missing { first: u32, others: usize },
@@ -38,12 +40,13 @@ pub enum Fault {
     Unreadable(String),
 }
 
+/// Returns the end of a message that names one of `count` + 1 things.
 fn and_more(count: usize) -> String {
     if count == 0 { String::new() } else { format!(" and {count} more") }
 }
 
-/// Writes what was written for each patch, under the index of its triangle. Degenerate triangles have no patch and no line.
-/// Numbers read back exactly.
+/// Returns a CSV file with the factors that were written for each patch, under the index of its triangle. Degenerate
+/// triangles have no patch and no line. Numbers are written so that they read back exactly.
 pub fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
     let mut text = HEADER.join(",") + "\n";
     for (patch, HullFactors { edges: [e0, e1, e2], inside }) in topology.patches.iter().zip(written) {
@@ -52,10 +55,10 @@ pub fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
     text
 }
 
-/// Reads what was written for each patch, in any order. Lines of degenerate triangles may be there; they mean nothing.
+/// Reads the factors of each patch of a mesh with `triangles` triangles. The lines may be in any order. Lines of
+/// degenerate triangles are allowed and ignored.
 ///
-/// # Errors
-/// The text is no such file, or not one of this mesh of `triangles` triangles.
+/// # Errors The text isn't such a file, or its patches aren't those of the mesh.
 pub fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Result<Vec<HullFactors>, FactorsError> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let byte = |at: Option<&csv::Position>| at.map_or(0, |at| at.byte() as usize);
@@ -90,7 +93,7 @@ pub fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Result<Vec
     Ok(topology.patches.iter().filter_map(own).collect())
 }
 
-/// One line's patch and factors.
+/// Reads the patch and the factors of one line.
 fn line(record: &csv::StringRecord) -> Result<(u32, HullFactors), Fault> {
     if record.len() != HEADER.len() {
         return Err(Fault::Count(record.len()));
@@ -102,8 +105,8 @@ fn line(record: &csv::StringRecord) -> Result<(u32, HullFactors), Fault> {
     Ok((patch, HullFactors { edges: [number(1)?, number(2)?, number(3)?], inside: number(4)? }))
 }
 
-/// The line, from 1 on, of the first text at `byte` or after. The reader's own count stands before line ends that it passes
-/// over.
+/// Returns the number, from 1, of the line with the first text at `byte` or after it. The CSV reader's own line number
+/// is that of the line ends that it skips before a record.
 fn line_at(text: &str, byte: usize) -> usize {
     let bytes = text.as_bytes();
     let start = byte.min(bytes.len());
@@ -131,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_read_back_to_the_bit() {
+    fn factors_are_read_back_to_the_bit() {
         let numbers =
             [0.1, 64.0, f32::NAN, f32::INFINITY, -0.0, 1.0 + f32::EPSILON, f32::MIN_POSITIVE / 8.0, 16777217.0];
         let [a, b] =
@@ -143,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn order_blanks_and_line_ends_do_not_matter() {
+    fn the_order_of_lines_blanks_and_line_ends_do_not_matter() {
         let expected = read("patch,e0,e1,e2,inside\n0,1,2,3,4\n2,5,6,7,8\n");
         assert_eq!(expected.as_ref().map(Vec::len), Ok(2));
         for text in [
@@ -156,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_are_named_with_their_lines() {
+    fn errors_have_their_line() {
         let number = |column, text: &str| Fault::Number { column, text: text.into() };
         for (rows, line, fault) in [
             ("0,1,2,3,4\n2,5,6,x,8\n", 3, number("e2", "x")),

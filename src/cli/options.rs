@@ -17,7 +17,7 @@ use crate::mesh::{Bounds, Mesh};
 use crate::render::Camera;
 use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, fit_budget};
+use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
 pub use declared::{PictureOptions, TessellationOptions, choice, number_of};
 pub use values::{CameraOption, Place, Size, model, picture, source, threshold};
@@ -148,7 +148,7 @@ impl SurfaceOptions {
         let largest = TOLERANCE_RANGE.most;
         let at = |tolerance| settings.with(Tessellation { tolerance, ..settings.tessellation });
         let asked = settings.tessellation.tolerance;
-        let Some(tolerance) = fit_budget(asked..=largest, most, |tolerance| count(&at(tolerance)))? else {
+        let Some(tolerance) = tolerance_within_budget(asked..=largest, most, |tolerance| count(&at(tolerance)))? else {
             let least = count(&at(largest))?;
             return Err(CliError::Budget { most, least, largest });
         };

@@ -22,7 +22,7 @@ use crate::plot::{ChartError, contact_sheet};
 use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
-use crate::tessellate::{Displacement, Surface, Tessellation, reach};
+use crate::tessellate::{Displacement, Surface, Tessellation, displacement_reach};
 use tile::{Wall, draw_tile};
 
 /// Why there is no gallery.
@@ -134,7 +134,7 @@ impl<'a> Gallery<'a> {
         let (mut seen, mut farthest): (Vec<Surface>, f32) = (Vec::new(), 0.0);
         for tile in &exhibit.tiles {
             let settings = self.settings(tile);
-            farthest = farthest.max(reach(&loaded.mesh, &settings.inputs(view)));
+            farthest = farthest.max(displacement_reach(&loaded.mesh, &settings.inputs(view)));
             if seen.contains(&settings.tessellation.surface) {
                 continue;
             }

@@ -5,7 +5,7 @@ use super::layout::{Corner, Curve, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
 use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
-use crate::tessellate::{is_mixed, spans};
+use crate::tessellate::{has_mixed_maps, texel_lengths};
 
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
@@ -53,9 +53,9 @@ impl MeshBuffers {
             dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
         let (mut all_shares, mut mixed) = (Vec::new(), false);
         if let Some((heights, dominance)) = heights.zip(dominance.as_ref()) {
-            let spans = spans(heights, mesh, topology, dominance);
-            all_shares = shares(mesh, dominance, &spans);
-            mixed = is_mixed(&spans, heights, topology, dominance);
+            let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
+            all_shares = shares(mesh, dominance, &texel_lengths);
+            mixed = has_mixed_maps(&texel_lengths, heights, topology, dominance);
         }
         let factor_room = grouped.factor_count() as usize + if mixed { topology.patches.len() } else { 0 };
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();

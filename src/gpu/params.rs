@@ -16,12 +16,12 @@ pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: 
     let view = LodView {
         clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
         half_viewport: inputs.view.half_viewport.to_array(),
-        reach: tessellate::reach(mesh, inputs),
+        reach: tessellate::displacement_reach(mesh, inputs),
         _pad: 0.0,
         eye: inputs.view.eye.to_array(),
         radius: inputs.view.radius,
     };
-    let heights = tessellate::displacing(mesh, inputs);
+    let heights = tessellate::displacing_heights(mesh, inputs);
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
         factor: if by_distance || lod == Some(Lod::Uniform) { inputs.tessellation.factor } else { 0.0 },

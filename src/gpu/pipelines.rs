@@ -6,11 +6,11 @@ use wgpu::util::DeviceExt;
 
 use super::lazy::Lazy;
 use super::wgsl::{
-    CONVENTION, DISPLACE, DOMAIN, ERROR, FACTORS, LOAD_NET, LOADS, LOD, NORMAL, PATTERNS, RELIEF, SURFACE, TYPES,
-    WORKGROUP_SCAN, WgslFile, wgsl,
+    CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_SHARES, DOMAIN, ERROR, FACTORS, LOAD_NET, LOADS, LOD,
+    NORMAL, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
-use crate::tessellate::{Normals, patterns};
+use crate::tessellate::{Normals, connectivity_table};
 
 static CONTROL_POINTS: WgslFile = wgsl!("control_points", SURFACE);
 static CULL: WgslFile = wgsl!("cull", LOD, SURFACE);
@@ -20,15 +20,16 @@ static DEFORM: WgslFile = wgsl!("deform", NORMAL);
 pub(super) static PASS_DEFORM: WgslFile = wgsl!("pass_deform", DEFORM, NORMAL, TYPES);
 pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_NET, LOADS, SURFACE, TYPES);
 pub(super) static PASS_FACTORS: WgslFile = wgsl!("pass_factors", ERROR, FACTORS, LOD, SURFACE, TYPES);
-pub(super) static PASS_LEVELS: WgslFile = wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, RELIEF, TYPES);
+pub(super) static PASS_LEVELS: WgslFile =
+    wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, DISPLACEMENT_SHARES, TYPES);
 pub(super) static PASS_COUNTS: WgslFile =
     wgsl!("pass_counts", CONVENTION, CULL, ERROR, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
 pub(super) static PASS_SCAN: WgslFile = wgsl!("pass_scan", TYPES, WORKGROUP_SCAN);
 pub(super) static PASS_CHUNKS: WgslFile = wgsl!("pass_chunks", TYPES);
 pub(super) static PASS_EMIT: WgslFile =
-    wgsl!("pass_emit", CONVENTION, DOMAIN, FACTORS, LOAD_NET, NORMAL, PATTERNS, SURFACE, TYPES);
+    wgsl!("pass_emit", CONVENTION, DOMAIN, FACTORS, LOAD_NET, NORMAL, CONNECTIVITY_TABLE, SURFACE, TYPES);
 pub(super) static PASS_DISPLACE: WgslFile =
-    wgsl!("pass_displace", DISPLACE, FACTORS, LOAD_NET, LOADS, NORMAL, RELIEF, SURFACE, TYPES);
+    wgsl!("pass_displace", DISPLACE, FACTORS, LOAD_NET, LOADS, NORMAL, DISPLACEMENT_SHARES, SURFACE, TYPES);
 
 /// A shader module, made when it is first needed.
 pub struct ShaderModule {
@@ -162,7 +163,7 @@ impl ComputePipelines {
         }
     }
 
-    /// The table in which `emit_triangles` looks up which points triangles join: see `shaders/patterns.wgsl`.
+    /// The table in which `emit_triangles` looks up which points triangles join: see `shaders/connectivity_table.wgsl`.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
@@ -170,7 +171,7 @@ impl ComputePipelines {
         self.patterns.get_or_make(gpu, || {
             gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
                 label: Some("patterns"),
-                contents: bytemuck::cast_slice(&patterns::PATTERNS),
+                contents: bytemuck::cast_slice(&connectivity_table::CONNECTIVITY_TABLE),
                 usage: wgpu::BufferUsages::STORAGE,
             })
         })

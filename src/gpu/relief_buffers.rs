@@ -4,7 +4,7 @@ use super::buffer::{filled, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
 use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
-use crate::tessellate::{Span, map_number};
+use crate::tessellate::{TexelLength, map_number};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
 pub const HEIGHTS_ACROSS: u32 = 4096;
@@ -111,20 +111,20 @@ impl ReliefBuffers {
     }
 }
 
-/// The [`Share`] of every point, then of every factor, then two for every corner, then the further spans of factors; filled in
+/// The [`Share`] of every point, then of every factor, then two for every corner, then further texel lengths of factors; filled in
 /// as far as they depend on the mesh alone.
-pub fn shares(mesh: &Mesh, dominance: &Dominance, spans: &[Span]) -> Vec<Share> {
+pub fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
     let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
     let behind = (point_count + 2 * mesh.corners.len()) as u32;
-    let share = |dominant, span: Span| {
-        let next = if span.next > 0 { behind + span.next } else { 0 };
-        Share { dominant, texels: span.texels, map: span.map, next, ..bytemuck::Zeroable::zeroed() }
+    let share = |dominant, length: TexelLength| {
+        let next = if length.next > 0 { behind + length.next } else { 0 };
+        Share { dominant, texels: length.texels, map: length.map, next, ..bytemuck::Zeroable::zeroed() }
     };
-    let (own, further) = spans.split_at(factor_count);
-    let points = dominance.corners.iter().map(|&dominant| share(dominant, Span::default()));
-    let factors = dominance.sides.iter().zip(own).map(|(&dominant, &span)| share(dominant, span));
-    let corners = std::iter::repeat_n(share(0, Span::default()), 2 * mesh.corners.len());
-    let further = further.iter().map(|&span| share(0, span));
+    let (own, further) = texel_lengths.split_at(factor_count);
+    let points = dominance.corners.iter().map(|&dominant| share(dominant, TexelLength::default()));
+    let factors = dominance.sides.iter().zip(own).map(|(&dominant, &length)| share(dominant, length));
+    let corners = std::iter::repeat_n(share(0, TexelLength::default()), 2 * mesh.corners.len());
+    let further = further.iter().map(|&length| share(0, length));
     points.chain(factors).chain(corners).chain(further).collect()
 }
 

@@ -18,7 +18,7 @@ use super::rig::RigBuffers;
 use super::slab::SlabPasses;
 use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
-use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, Posed, Solid, sharing};
+use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid, sharing};
 
 pub use output::ChunkBuffers;
 
@@ -31,7 +31,7 @@ pub struct Tessellator {
     pipelines: Arc<ComputePipelines>,
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
-    posed: Posed,
+    posed: PosedMesh,
     solid: Option<Solid>,
     buffers: MeshBuffers,
     /// What poses are made from, once there was one.
@@ -108,7 +108,7 @@ impl Tessellator {
             gpu: gpu.clone(),
             pipelines,
             solid,
-            posed: Posed::new(mesh.clone(), topology.clone(), None),
+            posed: PosedMesh::new(mesh.clone(), topology.clone(), None),
             mesh,
             topology,
             buffers,
@@ -163,14 +163,14 @@ impl Tessellator {
     /// # Errors
     /// The mesh's rig is larger than the adapter binds.
     pub fn set_pose(&mut self, pose: Option<Arc<Pose>>) -> Result<(), GpuError> {
-        self.pose_as(&Posed::new(self.mesh.clone(), self.topology.clone(), pose))
+        self.pose_as(&PosedMesh::new(self.mesh.clone(), self.topology.clone(), pose))
     }
 
     /// The same as another tessellator of the mesh has it: what the host makes of the pose is made once.
     ///
     /// # Errors
     /// The mesh's rig is larger than the adapter binds.
-    pub fn pose_as(&mut self, posed: &Posed) -> Result<(), GpuError> {
+    pub fn pose_as(&mut self, posed: &PosedMesh) -> Result<(), GpuError> {
         let Some(rig) = self.mesh.rig.clone().filter(|_| self.posed.pose() != posed.pose()) else { return Ok(()) };
         match (posed.pose(), &mut self.rig) {
             (Some(pose), Some(rig)) => rig.set_pose(&self.gpu, pose)?,
@@ -183,7 +183,7 @@ impl Tessellator {
     }
 
     /// What is shown, for the host.
-    pub fn posed(&self) -> &Posed {
+    pub fn posed(&self) -> &PosedMesh {
         &self.posed
     }
 

@@ -28,10 +28,10 @@ pub(crate) use wgsl;
 pub(crate) static FACTORS: WgslFile = wgsl!("factors");
 pub(crate) static RINGS: WgslFile = wgsl!("rings");
 pub(crate) static SUBTRIANGULATION: WgslFile = wgsl!("subtriangulation", FACTORS);
-/// Beside it a module has [`CONNECTIVITY`] or [`PATTERNS`], which declare the same functions.
+/// Beside it a module has [`CONNECTIVITY`] or [`CONNECTIVITY_TABLE`], which declare the same functions.
 pub(crate) static DOMAIN: WgslFile = wgsl!("domain", FACTORS, RINGS, SUBTRIANGULATION);
 pub(crate) static CONNECTIVITY: WgslFile = wgsl!("connectivity", DOMAIN, RINGS);
-pub(crate) static PATTERNS: WgslFile = wgsl!("patterns", DOMAIN, RINGS);
+pub(crate) static CONNECTIVITY_TABLE: WgslFile = wgsl!("connectivity_table", DOMAIN, RINGS);
 pub(crate) static CONVENTION: WgslFile = wgsl!("convention", FACTORS);
 pub(crate) static SURFACE: WgslFile = wgsl!("surface", FACTORS);
 pub(crate) static NORMAL: WgslFile = wgsl!("normal", FACTORS, SURFACE);
@@ -40,7 +40,7 @@ pub(crate) static TYPES: WgslFile = wgsl!("types", LOD);
 pub(crate) static ERROR: WgslFile = wgsl!("error", FACTORS, LOD, SURFACE, TYPES);
 pub(crate) static DISPLACE: WgslFile = wgsl!("displace", NORMAL, TYPES);
 /// The module that has it declares the buffers that it reads.
-pub(crate) static RELIEF: WgslFile = wgsl!("relief", TYPES);
+pub(crate) static DISPLACEMENT_SHARES: WgslFile = wgsl!("displacement_shares", TYPES);
 /// The module that has it declares the buffers that it reads, and has [`LOADS`] or functions of the same names.
 pub(crate) static LOAD_NET: WgslFile = wgsl!("load_net", SURFACE, TYPES);
 pub(crate) static LOADS: WgslFile = wgsl!("loads", TYPES);

@@ -10,7 +10,7 @@ use super::accuracy::{WorstPoint, blocks, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::progress::{Cancelled, Progress};
-use crate::tessellate::{FIXED_ONE, Inputs, Limit, Vertex};
+use crate::tessellate::{FIXED_ONE, Inputs, LimitSurface, Vertex};
 use crate::truth::Truth;
 
 /// The surface that deviation is measured from.
@@ -26,7 +26,7 @@ impl DeviationTarget {
     fn on<'a>(&'a self, mesh: &'a Mesh, topology: &'a Topology) -> TargetSurface<'a> {
         match self {
             Self::Truth(truth) => TargetSurface::Truth(truth),
-            Self::Limit(inputs) => TargetSurface::Limit(Box::new(Limit::new(mesh, topology, inputs))),
+            Self::Limit(inputs) => TargetSurface::Limit(Box::new(LimitSurface::new(mesh, topology, inputs))),
         }
     }
 }
@@ -36,7 +36,7 @@ enum TargetSurface<'a> {
     /// The nearest point of a truth.
     Truth(&'a Truth),
     /// The point of the limit surface at the same place of the patch.
-    Limit(Box<Limit<'a>>),
+    Limit(Box<LimitSurface<'a>>),
 }
 
 /// Into how many segments triangles' edges are cut, finest first. Multiples of 3 have a sample in the middle, where a flat

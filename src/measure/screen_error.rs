@@ -6,12 +6,12 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
-use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, Limit, LodView, Vertex};
+use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Vertex};
 
 /// The largest distance on screen between a point of what was emitted and the surface's at the same place of its domain.
 /// That is no less than the distance to the nearest point of the surface, and is what bounds on the error speak of.
 pub struct ScreenErrorMeasurement<'a> {
-    limit: Limit<'a>,
+    limit: LimitSurface<'a>,
     screen: Screen,
     /// Segments that each edge of a triangle is divided into for sampling.
     steps: u32,
@@ -46,7 +46,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
             triangles if triangles <= 10 * FINE => 4,
             _ => 2,
         };
-        Self { limit: Limit::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), steps, worst: None }
+        Self { limit: LimitSurface::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), steps, worst: None }
     }
 
     /// The worst so far; none if nothing was in view.

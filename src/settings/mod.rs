@@ -13,7 +13,7 @@ mod value;
 use glam::{Mat4, Vec2};
 
 use crate::mesh::Mesh;
-use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, reach};
+use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach};
 
 pub use choice::{Choice, Description, descriptions};
 pub use overlays::{Colors, Control, Overlay, Overlays};
@@ -145,7 +145,7 @@ impl Settings {
 
     /// How far heights move any point of a mesh at most, in object units.
     pub fn reach(&self, mesh: &Mesh) -> f32 {
-        reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
+        displacement_reach(mesh, &self.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)))
     }
 
     /// What the tessellation depends on, seen from `view`.

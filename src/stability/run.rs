@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Choice, Settings};
 use crate::tessellate::{
-    Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, Posed, Tessellation, bounds_through, tessellate,
+    Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, PosedMesh, Tessellation, bounds_through, tessellate,
 };
 
 /// How much is tried, and where.
@@ -185,7 +185,7 @@ impl<'a> Running<'a> {
         let mut worst = Worst::default();
         for Trial { pose, settings, camera, .. } in self.trials(method, partitioning, effort) {
             let view = camera.lod_view(views::viewport(), &self.bounds);
-            let (mesh, topology) = Posed::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
+            let (mesh, topology) = PosedMesh::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
             let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
             let asked = AskedFactors::new(
                 settings.tessellation.edges,

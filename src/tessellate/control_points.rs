@@ -1,41 +1,50 @@
-//! Where a surface's control points lie, given what an edge's ends look like. Twin: `shaders/control_points.wgsl`.
+//! Control points of cubic patches, computed from the positions and normals at the ends of their edges. Twin:
+//! `shaders/control_points.wgsl`.
 //!
-//! Every surface is a cubic net, so that one evaluation, one bound on its error and one clip test serve them all. Phong
-//! tessellation and Nagata's patch are quadratic: they have one control point on an edge, and are raised to cubics, which
-//! changes no point of them. [`center_control_point`] keeps quadratics, so their centres come out as they should.
+//! Every surface is a cubic control net, so that one evaluation, one error bound and one clipping test serve all of
+//! them. Phong tessellation and Nagata's patch are quadratic: an edge has one control point in the middle, which is
+//! degree-elevated to two cubic ones without changing the curve. [`center_control_point`] reproduces quadratic patches
+//! exactly, so it gives the centre of these nets too.
 
 use glam::Vec3;
 
 use super::Surface;
 
-/// Normals whose cross product's squared length is no more than this are parallel or opposite: the squared sine of 0.1
-/// degrees, within which rounding decides where their planes cut each other.
+/// Two unit normals count as parallel or opposite if the squared length of their cross product is at most this: the
+/// squared sine of 0.1 degrees. Below it, rounding would decide in which line their tangent planes intersect.
 pub(crate) const PARALLEL: f32 = 3.046e-6;
 
-/// The control point one third along from `a` to `b`, in the tangent plane at `a` (Vlachos et al. 2001, section 3.1:
-/// b210 = (2 P1 + P2 - w12 N1) / 3). `normal` is the unit normal at `a`.
+/// Returns the control point near `a` of a PN triangle's edge: the point one third of the way from `a` to `b`,
+/// projected into the tangent plane at `a` (Vlachos et al. 2001, section 3.1: b210 = (2 P1 + P2 - w12 N1) / 3).
+/// `normal` is the unit normal at `a`.
 pub fn edge_control_point(a: Vec3, b: Vec3, normal: Vec3) -> Vec3 {
     (a * 2.0 + b - normal * (b - a).dot(normal)) * (1.0 / 3.0)
 }
 
-/// The control point one third along a straight edge.
+/// Returns the control point near `a` of a straight edge: the point one third of the way from `a` to `b`.
 pub fn straight_control_point(a: Vec3, b: Vec3) -> Vec3 {
     (a * 2.0 + b) * (1.0 / 3.0)
 }
 
-/// The middle control point of an edge of Phong tessellation (Boubekeur and Alexa 2008, equations 2 to 4): `alpha` of the
-/// way from the edge's middle to the mean of each end's projection into the other's tangent plane.
+/// Returns the middle control point of a quadratic edge of Phong tessellation (Boubekeur and Alexa 2008, equations 2 to
+/// 4). `at_a` and `at_b` are the unit normals at the ends.
+///
+/// Each end is projected into the tangent plane at the other end. The control point lies `alpha` (0 to 1) of the way
+/// from the middle of the edge to the mean of both projections.
 pub fn phong_control_point(alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let along = b - a;
     let back = at_a * along.dot(at_a) - at_b * along.dot(at_b);
     (a + b - back * alpha) * 0.5
 }
 
-/// The middle control point of Nagata's edge (2005): the curve a + (d - c) t + c t t, d = b - a, with the shortest c that
-/// makes it normal to both ends' normals. As the normals' half sum s and half difference h are perpendicular,
-/// c = (d.h / s.s) s + (d.s / h.h) h, here with both by their lengths, whose squares are too small to divide what is vast
-/// by. Between parallel or opposite normals the edge is straight. Where normals are nearly
-/// parallel and both lean along the edge, c is many times as long as the edge: that is Nagata's.
+/// Returns the middle control point of a quadratic edge of Nagata's patch (Nagata 2005). `at_a` and `at_b` are the unit
+/// normals at the ends. Where they are parallel or opposite, the edge is straight.
+///
+/// The edge is the curve a + (d - c) t + c t t with d = b - a, where c is the shortest vector that makes the curve
+/// perpendicular to both normals. Half the sum s and half the difference h of the normals are perpendicular to each
+/// other, so c = (d.h / s.s) s + (d.s / h.h) h. The code divides by the lengths of s and h twice and never by their
+/// squares: a large number divided by so small a square would overflow. Where the normals are nearly parallel and both
+/// lean along the edge, c is many times as long as the edge. This is a property of Nagata's method.
 pub fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let line = at_a.cross(at_b);
     if line.dot(line) <= PARALLEL {
@@ -49,65 +58,69 @@ pub fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     (a + b - curvature) * 0.5
 }
 
-/// The control point of a cubic near `a` of the quadratic whose middle control point is `middle`.
-pub fn raised_control_point(a: Vec3, middle: Vec3) -> Vec3 {
+/// Returns the cubic control point near `a` of a quadratic edge whose middle control point is `middle`, by degree
+/// elevation.
+pub fn elevated_control_point(a: Vec3, middle: Vec3) -> Vec3 {
     (a + middle * 2.0) * (1.0 / 3.0)
 }
 
-/// What one side of an edge proposes for its control points near `a` and near `b`, from its own unit normals at the ends.
+/// Returns the control points near `a` and near `b` that one side of an edge proposes. `at_a` and `at_b` are the side's
+/// own unit normals at the ends; `alpha` is the strength of Phong tessellation, which other surfaces ignore.
 pub fn side_control_points(surface: Surface, alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> [Vec3; 2] {
     if surface == Surface::Flat {
         return [straight_control_point(a, b), straight_control_point(b, a)];
     }
     if surface == Surface::Phong || surface == Surface::PhongAen {
         let middle = phong_control_point(alpha, a, b, at_a, at_b);
-        return [raised_control_point(a, middle), raised_control_point(b, middle)];
+        return [elevated_control_point(a, middle), elevated_control_point(b, middle)];
     }
     if surface == Surface::Nagata || surface == Surface::NagataAen {
         let middle = nagata_control_point(a, b, at_a, at_b);
-        return [raised_control_point(a, middle), raised_control_point(b, middle)];
+        return [elevated_control_point(a, middle), elevated_control_point(b, middle)];
     }
     [edge_control_point(a, b, at_a), edge_control_point(b, a, at_b)]
 }
 
-/// The different normals that an edge's sides have at one of its ends, as far as two.
+/// The distinct normals that the sides of an edge have at one of its ends. Only the first two are stored.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Meeting {
+pub struct DistinctNormals {
     pub first: Vec3,
     pub second: Vec3,
-    /// How many there are; 3 for any more.
+    /// The number of distinct normals: 0, 1, 2, or 3 for three or more.
     pub count: u32,
 }
 
-/// The same with one more side's normal.
-pub fn meet(meeting: Meeting, normal: Vec3) -> Meeting {
-    if meeting.count == 0 {
-        return Meeting { first: normal, second: normal, count: 1 };
+/// Adds the normal of one more side.
+pub fn add_normal(distinct: DistinctNormals, normal: Vec3) -> DistinctNormals {
+    if distinct.count == 0 {
+        return DistinctNormals { first: normal, second: normal, count: 1 };
     }
-    if normal == meeting.first || normal == meeting.second {
-        return meeting;
+    if normal == distinct.first || normal == distinct.second {
+        return distinct;
     }
-    if meeting.count == 1 {
-        return Meeting { second: normal, count: 2, ..meeting };
+    if distinct.count == 1 {
+        return DistinctNormals { second: normal, count: 2, ..distinct };
     }
-    Meeting { count: 3, ..meeting }
+    DistinctNormals { count: 3, ..distinct }
 }
 
-/// The control point near `a` of an edge at which two surfaces meet: a third of the edge, projected on the line that their
-/// tangent planes share (Vlachos et al. 2001, section 3.4). `mean` is the mean of all sides' proposals, and stays where
-/// there is no such line: the normals are one or parallel, or of more than two surfaces.
-pub fn crease_control_point(a: Vec3, b: Vec3, meeting: Meeting, mean: Vec3) -> Vec3 {
-    let line = meeting.first.cross(meeting.second);
+/// Returns the control point near `a` of an edge on which two surfaces meet at a crease: the control point of a
+/// straight edge, projected onto the line in which the two tangent planes at `a` intersect (Vlachos et al. 2001,
+/// section 3.4). `mean` is the mean of all sides' proposals; it is returned if the planes are parallel or if there are
+/// not two of them.
+pub fn crease_control_point(a: Vec3, b: Vec3, distinct: DistinctNormals, mean: Vec3) -> Vec3 {
+    let line = distinct.first.cross(distinct.second);
     let length_squared = line.dot(line);
-    if meeting.count != 2 || length_squared <= PARALLEL {
+    if distinct.count != 2 || length_squared <= PARALLEL {
         return mean;
     }
-    // By the line's own length: its square is too small to divide what is vast by.
+    // The square of a short line's length is too small to divide by: large edges would overflow.
     let direction = line / length_squared.sqrt();
     a + direction * ((b - a).dot(direction) * (1.0 / 3.0))
 }
 
-/// b111 of the net with these corners and six edge control points: E + (E - V) / 2 (Vlachos et al. 2001, section 3.1).
+/// Returns the control point b111 of a net with these corners and six edge control points: E + (E - V) / 2, where E is
+/// the mean of the edge control points and V is the mean of the corners (Vlachos et al. 2001, section 3.1).
 pub fn center_control_point(corners: [Vec3; 3], edges: [Vec3; 6]) -> Vec3 {
     let e = (edges[0] + edges[1] + edges[2] + edges[3] + edges[4] + edges[5]) * (1.0 / 6.0);
     let v = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
@@ -122,7 +135,7 @@ mod tests {
     use super::*;
     use crate::tessellate::{ControlNet, FIXED_ONE, patch_position};
 
-    /// Two points and the unit normals there, in general position.
+    /// Two points in general position, then the unit normals at them.
     const ENDS: [Vec3; 4] = [vec3(1.0, 2.0, 3.0), vec3(4.0, 0.0, 5.0), vec3(0.6, 0.0, 0.8), vec3(0.36, 0.48, 0.8)];
 
     #[test]
@@ -137,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn phongs_edge_is_that_of_the_paper() {
+    fn phong_edges_are_those_of_the_paper() {
         // Boubekeur and Alexa 2008: p* = (1 - alpha) p + alpha (x pi_a(p) + y pi_b(p)), pi_i(q) = q - ((q - p_i) . n_i) n_i.
         let [a, b, at_a, at_b] = ENDS.map(Vec3::as_dvec3);
         for alpha in [0.0, 0.5, 0.75, 1.0] {
@@ -158,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phong_patch_is_that_of_the_paper_inside_too() {
+    fn phong_patches_are_those_of_the_paper_inside_too() {
         let corners = [vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.5), vec3(0.5, 1.5, 0.0)];
         let normals = [vec3(-0.3, -0.3, 1.0), vec3(0.4, 0.0, 1.0), vec3(0.0, 0.5, 1.0)].map(Vec3::normalize);
         let net = net(Surface::Phong, corners, normals);
@@ -174,7 +187,7 @@ mod tests {
         }
     }
 
-    /// The net of one patch alone.
+    /// Returns the control net of a patch without neighbours.
     fn net(surface: Surface, corners: [Vec3; 3], normals: [Vec3; 3]) -> ControlNet {
         let side = |k: usize| {
             let (a, b) = (k, (k + 1) % 3);
@@ -184,7 +197,8 @@ mod tests {
         ControlNet { corners, edges, center: center_control_point(corners, edges) }
     }
 
-    /// Nagata 2005: c is the shortest solution of n0 . c = n0 . d, n1 . c = -n1 . d, by the generalised inverse.
+    /// Returns Nagata's c (2005), the shortest solution of n0 . c = n0 . d and n1 . c = -n1 . d, by the generalised
+    /// inverse.
     fn curvature(d: DVec3, n0: DVec3, n1: DVec3) -> DVec3 {
         let cosine = n0.dot(n1);
         let (x, y) = (n0.dot(d), -n1.dot(d));
@@ -193,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn nagatas_edge_is_that_of_the_paper() {
+    fn nagata_edges_are_those_of_the_paper() {
         let [a, b, at_a, at_b] = ENDS;
         let middle = nagata_control_point(a, b, at_a, at_b).as_dvec3();
         let [a, b, at_a, at_b] = ENDS.map(Vec3::as_dvec3);
@@ -201,13 +215,13 @@ mod tests {
         assert!(middle.distance(expected) < 1e-5, "{middle} {expected}");
         // Its ends' tangents are perpendicular to the normals there.
         assert!((middle - a).dot(at_a).abs() < 1e-5 && (b - middle).dot(at_b).abs() < 1e-5);
-        // The third unknown is chosen for the shortest c: nothing of it lies along both planes' line.
+        // c is the shortest solution, so it has no component along the line in which both tangent planes intersect.
         let c = a + b - middle * 2.0;
         assert!(c.dot(at_a.cross(at_b)).abs() < 1e-5);
     }
 
     #[test]
-    fn a_nagata_patch_is_that_of_the_paper_inside_too() {
+    fn nagata_patches_are_those_of_the_paper_inside_too() {
         let corners = [vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.5), vec3(0.5, 1.5, 0.0)];
         let normals = [vec3(-0.3, -0.3, 1.0), vec3(0.4, 0.0, 1.0), vec3(0.0, 0.5, 1.0)].map(Vec3::normalize);
         let net = net(Surface::Nagata, corners, normals);
@@ -227,14 +241,14 @@ mod tests {
     }
 
     #[test]
-    fn nagatas_control_point_is_where_a_circles_tangents_meet() {
-        // A quarter, its normals along the radii.
+    fn the_nagata_control_point_of_an_arc_is_where_its_end_tangents_meet() {
+        // A quarter of a circle. Its normals lie along the radii.
         let middle = nagata_control_point(Vec3::X, Vec3::Y, Vec3::X, Vec3::Y);
         assert!(middle.distance(vec3(1.0, 1.0, 0.0)) < 1e-6);
     }
 
     #[test]
-    fn parallel_and_opposite_normals_leave_nagatas_edge_straight() {
+    fn nagata_edges_are_straight_between_parallel_or_opposite_normals() {
         let (a, b) = (Vec3::ZERO, vec3(2.0, 0.0, 1.0));
         let leaning = |degrees: f32| Vec3::Z.rotate_x(degrees.to_radians());
         for (at_a, at_b) in [(Vec3::Z, Vec3::Z), (Vec3::Z, Vec3::NEG_Z), (Vec3::Z, leaning(0.09))] {
@@ -244,45 +258,45 @@ mod tests {
     }
 
     #[test]
-    fn a_crease_runs_along_both_tangent_planes() {
-        let none = Meeting::default();
+    fn a_crease_starts_in_both_tangent_planes() {
+        let none = DistinctNormals::default();
         let [a, b, at_a, at_b] = ENDS;
-        let meeting = meet(meet(meet(none, at_a), at_a), at_b);
-        assert_eq!(meeting.count, 2);
-        let own = crease_control_point(a, b, meeting, Vec3::ZERO);
+        let distinct = add_normal(add_normal(add_normal(none, at_a), at_a), at_b);
+        assert_eq!(distinct.count, 2);
+        let own = crease_control_point(a, b, distinct, Vec3::ZERO);
         assert!((own - a).dot(at_a).abs() < 1e-6 && (own - a).dot(at_b).abs() < 1e-6);
         // The projection, by hand in f64.
         let line = at_a.as_dvec3().cross(at_b.as_dvec3()).normalize();
         let expected = a.as_dvec3() + line * ((b - a).as_dvec3().dot(line) / 3.0);
         assert!(own.as_dvec3().distance(expected) < 1e-6);
-        // One surface, three, and two that are nearly one: there is no such line.
+        // The planes have no common line: one normal, three, two that are nearly parallel, and two that are opposite.
         let mean = vec3(7.0, 8.0, 9.0);
         for normals in [&[at_a, at_a][..], &[at_a, at_b, Vec3::X], &[at_a, at_a + vec3(1e-5, 0.0, 0.0)], &[at_a, -at_a]]
         {
-            let meeting = normals.iter().fold(none, |meeting, &normal| meet(meeting, normal));
-            assert_eq!(crease_control_point(a, b, meeting, mean), mean, "{normals:?}");
+            let distinct = normals.iter().fold(none, |distinct, &normal| add_normal(distinct, normal));
+            assert_eq!(crease_control_point(a, b, distinct, mean), mean, "{normals:?}");
         }
     }
 
     #[test]
-    fn a_faint_crease_is_found_on_the_largest_and_smallest_edges() {
-        // Just beyond parallel: the normals' cross product is short, and what divides by its square is vast.
+    fn creases_of_nearly_parallel_normals_are_found_whatever_the_length_of_the_edge() {
+        // The normals are just far enough apart to count as not parallel, so their cross product is short.
         let (at_a, at_b) = (Vec3::Y, vec3(0.0, 0.003f32.cos(), 0.003f32.sin()));
-        let meeting = meet(meet(Meeting::default(), at_a), at_b);
+        let distinct = add_normal(add_normal(DistinctNormals::default(), at_a), at_b);
         for size in [1e-36f32, 1.0, 1e37] {
-            let own = crease_control_point(Vec3::ZERO, vec3(size, 0.2 * size, 0.0), meeting, Vec3::NAN);
+            let own = crease_control_point(Vec3::ZERO, vec3(size, 0.2 * size, 0.0), distinct, Vec3::NAN);
             assert!((own / size).distance(Vec3::X / 3.0) < 1e-6, "{own} of {size}");
         }
     }
 
     #[test]
-    fn nagatas_faintest_curve_is_found_on_the_largest_and_smallest_edges() {
-        // Both normals lean along the edge, and differ by little: the curve is hundreds of times as long, and no more.
+    fn nagata_edges_of_nearly_parallel_normals_are_curved_whatever_their_length() {
+        // Both normals lean along the edge and are nearly parallel, so c is hundreds of times as long as the edge.
         let leaning = |angle: f32| vec3(angle.sin(), 0.0, angle.cos());
         let (at_a, at_b) = (leaning(0.8), leaning(0.803));
         for size in [1e-33f32, 1.0, 1e34] {
             let own = nagata_control_point(Vec3::ZERO, vec3(0.0, 0.0, size), at_a, at_b) / size;
-            // By hand in f64, of unit size.
+            // Computed in f64 for an edge of length 1.
             let (p, q) = (at_a.as_dvec3(), at_b.as_dvec3());
             let (sum, difference) = ((p + q) * 0.5, (p - q) * 0.5);
             let curvature =
@@ -294,7 +308,7 @@ mod tests {
 
     #[test]
     fn a_patch_reproduces_a_quadratic_paraboloid() {
-        // With E and V as the paper has them, b111 keeps quadratics: hold the patch of a paraboloid's own net against it.
+        // With the paper's E and V, b111 reproduces quadratics: the patch of a paraboloid's own net is the paraboloid.
         let height = |p: Vec2| p.x * p.x + 0.5 * p.y * p.y - p.x * p.y;
         let polar = |p: Vec2, q: Vec2| p.x * q.x + 0.5 * p.y * q.y - 0.5 * (p.x * q.y + p.y * q.x);
         let flat = [vec2(0.0, 0.0), vec2(1.0, 0.2), vec2(0.3, 0.9)];
@@ -316,7 +330,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn proposals_move_with_the_edge(
+        fn control_points_turn_with_the_edge_and_do_not_depend_on_its_direction(
             (ax, ay, az) in (-2f32..2.0, -2f32..2.0, -2f32..2.0),
             (bx, by, bz) in (-2f32..2.0, -2f32..2.0, -2f32..2.0),
             (nx, ny) in (-1f32..1.0, -1f32..1.0),
@@ -325,7 +339,7 @@ mod tests {
         ) {
             let (a, b) = (vec3(ax, ay, az), vec3(bx, by, bz));
             let (at_a, at_b) = (vec3(nx, ny, 1.0).normalize(), vec3(mx, my, 1.0).normalize());
-            // Below, f32 has too few digits for Nagata's division.
+            // If the normals are closer to each other, f32 has too few digits for Nagata's division.
             prop_assume!(at_a.cross(at_b).length() > 0.03);
             let turn = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 2.0) / 3.0, angle).as_mat3();
             for surface in Surface::ALL {

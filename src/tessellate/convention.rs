@@ -1,8 +1,12 @@
-//! Which edge each factor belongs to, and which corner each weight. Twin: `shaders/convention.wgsl`.
+//! Conventions between hull and domain shader: which edge each tessellation factor is for, and which corner each
+//! barycentric weight belongs to. Twin: `shaders/convention.wgsl`.
 //!
-//! The tessellator knows neither edges nor corners: its factor i is that of the edge on which weight i is 0. A hull
-//! shader decides which side's factor it writes as factor i, and a domain shader which corner it weighs with weight i. Any
-//! order will do if both mean the same; if they don't, edges get the factors of other edges, and crack.
+//! The tessellator knows neither edges nor corners. Its factor i cuts the edge on which weight i is 0. A hull shader
+//! decides which side's factor it writes as factor i, and a domain shader decides which corner it multiplies by weight
+//! i. Every order works if both shaders use the same one. Otherwise edges get the factors of other edges, and the mesh
+//! cracks.
+//!
+//! Side k of a patch runs from corner k to corner k + 1 (modulo 3).
 
 /// What a hull shader and a domain shader take factors and weights for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -28,19 +32,20 @@ pub enum Convention {
 impl Convention {
     pub const ALL: [Self; 5] = [Self::D3d11, Self::AmdPn, Self::EdgeOrder, Self::Rotated, Self::Mirrored];
 
-    /// Whether factors and weights mean the same edges: every edge gets its own factor.
+    /// Returns whether both shaders agree, so that every edge gets its own factor.
     pub fn is_consistent(self) -> bool {
         (0..3).all(|i| factor_side(self, i) == domain_side(self, i))
     }
 
-    /// What [`corner_weights`] made its argument into, back again: U and V of weights on corners 0 and 1.
+    /// Inverts [`corner_weights`]: returns the tessellator's U and V for the weights of corners 0 and 1, in 16.16 fixed
+    /// point.
     pub fn domain_weights(self, [a, b]: [u32; 2]) -> [u32; 2] {
         let on_corners = [a, b, super::FIXED_ONE - a - b];
         [0, 1].map(|i| on_corners[weight_corner(self, i) as usize])
     }
 }
 
-/// The side (k runs from corner k to corner k + 1) whose factor the hull shader writes as factor `i`.
+/// Returns the side (0 to 2) whose factor the hull shader writes as factor `i` (0 to 2).
 pub fn factor_side(convention: Convention, i: u32) -> u32 {
     match convention {
         Convention::D3d11 => (i + 1) % 3,
@@ -50,7 +55,7 @@ pub fn factor_side(convention: Convention, i: u32) -> u32 {
     }
 }
 
-/// The corner that the domain shader weighs with weight `i`: u, v, w.
+/// Returns the corner (0 to 2) that the domain shader multiplies by weight `i` (0, 1, 2 for u, v, w).
 pub fn weight_corner(convention: Convention, i: u32) -> u32 {
     match convention {
         Convention::AmdPn => (i + 1) % 3,
@@ -59,13 +64,14 @@ pub fn weight_corner(convention: Convention, i: u32) -> u32 {
     }
 }
 
-/// The side on which the domain shader puts the edge that the tessellator cuts by factor `i`: opposite the corner that
-/// weight `i` is on.
+/// Returns the side that the tessellator cuts by factor `i` in the domain shader's order: the side opposite the corner
+/// that weight `i` belongs to.
 pub fn domain_side(convention: Convention, i: u32) -> u32 {
     (weight_corner(convention, i) + 1) % 3
 }
 
-/// U and V on corners 0 and 1 of what the tessellator gives as U and V, in 16.16 fixed point; W is the rest.
+/// Returns the weights of corners 0 and 1 for a domain point that the tessellator gives as U and V. All are 16.16 fixed
+/// point; the weight of corner 2 is the rest of 1.
 pub fn corner_weights(convention: Convention, [u, v]: [u32; 2]) -> [u32; 2] {
     let w = super::FIXED_ONE - u - v;
     match convention {
@@ -80,12 +86,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn conventions_give_every_edge_its_own_factor_and_mistakes_do_not() {
+    fn consistent_conventions_give_every_edge_its_own_factor_and_the_two_mistakes_do_not() {
         assert_eq!(Convention::ALL.map(Convention::is_consistent), [true, true, true, false, false]);
     }
 
     #[test]
-    fn every_side_and_every_corner_is_named_once() {
+    fn every_side_and_every_corner_is_used_once() {
         for convention in Convention::ALL {
             let mut sides = [0, 1, 2].map(|i| factor_side(convention, i));
             let mut corners = [0, 1, 2].map(|i| weight_corner(convention, i));
@@ -96,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn weights_by_corner_are_those_of_the_table() {
+    fn corner_weights_follow_weight_corner() {
         for convention in Convention::ALL {
             let weights = [1, 2, crate::tessellate::FIXED_ONE - 3];
             let mut on_corners = [0; 3];
@@ -108,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn weights_go_to_corners_and_back() {
+    fn domain_weights_invert_corner_weights() {
         for convention in Convention::ALL {
             for domain in [[0, 0], [65536, 0], [1, 2], [20000, 30000]] {
                 assert_eq!(convention.domain_weights(corner_weights(convention, domain)), domain, "{convention:?}");
@@ -117,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_of_the_field_are_as_they_state() {
+    fn direct3d_and_amd_conventions_are_as_their_documentation_says() {
         // Sides 0, 1, 2 are the edges (0, 1), (1, 2), (2, 0).
         assert_eq!([0, 1, 2].map(|i| factor_side(Convention::D3d11, i)), [1, 2, 0]);
         assert_eq!([0, 1, 2].map(|i| factor_side(Convention::AmdPn, i)), [2, 0, 1]);

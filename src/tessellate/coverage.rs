@@ -1,29 +1,30 @@
-//! Which triangles cover no sample of the picture, wherever rounding puts their corners: they need not be rasterised. Twin:
-//! `shaders/coverage.wgsl`.
+//! A conservative test for triangles that cover no sample of the picture: such triangles needn't be rasterised. The
+//! test holds however the rasteriser rounds the corners. Twin: `shaders/coverage.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat4, Vec2, Vec3, vec2, vec3};
 
-/// A picture that triangles are drawn into.
+/// The picture that triangles are drawn into.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CoverageView {
     pub clip_from_object: Mat4,
-    /// How far clip coordinates may be off for every unit that a position is from the origin along each axis.
+    /// The rounding error of clip coordinates for each unit of a position's distance from the origin along each axis.
     pub slack: Mat4,
     /// Width and height in px.
     pub viewport: Vec2,
-    /// 1 or 4.
+    /// Samples per pixel: 1 or 4.
     pub sample_count: u32,
-    /// 1 where what faces away isn't drawn either.
+    /// 1 if back faces are not drawn, else 0.
     pub fronts_only: u32,
-    /// How far a corner is moved when it is rounded to the rasteriser's grid, in px.
+    /// The largest distance in px by which the rasteriser moves a corner when it rounds it to its subpixel grid.
     pub snap: f32,
     pub _pad: [u32; 3],
 }
 
 impl CoverageView {
-    /// `subpixel_bits` as an adapter has them: see [`crate::gpu::Gpu::subpixel_bits`].
+    /// Builds the view of a picture of `viewport` px. `subpixel_bits` is the adapter's: see
+    /// [`crate::gpu::Gpu::subpixel_bits`].
     pub fn new(
         clip_from_object: Mat4,
         viewport: Vec2,
@@ -31,31 +32,33 @@ impl CoverageView {
         fronts_only: bool,
         subpixel_bits: u32,
     ) -> Self {
-        // Four products are added up here and by whoever draws, each in an order of its own: either is within 4 roundings of
-        // what is right. As much again is for what follows, the division among it.
+        // This test and the vertex shader each add up four products, in different orders. Each sum is within 4 rounding
+        // errors of the exact one. The other 8 are for the operations that follow, among them the division by w.
         const ROUNDING: f32 = 16.0 * f32::EPSILON / 2.0;
         let slack = Mat4::from_cols_array(&clip_from_object.to_cols_array().map(|x| x.abs() * ROUNDING));
-        // Vulkan doesn't say whether corners are rounded or cut off.
+        // Vulkan doesn't say whether corners are rounded or truncated, so they may move by a whole step of the grid.
         let snap = (-(subpixel_bits as f32)).exp2();
         let fronts_only = u32::from(fronts_only);
         Self { clip_from_object, slack, viewport, sample_count, fronts_only, snap, _pad: [0; 3] }
     }
 }
 
-/// A corner on screen.
+/// A triangle's corner on screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenCorner {
-    /// Px from the upper left.
+    /// The position in px from the picture's upper left corner.
     pub at: Vec2,
-    /// How far from there it may be rasterised along x and along y, in px. Below 0 where it may be nearer than the near
-    /// plane.
+    /// The largest distance in px between `at` and the rasterised corner, along x and along y. Negative if the corner
+    /// may be nearer than the near plane.
     pub reach: f32,
 }
 
-/// Samples lie in rows, one a pixel in each: how many rows a pixel has (1 or 4), and how far a row's samples are from their
-/// pixels' left. A row is half a row's height below its upper side. So have it Vulkan, Metal and Direct3D.
+/// The x coordinates of samples within their pixel, in px. A pixel has as many rows of samples as samples (1 or 4),
+/// with one sample in each row, half a row's height below the row's upper edge. These are the standard positions of
+/// Vulkan, Metal and Direct3D.
 pub(crate) const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
 
+/// Projects a position in object units to the screen, and bounds the error of the projection.
 pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     let clip = view.clip_from_object * position.extend(1.0);
     let off = view.slack * position.abs().extend(1.0);
@@ -71,34 +74,39 @@ pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     ScreenCorner { at, reach: view.snap + reach.max_element() }
 }
 
+/// Returns the z coordinate of the cross product.
 fn cross_2d(a: Vec2, b: Vec2) -> f32 {
     a.x * b.y - a.y * b.x
 }
 
-fn taxicab(a: Vec2) -> f32 {
+/// Returns the Manhattan length.
+fn manhattan_length(a: Vec2) -> f32 {
     a.x.abs() + a.y.abs()
 }
 
-/// Whether a triangle faces away, wherever its corners are within reach. Y goes down.
-fn turns_away(a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
+/// Returns whether a triangle is a back face wherever its corners are within `reach` px of `a`, `b` and `c`. Y points
+/// down.
+fn is_back_face(a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
     let ab = b - a;
     let ac = c - a;
-    cross_2d(ab, ac) > 2.0 * reach * (taxicab(ab) + taxicab(ac) + 4.0 * reach)
+    cross_2d(ab, ac) > 2.0 * reach * (manhattan_length(ab) + manhattan_length(ac) + 4.0 * reach)
 }
 
-/// Whether a triangle may cover a place within its box if its corners are within reach: twice the areas that the place spans
-/// with its sides have one sign then.
+/// Returns whether a triangle whose corners are within `reach` px of `a`, `b` and `c` may cover the place `at`.
+///
+/// It covers the place if the three triangles that the place makes with its sides are wound the same way: `areas` are
+/// twice their signed areas, and `change` bounds how much `reach` can change these.
 fn may_cover(at: Vec2, a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
     let to_a = a - at;
     let to_b = b - at;
     let to_c = c - at;
     let areas = vec3(cross_2d(to_a, to_b), cross_2d(to_b, to_c), cross_2d(to_c, to_a));
-    let lengths = vec3(taxicab(to_a), taxicab(to_b), taxicab(to_c));
+    let lengths = vec3(manhattan_length(to_a), manhattan_length(to_b), manhattan_length(to_c));
     let change = reach * (lengths + vec3(lengths.y, lengths.z, lengths.x) + 2.0 * reach);
     areas.cmpge(-change).all() || areas.cmple(change).all()
 }
 
-/// How far a row's samples are from their pixels' left.
+/// Returns the x coordinate within their pixel of the samples in row `row`, in px.
 fn row_sample(view: &CoverageView, row: f32) -> f32 {
     if view.sample_count == 1 {
         return 0.5;
@@ -106,7 +114,8 @@ fn row_sample(view: &CoverageView, row: f32) -> f32 {
     ROW_SAMPLES[row as usize & 3]
 }
 
-/// Whether nothing of a triangle can be seen. Triangles of more than two px either way are not looked at closely.
+/// Returns whether no part of a triangle can be seen. Of triangles larger than 2 px in x or y it only tests whether
+/// they lie outside the picture or are back faces.
 pub fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: ScreenCorner) -> bool {
     if a.reach.min(b.reach).min(c.reach) < 0.0 {
         return false;
@@ -117,13 +126,13 @@ pub fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: 
     if high.cmplt(Vec2::ZERO).any() || low.cmpgt(view.viewport).any() {
         return true;
     }
-    if view.fronts_only != 0 && turns_away(a.at, b.at, c.at, reach) {
+    if view.fronts_only != 0 && is_back_face(a.at, b.at, c.at, reach) {
         return true;
     }
     if (high - low).cmpgt(Vec2::splat(2.0)).any() {
         return false;
     }
-    // Above the picture and left of it are no samples.
+    // Rows above the picture have no samples.
     let rows = view.sample_count as f32;
     let last = high.y * rows - 0.5;
     let mut row = (low.y.max(0.0) * rows - 0.5).ceil();
@@ -150,17 +159,17 @@ mod tests {
 
     const SIZE: f32 = 64.0;
 
-    /// The coarsest grid that there is (Vulkan specification, required limits).
+    /// The coarsest subpixel grid that Vulkan allows (Vulkan specification, required limits).
     const BITS: u32 = 4;
     const SNAP: f32 = 1.0 / 16.0;
-    /// Where Vulkan, Metal and Direct3D have a pixel's samples, in px.
+    /// The standard sample positions of Vulkan, Metal and Direct3D within a pixel, in px.
     const SAMPLES: [Vec2; 4] = [vec2(0.375, 0.125), vec2(0.875, 0.375), vec2(0.125, 0.625), vec2(0.625, 0.875)];
 
     fn view(sample_count: u32, fronts_only: bool) -> CoverageView {
         CoverageView::new(Mat4::IDENTITY, Vec2::splat(SIZE), sample_count, fronts_only, BITS)
     }
 
-    /// A position at a place in px, under [`view`].
+    /// Returns the position that [`view`] shows at a place in px.
     fn at(px: Vec2) -> Vec3 {
         vec3(px.x / SIZE * 2.0 - 1.0, 1.0 - px.y / SIZE * 2.0, 0.5)
     }
@@ -170,7 +179,7 @@ mod tests {
         covers_nothing(view, a, b, c)
     }
 
-    /// Exactly, but for rounding in f64: whether a triangle covers a sample or has one on its rim.
+    /// Returns whether a triangle covers a sample or has one on its outline, in f64.
     fn covers_a_sample(corners: [DVec2; 3], samples: &[Vec2]) -> bool {
         let low = corners.iter().copied().fold(DVec2::MAX, DVec2::min).floor().as_ivec2();
         let high = corners.iter().copied().fold(DVec2::MIN, DVec2::max).floor().as_ivec2();
@@ -194,9 +203,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// Wherever a grid of 1/16 px puts the corners.
+        /// Corners are moved by up to the step of a grid of 1/16 px.
         #[test]
-        fn what_is_left_out_covers_nothing(
+        fn triangles_that_are_left_out_cover_no_sample(
             a in place(), ab in offset(0.9), ac in offset(0.9), moved in [offset(SNAP), offset(SNAP), offset(SNAP)],
             one_sample: bool,
         ) {
@@ -209,15 +218,15 @@ mod tests {
             }
         }
 
-        /// Nor faces the eye where only that is drawn.
+        /// Triangles that are left out only as back faces are back faces.
         #[test]
-        fn fronts_are_not_left_out_for_their_back(
+        fn front_faces_are_not_left_out_as_back_faces(
             a in place(), ab in offset(0.9), ac in offset(0.9), moved in [offset(SNAP), offset(SNAP), offset(SNAP)],
         ) {
             let corners = [a, a + ab, a + ac];
             if is_left_out(&view(4, true), corners) && !is_left_out(&view(4, false), corners) {
                 let [a, b, c] = [0, 1, 2].map(|i| corners[i].as_dvec2() + moved[i].as_dvec2());
-                // Y goes down: what turns to the left on screen has a negative area.
+                // Y points down, so the area of a front face is negative.
                 prop_assert!((b - a).perp_dot(c - a) > 0.0);
             }
         }
@@ -228,7 +237,7 @@ mod tests {
         let around = |px: Vec2| [px + vec2(-0.05, -0.04), px + vec2(0.05, -0.04), px + vec2(0.0, 0.05)];
         assert!(
             is_left_out(&view(4, false), around(vec2(20.5, 20.5))),
-            "in the middle of a pixel is no sample of four"
+            "none of the four samples is in the middle of the pixel"
         );
         assert!(!is_left_out(&view(1, false), around(vec2(20.5, 20.5))));
         for sample in SAMPLES {
@@ -238,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beside_the_picture_is_left_out_and_what_crosses_its_rim_is_not() {
+    fn triangles_beside_the_picture_are_left_out_and_those_that_cross_its_border_are_not() {
         let large = |x: f32| [vec2(x, 10.0), vec2(x + 30.0, 10.0), vec2(x, 40.0)];
         assert!(is_left_out(&view(4, false), large(-31.0)));
         assert!(!is_left_out(&view(4, false), large(-29.0)));
@@ -247,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn backs_are_left_out_where_only_fronts_are_drawn() {
+    fn back_faces_are_left_out_where_only_front_faces_are_drawn() {
         let back = [vec2(10.0, 10.0), vec2(30.0, 10.0), vec2(10.0, 30.0)];
         let [a, b, c] = back;
         assert!(is_left_out(&view(4, true), back) && !is_left_out(&view(4, false), back));
@@ -255,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_nearer_than_the_near_plane_are_not_known() {
+    fn corners_nearer_than_the_near_plane_have_no_screen_position() {
         let view = CoverageView::new(perspective_infinite_reverse(1.0, 1.0, 0.1), Vec2::splat(SIZE), 4, false, BITS);
         for z in [-0.05, 0.0, 1.0, f32::NAN] {
             assert_eq!(screen_corner(&view, vec3(0.0, 0.0, z)).reach, -1.0);
@@ -265,8 +274,8 @@ mod tests {
     }
 
     #[test]
-    fn far_from_the_origin_corners_reach_further() {
-        // A coordinate of 100,000 has steps of 1/128 there, a seventh of a px at this distance.
+    fn the_error_of_a_corner_grows_with_its_distance_from_the_origin() {
+        // f32 has steps of 1/128 at 100,000, which is a seventh of a px at this distance from the eye.
         let far = Vec3::splat(1e5);
         let clip = perspective_infinite_reverse(1.0, 1.0, 0.1) * Mat4::from_translation(-far);
         let view = CoverageView::new(clip, Vec2::splat(SIZE), 4, false, BITS);

@@ -1,4 +1,5 @@
-//! Which patches emit nothing. Twin: `shaders/cull.wgsl`.
+//! Culling and clipping of whole patches: which patches emit nothing because they show only their backs or lie outside
+//! the view. Twin: `shaders/cull.wgsl`.
 
 use glam::{Vec3, Vec4};
 
@@ -19,31 +20,34 @@ pub enum Clip {
     Frustum = 2,
 }
 
-/// Whether a clip-space position lies outside the paper's view volume, -w <= x, y, z <= w (`IsClipped`).
+/// Returns whether a clip-space position lies outside the white paper's view volume, -w <= x, y, z <= w (`IsClipped` of
+/// McDonald and Kilgard 2010).
 pub fn is_clipped(clip: Vec4) -> bool {
     let inside = clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z.abs() <= clip.w;
     !inside
 }
 
-/// Whether a position in object units lies outside the view volume.
+/// Returns whether a position in object units lies outside that view volume.
 pub fn outside_view(view: &LodView, position: Vec3) -> bool {
     is_clipped(view.clip_from_object * position.extend(1.0))
 }
 
-/// The paper's test of a whole patch.
+/// Returns whether all ten control points lie outside the view volume: the white paper's test of a patch.
 pub fn patch_is_clipped(view: &LodView, net: &ControlNet) -> bool {
     let outside = |p: &Vec3| outside_view(view, *p);
     net.corners.iter().all(outside) && net.edges.iter().all(outside) && outside(&net.center)
 }
 
-/// The planes of the view volume that a clip-space position lies outside of, as bits: left, right, below, above, beyond
-/// the far plane, nearer than the near plane (depth is reversed). No division: the planes are linear also behind the eye.
+/// Returns which planes of the view volume a clip-space position lies outside of, as bits: left (bit 0), right, bottom,
+/// top, far, near (bit 5). Depth is reversed.
+///
+/// Nothing is divided by w: the planes are linear functions in clip space, so the test holds behind the eye too.
 pub fn planes_outside(clip: Vec4) -> u32 {
-    far_outside([0.0; 6], clip)
+    planes_outside_by([0.0; 6], clip)
 }
 
-/// The same planes, of those that the position lies outside of by more than this.
-pub fn far_outside(margins: [f32; 6], clip: Vec4) -> u32 {
+/// Returns the same bits for the planes that a position lies outside of by more than their margin, in clip-space units.
+pub fn planes_outside_by(margins: [f32; 6], clip: Vec4) -> u32 {
     u32::from(clip.x + margins[0] < -clip.w)
         | u32::from(clip.x - margins[1] > clip.w) << 1
         | u32::from(clip.y + margins[2] < -clip.w) << 2
@@ -52,7 +56,8 @@ pub fn far_outside(margins: [f32; 6], clip: Vec4) -> u32 {
         | u32::from(clip.z - margins[5] > clip.w) << 5
 }
 
-/// How far towards the inside of each plane displacement may move a point, in clip space.
+/// Returns how far displacement may move a point towards the inside of each plane, in clip-space units and in the order
+/// of the bits of [`planes_outside`].
 pub fn reach_margins(view: &LodView) -> [f32; 6] {
     let x = clip_row(view, 0);
     let y = clip_row(view, 1);
@@ -62,10 +67,10 @@ pub fn reach_margins(view: &LodView) -> [f32; 6] {
     inward.map(|inward| inward.length() * view.reach)
 }
 
-/// Whether a patch lies outside one plane as a whole, wherever it is displaced to.
+/// Returns whether all of a patch lies outside one plane of the view volume, however it is displaced.
 pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
     let margins = reach_margins(view);
-    let planes = |p: &Vec3| far_outside(margins, view.clip_from_object * p.extend(1.0));
+    let planes = |p: &Vec3| planes_outside_by(margins, view.clip_from_object * p.extend(1.0));
     let mut shared = planes(&net.center);
     for p in &net.corners {
         shared &= planes(p);
@@ -76,9 +81,11 @@ pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
     shared != 0
 }
 
-/// The six control points that weigh in where corner `i`'s weight is taken out of a patch once: of a quadratic triangle,
-/// in the order 200, 110, 020, 011, 002, 101. Its points and those of the other two corners differ by the patch's
-/// tangents.
+/// Returns the six control points whose weights contain the weight of corner `i` as a factor, as the net of a quadratic
+/// triangle in the order 200, 110, 020, 011, 002, 101.
+///
+/// The point of that quadratic triangle is the polar form of the patch with corner `i` as one argument. Differences of
+/// the three polar forms are the patch's tangents, up to a factor of 3.
 pub fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
     let [b300, b030, b003] = net.corners;
     let [b210, b120, b021, b012, b102, b201] = net.edges;
@@ -90,24 +97,25 @@ pub fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
     }
 }
 
-/// How far a surface must be from being seen edge-on, about as a sine: more than rounding, and enough that also a
-/// rasteriser that snaps vertices to 1/256 px finds its back.
+/// How far a surface must be from being seen edge-on, about as a sine. The margin is larger than rounding errors, and
+/// large enough that a rasteriser which snaps vertices to 1/256 px sees a back face too.
 pub const FACING_MARGIN: f32 = 1e-3;
 
-/// The part of the largest term that rounding may put into a sum.
+/// The rounding error of a sum, relative to the sum of the absolute values of its terms.
 pub const FACING_ROUNDING: f32 = 1e-6;
 
-/// Digits to base 5 of the second and third index of the [`polar_points`], and how often each counts: those of a product
-/// of two quadratic polynomials are sums of theirs, from 0 to 4.
+/// The second and third index of each of the [`polar_points`], as two digits to base 5, and its binomial weight. In a
+/// product of two quadratic polynomials indices add up, so that digits go up to 4.
 pub const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
 pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
 
-/// Whether a patch's surface shows its back everywhere. The patch must lie beyond the near plane.
+/// Returns whether a patch shows its back everywhere. The patch must lie beyond the near plane.
 ///
-/// In homogeneous coordinates of the screen (x, y, w), a point p and the tangents s and t there show their front where
-/// p . (s x t) > 0, also without perspective. Tangents are quadratic polynomials, whose cross product is a quartic one: a
-/// mean of 15 control vectors with weights that are not negative. p lies in the box around the control points. So it is
-/// less than 0 everywhere if it is for each of the 15 with all of the box.
+/// Take the homogeneous screen coordinates (x, y, w) of a point p and of its tangents s and t. The surface shows its
+/// front where p . (s x t) > 0, with or without perspective. Tangents are quadratic polynomials. Their cross product is
+/// a quartic polynomial: a mean of 15 control vectors with weights that aren't negative. The point p lies in the
+/// bounding box of the control points. So the product is negative everywhere if it is negative for each of the 15
+/// vectors and every point of the box.
 pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
     let rows = [clip_row(view, 0), clip_row(view, 1), clip_row(view, 3)];
     let turned = |d: Vec3| Vec3::new(rows[0].dot(d), rows[1].dot(d), rows[2].dot(d));
@@ -141,7 +149,7 @@ pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
         for j in 0..5 - i {
             let own = facing[5 * i + j];
             let rounding = terms[5 * i + j].dot(middle.abs()) * FACING_ROUNDING;
-            // No less than 0 also where it is no number.
+            // Written so that NaN counts as not facing away.
             let away = own.dot(middle) + own.abs().dot(reach) + rounding < 0.0;
             if !away {
                 return false;
@@ -151,15 +159,16 @@ pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
     true
 }
 
-/// Why a patch emits nothing: it doesn't, its own factors cull it being no matter of this.
-pub const SEEN: u32 = 0;
-/// It is out of view.
+/// The reasons why a patch emits nothing. `NOT_CULLED`: the view leaves it in, though its own factors may cull it.
+pub const NOT_CULLED: u32 = 0;
+/// The patch lies outside the view.
 pub const OUT_OF_VIEW: u32 = 1;
-/// It shows its back only.
+/// The patch shows only its back.
 pub const FACING_AWAY: u32 = 2;
 
-/// Whether a patch is left out, and why; those that face away if `culls_back` is set.
-pub fn unseen(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
+/// Returns whether a patch is left out, and why. Patches that show only their backs are left out if `culls_back` is
+/// set.
+pub fn cull_reason(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
     let outside = match clip {
         Clip::Off => false,
         Clip::Paper => patch_is_clipped(view, net),
@@ -170,7 +179,7 @@ pub fn unseen(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) ->
     } else if culls_back && faces_away(view, net) {
         FACING_AWAY
     } else {
-        SEEN
+        NOT_CULLED
     }
 }
 
@@ -179,7 +188,7 @@ mod tests {
     use super::*;
     use glam::{Mat4, Vec2, vec3};
 
-    /// A flat patch with these corners.
+    /// Returns the control net of a flat patch with these corners.
     fn flat([a, b, c]: [Vec3; 3]) -> ControlNet {
         let third = |from: Vec3, to: Vec3| from.lerp(to, 1.0 / 3.0);
         let edges = [third(a, b), third(b, a), third(b, c), third(c, b), third(c, a), third(a, c)];
@@ -187,16 +196,16 @@ mod tests {
     }
 
     #[test]
-    fn a_patch_around_the_view_is_dropped_by_the_paper_only() {
+    fn a_patch_that_surrounds_the_view_is_left_out_by_the_white_papers_test_only() {
         let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
-        // Every control point lies outside, but on different sides: the middle of the view is covered.
+        // All control points lie outside, but beyond different planes, and the patch covers the middle of the view.
         let around = flat([vec3(-9.0, -6.0, 0.5), vec3(9.0, -6.0, 0.5), vec3(0.0, 12.0, 0.5)]);
         let around = ControlNet { center: vec3(0.0, 2.0, 0.5), ..around };
-        assert_eq!(unseen(Clip::Paper, false, &view, &around), OUT_OF_VIEW);
-        assert_eq!(unseen(Clip::Frustum, false, &view, &around), SEEN);
+        assert_eq!(cull_reason(Clip::Paper, false, &view, &around), OUT_OF_VIEW);
+        assert_eq!(cull_reason(Clip::Frustum, false, &view, &around), NOT_CULLED);
         let left = flat([vec3(-9.0, 0.0, 0.5), vec3(-2.0, -5.0, 0.5), vec3(-1.5, 5.0, 0.5)]);
-        assert_eq!(unseen(Clip::Frustum, false, &view, &left), OUT_OF_VIEW);
-        assert_eq!(unseen(Clip::Off, false, &view, &left), SEEN);
+        assert_eq!(cull_reason(Clip::Frustum, false, &view, &left), OUT_OF_VIEW);
+        assert_eq!(cull_reason(Clip::Off, false, &view, &left), NOT_CULLED);
     }
 
     #[test]
@@ -210,7 +219,8 @@ mod tests {
         assert_eq!(planes_outside(vec3(1.0, -1.0, 0.0).extend(1.0)), 0, "on the planes");
     }
 
-    /// A patch about a unit large, bent by up to `bend`, in front of an eye at the origin that looks along +z.
+    /// Returns a patch of a size of about 1 unit whose control points are moved at random by up to `bend` units. The eye is at the
+    /// origin and looks along +z.
     fn bent(random: [f32; 30], bend: f32) -> ControlNet {
         let corners = [vec3(-0.4, -0.3, 3.0), vec3(0.5, -0.4, 3.2), vec3(0.0, 0.6, 2.9)];
         let mut net = flat(corners);
@@ -221,7 +231,7 @@ mod tests {
         net
     }
 
-    /// How much of the front a surface shows at a place, in no unit: less than 0 where it shows its back.
+    /// Returns p . (s x t) at weights `u` and `v`: negative where the surface shows its back.
     fn front(net: &ControlNet, u: f64, v: f64) -> f64 {
         let weights =
             [u * u, 2.0 * u * v, v * v, 2.0 * v * (1.0 - u - v), (1.0 - u - v).powi(2), 2.0 * u * (1.0 - u - v)];
@@ -230,13 +240,13 @@ mod tests {
         };
         let (at_u, at_v, at_w) = (at(0), at(1), at(2));
         let position = at_u * u + at_v * v + at_w * (1.0 - u - v);
-        // Seen along +z, x to the right and y upwards: what is wound clockwise in x and y shows its back.
+        // The eye looks along +z, with x to the right and y up, so clockwise triangles show their backs.
         position.dot((at_u - at_w).cross(at_v - at_w))
     }
 
     proptest::proptest! {
         #[test]
-        fn what_faces_away_shows_its_back_everywhere(
+        fn patches_that_face_away_show_their_back_everywhere(
             random in proptest::array::uniform30(-1.0f32..1.0),
             bend in 0.0f32..0.6,
         ) {
@@ -255,7 +265,7 @@ mod tests {
             let away = [faces_away(&view, &net), faces_away(&view, &turned)];
             proptest::prop_assert!(!(away[0] && away[1]));
             proptest::prop_assert!(!away[0] || most < 0.0, "{most}");
-            // What is nearly flat is told for sure, one way or the other.
+            // The test is exact for patches that are nearly flat.
             proptest::prop_assert!(bend > 0.02 || away[0] == (most < 0.0), "{bend} {most}");
         }
     }

@@ -1,11 +1,12 @@
-//! A corner's position and normal through the mean of its joints' matrices. Twin: `shaders/deform.wgsl`.
+//! Linear blend skinning: a corner's position and normal are transformed by the weighted mean of its joints' matrices.
+//! Twin: `shaders/deform.wgsl`.
 
 use glam::{Vec3, vec3};
 
 use super::normal::unit_or;
 use crate::mesh::rig::JointMatrix;
 
-/// The mean of four matrices by weight.
+/// Returns the weighted sum of four matrices. The weights add up to 1.
 pub fn blend(a: &JointMatrix, b: &JointMatrix, c: &JointMatrix, d: &JointMatrix, weights: [f32; 4]) -> JointMatrix {
     let mean = |row: fn(&JointMatrix) -> [f32; 4]| {
         let [a, b, c, d] = [a, b, c, d].map(|matrix| glam::Vec4::from(row(matrix)));
@@ -14,27 +15,30 @@ pub fn blend(a: &JointMatrix, b: &JointMatrix, c: &JointMatrix, d: &JointMatrix,
     JointMatrix { x: mean(|matrix| matrix.x), y: mean(|matrix| matrix.y), z: mean(|matrix| matrix.z) }
 }
 
+/// Transforms a position.
 pub fn deform_position(matrix: &JointMatrix, position: Vec3) -> Vec3 {
     let [x, y, z] = matrix.rows().map(|row| Vec3::from_slice(&row).dot(position) + row[3]);
     vec3(x, y, z)
 }
 
-/// Through the cofactors, which are the inverse transpose times the determinant, and exist where the inverse doesn't. As
-/// it was where that leaves no direction.
+/// Transforms a unit normal by the cofactor matrix. If the result has no direction, returns `normal` itself.
+///
+/// The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse it always exists.
 pub fn deform_normal(matrix: &JointMatrix, normal: Vec3) -> Vec3 {
     let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
-    // Scaled, so that no product of two entries leaves f32.
-    let scale = 1.0 / rows.map(largest).into_iter().fold(1e-30, f32::max);
+    // Scale the matrix, so that no product of two entries overflows or underflows.
+    let scale = 1.0 / rows.map(largest_component).into_iter().fold(1e-30, f32::max);
     let [x, y, z] = rows.map(|row| row * scale);
     let turned = vec3(y.cross(z).dot(normal), z.cross(x).dot(normal), x.cross(y).dot(normal));
-    unit_of(if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }, normal)
+    scaled_unit_or(if x.dot(y.cross(z)) < 0.0 { -turned } else { turned }, normal)
 }
 
-/// At unit length; `otherwise` where there is no direction.
-fn unit_of(vector: Vec3, otherwise: Vec3) -> Vec3 {
-    unit_or(vector * (1.0 / largest(vector).max(1e-30)), otherwise)
+/// Returns `vector` at unit length, or `otherwise` if it is zero. No square overflows or underflows.
+fn scaled_unit_or(vector: Vec3, otherwise: Vec3) -> Vec3 {
+    unit_or(vector * (1.0 / largest_component(vector).max(1e-30)), otherwise)
 }
 
-fn largest(vector: Vec3) -> f32 {
+/// Returns the largest absolute value of the components.
+fn largest_component(vector: Vec3) -> f32 {
     vector.abs().max_element()
 }

@@ -1,8 +1,12 @@
-//! Displacement: how high a surface stands at a texture coordinate, and how it is shaded there. Twin:
-//! `shaders/displace.wgsl`.
+//! Displacement: heights that are read from an image at texture coordinates, and the normals of the displaced surface.
+//! Twin: `shaders/displace.wgsl`.
 //!
-//! A point moves by scale * (height - midlevel) along a direction that all its sides share. Heights are sampled without the
-//! device's texture unit, whose filters weigh in 8 bits: so they are the same numbers everywhere.
+//! A point moves by scale * (height - midlevel) along a direction that all patches around it share. Heights are
+//! filtered in f32, not by the device's texture units, whose filter weights have 8 bits: so every device computes the
+//! same heights.
+//!
+//! A height map is a list of mip levels, level 0 first; a *px* is a pixel of one level. Texture coordinates run from 0
+//! to 1 over the image.
 
 use glam::{Vec2, Vec3, vec2};
 
@@ -25,12 +29,12 @@ pub enum Displacement {
     PerPatch = 3,
 }
 
-/// A number's place in a repeating whole, 0 to 1.
+/// Returns the fractional part of a texture coordinate, which repeats the image.
 fn wrapped(x: f32) -> f32 {
     x - x.floor()
 }
 
-/// Where a level starts in a map's list.
+/// Returns the index of a mip level's first height in the map's list.
 fn level_start(map: &HeightMap, level: u32) -> u32 {
     let mut start = 0;
     for l in 0..level {
@@ -39,27 +43,29 @@ fn level_start(map: &HeightMap, level: u32) -> u32 {
     start
 }
 
+/// Returns the height at an index of the map's list.
 fn fetch_height(map: &HeightMap, index: u32) -> f32 {
     map.heights[index as usize]
 }
 
-/// Where a texture coordinate lies along one side of `size` px: after the middle of px 0, in px.
-fn pixel_place(map: &HeightMap, x: f32, size: u32) -> f32 {
+/// Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
+/// images that repeat, `size` is added, so that the result isn't negative.
+fn pixel_coordinate(map: &HeightMap, x: f32, size: u32) -> f32 {
     if map.repeats {
         return wrapped(x) * size as f32 + size as f32 - 0.5;
     }
     (x * size as f32 - 0.5).clamp(0.0, (size - 1) as f32)
 }
 
-/// A level's height at a texture coordinate, between its four nearest px.
+/// Returns the height of a mip level at a texture coordinate, bilinearly interpolated.
 pub fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     let width = (map.size[0] >> level).max(1);
     let height = (map.size[1] >> level).max(1);
-    let x = pixel_place(map, uv.x, width);
-    let y = pixel_place(map, uv.y, height);
+    let x = pixel_coordinate(map, uv.x, width);
+    let y = pixel_coordinate(map, uv.y, height);
     let left = x as u32 % width;
     let upper = y as u32 % height;
-    // Beyond the last px of an image that ends there nothing is asked for.
+    // Images that don't repeat give weight 0 to a px beyond the last one.
     let right = (left + 1) % width;
     let lower = (upper + 1) % height;
     let start = level_start(map, level);
@@ -74,7 +80,7 @@ pub fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     above + (below - above) * down
 }
 
-/// The height at a texture coordinate and a level that may lie between two.
+/// Returns the height at a texture coordinate, linearly interpolated between the two mip levels around `level`.
 pub fn height_at(map: &HeightMap, level: f32, uv: Vec2) -> f32 {
     let least = level as u32;
     let part = level - least as f32;
@@ -85,7 +91,7 @@ pub fn height_at(map: &HeightMap, level: f32, uv: Vec2) -> f32 {
     fine + (bilinear_height(map, least + 1, uv) - fine) * part
 }
 
-/// How the height changes with both texture coordinates, over one px of the level.
+/// Returns the derivatives of the height by both texture coordinates, as central differences over one px of the level.
 pub fn height_slopes(map: &HeightMap, level: f32, uv: Vec2) -> Vec2 {
     let px = level.exp2() / vec2(map.size[0] as f32, map.size[1] as f32);
     let across = vec2(0.5 * px.x, 0.0);
@@ -95,19 +101,21 @@ pub fn height_slopes(map: &HeightMap, level: f32, uv: Vec2) -> Vec2 {
     vec2(along_x / px.x, along_y / px.y)
 }
 
-/// The level whose px are as long as a segment, of something `texels` px of level 0 long that is cut into `segments`.
+/// Returns the mip level at which one px is as long as a segment of an edge. The edge is `texels` px of level 0 long
+/// and is cut into `segments`.
 pub fn segment_level(map: &HeightMap, texels: f32, segments: f32) -> f32 {
     let level = (texels.max(1e-6) / segments).log2();
     level.clamp(0.0, (map.levels - 1) as f32)
 }
 
-/// How long a line between two texture coordinates is, in px of level 0.
+/// Returns the distance between two texture coordinates in px of level 0.
 pub fn texel_length(map: &HeightMap, a: Vec2, b: Vec2) -> f32 {
     ((b - a) * vec2(map.size[0] as f32, map.size[1] as f32)).length()
 }
 
-/// How a direction between three turns with u and with v: the change of (a u + b v + c w) at unit length. `direction` is
-/// what it is here.
+/// Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions`
+/// and w = 1 - u - v. `direction` is that unit vector, and `length` is the length of the sum. Zero if the sum is nearly
+/// zero.
 pub fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> [Vec3; 2] {
     let along_u = directions[0] - directions[2];
     let along_v = directions[1] - directions[2];
@@ -119,8 +127,11 @@ pub fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> 
     [flat_u * (1.0 / length), flat_v * (1.0 / length)]
 }
 
-/// How both texture coordinates change over a flat triangle: two vectors in its plane, in texture widths and heights a unit,
-/// each times twice the triangle's area; and that area. Zero where there is no triangle.
+/// Returns the gradients of both texture coordinates over a flat triangle, each times twice the triangle's area, and
+/// twice that area.
+///
+/// The gradients lie in the triangle's plane, in texture widths and heights for each object unit. Everything is zero if
+/// the triangle is degenerate.
 pub fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
     let along = corners[1] - corners[0];
     let beside = corners[2] - corners[0];
@@ -128,7 +139,7 @@ pub fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
     if size == 0.0 {
         return ([Vec3::ZERO; 2], 0.0);
     }
-    // Areas of very small or large lengths are none: only proportions matter.
+    // Scale the sides, so that products of very short or very long ones neither underflow nor overflow.
     let a = along * (1.0 / size);
     let b = beside * (1.0 / size);
     let facing = a.cross(b);
@@ -145,8 +156,10 @@ pub fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
     (gradients.map(|gradient| gradient * size), area * size * size)
 }
 
-/// The normal of what is shaded with `normal` and rises by `gradient`, a vector that points uphill and is as long as the
-/// slope: exact if it rises along its normal (Mikkelsen 2008, the surface gradient).
+/// Returns the unit normal of a surface that is shaded with `normal` and whose height has this gradient (Mikkelsen
+/// 2008, the surface gradient). The gradient points uphill in object space; its length is the slope.
+///
+/// It is the exact normal if the surface is displaced along `normal`.
 pub fn raised_normal(gradient: Vec3, normal: Vec3) -> Vec3 {
     unit_or(normal - (gradient - normal * gradient.dot(normal)), normal)
 }
@@ -158,24 +171,28 @@ mod tests {
 
     use super::*;
 
-    /// A slope across, times two down.
+    /// Returns a map of 4 x 2 px that rises by 1/8 for each px to the right and by 1/4 for each px down.
     fn slope() -> HeightMap {
         let heights = (0..8).map(|i| (i % 4) as f32 / 8.0 + (i / 4) as f32 / 4.0).collect();
         HeightMap { repeats: true, ..HeightMap::new([4, 2], heights) }
     }
 
     #[test]
-    fn images_that_do_not_repeat_go_on_as_their_border_is() {
+    fn images_that_do_not_repeat_continue_with_their_border() {
         let map = HeightMap { repeats: false, ..slope() };
         for (u, expected) in [(-1.0, 0.0), (0.0, 0.0), (0.125, 0.0), (0.875, 0.375), (1.0, 0.375), (7.0, 0.375)] {
             assert_eq!(bilinear_height(&map, 0, vec2(u, 0.25)), expected, "{u}");
         }
         let between = bilinear_height(&map, 0, vec2(0.5, 0.5));
-        assert_eq!(between, slope().heights[..8].iter().sum::<f32>() / 8.0, "inside it makes no difference");
+        assert_eq!(
+            between,
+            slope().heights[..8].iter().sum::<f32>() / 8.0,
+            "repeating makes no difference inside the image"
+        );
     }
 
     #[test]
-    fn pixels_are_at_their_centres_and_images_repeat() {
+    fn heights_at_pixel_centres_are_the_pixels_and_images_repeat() {
         let map = slope();
         for i in 0..8 {
             let uv = vec2(((i % 4) as f32 + 0.5) / 4.0, ((i / 4) as f32 + 0.5) / 2.0);
@@ -196,13 +213,13 @@ mod tests {
 
     #[test]
     fn slopes_are_those_of_the_image() {
-        // Inside the image, 1/8 a px across, which is 4 to the whole width, and 1/4 a px down of 2.
+        // The height rises by 1/8 for each of the 4 px across and by 1/4 for each of the 2 px down.
         let slopes = height_slopes(&slope(), 0.0, vec2(0.5, 0.5));
         assert!(slopes.distance(vec2(0.5, 0.5)) < 1e-6, "{slopes}");
     }
 
     #[test]
-    fn levels_follow_the_segments() {
+    fn a_px_of_the_level_is_as_long_as_a_segment() {
         let map = HeightMap::new([256, 256], vec![0.0; 65536]);
         assert_eq!(segment_level(&map, 256.0, 16.0), 4.0);
         assert_eq!(segment_level(&map, 256.0, 256.0), 0.0);
@@ -213,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_no_gradient() {
+    fn degenerate_triangles_have_no_gradient() {
         let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y];
         for corners in [[Vec3::ZERO; 3], [Vec3::ZERO, Vec3::X, Vec3::X * 2.0]] {
             assert_eq!(uv_gradients(corners, uvs), ([Vec3::ZERO; 2], 0.0));
@@ -223,13 +240,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn raised_normals_are_those_of_the_raised_triangle(
+        fn raised_normals_are_the_normals_of_displaced_triangles(
             (ux, uy, uz) in (0.3f64..2.0, -1f64..1.0, -1f64..1.0),
             (vx, vy, vz) in (-0.2f64..0.2, 0.3f64..2.0, -1f64..1.0),
             slopes in prop::array::uniform2(-2f64..2.0),
             size in prop::sample::select(vec![1e-15, 1.0, 1e12]),
         ) {
-            // A triangle with its own texture coordinates, over which a height changes by `slopes` a texture.
+            // The height changes by `slopes` over the whole width and height of the texture.
             let corners = [DVec3::ZERO, DVec3::new(ux, uy, uz), DVec3::new(vx, vy, vz)].map(|corner| corner * size);
             let uvs = [DVec2::new(0.1, 0.2), DVec2::new(0.9, 0.3), DVec2::new(0.2, 0.7)];
             let normal = corners[1].cross(corners[2]).normalize();
@@ -243,7 +260,7 @@ mod tests {
         }
 
         #[test]
-        fn directions_turn_as_their_interpolation_does(x in 0.1f32..0.8, share in 0.1f32..0.9) {
+        fn direction_slopes_are_the_derivatives_of_the_interpolated_direction(x in 0.1f32..0.8, share in 0.1f32..0.9) {
             let y = (1.0 - x) * share;
             let corners = [vec3(0.6, 0.0, 0.8), vec3(0.0, 0.6, 0.8), vec3(-0.48, -0.36, 0.8)];
             let sum = |x: f32, y: f32| corners[0] * x + corners[1] * y + corners[2] * (1.0 - x - y);

@@ -1,9 +1,10 @@
-//! Domain points and triangles of a patch, each one in closed form from its number: no walk over the patch, so that a
-//! GPU can give every vertex and every triangle an invocation of its own. Twin: `shaders/domain.wgsl`.
+//! Domain points and triangles of a patch. Each is computed from its number alone, without a walk over the patch, so
+//! that a GPU can compute every vertex and every triangle in an invocation of its own. Twin: `shaders/domain.wgsl`.
 //!
-//! The patch is an outline of three edge rows, and inside it rings of three equal sides, numbered from 1 inwards, all cut
-//! from one inside row. A ring's side `k` ends on the first point of the next side. With an even number of inside
-//! segments the last ring is a single point, the centre; with an odd one it is a triangle. The exception is the pattern of
+//! The patch consists of an outline of three edge rows, and of rings inside. Rings are numbered inwards from 1; each
+//! has three sides of equal numbers of segments, which are all cut from one row, the inside row. A ring's side `k` ends
+//! on the first point of the next side. If the number of segments inside is even, the last ring is a single point, the
+//! centre. If it is odd, the last ring is a triangle. Subtriangulated patches have another pattern: see
 //! `subtriangulation.rs`.
 //!
 //! Source: D3D11.3 Functional Specification, sections 11.7.5 to 11.7.14. Coordinates are 16.16 fixed point.
@@ -16,43 +17,49 @@ use super::factors::{
 use super::rings::{TransitionStep, ring_point, rings_before};
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
-/// Two thirds in 16.16 fixed point, rounded down as the tessellator has it.
+/// Two thirds in 16.16 fixed point, rounded down as in the specification.
 pub const FIXED_TWO_THIRDS: u32 = 0xaaaa;
 
-/// A row of points, made ready for asking where they lie.
+/// A row of points, prepared for [`row_location`].
 ///
-/// It is a blend of two uniform rows: `fraction` of the way from the one with whole `half_factor` segments a half to the
-/// one with one more, whose new point grows out of point `split` of each half.
+/// It is a blend of two uniform rows: the one with the whole part of `half_factor` segments in each half, and the one
+/// with one segment more in each half. `fraction` is the weight of the finer row, in 16.16 fixed point. Its new point
+/// grows out of point `split` of each half.
 #[derive(Clone, Copy, Debug)]
 pub struct DomainRow {
+    /// Segments in half the row, rounded up.
     half: u32,
+    /// 1 if the row has an odd number of segments, else 0.
     odd: u32,
     fraction: u32,
     split: u32,
+    /// The lengths of a segment of both uniform rows, in 16.16 fixed point.
     coarse_step: u32,
     fine_step: u32,
 }
 
-/// The length of one of `segments` equal segments, of which there are 128 at most: 1 / segments, rounded half up.
+/// Returns the length of one of `segments` equal segments in 16.16 fixed point: 1 / segments, rounded half up. There
+/// are at most 128 segments.
 ///
-/// The whole part of a quotient of whole numbers, in f32, which GPUs divide many times faster. The half that is added keeps
-/// it further from whole numbers than the 2.5 ULP by which WGSL lets a quotient be off.
+/// It is the integer part of an f32 quotient, since GPUs divide f32 numbers many times faster than integers. The 0.5
+/// that is added keeps the quotient further from integers than the 2.5 ULP by which WGSL lets it be wrong.
 fn segment_length(segments: u32) -> u32 {
     (((2 * FIXED_ONE + segments) as f32 + 0.5) / (2 * segments) as f32) as u32
 }
 
-/// Clears the highest set bit of a number that is not zero.
+/// Clears the highest set bit of a number, which must not be zero.
 fn drop_top_bit(value: u32) -> u32 {
     value ^ (1 << value.ilog2())
 }
 
-/// The point of each half after which the next new point grows: the order is that of a breadth-first bisection.
+/// Returns the point of each half after which the next new point grows. New points come in the order of a breadth-first
+/// bisection.
 fn row_split(whole: u32, odd: u32) -> u32 {
     let v = whole - odd;
     if v == 0 { 0 } else { 2 * drop_top_bit(v) + 1 }
 }
 
-/// Prepares the row of a factor.
+/// Prepares the row of a factor's word.
 pub fn domain_row(word: u32) -> DomainRow {
     let factor = half_factor(word);
     let whole = factor >> 16;
@@ -69,7 +76,7 @@ pub fn domain_row(word: u32) -> DomainRow {
     }
 }
 
-/// Where point `p` of the row lies, 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
+/// Returns where point `p` of a row lies, from 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
 pub fn row_location(row: DomainRow, p: u32) -> u32 {
     if row.odd == 0 && p == row.half {
         return FIXED_HALF;
@@ -83,29 +90,29 @@ pub fn row_location(row: DomainRow, p: u32) -> u32 {
     if mirrored { FIXED_ONE - x } else { x }
 }
 
-/// How a patch is cut.
+/// The pattern in which a patch is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PatternKind {
-    /// An outline, and rings inside.
+    /// An outline with rings inside.
     Rings,
     /// One triangle.
     Minimal,
     Subtriangulated,
 }
 
-/// A patch's factors, made ready for asking for its points and triangles.
+/// A patch's factors, prepared for [`domain_point`] and [`domain_triangle`].
 #[derive(Clone, Copy, Debug)]
 pub struct DomainPlan {
     factors: PatchFactors,
     kind: PatternKind,
-    /// The numbers of the second and the third edge's first points.
+    /// The numbers of the first points of the second and of the third edge.
     start1: u32,
     start2: u32,
-    /// Points on the outline.
+    /// The number of points on the outline.
     outer: u32,
-    /// Segments inside.
+    /// The number of segments inside.
     n: u32,
-    /// The row that the rings are cut from.
+    /// The inside row, from which rings are cut.
     row: DomainRow,
 }
 
@@ -130,7 +137,7 @@ pub fn domain_plan(factors: PatchFactors) -> DomainPlan {
     if patch_is_minimal(factors) { DomainPlan { kind: PatternKind::Minimal, ..rings } } else { rings }
 }
 
-/// (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
+/// Returns (U, V) of domain point `i`, below `point_count(factors)`, in 16.16 fixed point; W = 1 - U - V.
 pub fn domain_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     if plan.kind == PatternKind::Subtriangulated {
         return subtriangulation_point(plan.n, i);
@@ -138,9 +145,10 @@ pub fn domain_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     if i < plan.outer { outer_point(plan, i) } else { inner_point(plan.row, plan.n, i - plan.outer) }
 }
 
-/// Point `i` of the outline. It starts at V == 1 with the edge U == 0, and leaves out each edge's last point.
+/// Returns point `i` of the outline, which starts at V == 1 with the edge U == 0. Each edge's last point is the next
+/// one's first.
 fn outer_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
-    // One row, chosen first: on a GPU the points of three edges then take one path.
+    // Choose the row first, so that on a GPU the points of all three edges take the same branch.
     let side = u32::from(i >= plan.start1) + u32::from(i >= plan.start2);
     let word = plan.factors.outside[side as usize];
     let p = match side {
@@ -156,7 +164,7 @@ fn outer_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     }
 }
 
-/// Point `i` of the rings inside, which are cut from `row` with `n` segments.
+/// Returns point `i` of the rings inside, which are cut from `row` with `n` segments.
 fn inner_point(row: DomainRow, n: u32, i: u32) -> [u32; 2] {
     let rings = rings_before(n - 1, i / 3);
     let ring = rings + 1;
@@ -177,7 +185,7 @@ fn inner_point(row: DomainRow, n: u32, i: u32) -> [u32; 2] {
     }
 }
 
-/// The corners of triangle `t`, below `triangle_count(factors)`, as point numbers, clockwise.
+/// Returns the corners of triangle `t`, below `triangle_count(factors)`, as point numbers, clockwise.
 pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     match plan.kind {
         PatternKind::Minimal => return [0, 1, 2],
@@ -188,7 +196,7 @@ pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     if t < transition { transition_triangle(plan, t) } else { regular_triangle(plan.outer, plan.n, t - transition) }
 }
 
-/// Triangle `t` between the inside's first ring and an edge. After its middle a side mirrors what came before it.
+/// Returns triangle `t` between an edge and the first ring. The second half of a side mirrors the first.
 fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
     let inner_half = row.half - row.odd;
     let outer_half = half_segments(edge) - odd_parity(edge);
@@ -197,7 +205,7 @@ fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> Tr
     let before = inner_half - 1 + outer_half;
     let after_middle = t + before >= total;
     if t >= before && !after_middle {
-        // The middle: an odd inside's triangle, then an odd edge's.
+        // In the middle there is a triangle if the inside is odd, then one if the edge is odd.
         let along_inner = t == before && row.odd == 1;
         return TransitionStep {
             inner: inner_half - 1 + (t - before),
@@ -218,7 +226,7 @@ fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> Tr
     }
 }
 
-/// Triangle `t` of those between the outline and the first ring, where the numbers of segments differ.
+/// Returns triangle `t` of those between the outline and the first ring, whose numbers of segments may differ.
 fn transition_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     let inner_segments = plan.n - 2;
     let (start1, start2, outer) = (plan.start1, plan.start2, plan.outer);

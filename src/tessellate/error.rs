@@ -1,89 +1,101 @@
-//! How many segments keep what is emitted within a distance of the surface, in px on screen. Twin: `shaders/error.wgsl`.
+//! LOD by error: how many segments keep the emitted triangles within a distance, in px on screen, of the surface. Twin:
+//! `shaders/error.wgsl`.
 //!
-//! The distance between a polynomial and its linear interpolation is bounded by second derivatives, and those of a
-//! Bézier curve or triangle by second differences of its control points (G. Wang: *The subdivision method for finding
-//! the intersection between two Bézier curves or surfaces*, 1984; D. Filip, R. Magedson, R. Markot: *Surface algorithms
-//! using bounds on derivatives*, 1986). Differences are taken in object units and then seen on screen: that of two
-//! points a and b is (a.xy - b.xy / b.w * a.w) / a.w in clip space, so no more than the largest |d.xy - s d.w| / w, where
-//! d is the difference, w the least depth of the control points, and s anywhere between their least and greatest x / w
-//! and y / w.
+//! The distance between a polynomial and its linear interpolation is bounded by its second derivatives. Those of a
+//! Bézier curve or triangle are bounded by the second differences of its control points (G. Wang: *The subdivision
+//! method for finding the intersection between two Bézier curves or surfaces*, 1984; D. Filip, R. Magedson, R. Markot:
+//! *Surface algorithms using bounds on derivatives*, 1986).
+//!
+//! Differences are computed in object units and then bounded on screen. In clip space the difference of two points a
+//! and b on screen is (a.xy - b.xy / b.w * a.w) / a.w. So it is at most the largest |d.xy - s d.w| / w, where d = a -
+//! b, w is the least depth of the control points, and s is any value between their least and greatest x / w and y / w.
 
 use glam::{Vec2, Vec3};
 
 use super::factors::{Partitioning, round_pow2};
-use super::lod::{LodView, at_least_one, clip_row};
+use super::lod::{LodView, clip_row, max_with_one};
 use super::surface::ControlNet;
 use crate::mesh::MAX_LEVELS;
 
-/// How large differences between control points can look.
+/// Bounds on the depth and the screen position of a set of control points, from which the size of differences on screen
+/// is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
-    /// The least and the greatest depth (w); not nearer than the near plane, in front of which nothing is seen.
+pub struct ScreenBounds {
+    /// The least and the greatest depth (w). Depths nearer than the near plane count as the near plane's, since nothing
+    /// in front of it is visible.
     pub nearest: f32,
     pub farthest: f32,
-    /// Least and greatest x / w and y / w: of control points beyond the near plane, or of all that is in view where one
-    /// isn't.
+    /// The least and the greatest x / w and y / w, from -1 to 1 over the view: of the control points if all lie beyond
+    /// the near plane, otherwise at least those of the whole view.
     pub least: Vec2,
     pub greatest: Vec2,
     /// Whether a control point is nearer than the near plane.
     pub is_cut: bool,
 }
 
-/// The part of the tolerance that edges use up: the rest is for the rows beside them, which bend in other directions too.
+/// The part of the tolerance that edges may use up. The rest is for the rows of triangles beside them, which also bend
+/// in other directions.
 pub const EDGE_SHARE: f32 = 0.75;
 
-/// Of nothing: to be widened.
-fn no_sight() -> Sight {
-    Sight { nearest: 3.4e38, farthest: 0.0, least: Vec2::splat(3.4e38), greatest: Vec2::splat(-3.4e38), is_cut: false }
+/// Returns the bounds of no points, to be widened.
+fn no_bounds() -> ScreenBounds {
+    ScreenBounds {
+        nearest: 3.4e38,
+        farthest: 0.0,
+        least: Vec2::splat(3.4e38),
+        greatest: Vec2::splat(-3.4e38),
+        is_cut: false,
+    }
 }
 
-/// The same with one more control point.
-pub fn widen(view: &LodView, sight: Sight, p: Vec3) -> Sight {
+/// Widens the bounds to include a control point `p` in object units, wherever displacement moves it.
+pub fn widen(view: &LodView, bounds: ScreenBounds, p: Vec3) -> ScreenBounds {
     let clip = view.clip_from_object * p.extend(1.0);
     let depth = clip.w.max(clip.z);
     let place = Vec2::new(clip.x, clip.y) / depth;
-    // Displacement moves it towards the eye, away and across.
+    // How far displacement may move the point in depth, past the near plane, and across the view.
     let deep = clip_row(view, 3).length() * view.reach;
     let past_near = (clip_row(view, 3) - clip_row(view, 2)).length() * view.reach;
     let across = Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length()) * view.reach;
     let beyond = clip.z + past_near <= clip.w;
     let nearest = (clip.w - deep).max(clip.z);
     let spread = (across + place.abs() * deep) / nearest;
-    Sight {
-        nearest: sight.nearest.min(nearest),
-        farthest: sight.farthest.max(depth + deep),
-        least: sight.least.min(if beyond { place - spread } else { Vec2::NEG_ONE }),
-        greatest: sight.greatest.max(if beyond { place + spread } else { Vec2::ONE }),
-        is_cut: sight.is_cut || !beyond,
+    ScreenBounds {
+        nearest: bounds.nearest.min(nearest),
+        farthest: bounds.farthest.max(depth + deep),
+        least: bounds.least.min(if beyond { place - spread } else { Vec2::NEG_ONE }),
+        greatest: bounds.greatest.max(if beyond { place + spread } else { Vec2::ONE }),
+        is_cut: bounds.is_cut || !beyond,
     }
 }
 
-/// Of an edge's four control points.
-pub fn edge_sight(view: &LodView, [a, ab, ba, b]: [Vec3; 4]) -> Sight {
-    widen(view, widen(view, widen(view, widen(view, no_sight(), a), ab), ba), b)
+/// Returns the bounds of an edge's four control points.
+pub fn edge_bounds(view: &LodView, [a, ab, ba, b]: [Vec3; 4]) -> ScreenBounds {
+    widen(view, widen(view, widen(view, widen(view, no_bounds(), a), ab), ba), b)
 }
 
-/// Of a patch's ten.
-pub fn net_sight(view: &LodView, net: &ControlNet) -> Sight {
-    let mut sight = widen(view, no_sight(), net.center);
+/// Returns the bounds of a patch's ten control points.
+pub fn net_bounds(view: &LodView, net: &ControlNet) -> ScreenBounds {
+    let mut bounds = widen(view, no_bounds(), net.center);
     for k in 0..3 {
-        sight = widen(view, sight, net.corners[k]);
-        sight = widen(view, sight, net.edges[2 * k]);
-        sight = widen(view, sight, net.edges[2 * k + 1]);
+        bounds = widen(view, bounds, net.corners[k]);
+        bounds = widen(view, bounds, net.edges[2 * k]);
+        bounds = widen(view, bounds, net.edges[2 * k + 1]);
     }
-    sight
+    bounds
 }
 
-/// Of points that are `share` of something seen so, and otherwise of `own`, whose sight is a part of that.
-pub fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
+/// Returns the bounds of points that are weighted means: `share` (0 to 1) of a point within `other`, and the rest of a
+/// point within `own`. The bounds `own` must lie within `other`.
+pub fn mixed_bounds(own: ScreenBounds, other: ScreenBounds, share: f32) -> ScreenBounds {
     if other.is_cut {
-        // Its least depth is the near plane's, and points between may be nearer than that would make them.
+        // The true least depth isn't known: `nearest` was clamped to the near plane, and a mean of it would be too far.
         return other;
     }
     let nearest = own.nearest + share * (other.nearest - own.nearest);
-    // Places on screen are averages by depth.
+    // On screen, means are weighted by depth.
     let reach = (share * other.farthest / nearest).min(1.0);
-    Sight {
+    ScreenBounds {
         nearest,
         farthest: other.farthest,
         least: own.least + (other.least - own.least) * reach,
@@ -92,32 +104,36 @@ pub fn mixed_sight(own: Sight, other: Sight, share: f32) -> Sight {
     }
 }
 
-/// The most that a difference of two points can look, in px.
-pub fn seen_length(view: &LodView, sight: Sight, difference: Vec3) -> f32 {
+/// Returns a bound on the length on screen, in px, of the difference vector of two points. The vector is in object
+/// units.
+pub fn screen_length(view: &LodView, bounds: ScreenBounds, difference: Vec3) -> f32 {
     let across = Vec2::new(clip_row(view, 0).dot(difference), clip_row(view, 1).dot(difference));
     let deep = clip_row(view, 3).dot(difference);
-    let a = (across - sight.least * deep).abs();
-    let b = (across - sight.greatest * deep).abs();
-    // Divided first: squares of tiny lengths are none.
-    (a.max(b) / sight.nearest * view.half_viewport).length()
+    let a = (across - bounds.least * deep).abs();
+    let b = (across - bounds.greatest * deep).abs();
+    // Divide before the length is taken: squares of tiny numbers underflow.
+    (a.max(b) / bounds.nearest * view.half_viewport).length()
 }
 
-/// The most that a vector of this length in object units can look, in px.
-pub fn seen_radius(view: &LodView, sight: Sight, radius: f32) -> f32 {
+/// Returns a bound on the length on screen, in px, of any vector whose length is `radius` object units.
+pub fn screen_radius(view: &LodView, bounds: ScreenBounds, radius: f32) -> f32 {
     let across = Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length());
     let deep = clip_row(view, 3).length();
-    let most = sight.least.abs().max(sight.greatest.abs());
-    ((across + most * deep) * (radius / sight.nearest) * view.half_viewport).length()
+    let most = bounds.least.abs().max(bounds.greatest.abs());
+    ((across + most * deep) * (radius / bounds.nearest) * view.half_viewport).length()
 }
 
-/// The least level, `least` or more: a factor whose rows of points nest with those of all other levels. Levels are 1 to 5,
-/// 8, 16, 32 and 64, of these the powers of two or the even ones, or the odd 1, 3, 5, 9, 17 and 33.
+/// Returns the least *level* of `least` or more. A level is a factor whose rows of points nest with the rows of all
+/// other levels. What is beyond the last level is returned as it is, as a factor above 64, so that callers can tell.
 ///
-/// The tessellator joins rows of different numbers of segments as their points come up in one fixed order, in which each
-/// new point halves the widest gap. Rows of other numbers are uneven in that order, and triangles between them reach along
-/// the rows by up to five segments, which costs up to 25 times the error of one. Between levels it is one segment. What is
-/// beyond the last level is asked for as it is, so that one can tell.
-pub fn level(partitioning: Partitioning, least: f32) -> f32 {
+/// The levels are 1, 2, 3, 4, 5, 8, 16, 32 and 64 for integer factors, the powers of two among these for pow2, and the
+/// even powers of two for fractional-even. For fractional-odd they are 1, 3, 5, 9, 17 and 33.
+///
+/// The tessellator joins two rows with different numbers of segments in one fixed order, in which each new point halves
+/// the widest gap. Other numbers of segments are uneven in that order. Triangles between such rows reach along the rows
+/// by up to five segments, which costs up to 25 times the error of one segment. Between levels they reach by one
+/// segment.
+pub fn nesting_factor(partitioning: Partitioning, least: f32) -> f32 {
     let odd = partitioning == Partitioning::FractionalOdd;
     if least > if odd { 33.0 } else { 64.0 } {
         return least.max(64.5);
@@ -134,8 +150,9 @@ pub fn level(partitioning: Partitioning, least: f32) -> f32 {
     round_pow2(least)
 }
 
-/// Numbers of segments inside whose first ring nests with an edge of 5, 8, 9, 16, 17, 32, 33 or 64 segments: bit n - 1 for
-/// n, 1 to 32 in the first word. A test derives them from the tessellator.
+/// The numbers of segments inside whose first ring nests with an edge of 5, 8, 9, 16, 17, 32, 33 or 64 segments (one
+/// row each). Bit n - 1 stands for n segments; the first word has 1 to 32. A test derives the table from the
+/// tessellator.
 pub const NESTING: [[u32; 2]; 8] = [
     [0xfffff797, 0xffffffff],
     [0xffffe19f, 0xffffffff],
@@ -147,64 +164,70 @@ pub const NESTING: [[u32; 2]; 8] = [
     [0x8001819f, 0x80000001],
 ];
 
-/// Whether the first ring of a patch with `segments` inside nests with an edge of this level. With up to four segments
-/// every ring does; what is beyond the last level is no promise anyway.
+/// Returns whether the first ring of a patch with `segments` segments inside nests with an edge of the level `factor`.
+///
+/// Every ring nests with an edge of up to four segments. Beyond the last level the result doesn't matter, so it is
+/// true.
 pub fn nests(factor: f32, segments: u32) -> bool {
     if factor <= 4.0 || factor > 64.0 {
         return true;
     }
-    // 5, 8, 9, 16, 17, 32, 33, 64.
+    // The factor is 5, 8, 9, 16, 17, 32, 33 or 64: a power of two, or one more than a power of two.
     let power = round_pow2(factor);
     let above = if factor == power { 0 } else { 1 };
-    // Of the power of two below or at it: 4, 8, 16, 32, 64.
+    // The exponent of that power of two: 4, 8, 16, 32 or 64.
     let exponent = ((power.to_bits() >> 23) - 127) - above;
     let words = NESTING[(2 * exponent + above - 5) as usize];
     let bit = segments - 1;
     (words[(bit >> 5) as usize] >> (bit & 31)) & 1 == 1
 }
 
-/// The fewest segments that keep an edge within `tolerance` px of its cubic: sqrt(3/4 d / tolerance), d the larger second
-/// difference (Wang 1984).
+/// Returns the least factor (not rounded, 1 or more) that keeps an edge within `tolerance` px of its cubic curve:
+/// sqrt(3/4 d / tolerance), where d is the larger second difference on screen in px (Wang 1984).
 pub fn edge_error_factor(view: &LodView, tolerance: f32, control_points: [Vec3; 4]) -> f32 {
-    let sight = edge_sight(view, control_points);
+    let bounds = edge_bounds(view, control_points);
     let [a, ab, ba, b] = control_points;
-    let near_a = seen_length(view, sight, a - ab * 2.0 + ba);
-    let near_b = seen_length(view, sight, ab - ba * 2.0 + b);
-    at_least_one((0.75 * near_a.max(near_b) / tolerance).sqrt())
+    let near_a = screen_length(view, bounds, a - ab * 2.0 + ba);
+    let near_b = screen_length(view, bounds, ab - ba * 2.0 + b);
+    max_with_one((0.75 * near_a.max(near_b) / tolerance).sqrt())
 }
 
-/// Of the tolerance, where a surface is displaced: for the surface below, for what its heights lose between segments, and
-/// for the turn of the direction in which they stand.
+/// The shares of the tolerance where a surface is displaced: for the surface without displacement, for the detail of
+/// the heights that is lost between segments, and for the turning of the direction of displacement.
 pub const SURFACE_SHARE: f32 = 0.5;
 pub const DETAIL_SHARE: f32 = 0.3;
 pub const TURN_SHARE: f32 = 0.2;
 
-/// The fewest segments that show one image's heights over an edge, which is `texels` px long there: as fine as the image's
-/// coarsest level whose loss (`detail`, times `scale` in object units) is within its share of the tolerance, and as the turn
-/// of the directions at its ends (the distance between them) asks for. An estimate: between its px an image may rise by
-/// more than its levels tell.
-pub fn relief_factor(
+/// Returns the least factor (not rounded, 1 or more) that shows the heights of one image along an edge, which is
+/// `texels` px of level 0 long.
+///
+/// Segments are as long as the px of the coarsest mip level whose loss is within its share of the tolerance. `detail`
+/// has the loss of each level, which becomes object units when multiplied by `scale`. They are also short enough for
+/// the turning of the direction of displacement: `turn` is the distance between the unit directions at the edge's ends.
+/// This is an estimate: between two px an image may rise by more than its levels tell.
+pub fn displacement_factor(
     view: &LodView,
-    sight: Sight,
+    bounds: ScreenBounds,
     tolerance: f32,
     texels: f32,
     turn: f32,
     scale: f32,
     detail: [f32; MAX_LEVELS],
 ) -> f32 {
-    // An arc's rise over its chord is an eighth of the angle's square, of which the distance is at least 2/3.
-    let bend = seen_radius(view, sight, view.reach * 0.28125 * turn * turn);
+    // The sagitta of an arc of radius 1 is an eighth of the squared angle, and `turn` is at least 2/3 of the angle:
+    // 9/4 * 1/8 = 0.28125.
+    let bend = screen_radius(view, bounds, view.reach * 0.28125 * turn * turn);
     let mut segments = texels;
     for lost in &detail[1..] {
-        if seen_radius(view, sight, scale * lost) > DETAIL_SHARE * tolerance {
+        if screen_radius(view, bounds, scale * lost) > DETAIL_SHARE * tolerance {
             break;
         }
         segments *= 0.5;
     }
-    at_least_one(segments.max((bend / (TURN_SHARE * tolerance)).sqrt()))
+    max_with_one(segments.max((bend / (TURN_SHARE * tolerance)).sqrt()))
 }
 
-/// The control point with these three indices, in any order: (0, 0, 1) is b210.
+/// Returns the control point with these three indices (0 to 2), in any order: (0, 0, 1) is b210.
 pub fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
     if i == j && j == l {
         return net.corners[i];
@@ -212,14 +235,17 @@ pub fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
     if i != j && j != l && l != i {
         return net.center;
     }
-    // The index that comes twice, and the other.
+    // The index that occurs twice, and the one that occurs once.
     let twice = if i == j || i == l { i } else { j };
     let once = i + j + l - 2 * twice;
     if once == (twice + 1) % 3 { net.edges[2 * twice] } else { net.edges[2 * once + 1] }
 }
 
-/// A sixth of a patch's second derivatives at corner `i`: twice along the edge opposite corner `k`; along it and inward,
-/// which is 2/3 of the median towards `k`, as far in as the tessellator puts a ring for each segment; and twice inward.
+/// Returns a sixth of a patch's second derivatives at corner `i`, in object units: twice along the edge opposite corner
+/// `k`; once along it and once inward; twice inward.
+///
+/// *Inward* is the vector of 2/3 of the median towards corner `k`. For each segment the tessellator places a ring that
+/// far inside.
 pub fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
@@ -235,24 +261,27 @@ pub fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
     [along, mixed, inward]
 }
 
-/// The largest of them at any corner as they are seen, in px; and the largest along the diagonals of a segment each way.
-pub fn seen_differences(view: &LodView, sight: Sight, net: &ControlNet, k: usize) -> [f32; 4] {
+/// Returns bounds on the three [`second_differences`] at any corner, in px on screen, then a bound on those along both
+/// diagonals of a segment.
+pub fn screen_differences(view: &LodView, bounds: ScreenBounds, net: &ControlNet, k: usize) -> [f32; 4] {
     let mut largest = [0.0; 4];
     for i in 0..3 {
         let [along, mixed, inward] = second_differences(net, i, k);
-        let rising = seen_length(view, sight, along + mixed * 2.0 + inward);
-        let falling = seen_length(view, sight, along - mixed * 2.0 + inward);
-        largest[0] = seen_length(view, sight, along).max(largest[0]);
-        largest[1] = seen_length(view, sight, mixed).max(largest[1]);
-        largest[2] = seen_length(view, sight, inward).max(largest[2]);
+        let rising = screen_length(view, bounds, along + mixed * 2.0 + inward);
+        let falling = screen_length(view, bounds, along - mixed * 2.0 + inward);
+        largest[0] = screen_length(view, bounds, along).max(largest[0]);
+        largest[1] = screen_length(view, bounds, mixed).max(largest[1]);
+        largest[2] = screen_length(view, bounds, inward).max(largest[2]);
         largest[3] = rising.max(falling).max(largest[3]);
     }
     largest
 }
 
-/// The bound on the error of a triangle with such second differences along its sides, in px. A quadratic function's error is
-/// half the sum of its second derivatives along the sides, each times the weights of its ends; at most, 3 times the squared
-/// radius of the least circle around a triangle whose squared sides these are.
+/// Returns a bound on the error, in px, of a triangle with these second differences along its sides.
+///
+/// The error of a quadratic function is half the sum of its second derivatives along the sides, each multiplied by the
+/// weights of the side's ends. Its maximum is 3 times the squared radius of the smallest circle around a triangle whose
+/// squared sides are the second differences.
 pub fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
     let most = a.max(b).max(c);
     let least = a.min(b).min(c);
@@ -264,69 +293,84 @@ pub fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
     3.0 * most / (4.0 - (more / least) * (more / middle))
 }
 
-/// The bound on the error of triangles that reach so far along an edge and inward, and whose sides across the row lean so
-/// far along it, in px (Filip et al. 1986): 6/8 of second differences. A thousandth more, as points of the domain are
-/// rounded to 16.16.
-pub fn row_error(seen: [f32; 3], reach: f32, slant: f32, height: f32) -> f32 {
-    0.751 * (seen[0] * reach * reach + 2.0 * seen[1] * slant * height + seen[2] * height * height)
+/// Returns a bound on the error, in px, of a row of triangles beside an edge: 6/8 of the second differences `on_screen`
+/// (Filip et al. 1986).
+///
+/// The triangles reach `reach` along the edge and `height` inward, and their sides across the row lean by `slant` along
+/// the edge, all in parts of the edge and of the inward vector. 1/1000 is added, since domain points are rounded to
+/// 16.16.
+pub fn row_error(on_screen: [f32; 3], reach: f32, slant: f32, height: f32) -> f32 {
+    0.751 * (on_screen[0] * reach * reach + 2.0 * on_screen[1] * slant * height + on_screen[2] * height * height)
 }
 
-/// The bound for all rows between rings if there are `segments` inside, whose triangles have one side along the edge, one
-/// inward and one across; and for the triangle in the middle, which has three sides along edges. A thousandth more, as
-/// points of the domain are rounded to 16.16. Second differences as seen, for each edge.
-pub fn inner_error(seen: [[f32; 4]; 3], segments: f32) -> f32 {
-    let mut worst = triangle_error(seen[0][0], seen[1][0], seen[2][0]);
-    for own in seen {
+/// Returns a bound on the error, in px, of all triangles inside the first ring if the patch has `segments` segments
+/// inside. `on_screen` has the [`screen_differences`] of each edge.
+///
+/// The triangles between rings have one side along the edge, one inward and one across. The triangle in the middle has
+/// three sides along edges. 1/1000 is added, since domain points are rounded to 16.16.
+pub fn inner_error(on_screen: [[f32; 4]; 3], segments: f32) -> f32 {
+    let mut worst = triangle_error(on_screen[0][0], on_screen[1][0], on_screen[2][0]);
+    for own in on_screen {
         worst = worst.max(triangle_error(own[0], own[2], own[3]));
     }
     1.001 * worst / (segments * segments)
 }
 
-/// What the row along an edge has of its own: how the edge is seen, and the second differences along it, and along it and
-/// inward, at its ends and at the corner opposite.
+/// What the error of the row of triangles along an edge depends on: the bounds of the edge itself, and the second
+/// differences along it (`along`), and along it and inward (`mixed`), at its two ends and at the opposite corner.
 #[derive(Clone, Copy, Debug)]
-pub struct Rim {
-    pub sight: Sight,
+pub struct EdgeRow {
+    pub bounds: ScreenBounds,
     pub along: [Vec3; 3],
     pub mixed: [Vec3; 3],
 }
 
-/// Of the edge opposite corner `k`.
-pub fn edge_rim(view: &LodView, net: &ControlNet, k: usize) -> Rim {
+/// Returns these of the edge opposite corner `k`.
+pub fn edge_row(view: &LodView, net: &ControlNet, k: usize) -> EdgeRow {
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
     let edge = [net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]];
     let own = [p, q, k].map(|corner| second_differences(net, corner, k));
-    Rim { sight: edge_sight(view, edge), along: own.map(|own| own[0]), mixed: own.map(|own| own[1]) }
+    EdgeRow { bounds: edge_bounds(view, edge), along: own.map(|own| own[0]), mixed: own.map(|own| own[1]) }
 }
 
-/// The most that differences look, of which the last has no more than this share, in px.
-pub fn rim_length(view: &LodView, beside: Sight, differences: [Vec3; 3], share: f32) -> f32 {
-    let [at_p, at_q, at_k] = differences.map(|difference| seen_length(view, beside, difference));
+/// Returns a bound, in px on screen, on weighted means of three differences of which the last has a weight of at most
+/// `share`.
+pub fn edge_row_length(view: &LodView, beside: ScreenBounds, differences: [Vec3; 3], share: f32) -> f32 {
+    let [at_p, at_q, at_k] = differences.map(|difference| screen_length(view, beside, difference));
     let own = at_p.max(at_q);
     own + share * (at_k - own).max(0.0)
 }
 
-/// The bound for the row along an edge, which has `factor` segments, while there are `segments` inside. The row is 2/3 of a
-/// segment high; of its points' control points the third corner's share is small, so that differences are about the edge's
-/// and are seen about as it is. `sight` and `seen` are the whole patch's, the latter for this edge.
-pub fn rim_error(view: &LodView, rim: Rim, sight: Sight, seen: [f32; 4], factor: f32, segments: f32) -> f32 {
+/// Returns a bound on the error, in px, of the row along an edge of `factor` segments if the patch has `segments`
+/// segments inside. `bounds` is the whole patch's; `on_screen` has the [`screen_differences`] for this edge.
+///
+/// The row is 2/3 of a segment high. In its points the weight of the opposite corner is small, so the differences there
+/// are nearly the edge's own and nearly as large on screen.
+pub fn edge_row_error(
+    view: &LodView,
+    row: EdgeRow,
+    bounds: ScreenBounds,
+    on_screen: [f32; 4],
+    factor: f32,
+    segments: f32,
+) -> f32 {
     let share = (2.0 / 3.0) / segments;
     let outside = 1.0 - (1.0 - share) * (1.0 - share) * (1.0 - share);
-    let beside = mixed_sight(rim.sight, sight, outside);
-    let along = rim_length(view, beside, rim.along, share);
-    let mixed = rim_length(view, beside, rim.mixed, share);
+    let beside = mixed_bounds(row.bounds, bounds, outside);
+    let along = edge_row_length(view, beside, row.along, share);
+    let mixed = edge_row_length(view, beside, row.mixed, share);
     let size = 1.0 / segments;
     let reach = size.max(1.0 / factor);
-    // An edge of one segment is the side of one triangle, to the middle of the row, and half of the others start at either
-    // end.
+    // An edge of one segment is a side of only one triangle, which ends in the middle of the row. Half of the other
+    // triangles start at each end of the edge.
     let slant = if factor <= 1.0 { 0.5 + 0.5 * size } else { reach };
-    row_error([along, mixed, seen[2]], reach, slant, size)
+    row_error([along, mixed, on_screen[2]], reach, slant, size)
 }
 
-/// The least number of segments, `least` or more, that a partitioning has without fractions: 1, 2, 4 and so on, or even,
-/// or odd ones.
-pub fn whole(partitioning: Partitioning, least: f32) -> f32 {
+/// Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number,
+/// a power of two, or an odd or even number.
+pub fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
     match partitioning {
         Partitioning::Integer | Partitioning::Subtriangulation => least.ceil(),
         Partitioning::Pow2 => round_pow2(least),
@@ -335,9 +379,10 @@ pub fn whole(partitioning: Partitioning, least: f32) -> f32 {
     }
 }
 
-/// The fewest segments inside that keep a patch within `tolerance` px of its surface, given the levels of the edges
-/// U == 0, V == 0 and W == 0; of numbers that the partitioning has, and that nest with the edges. More than 64 where none
-/// does, so that one can tell.
+/// Returns the least inside factor that keeps a patch within `tolerance` px of its surface, given the levels of the
+/// edges U == 0, V == 0 and W == 0. The result is above 64 if no factor does.
+///
+/// Only numbers of segments are tried that the partitioning has and that nest with the edges.
 pub fn inside_error_factor(
     view: &LodView,
     tolerance: f32,
@@ -345,35 +390,36 @@ pub fn inside_error_factor(
     net: &ControlNet,
     edges: [f32; 3],
 ) -> f32 {
-    let sight = net_sight(view, net);
-    let seen = [0, 1, 2].map(|k| seen_differences(view, sight, net, k));
+    let bounds = net_bounds(view, net);
+    let on_screen = [0, 1, 2].map(|k| screen_differences(view, bounds, net, k));
     let minimal = edges[0].max(edges[1]).max(edges[2]) <= 1.0;
-    let single = inner_error(seen, 1.0);
+    let single = inner_error(on_screen, 1.0);
     if minimal && single <= tolerance {
         return 1.0;
     }
-    let all = [0, 1, 2].map(|k| edge_rim(view, net, k));
-    // Errors fall with the square of the number of segments. One alone would act as two.
+    let all = [0, 1, 2].map(|k| edge_row(view, net, k));
+    // Errors fall with the square of the number of segments. The tessellator treats 1 segment inside as 2.
     let least = (single / tolerance).sqrt().max(2.0);
     let last = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
-    let mut inside = whole(partitioning, least);
+    let mut inside = whole_segments(partitioning, least);
     while inside <= last && least <= last {
         let segments = inside as u32;
         if nests(edges[0], segments) && nests(edges[1], segments) && nests(edges[2], segments) {
-            let mut rims = 0.0f32;
+            let mut rows = 0.0f32;
             for (k, factor) in edges.into_iter().enumerate() {
-                rims = rims.max(rim_error(view, all[k], sight, seen[k], factor, inside));
+                rows = rows.max(edge_row_error(view, all[k], bounds, on_screen[k], factor, inside));
             }
-            if rims <= tolerance {
+            if rows <= tolerance {
                 return inside;
             }
         }
         if inside == last {
             break;
         }
-        inside = whole(partitioning, inside + 1.0).min(last);
+        inside = whole_segments(partitioning, inside + 1.0).min(last);
     }
     least.max(64.5)
 }
+
 #[cfg(test)]
 mod tests;

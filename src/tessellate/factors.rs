@@ -1,6 +1,7 @@
-//! Tessellation factors, from what an application asks for to what the fixed-function tessellator works with.
+//! Tessellation factors: from the numbers that a hull shader writes to the fixed-point words that the fixed-function
+//! tessellator works with, and the numbers of points and triangles that they give.
 //!
-//! Everything here is integer arithmetic, also on the bits of an `f32`, so that CPU and GPU agree to the last bit
+//! Everything here is integer arithmetic, on the bits of `f32` numbers too. So CPU and GPU agree to the last bit,
 //! whatever the GPU's compiler assumes about NaN, infinity and denormals. Twin: `shaders/factors.wgsl`.
 //!
 //! Source: D3D11.3 Functional Specification, sections 10.10 and 11.7.3 to 11.7.14.
@@ -11,15 +12,16 @@ use bytemuck::{Pod, Zeroable};
 pub const FIXED_ONE: u32 = 0x1_0000;
 /// 0.5 in 16.16 fixed point.
 pub const FIXED_HALF: u32 = 0x8000;
-/// The bit of a factor's word that says "odd": a row with an even number of points.
+/// The bit of a factor's word that marks odd parity: a row with an odd number of segments.
 pub const FACTOR_ODD: u32 = 0x8000_0000;
 
-/// The bits of a factor's word that are the factor.
+/// The bits of a factor's word that hold the factor, in 16.16 fixed point.
 pub const FACTOR_VALUE: u32 = 0x7f_ffff;
-/// The bit of an inside factor's word that says that the patch is subtriangulated: see `subtriangulation.rs`.
+/// The bit of an inside factor's word that marks a subtriangulated patch: see `subtriangulation.rs`.
 pub const SUBTRIANGULATED: u32 = 0x4000_0000;
 
-/// `f32` bit patterns. Those of positive numbers are ordered as the numbers are; NaN and negatives lie above them all.
+/// Bit patterns of `f32` numbers. Those of positive numbers are in the order of the numbers; those of NaN and of
+/// negative numbers are greater than all of them.
 pub(crate) const BITS_ONE: u32 = 0x3f80_0000;
 pub(crate) const BITS_TWO: u32 = 0x4000_0000;
 pub(crate) const BITS_63: u32 = 0x427c_0000;
@@ -55,35 +57,37 @@ impl Partitioning {
     pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 }
 
-/// A patch's factors as the tessellator uses them. Each word is a factor of 1..=64 in 16.16 fixed point, clamped and
-/// rounded, with [`FACTOR_ODD`] set where its parity is odd. Of a culled patch the edges' are zeros, and the inside's says
-/// why (see `cull.rs`): 0 where its own factors cull it. Of a subtriangulated patch all four are one number, and the
-/// inside's has [`SUBTRIANGULATED`] set.
+/// A patch's factors as the tessellator uses them. Each word is a factor of 1 to 64 in 16.16 fixed point, clamped and
+/// rounded, with [`FACTOR_ODD`] set if its parity is odd.
+///
+/// In a culled patch the edges' words are 0, and the inside's word says why (see `cull.rs`): 0 if its own factors cull
+/// it. In a subtriangulated patch all four are the same number, and the inside's word has [`SUBTRIANGULATED`] set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchFactors {
-    /// The edges U == 0, V == 0 and W == 0.
+    /// The words of the edges U == 0, V == 0 and W == 0.
     pub outside: [u32; 3],
     pub inside: u32,
 }
 
-/// Whether an `f32` with these bits is greater than zero. Denormals are, NaN is not.
+/// Returns whether an `f32` with these bits is greater than zero. Denormals are; NaN isn't.
 fn positive_bits(bits: u32) -> bool {
     bits.wrapping_sub(1) < BITS_INFINITY
 }
 
-/// The smallest factor of a partitioning, as `f32` bits.
+/// Returns the smallest factor of a partitioning, as `f32` bits.
 fn factor_lower_bound(partitioning: Partitioning) -> u32 {
     if partitioning == Partitioning::FractionalEven { BITS_TWO } else { BITS_ONE }
 }
 
-/// The largest factor of a partitioning, as `f32` bits.
+/// Returns the largest factor of a partitioning, as `f32` bits.
 fn factor_upper_bound(partitioning: Partitioning) -> u32 {
     if partitioning == Partitioning::FractionalOdd { BITS_63 } else { BITS_64 }
 }
 
-/// The word of a factor of 1..=64, given as `f32` bits: rounded up to a whole number, or to the nearest 1/65536 with
-/// ties to even, with the parity that the partitioning gives it.
+/// Returns the word of a factor of 1 to 64, given as `f32` bits. The factor is rounded up to a whole number or, in the
+/// fractional partitionings, to the nearest 1/65536 with ties to even. Its parity is that of the partitioning, or of
+/// the whole number.
 fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
     let exponent = (bits >> 23) - 127;
     let mantissa = (bits & 0x7f_ffff) | 0x80_0000;
@@ -98,17 +102,19 @@ fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
     fixed | if partitioning == Partitioning::FractionalOdd { FACTOR_ODD } else { 0 }
 }
 
-/// As [`factor_word`], for the inside factor: rounded up to 1 it counts as even, and acts as 2.
+/// Returns the word of an inside factor: as [`factor_word`], but a whole 1 counts as even, since it acts as 2.
 fn inside_word(partitioning: Partitioning, bits: u32) -> u32 {
     let word = factor_word(partitioning, bits);
     let even_one = partitioning != Partitioning::FractionalOdd && word == (FACTOR_ODD | FIXED_ONE);
     if even_one { FIXED_ONE } else { word }
 }
 
-/// What the tessellator makes of a patch's factors (11.7.3 to 11.7.10): culls the patch if an edge's factor is not
-/// greater than zero, clamps to what the partitioning allows, and rounds to fixed point. `edges` are U == 0, V == 0 and
-/// W == 0. The inside factor never culls: NaN and anything too small act as the smallest. Under subtriangulation the
-/// largest edge factor counts for all, and the inside's for nothing.
+/// Returns what the tessellator makes of a patch's factors (sections 11.7.3 to 11.7.10). `edges` are the factors of the
+/// edges U == 0, V == 0 and W == 0.
+///
+/// The patch is culled if an edge's factor isn't greater than zero. Factors are clamped to what the partitioning allows
+/// and rounded to fixed point. The inside factor never culls: NaN and too small numbers act as the smallest factor.
+/// Under subtriangulation the largest edge factor is used for everything, and the inside factor is ignored.
 pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> PatchFactors {
     let bits = edges.map(f32::to_bits);
     if !(positive_bits(bits[0]) && positive_bits(bits[1]) && positive_bits(bits[2])) {
@@ -123,7 +129,7 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
         let word = factor_word(partitioning, largest);
         return PatchFactors { outside: [word; 3], inside: word | SUBTRIANGULATED };
     }
-    // An odd patch with any edge split needs an inner ring, if only a collapsed one.
+    // An odd patch with a divided edge needs a ring inside, though it may have collapsed to a point.
     let splits = partitioning == Partitioning::FractionalOdd && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = if splits { BITS_ONE_AND_STEP } else { low };
     let inside_bits = if positive_bits(inside.to_bits()) { inside.to_bits() } else { 0 };
@@ -133,74 +139,75 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
     }
 }
 
-/// The factor that a shader compiler hands to the tessellator for pow2: clamped to 1..=64, then rounded up to a power
-/// of two. What culls a patch (NaN, zero, negatives) stays as it is.
+/// Returns the factor that a shader compiler passes to the tessellator under pow2: clamped to 1 to 64, then rounded up
+/// to a power of two. Factors that cull a patch (NaN, zero, negative numbers) are returned unchanged.
 pub fn round_pow2(factor: f32) -> f32 {
     let bits = factor.to_bits();
     if !positive_bits(bits) {
         return factor;
     }
     let clamped = bits.clamp(BITS_ONE, BITS_64);
-    // A carry out of the mantissa lands in the exponent.
+    // The sum carries from the mantissa into the exponent.
     f32::from_bits((clamped + 0x7f_ffff) & 0x7f80_0000)
 }
 
-/// Whether the patch is culled: no points, no triangles.
+/// Returns whether the patch is culled: it has no points and no triangles.
 pub fn patch_is_culled(factors: PatchFactors) -> bool {
     factors.outside[0] == 0
 }
 
-/// Whether the patch is cut by uniform subtriangulation, and not by Direct3D's tessellator.
+/// Returns whether the patch is cut by uniform subtriangulation instead of Direct3D's tessellator.
 pub fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
     !patch_is_culled(factors) && factors.inside & SUBTRIANGULATED != 0
 }
 
-/// Whether the patch is its own three corners and nothing more: all factors 1.
+/// Returns whether all factors are 1, so that the patch is one triangle.
 pub fn patch_is_minimal(factors: PatchFactors) -> bool {
     let edges_are_one = factors.outside == [FACTOR_ODD | FIXED_ONE; 3];
     edges_are_one && (factors.inside & FACTOR_VALUE) == FIXED_ONE
 }
 
-/// Whether the patch is drawn with factors that are all below 2, so that drawing it untessellated would hardly show.
+/// Returns whether the patch is drawn and all its factors are below 2: without tessellation it would look nearly the
+/// same.
 pub fn patch_is_low(factors: PatchFactors) -> bool {
     let low = |word: u32| word & FACTOR_VALUE < 2 * FIXED_ONE;
     !patch_is_culled(factors) && factors.outside.into_iter().all(low) && low(factors.inside)
 }
 
-/// 1 where the word's parity is odd, else 0.
+/// Returns 1 if the word's parity is odd, else 0.
 pub fn odd_parity(word: u32) -> u32 {
     word >> 31
 }
 
-/// The number of segments from an end of a row to its middle, in 16.16 fixed point: the fraction is how far the newest
-/// one has grown. An odd row's middle segment counts as whole.
+/// Returns the number of segments from an end of a row to its middle, in 16.16 fixed point. The fraction is how far the
+/// newest segment has grown. The middle segment of an odd row counts as a whole one.
 pub fn half_factor(word: u32) -> u32 {
     let half = ((word & FACTOR_VALUE) + 1) >> 1;
     let rounds_up = odd_parity(word) == 1 || half == FIXED_HALF;
     if rounds_up { half + FIXED_HALF } else { half }
 }
 
-/// [`half_factor`] rounded up: segments of half a row, the middle one of an odd row counted.
+/// Returns [`half_factor`] rounded up: the segments of half a row, with the middle one of an odd row.
 pub fn half_segments(word: u32) -> u32 {
     (half_factor(word) + (FIXED_ONE - 1)) >> 16
 }
 
-/// The number of segments of an edge's row: one less than its points.
+/// Returns the number of segments of an edge: one less than its points.
 pub fn segments(word: u32) -> u32 {
     2 * half_segments(word) - odd_parity(word)
 }
 
-/// The number of segments of the inside row: at least 3 where odd, 2 where even.
+/// Returns the number of segments inside: at least 3 if odd, at least 2 if even.
 pub fn inside_segments(word: u32) -> u32 {
     segments(word).max(2 + odd_parity(word))
 }
 
-/// The number of points on the patch's outline: each edge without its last point.
+/// Returns the number of points on the patch's outline.
 pub fn outer_count(factors: PatchFactors) -> u32 {
     segments(factors.outside[0]) + segments(factors.outside[1]) + segments(factors.outside[2])
 }
 
-/// The number of domain points of the patch.
+/// Returns the number of domain points of the patch.
 pub fn point_count(factors: PatchFactors) -> u32 {
     if patch_is_culled(factors) {
         return 0;
@@ -212,12 +219,12 @@ pub fn point_count(factors: PatchFactors) -> u32 {
         let n = segments(factors.inside);
         return ((n + 1) * (n + 2)) >> 1;
     }
-    // The rings inside hold 3 R^2 points (odd) or 3 R (R + 1) + 1 (even, with the centre), R = (n - 1) / 2.
+    // With R = (n - 1) / 2 rounded down, the rings inside have 3 R^2 points if n is odd, and 3 R (R + 1) + 1 if it is even.
     let n = inside_segments(factors.inside);
     outer_count(factors) + ((3 * (n - 1) * (n - 1) + 1) >> 2)
 }
 
-/// The number of triangles of the patch.
+/// Returns the number of triangles of the patch.
 pub fn triangle_count(factors: PatchFactors) -> u32 {
     if patch_is_culled(factors) {
         return 0;

@@ -1,4 +1,5 @@
-//! How many segments an edge gets. Twin: `shaders/lod.wgsl`.
+//! Level of detail: the tessellation factor of an edge, by its length on screen or its distance from the eye. Twin:
+//! `shaders/lod.wgsl`. LOD by error is in `error.rs`.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
@@ -22,65 +23,69 @@ pub enum Lod {
     Distance = 4,
 }
 
-/// The view that adaptive factors and clipping are computed for.
+/// The view that LOD and clipping are computed for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LodView {
-    /// Object units to clip space.
+    /// The matrix from object units to clip space, with reversed depth.
     pub clip_from_object: Mat4,
     /// Half the viewport's width and height, in px.
     pub half_viewport: Vec2,
-    /// How far what is emitted may be from the surface, in object units: it is displaced.
+    /// The largest distance in object units by which displacement moves a point.
     pub reach: f32,
-    /// Object units.
+    /// The position of the eye in object units.
     pub eye: Vec3,
-    /// The mesh's bounding radius in object units: distances to the eye are measured in it.
+    /// The mesh's bounding radius in object units, in which LOD distances are counted.
     pub radius: f32,
 }
 
 impl LodView {
-    /// Of a mesh of radius 1 around an eye at the origin.
+    /// Builds the view of a mesh of bounding radius 1 without displacement. The eye is at the origin.
     pub const fn new(clip_from_object: Mat4, half_viewport: Vec2) -> Self {
         Self { clip_from_object, half_viewport, reach: 0.0, eye: Vec3::ZERO, radius: 1.0 }
     }
 }
 
-/// The position on screen in segments: px from the centre over px per segment. Divides by w as the paper does, so
-/// points behind the eye land on the wrong side.
+/// Returns a position on screen, from the middle of the view, in segments of `pixels_per_segment` px.
+///
+/// Like the white paper, it divides by w, so points behind the eye are mirrored.
 pub fn project_and_scale(view: &LodView, pixels_per_segment: f32, position: Vec3) -> Vec2 {
     let clip = view.clip_from_object * position.extend(1.0);
     glam::vec2(clip.x, clip.y) / clip.w * view.half_viewport / pixels_per_segment
 }
 
-/// At least 1, and 1 for what is no number: the length of an edge through the eye's plane may be none. By its bits, since
-/// a shader's `max` may give either side of such a comparison.
-pub fn at_least_one(length: f32) -> f32 {
+/// Returns `length`, but 1 if it is less than 1 or NaN. The length of an edge through the eye's plane may be NaN.
+///
+/// NaN is recognised by its bits, since a shader's `max` with NaN may return either argument.
+pub fn max_with_one(length: f32) -> f32 {
     let is_nan = length.to_bits() & 0x7fff_ffff > 0x7f80_0000;
     if is_nan || length < 1.0 { 1.0 } else { length }
 }
 
-/// The factor of the edge with these four control points, in the edge's own direction (`ComputeEdgeLOD` of the paper).
+/// Returns the white paper's factor of an edge with these four control points (`ComputeEdgeLOD` of McDonald and Kilgard
+/// 2010): the length of its control polygon on screen, in segments. The points must be in the edge's own direction.
 pub fn paper_edge_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
     let [a, ab, ba, b] = control_points.map(|p| project_and_scale(view, pixels_per_segment, p));
-    at_least_one(a.distance(ab) + ab.distance(ba) + ba.distance(b))
+    max_with_one(a.distance(ab) + ab.distance(ba) + ba.distance(b))
 }
 
-/// Whether a clip-space position lies on the near plane or beyond (depth is reversed: z = w there).
+/// Returns whether a clip-space position lies on the near plane or beyond. Depth is reversed: z = w on the near plane.
 pub fn beyond_near(clip: Vec4) -> bool {
     clip.z <= clip.w
 }
 
-/// The direction in which a clip-space coordinate (0 to 3: x, y, z, w) grows, times its growth a unit.
+/// Returns the gradient of a clip-space coordinate (0 to 3 for x, y, z, w) in object space.
 pub fn clip_row(view: &LodView, row: usize) -> Vec3 {
     view.clip_from_object.row(row).truncate()
 }
 
-/// Px that a unit across the view covers at depth (w) 1.
+/// Returns how many px an object unit across the view covers at depth w = 1.
 pub fn pixels_per_unit(view: &LodView) -> f32 {
     (clip_row(view, 0).length() * view.half_viewport.x).max(clip_row(view, 1).length() * view.half_viewport.y)
 }
 
-/// The factor of an edge that is not all beyond the near plane: the length of its control polygon in px, seen across at
-/// the nearest depth of the sphere around its control points; 1 if that sphere is all nearer than the near plane.
+/// Returns the factor of an edge that isn't completely beyond the near plane: the length of its control polygon in
+/// segments, as if it lay across the view at the nearest depth of a sphere around the control points. If the whole
+/// sphere is nearer than the near plane, the factor is 1.
 pub fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]: [Vec3; 4]) -> f32 {
     let center = (a + b) * 0.5;
     let radius = a.distance(center).max(ab.distance(center)).max(ba.distance(center)) + view.reach;
@@ -92,10 +97,10 @@ pub fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]:
     }
     let nearest = (clip.w - radius * depth.length()).max(clip.z);
     let length = a.distance(ab) + ab.distance(ba) + ba.distance(b);
-    at_least_one(length * pixels_per_unit(view) / nearest / pixels_per_segment)
+    max_with_one(length * pixels_per_unit(view) / nearest / pixels_per_segment)
 }
 
-/// The paper's factor where all four control points lie beyond the near plane, else [`near_edge_factor`].
+/// Returns [`paper_edge_factor`] if all four control points lie beyond the near plane, otherwise [`near_edge_factor`].
 pub fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
     let beyond = |p: Vec3| beyond_near(view.clip_from_object * p.extend(1.0));
     if control_points.into_iter().all(beyond) {
@@ -104,16 +109,18 @@ pub fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_point
     near_edge_factor(view, pixels_per_segment, control_points)
 }
 
-/// The factor of a point: `factor` up to a distance of `near` bounding radii from the eye, 1 from `far` on, and linear
-/// between.
-pub fn distance_at(view: &LodView, factor: f32, near: f32, far: f32, p: Vec3) -> f32 {
+/// Returns the factor of a point `p` in object units: `factor` up to a distance of `near` bounding radii from the eye,
+/// 1 from `far` bounding radii on, and linear between.
+pub fn point_distance_factor(view: &LodView, factor: f32, near: f32, far: f32, p: Vec3) -> f32 {
     let part = (far - p.distance(view.eye) / view.radius) / (far - near);
     1.0 + (factor - 1.0) * part.clamp(0.0, 1.0)
 }
 
-/// The factor of an edge: the mean of its ends'.
+/// Returns the factor of an edge under LOD by distance: the mean of the factors at its ends.
 pub fn distance_factor(view: &LodView, factor: f32, near: f32, far: f32, [a, _, _, b]: [Vec3; 4]) -> f32 {
-    at_least_one(0.5 * (distance_at(view, factor, near, far, a) + distance_at(view, factor, near, far, b)))
+    max_with_one(
+        0.5 * (point_distance_factor(view, factor, near, far, a) + point_distance_factor(view, factor, near, far, b)),
+    )
 }
 
 #[cfg(test)]
@@ -123,7 +130,7 @@ mod tests {
     #[test]
     fn factors_fall_linearly_with_distance_and_are_the_mean_of_the_ends() {
         let view = LodView { radius: 2.0, ..LodView::new(Mat4::IDENTITY, Vec2::ONE) };
-        let at = |distance: f32| distance_at(&view, 9.0, 1.0, 5.0, Vec3::X * distance);
+        let at = |distance: f32| point_distance_factor(&view, 9.0, 1.0, 5.0, Vec3::X * distance);
         assert_eq!([0.0, 2.0, 4.0, 6.0, 10.0, 1e6].map(at), [9.0, 9.0, 7.0, 5.0, 1.0, 1.0]);
         let edge = [Vec3::X * 4.0, Vec3::ONE, Vec3::ONE, Vec3::X * 6.0];
         assert_eq!(distance_factor(&view, 9.0, 1.0, 5.0, edge), 6.0);
@@ -139,14 +146,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_counts_as_one() {
-        assert_eq!([f32::NAN, -f32::NAN, 0.3, -2.0].map(at_least_one), [1.0; 4]);
-        assert_eq!([1.5, f32::INFINITY].map(at_least_one), [1.5, f32::INFINITY]);
+    fn nan_and_factors_below_1_become_1() {
+        assert_eq!([f32::NAN, -f32::NAN, 0.3, -2.0].map(max_with_one), [1.0; 4]);
+        assert_eq!([1.5, f32::INFINITY].map(max_with_one), [1.5, f32::INFINITY]);
         let view = LodView::new(Mat4::ZERO, Vec2::ONE);
         assert_eq!(paper_edge_factor(&view, 1.0, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z]), 1.0);
     }
 
-    /// Looks along -Z from the origin, 1 unit a half viewport at depth 1, near plane at 0.1.
+    /// Looks along -Z from the origin. Half the viewport is 1 unit at depth 1, and the near plane is at depth 0.1.
     fn perspective() -> LodView {
         let clip_from_object = Mat4::from_cols_array_2d(&[
             [1.0, 0.0, 0.0, 0.0],
@@ -162,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_near_plane_both_forms_agree_to_the_bit() {
+    fn beyond_the_near_plane_both_factors_agree_to_the_bit() {
         let edge = straight(vec3(-1.0, 0.0, -2.0), vec3(0.5, 1.0, -0.2));
         let factors = [paper_edge_factor, edge_length_factor].map(|form| form(&perspective(), 8.0, edge));
         assert_eq!(factors[0].to_bits(), factors[1].to_bits());
@@ -170,7 +177,7 @@ mod tests {
 
     #[test]
     fn an_edge_through_the_eyes_plane_is_measured_where_it_is_nearest() {
-        // From in front of the eye to behind it: the paper mirrors the far end, and may find any length.
+        // The edge runs from in front of the eye to behind it. The white paper would mirror its far end.
         let edge = straight(vec3(0.5, 0.0, -1.0), vec3(0.5, 0.0, 1.0));
         let near = edge_length_factor(&perspective(), 8.0, edge);
         assert!((near - 2.0 * 100.0 / 0.1 / 8.0).abs() < 1e-1, "{near}: 2 units at depth 0.1");
@@ -182,6 +189,6 @@ mod tests {
     fn an_edge_behind_the_eye_needs_no_segments() {
         let behind = straight(vec3(-1.0, 0.0, 2.0), vec3(1.0, 0.0, 2.0));
         assert_eq!(edge_length_factor(&perspective(), 1.0, behind), 1.0);
-        assert!(paper_edge_factor(&perspective(), 1.0, behind) > 90.0, "the paper sees it mirrored in front");
+        assert!(paper_edge_factor(&perspective(), 1.0, behind) > 90.0, "the white paper mirrors it to the front");
     }
 }

@@ -1,4 +1,5 @@
-//! Normals that a surface is shaded with. Twin: `shaders/normal.wgsl`.
+//! Shading normals of emitted vertices, and how they are packed. Weights are 16.16 fixed point. Twin:
+//! `shaders/normal.wgsl`.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
@@ -18,17 +19,17 @@ pub enum Normals {
     Surface = 2,
 }
 
-/// Shorter sums of weighted unit normals than this are what rounding leaves of normals that cancel.
+/// Weighted sums of unit normals that are shorter than this are rounding errors: the normals cancel.
 pub(crate) const CANCELLED: f32 = 1e-6;
 
-/// A weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) where they cancel.
+/// Returns a weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) if they cancel.
 pub fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {
     let length_squared = sum.dot(sum);
     if length_squared > CANCELLED * CANCELLED { sum * (1.0 / length_squared.sqrt()) } else { nearest }
 }
 
-/// The shading normal at weights `u`, `v`: the corners' normals, linearly interpolated, unit length. Where they cancel
-/// it is the nearest corner's.
+/// Returns the linearly interpolated unit normal at weights `u` and `v` of a patch, or the normal of the nearest corner
+/// if the normals cancel.
 pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
     let w = FIXED_ONE - u - v;
     let [a, b, c] = normals;
@@ -42,18 +43,19 @@ pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
     unit_or(a * (u as f32 * UNIT) + b * (v as f32 * UNIT) + c * (w as f32 * UNIT), nearest)
 }
 
-/// The shading normal at `t` (16.16) on the edge whose ends have normals `a` and `b`. Called in the edge's own
-/// direction only, as [`super::edge_position`] is.
+/// Returns the linearly interpolated unit normal at `t` on an edge whose ends have normals `a` and `b`. The arguments
+/// must be in the edge's own direction, as for [`super::edge_position`].
 pub fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
     let nearest = if 2 * t <= FIXED_ONE { a } else { b };
     unit_or(a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT), nearest)
 }
 
-/// The control normal halfway along an edge (Vlachos et al. 2001, section 3.3): the sum of its ends' normals, mirrored in
-/// the plane perpendicular to the edge; unit length, or that of `at_a` where it cancels.
+/// Returns the control normal in the middle of an edge (h110 of Vlachos et al. 2001, section 3.3): the sum of the
+/// normals at the ends, mirrored in the plane perpendicular to the edge, at unit length. It is `at_a` if the sum
+/// cancels.
 pub fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let along = b - a;
-    // Squares of very small or large lengths are none: only the direction matters.
+    // Scale the edge, so that its square neither underflows nor overflows: only its direction matters.
     let size = along.abs().max_element();
     let sum = at_a + at_b;
     if size == 0.0 {
@@ -63,8 +65,11 @@ pub fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     unit_or(sum - direction * (2.0 * direction.dot(sum) / direction.dot(direction)), at_a)
 }
 
-/// The shading normal at weights `u`, `v` of a patch with these corners: a quadratic triangle of the corners' normals and
-/// of [`middle_normal`]s, whose products count once as the paper has it; unit length. Where it cancels it is the linear one.
+/// Returns the quadratically interpolated unit normal at weights `u` and `v` of a patch with these corners (Vlachos et
+/// al. 2001, section 3.3), or the linearly interpolated one if the sum cancels.
+///
+/// The control normals in the middle of the edges are multiplied by u v, v w and w u, without the factor 2 of a Bézier
+/// triangle, as in the paper.
 pub fn quadratic_normal(corners: [Vec3; 3], normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [a, b, c] = corners;
@@ -78,16 +83,16 @@ pub fn quadratic_normal(corners: [Vec3; 3], normals: [Vec3; 3], u: u32, v: u32) 
     unit_or(sum, linear_normal(normals, u, v))
 }
 
-/// The same at `t` (16.16) on the edge from `a` to `b`. Called in the edge's own direction only, as
-/// [`super::edge_position`] is.
+/// Returns the quadratically interpolated unit normal at `t` on the edge from `a` to `b`. The arguments must be in the
+/// edge's own direction, as for [`super::edge_position`].
 pub fn quadratic_edge_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3, t: u32) -> Vec3 {
     let (x, y) = ((FIXED_ONE - t) as f32 * UNIT, t as f32 * UNIT);
     let sum = at_a * (x * x) + middle_normal(a, b, at_a, at_b) * (x * y) + at_b * (y * y);
     unit_or(sum, edge_normal(at_a, at_b, t))
 }
 
-/// The direction in which a surface with these tangents along u and v faces, or `otherwise` where they are parallel or
-/// none.
+/// Returns the unit normal of a surface with these tangents along u and v, or `otherwise` if they are parallel or one
+/// is zero.
 pub fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
     let [along_u, along_v] = tangents;
     let size_u = along_u.abs().max_element();
@@ -98,32 +103,32 @@ pub fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
     unit_or((along_u * (1.0 / size_u)).cross(along_v * (1.0 / size_v)), otherwise)
 }
 
-/// The normal of the surface itself at weights `u`, `v`; `otherwise` where it has none.
+/// Returns the unit normal of the surface itself at weights `u` and `v`, or `otherwise` where it has none.
 pub fn surface_normal(surface: Surface, net: &ControlNet, u: u32, v: u32, otherwise: Vec3) -> Vec3 {
     facing_or(patch_tangents(surface, net, u, v), otherwise)
 }
 
-/// A unit normal in 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3). Off by
-/// less than 0.004 degrees.
+/// Packs a unit normal into 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
+/// The error is less than 0.004 degrees.
 pub fn pack_normal(normal: Vec3) -> u32 {
     let flat = normal * (1.0 / (normal.x.abs() + normal.y.abs() + normal.z.abs()));
-    let folded = (Vec2::ONE - vec2(flat.y.abs(), flat.x.abs())) * vec2(toward(flat.x), toward(flat.y));
+    let folded = (Vec2::ONE - vec2(flat.y.abs(), flat.x.abs())) * vec2(sign_not_zero(flat.x), sign_not_zero(flat.y));
     let [x, y] = if flat.z < 0.0 { folded } else { flat.truncate() }.to_array();
     let bits = |x: f32| u32::from((0.5 + 32767.0 * x.clamp(-1.0, 1.0)).floor() as i16 as u16);
     bits(x) | bits(y) << 16
 }
 
-/// The normal that was packed.
+/// Returns the unit normal that was packed.
 pub fn unpack_normal(bits: u32) -> Vec3 {
     let number = |bits: u32| (f32::from(bits as u16 as i16) / 32767.0).max(-1.0);
     let at = vec2(number(bits), number(bits >> 16));
     let z = 1.0 - at.x.abs() - at.y.abs();
     let back = (-z).max(0.0);
-    vec3(at.x - toward(at.x) * back, at.y - toward(at.y) * back, z).normalize()
+    vec3(at.x - sign_not_zero(at.x) * back, at.y - sign_not_zero(at.y) * back, z).normalize()
 }
 
-/// 1 for 0 and above, else -1.
-fn toward(x: f32) -> f32 {
+/// Returns 1 for zero and positive numbers, else -1.
+fn sign_not_zero(x: f32) -> f32 {
     if x >= 0.0 { 1.0 } else { -1.0 }
 }
 
@@ -169,9 +174,10 @@ mod tests {
     }
 
     #[test]
-    fn quadratic_normals_see_an_edge_that_bends_back() {
-        // Normals that lean the same way along a level edge: in the middle it falls, and its normal leans the other way. The
-        // quadratic ones follow part of the way, as their products count once; the linear ones never notice.
+    fn quadratic_normals_follow_an_edge_with_an_inflection() {
+        // Both normals lean the same way along a level edge, so the curve has an inflection, and in its middle the normal
+        // leans the other way. Quadratic normals follow only partly, as the paper's formula lacks the factor 2. Linear ones
+        // don't follow at all.
         let leaning = vec3(-0.6, 0.0, 0.8);
         let own = quadratic_edge_normal(Vec3::ZERO, Vec3::X, leaning, leaning, FIXED_ONE / 2);
         assert!(own.distance(vec3(-0.15, 0.0, 0.6).normalize()) < 1e-6, "{own}");
@@ -181,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn the_size_of_an_edge_makes_no_difference_to_its_normals() {
+    fn normals_do_not_depend_on_the_length_of_the_edge() {
         let [a, b, _] = CORNERS;
         let [at_a, at_b, _] = normals();
         let expected = middle_normal(a, b, at_a, at_b);
@@ -195,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn at_corners_all_normals_are_the_corners_own() {
+    fn at_a_corner_every_kind_of_normal_is_the_corners() {
         for (k, (u, v)) in [(FIXED_ONE, 0), (0, FIXED_ONE), (0, 0)].into_iter().enumerate() {
             let own = normals()[k];
             assert!(linear_normal(normals(), u, v).distance(own) < 1e-6);
@@ -209,13 +215,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn normals_inside_meet_those_on_the_rim(t in 0u32..=FIXED_ONE) {
+        fn normals_of_the_patch_and_of_its_edges_agree_on_the_outline(t in 0u32..=FIXED_ONE) {
             let n = normals();
             let inside = [(FIXED_ONE - t, t), (0, FIXED_ONE - t), (t, 0)];
             for (k, (u, v)) in inside.into_iter().enumerate() {
                 let (a, b) = (k, (k + 1) % 3);
-                let rim = quadratic_edge_normal(CORNERS[a], CORNERS[b], n[a], n[b], t);
-                prop_assert!(rim.distance(quadratic_normal(CORNERS, n, u, v)) < 1e-6);
+                let on_edge = quadratic_edge_normal(CORNERS[a], CORNERS[b], n[a], n[b], t);
+                prop_assert!(on_edge.distance(quadratic_normal(CORNERS, n, u, v)) < 1e-6);
                 prop_assert!(edge_normal(n[a], n[b], t).distance(linear_normal(n, u, v)) < 1e-6);
             }
         }

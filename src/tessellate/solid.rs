@@ -1,25 +1,28 @@
-//! Meshes of which one only ever sees the outside.
+//! Solids: meshes whose back faces can't be seen from outside.
 
 use glam::{Mat4, Vec3};
 
 use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{EdgeKind, Mesh, Topology};
 
-/// A mesh that is closed, that is wound outward in all its parts, and whose materials are single-sided: a line of sight
-/// that comes from without enters it wherever it leaves it, so that what faces away is always behind what doesn't. (Where
-/// a mesh passes through itself inside out, a back may come first; what is behind it is seen then, never a hole.)
+/// A closed mesh whose parts are all wound outward and whose materials are single-sided.
+///
+/// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front
+/// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
+/// it, but never a hole.)
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solid {
-    /// Least and greatest coordinates, in object units.
+    /// The least and the greatest coordinates, in object units.
     pub extent: [Vec3; 2],
-    /// How far control points may be from the triangles that they belong to, surface by surface.
+    /// The largest distance of control points from the triangles that they belong to, for each surface, in object
+    /// units.
     reaches: [f32; Surface::ALL.len()],
-    /// Whether surfaces that go by each side's own normals tear it.
+    /// Whether surfaces for which [`Surface::tears`] crack on this mesh.
     pub has_split_normals: bool,
 }
 
 impl Solid {
-    /// The mesh as a solid, if it is one.
+    /// Returns the mesh as a solid, or `None` if it isn't one.
     pub fn find(mesh: &Mesh, topology: &Topology) -> Option<Self> {
         let single_sided = mesh.materials.iter().all(|material| !material.double_sided);
         if !single_sided || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
@@ -31,25 +34,28 @@ impl Solid {
         Some(Self { extent: [bounds.min, bounds.max], reaches, has_split_normals })
     }
 
-    /// Whether nothing that faces away can be seen under these inputs: nothing tears, and the near plane cuts nothing open.
+    /// Returns whether no back face can be seen with these inputs: the tessellation has no cracks, and the near plane
+    /// doesn't cut the mesh.
     pub fn hides_backs(&self, inputs: &Inputs) -> bool {
         let tears = inputs.tessellation.surface.tears() && self.has_split_normals;
-        // What is displaced may show its back anywhere.
+        // A displaced surface may show its back anywhere.
         let whole = inputs.tessellation.displacement == Displacement::Off && !tears;
         let holds =
             inputs.tessellation.edges == Edges::PerEdge && inputs.tessellation.convention.is_consistent() && whole;
         holds && is_beyond_near(inputs.view.clip_from_object, self.extent_of(inputs.tessellation.surface))
     }
 
-    /// Least and greatest coordinates of all control points of a surface, in object units.
+    /// Returns the least and the greatest coordinates of all control points of a surface, in object units.
     fn extent_of(&self, surface: Surface) -> [Vec3; 2] {
         let reach = Vec3::splat(self.reaches[surface as usize]);
         [self.extent[0] - reach, self.extent[1] + reach]
     }
 }
 
-/// How far control points may be from the triangles that they belong to: an edge's no farther than any side proposes, or
-/// its projection on a crease shortens it, and a patch's centre half as far again as those are on average.
+/// Returns the largest distance of a surface's control points from the triangles that they belong to, in object units.
+///
+/// An edge's control points are at most as far from the straight edge as any side's proposal, or a third of the edge's
+/// length if they are projected onto a crease. The centre is 1.5 times as far as the six others are on average.
 fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f32 {
     let side = |side: &crate::mesh::Side| {
         let corners = topology.side_corners(side);
@@ -62,7 +68,7 @@ fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f3
     topology.sides.iter().map(side).fold(0.0, f32::max) * 1.5
 }
 
-/// Whether a box (its least and greatest coordinates) lies beyond the near plane as a whole, so that nothing in it is cut.
+/// Returns whether a box, given by its least and greatest coordinates, lies completely beyond the near plane.
 pub fn is_beyond_near(clip_from_object: Mat4, [min, max]: [Vec3; 2]) -> bool {
     (0..8).all(|corner| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
@@ -78,7 +84,7 @@ mod tests {
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::settings::Settings;
-    use crate::tessellate::{Limit, LodView, Tessellation};
+    use crate::tessellate::{LimitSurface, LodView, Tessellation};
 
     fn solid(mesh: &Mesh) -> Option<Solid> {
         Solid::find(mesh, &Topology::build(mesh, &Progress::default()).expect("nobody cancels"))
@@ -95,12 +101,12 @@ mod tests {
             assert_eq!(solid(&inward), None, "{shape:?} wound inward");
             let mut double = mesh.clone();
             double.materials[0].double_sided = true;
-            assert_eq!(solid(&double), None, "{shape:?} seen from both sides");
+            assert_eq!(solid(&double), None, "{shape:?} with a double-sided material");
         }
     }
 
     #[test]
-    fn a_part_wound_inward_is_enough() {
+    fn a_mesh_with_one_part_wound_inward_is_no_solid() {
         let mut mesh = Shape::Icosahedron.build();
         let count = mesh.corners.len() as u32;
         let smaller = mesh.corners.clone().into_iter().map(|c| crate::mesh::Corner { position: c.position * 0.5, ..c });
@@ -109,7 +115,7 @@ mod tests {
         assert!(solid(&mesh).is_some());
         Arc::make_mut(&mut mesh.triangles).extend(inner);
         mesh.materials[0].triangles.end = mesh.triangles.len() as u32;
-        assert_eq!(solid(&mesh), None, "a hollow ball's inside could be seen through nothing, but that isn't proved");
+        assert_eq!(solid(&mesh), None, "the inside of a hollow ball can't be seen either, but that isn't proved");
     }
 
     #[test]
@@ -122,7 +128,7 @@ mod tests {
                 let [min, max] = solid.extent_of(surface);
                 let settings = Settings::from(Tessellation { surface, alpha: 1.0, ..Tessellation::default() });
                 let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, glam::Vec2::ONE));
-                let limit = Limit::new(&mesh, &topology, &inputs);
+                let limit = LimitSurface::new(&mesh, &topology, &inputs);
                 for patch in 0..topology.patches.len() as u32 {
                     let net = limit.net(patch);
                     for p in net.corners.iter().chain(&net.edges).chain([&net.center]) {

@@ -1,32 +1,34 @@
-//! Uniform subtriangulation: a patch of `n` segments a side as `n * n` equal triangles, each point and triangle in closed
-//! form from its number as in `domain.rs`. Twin: `shaders/subtriangulation.wgsl`.
+//! Uniform subtriangulation: a patch of `n` segments on each side becomes `n * n` equal triangles. Each point and each
+//! triangle is computed from its number alone, as in `domain.rs`. Twin: `shaders/subtriangulation.wgsl`.
 //!
-//! The points are `(i, j, k) / n` with whole `i + j + k = n`. As rings, numbered from 0 at the outline inwards, ring `r` has
-//! three sides of `n - 3 r` segments; the last one is a point, a triangle, or a triangle whose sides' middles are joined.
-//! Rings start, turn and wind as the tessellator's do, so that the outline has the edges U == 0, V == 0 and W == 0 one after
-//! another.
+//! The points have barycentric coordinates `(i, j, k) / n` with integers `i + j + k = n`. They form rings, numbered
+//! inwards from 0 at the outline. Ring `r` has three sides of `n - 3 r` segments. The innermost ring is a point, one
+//! triangle, or a triangle whose sides' middles are joined. Rings start, turn and wind as the tessellator's do, so that
+//! the outline consists of the edges U == 0, V == 0 and W == 0 in this order.
 //!
-//! Source: Vlachos, Peters, Boyd and Mitchell, *Curved PN Triangles*, 2001, section 2 and figure 4, where `n - 1`, the
-//! points added to each edge, is the level of detail. Coordinates are 16.16 fixed point.
+//! Source: Vlachos, Peters, Boyd and Mitchell, *Curved PN Triangles*, 2001, section 2 and figure 4. There the level of
+//! detail is `n - 1`, the number of points added to each edge. Coordinates are 16.16 fixed point.
 
 use super::factors::FIXED_ONE;
 
-/// The number of whole rings before something: the largest `r` up to `m / 6` with `3 r (m - 3 r) <= area`. For points `m`
-/// is `2 n + 3` and `area` twice the points before it, for triangles `2 n` and the triangles; `n` is up to 64.
+/// Returns the number of complete rings before a point or a triangle: the largest `r` up to `m / 6` with `3 r (m - 3 r)
+/// <= area`. For a point, `m` is `2 n + 3` and `area` is twice the number of points before it. For a triangle, `m` is
+/// `2 n` and `area` is the number of triangles before it. `n` is at most 64.
 ///
-/// The exact root is a whole number or at least 1/400 below the next one. 1/1024 is added, tens of times the error that WGSL
-/// allows a square root and a product, so that the result is exact everywhere.
+/// The exact root is an integer, or at least 1/400 below the next one. The code adds 1/1024, which is tens of times the
+/// error that WGSL allows for a square root and a product, so the result is exact on every device.
 fn subtriangulation_rings(m: u32, area: u32) -> u32 {
     let root = ((m * m - 4 * area) as f32).sqrt();
     ((m as f32 - root) * (1.0 / 6.0) + 0.0009765625) as u32
 }
 
-/// `k / n`, rounded to the nearest: no `n` up to 64 has ties, so that `k` and `n - k` add up to 1.
+/// Returns `k / n` in 16.16 fixed point, rounded to the nearest. There are no ties for `n` up to 64, so the results for
+/// `k` and `n - k` add up to 1.
 fn subtriangulation_location(n: u32, k: u32) -> u32 {
     (2 * FIXED_ONE * k + n) / (2 * n)
 }
 
-/// (U, V) of point `i` of a patch of `n` segments a side; W = 1 - U - V.
+/// Returns (U, V) of point `i` of a patch of `n` segments on each side; W = 1 - U - V.
 pub fn subtriangulation_point(n: u32, i: u32) -> [u32; 2] {
     let ring = subtriangulation_rings(2 * n + 3, 2 * i);
     let length = n - 3 * ring;
@@ -42,27 +44,29 @@ pub fn subtriangulation_point(n: u32, i: u32) -> [u32; 2] {
     [subtriangulation_location(n, u), subtriangulation_location(n, v)]
 }
 
-/// The number of point `q` of the row inside side `side` of a ring, which starts at point `start` and has sides of `length`
-/// segments. The row's first point is the last but one of the side before, the next are those of the ring inside.
+/// Returns the number of point `q` of the row that lies inside side `side` of a ring. The ring starts at point `start`,
+/// and its sides have `length` segments.
+///
+/// The row's first point is the last but one of the previous side. The others are points of the next ring inside.
 fn subtriangulation_row(start: u32, length: u32, side: u32, q: u32) -> u32 {
     if q == 0 {
         return start + (side * length + 3 * length - 1) % (3 * length);
     }
-    // Of a ring that is a point, all sides' points are that one.
+    // In a ring that is a single point, every point of a side is that point.
     let inner = length - 3;
     start + 3 * length + (side * inner + q - 1) % (3 * inner).max(1)
 }
 
-/// The corners of triangle `t` of a patch of `n` segments a side, as point numbers, clockwise.
+/// Returns the corners of triangle `t` of a patch of `n` segments on each side, as point numbers, clockwise.
 pub fn subtriangulation_triangle(n: u32, t: u32) -> [u32; 3] {
     let ring = subtriangulation_rings(2 * n, t);
     let length = n - 3 * ring;
     let start = (3 * ring * (2 * n + 3 - 3 * ring)) >> 1;
     if length < 3 && t + 1 == n * n {
-        // The last ring's middle: its corners, or the middles of its sides.
+        // The triangle in the middle of the innermost ring joins its corners, or the middles of its sides.
         return [start + length - 1, start + 2 * length - 1, start + 3 * length - 1];
     }
-    // A side's triangles stand on it and hang from the row inside it by turns, and leave the last corner to the next side.
+    // A side's triangles have an edge on the side and on the row inside by turns. The last corner belongs to the next side.
     let per_side = 2 * length - 3;
     let in_ring = t - 3 * ring * (2 * n - 3 * ring);
     let side = u32::from(in_ring >= per_side) + u32::from(in_ring >= 2 * per_side);

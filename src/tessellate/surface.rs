@@ -1,13 +1,14 @@
-//! Control nets and the surfaces they make. Twin: `shaders/surface.wgsl`.
+//! Control nets, and the evaluation of the surfaces that they define. Twin: `shaders/surface.wgsl`.
 //!
-//! Weights follow the PN-AEN white paper (McDonald and Kilgard 2010): u belongs to corner 0, v to corner 1, w to corner 2.
-//! Domain coordinates are 16.16 fixed point, `FIXED_ONE` = 65536, so `FIXED_ONE - t` is exact and so is its f32 value.
+//! Weights follow the PN-AEN white paper (McDonald and Kilgard 2010): u belongs to corner 0, v to corner 1, w to corner
+//! 2. Domain coordinates are 16.16 fixed point with `FIXED_ONE` = 65536. So `FIXED_ONE - t` is exact, and so is its
+//! conversion to f32.
 
 use glam::{Vec2, Vec3};
 
 use super::factors::FIXED_ONE;
 
-/// One unit of fixed point as a float: exact, a power of two.
+/// The smallest step of 16.16 fixed point as a float. It is a power of two, so products with it are exact.
 pub const UNIT: f32 = 1.0 / FIXED_ONE as f32;
 
 /// Which surface a patch becomes. Those that end on AEN are the same with adjacent edge normals, as in PN-AEN: an edge's
@@ -41,19 +42,20 @@ impl Surface {
     pub const ALL: [Self; 8] =
         [Self::Flat, Self::Pn, Self::PnAen, Self::PnCrease, Self::Phong, Self::PhongAen, Self::Nagata, Self::NagataAen];
 
-    /// Whether edges tear where their sides' normals differ: each side goes by its own alone.
+    /// Returns whether edges crack where their sides' normals differ, because each side uses only its own normals.
     pub fn tears(self) -> bool {
         matches!(self, Self::Pn | Self::Phong | Self::Nagata)
     }
 
-    /// Whether it is Phong tessellation, which has a strength.
+    /// Returns whether this is Phong tessellation, which has a strength.
     pub fn is_phong(self) -> bool {
         matches!(self, Self::Phong | Self::PhongAen)
     }
 }
 
-/// The point at `t` (16.16) on the edge from `a` to `b` with control points `ab` (near a) and `ba` (near b). Called in
-/// the edge's own direction only: the two sides then run one computation on the same bits.
+/// Returns the point at `t` (16.16 fixed point) on the edge from `a` to `b` with control points `ab` (near a) and `ba`
+/// (near b), in object units. The arguments must be in the edge's own direction: then all sides do the same arithmetic
+/// on the same bits, and get the same point.
 pub fn edge_position(surface: Surface, a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: u32) -> Vec3 {
     let y = t as f32 * UNIT;
     let x = (FIXED_ONE - t) as f32 * UNIT;
@@ -63,8 +65,8 @@ pub fn edge_position(surface: Surface, a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: 
     a * (x * x * x) + ab * (3.0 * x * x * y) + ba * (3.0 * x * y * y) + b * (y * y * y)
 }
 
-/// A patch's ten control points: corners b300 b030 b003; on side k, near its start and near its end
-/// (b210 b120, b021 b012, b102 b201); b111. Positions in object units.
+/// The ten control points of a patch, in object units: the corners b300, b030 and b003; for each side k the one near
+/// its start and the one near its end (b210 b120, b021 b012, b102 b201); and b111 in the centre.
 #[derive(Clone, Copy, Debug)]
 pub struct ControlNet {
     pub corners: [Vec3; 3],
@@ -72,7 +74,8 @@ pub struct ControlNet {
     pub center: Vec3,
 }
 
-/// The point inside a patch at weights `u`, `v` (16.16; w is the rest) (Vlachos et al. 2001, equation 1).
+/// Returns the point of a patch at weights `u` and `v` (16.16 fixed point; w is the rest of 1), in object units
+/// (Vlachos et al. 2001, equation 1).
 pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec3 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
@@ -92,8 +95,8 @@ pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec
         + net.center * (6.0 * x * y * z)
 }
 
-/// How a patch's position changes with u and with v (w is what is left of 1), at weights `u` and `v`: tangents, in object
-/// units.
+/// Returns the derivatives of a patch's position by u and by v (w = 1 - u - v) at weights `u` and `v`: its tangents, in
+/// object units.
 pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 2] {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
@@ -102,7 +105,7 @@ pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Ve
     }
     let [b210, b120, b021, b012, b102, b201] = net.edges;
     let b111 = net.center;
-    // Three times the quadratic triangles of differences towards corner 2.
+    // The derivatives are quadratic Bézier triangles of differences of control points, times 3.
     let (xx, xy, yy) = (3.0 * x * x, 6.0 * x * y, 3.0 * y * y);
     let (yz, zz, zx) = (6.0 * y * z, 3.0 * z * z, 6.0 * z * x);
     let along_u = (b300 - b201) * xx
@@ -120,19 +123,21 @@ pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Ve
     [along_u, along_v]
 }
 
-/// The texture coordinate at weights `u`, `v`, linearly interpolated.
+/// Returns the linearly interpolated texture coordinate at weights `u` and `v` of a patch.
 pub fn linear_uv(uvs: [Vec2; 3], u: u32, v: u32) -> Vec2 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     uvs[0] * x + uvs[1] * y + uvs[2] * z
 }
 
-/// The texture coordinate at `t` (16.16) on the edge whose ends have `a` and `b`.
+/// Returns the linearly interpolated texture coordinate at `t` (16.16 fixed point) on an edge whose ends have `a` and
+/// `b`.
 pub fn edge_uv(a: Vec2, b: Vec2, t: u32) -> Vec2 {
     a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT)
 }
 
-/// Where on the patch's rim (u, v, w) lies: the side, and the weight of the side's far end; `None` inside.
-pub fn place(u: u32, v: u32) -> Option<(usize, u32)> {
+/// Returns where the domain point (u, v, w) lies on the patch's outline: the side, and the weight of the side's end.
+/// `None` inside the patch.
+pub fn outline_place(u: u32, v: u32) -> Option<(usize, u32)> {
     let w = FIXED_ONE - u - v;
     if w == 0 {
         Some((0, v))
@@ -153,7 +158,7 @@ mod tests {
     use super::*;
     use crate::tessellate::{center_control_point, edge_control_point};
 
-    /// A patch with normals that lean outwards.
+    /// Returns the net of a patch whose normals lean outwards.
     fn net() -> ControlNet {
         let corners = [vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.5), vec3(0.5, 1.5, 0.0)];
         let normals = [vec3(-0.3, -0.3, 1.0), vec3(0.4, 0.0, 1.0), vec3(0.0, 0.5, 1.0)].map(Vec3::normalize);
@@ -168,26 +173,26 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_inside_meets_the_rim(t in 0u32..=FIXED_ONE) {
+        fn the_patch_and_its_edges_agree_on_the_outline(t in 0u32..=FIXED_ONE) {
             let net = net();
             let [a, b, c] = net.corners;
             let [b210, b120, b021, b012, b102, b201] = net.edges;
             for surface in [Surface::Flat, Surface::Pn, Surface::PnAen] {
-                let rim = [(a, b210, b120, b), (b, b021, b012, c), (c, b102, b201, a)];
+                let outline = [(a, b210, b120, b), (b, b021, b012, c), (c, b102, b201, a)];
                 let inside = [(FIXED_ONE - t, t), (0, FIXED_ONE - t), (t, 0)];
-                for ((p, pq, qp, q), (u, v)) in rim.into_iter().zip(inside) {
-                    let on_rim = edge_position(surface, p, pq, qp, q, t);
-                    prop_assert!(on_rim.distance(patch_position(surface, &net, u, v)) < 1e-6);
+                for ((p, pq, qp, q), (u, v)) in outline.into_iter().zip(inside) {
+                    let on_edge = edge_position(surface, p, pq, qp, q, t);
+                    prop_assert!(on_edge.distance(patch_position(surface, &net, u, v)) < 1e-6);
                 }
             }
         }
 
         #[test]
-        fn tangents_are_what_positions_change_by(u in 600u32..30000, v in 600u32..30000) {
+        fn tangents_are_the_derivatives_of_positions(u in 600u32..30000, v in 600u32..30000) {
             let net = net();
             for surface in [Surface::Flat, Surface::Pn] {
                 let at = |u: u32, v: u32| patch_position(surface, &net, u, v).as_dvec3();
-                // Central differences of a cubic are off by a third of the third derivative times the step squared.
+                // The error of central differences of a cubic is a sixth of the third derivative times the square of 512 / 65536.
                 let step = 2.0 * 512.0 / 65536.0;
                 let expected = [at(u + 512, v) - at(u - 512, v), at(u, v + 512) - at(u, v - 512)].map(|d| d / step);
                 for (own, expected) in patch_tangents(surface, &net, u, v).into_iter().zip(expected) {

@@ -1,4 +1,4 @@
-//! Bicubic Bézier patches: the nearest point of all, not of where one happened to start.
+//! Bicubic Bézier patches, and the nearest point of all of them.
 
 use glam::DVec3;
 
@@ -6,12 +6,13 @@ use super::surface::Surface;
 use super::{Nearest, Sample};
 use crate::mesh::shapes::bicubic::{BezierNet, at};
 
-/// How often patches are halved both ways for the tree.
+/// How many times patches are divided into quarters for the tree.
 const DEPTH: u32 = 4;
-/// How often a piece is halved on at most to tell apart what is nearest; pieces are then below 1e-7 of the patch.
+/// How many more times a piece is divided to tell apart points at nearly the same distance. Pieces are then smaller
+/// than 1e-7 of the patch.
 const MAX_HALVINGS: u32 = 20;
 
-/// Patches in a tree of their pieces, each within the box of its control points.
+/// Patches, and a tree of their pieces, each with the bounding box of its control points.
 pub(super) struct Patches {
     patches: Vec<BezierNet>,
     roots: Vec<Piece>,
@@ -45,7 +46,7 @@ impl Piece {
         p.distance_squared(p.clamp(self.min, self.max))
     }
 
-    /// Looks where something nearer than `best` may be.
+    /// Searches for a point nearer than `best`.
     fn search(&self, p: DVec3, best: &mut Best) {
         match &self.inside {
             Inside::Net(net) => search(net, p, MAX_HALVINGS, best),
@@ -54,7 +55,7 @@ impl Piece {
     }
 }
 
-/// The nearest first, so that most others need no look.
+/// Searches the nearest pieces first, so that most others needn't be searched.
 fn search_all(pieces: &[Piece], p: DVec3, best: &mut Best) {
     let mut order: Vec<_> = pieces.iter().map(|piece| (piece.distance_squared(p), piece)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -97,20 +98,20 @@ impl Surface for Patches {
     }
 }
 
-/// The nearest point so far.
+/// The nearest point found so far.
 struct Best {
     distance_squared: f64,
     point: DVec3,
-    /// The normal, times anything.
+    /// The normal, of any length.
     across: DVec3,
 }
 
-/// Looks in a piece: the squared distance is a polynomial, which lies above the least of its control values. Where
-/// those say that it is convex, Newton finds its only minimum; elsewhere quarters are looked at.
+/// Searches a piece. The squared distance is a polynomial, which is at least the least of its control values. Where
+/// these prove that it is convex, Newton's method finds its only minimum. Elsewhere the piece is divided into quarters.
 fn search(net: &BezierNet, p: DVec3, halvings: u32, best: &mut Best) {
     let squared = squared_distance(net, p);
     let least = squared.as_flattened().iter().copied().fold(f64::INFINITY, f64::min);
-    // What is as near as the nearest but for rounding is as good.
+    // A point that is nearer by no more than a rounding error doesn't matter.
     let size = squared.as_flattened().iter().copied().fold(0.0, f64::max);
     if least >= best.distance_squared - 1e-15 * size {
         return;
@@ -121,7 +122,7 @@ fn search(net: &BezierNet, p: DVec3, halvings: u32, best: &mut Best) {
     }
 }
 
-/// Control values of the squared distance from p, of degree 6 both ways.
+/// Returns the control values of the squared distance from p, a polynomial of degree 6 in each parameter.
 fn squared_distance(net: &BezierNet, p: DVec3) -> [[f64; 7]; 7] {
     const CUBIC: [f64; 4] = [1.0, 3.0, 3.0, 1.0];
     const SEXTIC: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
@@ -139,8 +140,8 @@ fn squared_distance(net: &BezierNet, p: DVec3) -> [[f64; 7]; 7] {
     out
 }
 
-/// Whether control values prove a polynomial of degree 6 both ways convex: its second derivatives lie between the least
-/// and the greatest of their own control values.
+/// Returns whether control values prove that a polynomial of degree 6 in each parameter is convex: its second
+/// derivatives lie between the least and the greatest of their own control values.
 fn is_convex(values: &[[f64; 7]; 7]) -> bool {
     let (mut uu, mut vv, mut uv) = (f64::INFINITY, f64::INFINITY, 0.0_f64);
     for a in 0..7 {
@@ -159,7 +160,7 @@ fn is_convex(values: &[[f64; 7]; 7]) -> bool {
     uu > 0.0 && vv > 0.0 && 30.0 * 30.0 * uu * vv > 36.0 * 36.0 * uv * uv
 }
 
-/// Newton's steps to the nearest point of a piece from its middle, kept inside and downhill.
+/// Finds the nearest point of a piece by Newton's method from its middle. Steps stay in the piece and go downhill.
 fn descend(net: &BezierNet, p: DVec3, best: &mut Best) {
     let [mut u, mut v] = [0.5, 0.5];
     let mut here = at(net, u, v);
@@ -169,7 +170,7 @@ fn descend(net: &BezierNet, p: DVec3, best: &mut Best) {
         let (next, to) = loop {
             let to = [u + length * du, v + length * dv].map(|x| x.clamp(0.0, 1.0));
             let next = at(net, to[0], to[1]);
-            // Near the end a step is right though rounding hides that it leads downhill.
+            // Small steps are taken in any case, since rounding may hide that they go downhill.
             let is_small = du.abs().max(dv.abs()) < 1e-5;
             if is_small || next[0].distance_squared(p) <= here[0].distance_squared(p) || length < 1e-4 {
                 break (next, to);
@@ -192,8 +193,8 @@ fn descend(net: &BezierNet, p: DVec3, best: &mut Best) {
     }
 }
 
-/// The step to where the gradient of half the squared distance vanishes, along those parameters that it doesn't push
-/// out of the piece. Gauss and Newton's where Newton's would lead to no minimum.
+/// Returns the step to where the gradient of half the squared distance is zero. Parameters that the gradient pushes out
+/// of the piece stay. Where Newton's step wouldn't lead to a minimum, it is the Gauss-Newton step.
 fn newton_step(net: &BezierNet, [_, along_u, along_v]: [DVec3; 3], from_p: DVec3, [u, v]: [f64; 2]) -> [f64; 2] {
     let gradient = [from_p.dot(along_u), from_p.dot(along_v)];
     let is_free = |x: f64, slope: f64| !(x <= 0.0 && slope > 0.0 || x >= 1.0 && slope < 0.0);
@@ -214,6 +215,7 @@ fn newton_step(net: &BezierNet, [_, along_u, along_v]: [DVec3; 3], from_p: DVec3
     }
 }
 
+/// Returns the second derivatives by u twice, by u and v, and by v twice.
 fn second_derivatives(net: &BezierNet, u: f64, v: f64) -> [DVec3; 3] {
     use crate::mesh::shapes::bicubic::{slopes, weights};
     let bends = |t: f64| [6.0 * (1.0 - t), 6.0 * (3.0 * t - 2.0), 6.0 * (1.0 - 3.0 * t), 6.0 * t];
@@ -223,7 +225,7 @@ fn second_derivatives(net: &BezierNet, u: f64, v: f64) -> [DVec3; 3] {
     [sum(bends(u), weights(v)), sum(slopes(u), slopes(v)), sum(weights(u), bends(v))]
 }
 
-/// Both halves of a cubic (de Casteljau).
+/// Returns both halves of a cubic curve (de Casteljau).
 fn halves([a, b, c, d]: [DVec3; 4]) -> [[DVec3; 4]; 2] {
     let [ab, bc, cd] = [(a + b) / 2.0, (b + c) / 2.0, (c + d) / 2.0];
     let [abc, bcd] = [(ab + bc) / 2.0, (bc + cd) / 2.0];
@@ -231,11 +233,12 @@ fn halves([a, b, c, d]: [DVec3; 4]) -> [[DVec3; 4]; 2] {
     [[a, ab, abc, middle], [middle, bcd, cd, d]]
 }
 
+/// Exchanges the two parameters.
 fn transposed(net: &BezierNet) -> BezierNet {
     std::array::from_fn(|i| std::array::from_fn(|j| net[j][i]))
 }
 
-/// The four pieces that a patch is halved into both ways.
+/// Returns the four quarters of a patch.
 fn quarters(net: &BezierNet) -> [BezierNet; 4] {
     let along = |net: &BezierNet| {
         let columns = net.map(halves);
@@ -247,7 +250,7 @@ fn quarters(net: &BezierNet) -> [BezierNet; 4] {
     [a, b, c, d].map(|net| transposed(&net))
 }
 
-/// How far patches reach in a direction.
+/// Returns the largest coordinate of the patches in a direction.
 fn reach(patches: &[BezierNet], direction: DVec3) -> f64 {
     let along = |point: DVec3| point.dot(direction);
     let mut open = patches.to_vec();

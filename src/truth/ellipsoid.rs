@@ -1,4 +1,4 @@
-//! The ellipsoid around the origin, and the sphere.
+//! Ellipsoids around the origin, with the sphere as a special case.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use super::surface::Surface;
 use super::{Nearest, Sample};
 
 pub(super) struct Ellipsoid {
-    /// Along x, y and z.
+    /// The radii along x, y and z.
     pub radii: DVec3,
 }
 
@@ -40,7 +40,7 @@ impl Surface for Ellipsoid {
         1
     }
 
-    /// The sphere's cylindrical map, stretched.
+    /// Stretches the cylindrical equal-area map of the sphere.
     fn at(&self, _: usize, s: f64, t: f64) -> (Sample, f64) {
         let y = 2.0 * s - 1.0;
         let across = (1.0 - y * y).sqrt();
@@ -52,18 +52,18 @@ impl Surface for Ellipsoid {
     }
 }
 
-/// The nearest point for a place whose coordinates are 0 or above; radii fall. Eberly, "Distance from a Point to an
-/// Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013), with his parameter counted from the pole, where digits are lost
-/// otherwise.
+/// Returns the nearest point to a place whose coordinates are 0 or positive. The radii are in descending order. Source:
+/// Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid" (2013). His parameter is counted
+/// from the pole here, since it would lose digits otherwise.
 fn foot(radii: [f64; 3], p: [f64; 3]) -> [f64; 3] {
     let [_, _, least] = radii;
     let squares = radii.map(|radius| (radius / least) * (radius / least));
     let reach: [f64; 3] = std::array::from_fn(|i| squares[i] * (p[i] / radii[i]));
-    // A coordinate of 0 stays 0, also where the divisor is.
+    // A coordinate of 0 stays 0, even if the divisor is 0.
     let part = |i: usize, w: f64| if reach[i] == 0.0 { 0.0 } else { reach[i] / (w + (squares[i] - 1.0)) };
     let sum = |w: f64| (0..3).map(|i| part(i, w) * part(i, w)).sum::<f64>();
     if reach[2] == 0.0 && sum(0.0) <= 1.0 {
-        // So near to the plane of the larger radii's middle that the shortest way leads out of the plane.
+        // The place is so near to the middle of the plane of the two larger radii that the shortest way leaves that plane.
         let x = [0, 1].map(|i| part(i, 0.0) * radii[i]);
         return [x[0], x[1], least * (1.0 - sum(0.0)).max(0.0).sqrt()];
     }

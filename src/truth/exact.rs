@@ -1,4 +1,4 @@
-//! Exact surfaces, and which shapes are sampled from which.
+//! Exact surfaces, and which shape has which.
 
 use glam::{DVec2, DVec3};
 
@@ -20,18 +20,18 @@ pub struct Exact {
     spread: Spread,
 }
 
-/// The surface that a shape's corners are samples of: for those that have [levels](Shape::has_levels).
+/// Returns the surface that a shape's corners are samples of, for shapes that have [levels](Shape::has_levels).
 pub fn of_shape(shape: Shape) -> Option<Exact> {
     let [radius, half] = [RADIUS, HALF_HEIGHT].map(f64::from);
     let (bottom, top) = (DVec2::new(0.0, -half), DVec2::new(0.0, half));
-    let rim = DVec2::new(radius, 0.0);
+    let out = DVec2::new(radius, 0.0);
     let surface: Box<dyn Surface> = match shape {
         Shape::CubeSplit | Shape::CubeSmooth | Shape::Moebius => return None,
         Shape::Icosahedron | Shape::Icosphere => Box::new(Ellipsoid { radii: DVec3::ONE }),
         Shape::Ellipsoid => Box::new(Ellipsoid { radii: ELLIPSOID.as_dvec3() }),
         Shape::Torus => Box::new(Torus { major: MAJOR.into(), minor: MINOR.into() }),
-        Shape::Cylinder => Box::new(Profile::new(&[bottom, rim + bottom, rim + top, top])),
-        Shape::Cone => Box::new(Profile::new(&[bottom, rim + bottom, top])),
+        Shape::Cylinder => Box::new(Profile::new(&[bottom, out + bottom, out + top, top])),
+        Shape::Cone => Box::new(Profile::new(&[bottom, out + bottom, top])),
         Shape::Saddle => Box::new(Saddle { half: SADDLE_HALF.into() }),
         Shape::Bicubic => Box::new(Patches::new(crate::mesh::shapes::bicubic::patches())),
     };
@@ -43,7 +43,7 @@ impl Exact {
         Self { spread: Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1), surface }
     }
 
-    /// The nearest point.
+    /// Returns the nearest point of the surface.
     pub fn closest(&self, p: DVec3) -> Nearest {
         self.closest_facing(p, DVec3::ZERO)
     }
@@ -52,15 +52,17 @@ impl Exact {
         self.surface.closest(p, facing)
     }
 
+    /// Returns the least and the greatest coordinates.
     pub fn extent(&self) -> [DVec3; 2] {
         self.surface.extent()
     }
 
+    /// Returns the area in square object units, to about 1e-3.
     pub fn area(&self) -> f64 {
         self.spread.area()
     }
 
-    /// So many points, spread evenly by area: a Hammersley set.
+    /// Returns `count` points, spread evenly by area: a Hammersley set.
     pub fn samples(&self, count: usize) -> Vec<Sample> {
         let sample = |i: usize| {
             let (chart, s, t) = self.spread.place((i as f64 + 0.5) / count as f64, radical_inverse(2, i));

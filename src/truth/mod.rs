@@ -1,6 +1,7 @@
-//! Surfaces that a tessellation is held against: exact ones, which shapes are sampled from, and reference meshes.
+//! Reference surfaces, which a tessellation is compared with: the exact surfaces that shapes are sampled from, and
+//! reference meshes. They are the surfaces of the option `--truth`.
 //!
-//! All is in f64 and in object units. [`crate::measure::Accuracy`] does the holding against.
+//! All numbers are f64, in object units. [`crate::measure::Accuracy`] does the comparison.
 
 mod bicubic;
 mod ellipsoid;
@@ -25,39 +26,39 @@ use crate::load::{LoadError, Source};
 use crate::mesh::{Mesh, Shape};
 use crate::progress::Progress;
 
-/// The point of a surface that is nearest to some place. Where several are equally near it is one of them.
+/// The point of a surface that is nearest to some place. If several are equally near, it is one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     pub point: DVec3,
     /// The surface's unit normal there.
     pub normal: DVec3,
-    /// From the place to the point.
+    /// The distance from the place to the point.
     pub distance: f64,
 }
 
-/// A point of a surface, and its unit normal there.
+/// A point of a surface, and the unit normal there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     pub point: DVec3,
     pub normal: DVec3,
 }
 
-/// What a tessellation should have been.
+/// A reference surface: the surface that a tessellation should be.
 pub enum Truth {
     Exact(Exact),
     Mesh(Reference),
 }
 
 impl Truth {
-    /// The surface that a shape's corners are samples of; none for shapes that have none.
+    /// Returns the surface that a shape's corners are samples of, or `None` if the shape has none.
     pub fn of_shape(shape: Shape) -> Option<Self> {
         of_shape(shape).map(Self::Exact)
     }
 
-    /// What a source stands for: the surface that a shape is sampled from; or the mesh. None if that has no triangle.
+    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh. `None` if that has no
+    /// triangle.
     ///
-    /// # Errors
-    /// What the file holds can't be shown, or `progress` was cancelled.
+    /// # Errors The file can't be read as a mesh, or `progress` was cancelled.
     pub fn load(source: &Source, limits: &Limits, progress: &Progress) -> Result<Option<Self>, LoadError> {
         match source.shape().and_then(Self::of_shape) {
             Some(exact) => Ok(Some(exact)),
@@ -65,17 +66,19 @@ impl Truth {
         }
     }
 
-    /// A mesh with its interpolated normals, which needn't be closed or manifold; none if it has no triangle.
+    /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't
+    /// be closed or manifold.
     pub fn of_mesh(mesh: &Mesh) -> Option<Self> {
         Reference::new(mesh).map(Self::Mesh)
     }
 
-    /// The nearest point.
+    /// Returns the nearest point of the surface.
     pub fn closest(&self, p: DVec3) -> Nearest {
         self.closest_facing(p, DVec3::ZERO)
     }
 
-    /// The nearest point. Where it lies on a crease, which has several normals, it comes with the one nearest to `facing`.
+    /// Returns the nearest point of the surface. If it lies on a crease, where the surface has several normals, it has
+    /// the one that is nearest to `facing`.
     pub fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
         match self {
             Self::Exact(exact) => exact.closest_facing(p, facing),
@@ -83,7 +86,7 @@ impl Truth {
         }
     }
 
-    /// So many points, spread evenly by area; the same every time.
+    /// Returns `count` points, spread evenly by area. They are the same every time.
     pub fn samples(&self, count: usize) -> Vec<Sample> {
         match self {
             Self::Exact(exact) => exact.samples(count),
@@ -91,7 +94,7 @@ impl Truth {
         }
     }
 
-    /// In square object units; of exact surfaces to about 1e-3 of it.
+    /// Returns the area in square object units. That of exact surfaces is accurate to about 1e-3.
     pub fn area(&self) -> f64 {
         match self {
             Self::Exact(exact) => exact.area(),
@@ -99,7 +102,7 @@ impl Truth {
         }
     }
 
-    /// The length of the bounding box's diagonal.
+    /// Returns the length of the bounding box's diagonal in object units.
     pub fn diagonal(&self) -> f64 {
         let [min, max] = match self {
             Self::Exact(exact) => exact.extent(),
@@ -109,8 +112,8 @@ impl Truth {
     }
 }
 
-/// How near to a crease, relative to the surface's size, its normals can't be told apart by position: a few times what
-/// f32 rounds off.
+/// The distance from a crease, relative to the surface's size, within which all normals of the crease count: a few
+/// rounding errors of f32 positions.
 const ON_CREASE: f64 = 1e-6;
 
 #[cfg(test)]

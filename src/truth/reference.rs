@@ -1,4 +1,4 @@
-//! A mesh as the truth: the high-poly original, say.
+//! A mesh as reference surface, for example the high-poly original.
 
 use std::sync::Arc;
 
@@ -9,19 +9,19 @@ use super::triangles::{Closest, Triangles};
 use super::{Nearest, ON_CREASE, Sample};
 use crate::mesh::{Corner, Mesh};
 
-/// A mesh's triangles as they are, with their normals interpolated as they are shaded.
+/// A mesh's flat triangles, with interpolated shading normals.
 pub struct Reference {
     triangles: Triangles,
-    /// The mesh's, with the corners of each of its triangles.
+    /// The mesh's corners; `faces` has the three of each triangle.
     corners: Vec<Corner>,
     faces: Arc<Vec<[u32; 3]>>,
-    /// Area up to the end of each triangle.
+    /// The sum of the areas of all triangles up to and including each one.
     areas: Vec<f64>,
     diagonal: f64,
 }
 
 impl Reference {
-    /// None if there is no triangle.
+    /// Returns `None` if the mesh has no triangle.
     pub fn new(mesh: &Mesh) -> Option<Self> {
         let (corners, faces) = (mesh.corners.clone(), mesh.triangles.clone());
         let of = |triangle: &[u32; 3]| triangle.map(|corner| corners[corner as usize].position);
@@ -45,7 +45,7 @@ impl Reference {
             distance: closest.distance,
         };
         let all = self.triangles.all_closest(p, ON_CREASE * self.diagonal);
-        // There is a triangle, so there is a nearest one; from places that are no numbers, none.
+        // There is a nearest triangle, unless the place has a NaN coordinate.
         let nowhere = Nearest { point: p, normal: DVec3::Y, distance: f64::NAN };
         let Some(first) = all.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return nowhere };
         let found = nearest(first);
@@ -55,7 +55,8 @@ impl Reference {
         Nearest { normal, ..found }
     }
 
-    /// The shading normal; where that has no direction the face's, and of a face that has none a corner's.
+    /// Returns the unit shading normal, or the face's normal if that has no direction, or a corner's if the face has
+    /// none either.
     fn normal(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
         let corners = self.triangle(triangle);
         let normals = corners.map(|corner| corner.normal.as_dvec3());
@@ -65,11 +66,11 @@ impl Reference {
             .unwrap_or(normals[0])
     }
 
-    /// So many points, spread evenly by area.
+    /// Returns `count` points, spread evenly by area.
     pub(super) fn samples(&self, count: usize) -> Vec<Sample> {
         let sample = |i: usize| {
             let (triangle, _) = find(&self.areas, (i as f64 + 0.5) / count as f64);
-            // The unit square folded onto the triangle, parts of the one on parts of the other.
+            // Fold the unit square onto the triangle, which keeps proportions of area.
             let (x, y) = (radical_inverse(2, i), radical_inverse(3, i));
             let (b, c) = if x + y > 1.0 { (1.0 - x, 1.0 - y) } else { (x, y) };
             let weights = [1.0 - b - c, b, c];
@@ -89,6 +90,7 @@ impl Reference {
     }
 }
 
+/// Returns the cross product of two sides: the face's normal, twice as long as its area.
 fn cross(triangle: &[Vec3; 3]) -> DVec3 {
     let [a, b, c] = triangle.map(Vec3::as_dvec3);
     (b - a).cross(c - a)

@@ -1,4 +1,4 @@
-//! Surfaces that turn around the Y axis: the torus, and what a line of segments sweeps.
+//! Surfaces of revolution around the Y axis: the torus, and those that a profile of line segments sweeps.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +7,8 @@ use glam::{DVec2, DVec3};
 use super::surface::Surface;
 use super::{Nearest, ON_CREASE, Sample};
 
-/// The distance from the axis, and the direction away from it: on the axis that of `facing`, if it has one.
+/// Returns the distance of p from the axis, and the unit direction away from the axis. Within `on_axis` of the axis the
+/// direction is that of `facing`, if it has one.
 fn around(p: DVec3, facing: DVec3, on_axis: f64) -> (f64, DVec3) {
     let flat = |v: DVec3| DVec3::new(v.x, 0.0, v.z);
     let radius = p.x.hypot(p.z);
@@ -16,15 +17,17 @@ fn around(p: DVec3, facing: DVec3, on_axis: f64) -> (f64, DVec3) {
     (radius, out)
 }
 
+/// Returns the point at distance `out` from the axis and height `y` after `turn` turns (0 to 1).
 fn turned(out: f64, y: f64, turn: f64) -> DVec3 {
     let (sin, cos) = (TAU * turn).sin_cos();
     DVec3::new(out * sin, y, out * cos)
 }
 
+/// A torus around the Y axis.
 pub(super) struct Torus {
-    /// Radius of the circle in the middle of the tube.
+    /// The radius of the circle in the middle of the tube.
     pub major: f64,
-    /// The tube's.
+    /// The radius of the tube.
     pub minor: f64,
 }
 
@@ -55,7 +58,7 @@ impl Surface for Torus {
     }
 }
 
-/// Segments in the half-plane of distance from the axis and height, outside to their right.
+/// Line segments in the half-plane of distance from the axis and height. The outside is on their right.
 pub(super) struct Profile {
     segments: Vec<[DVec2; 2]>,
 }
@@ -70,6 +73,7 @@ impl Profile {
     }
 }
 
+/// Returns the unit normal of a segment, to its right.
 fn outward([a, b]: [DVec2; 2]) -> DVec2 {
     -(b - a).perp().normalize()
 }

@@ -1,8 +1,10 @@
-//! Roots of falling functions.
+//! Roots of monotonically decreasing functions.
 
-/// The root of a function that is 0 or above at `low` (0 or above itself) and 0 or below at `high`, and falls between.
-/// `f` gives its value and slope. Newton's steps, kept between what is known; where they creep, by halves, of the exponent
-/// if the ends are far apart.
+/// Returns the root of a function that decreases from 0 or more at `low` (which is 0 or more) to 0 or less at `high`.
+/// `f` gives its value and slope.
+///
+/// It takes Newton's steps, as long as they stay in the interval in which the root is known to lie. If they don't, and
+/// every fourth time, it bisects that interval: arithmetically, or geometrically if its ends are far apart.
 pub(super) fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut x = if low > 0.0 { low } else { high };
     for step in 1..600 {

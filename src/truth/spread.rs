@@ -1,18 +1,19 @@
-//! Places spread evenly by area over charts that stretch unevenly.
+//! Points spread evenly by area over charts that stretch areas unevenly. A chart maps the unit square to a part of a
+//! surface.
 
-/// Strips a chart, and cells a strip: density is even within a cell.
+/// The number of strips in a chart, and of cells in a strip. Within a cell the density counts as constant.
 const CELLS: usize = 64;
 
-/// Charts cut into strips along `s`, and these into cells along `t`, by area.
+/// The areas of charts, cut into strips along `s` and these into cells along `t`.
 pub(super) struct Spread {
-    /// Area up to the end of each strip of each chart.
+    /// The sum of the areas up to the end of each strip of each chart.
     strips: Vec<f64>,
-    /// Area within a strip up to the end of each of its cells.
+    /// For each strip, the sum of the areas up to the end of each of its cells.
     cells: Vec<[f64; CELLS]>,
 }
 
 impl Spread {
-    /// `density` says how much area a chart has at a place for the unit square's.
+    /// `density` returns the surface's area per area of the unit square, at a place in a chart.
     pub fn new(charts: usize, density: impl Fn(usize, f64, f64) -> f64) -> Self {
         let mut area = 0.0;
         let (mut strips, mut cells) = (Vec::new(), Vec::new());
@@ -29,11 +30,13 @@ impl Spread {
         Self { strips, cells }
     }
 
+    /// Returns the area of all charts.
     pub fn area(&self) -> f64 {
         self.strips.last().copied().unwrap_or(0.0)
     }
 
-    /// The chart and place of a point of the unit square: parts of the square take parts of the area.
+    /// Maps a point of the unit square to a chart and a place in it, so that equal areas of the square get equal areas
+    /// of the surface.
     pub fn place(&self, x: f64, y: f64) -> (usize, f64, f64) {
         let (strip, s) = find(&self.strips, x);
         let (cell, t) = find(&self.cells[strip], y);
@@ -42,7 +45,8 @@ impl Spread {
     }
 }
 
-/// In which step of rising sums a part (0 to 1) of the whole lies, and how far into it.
+/// Returns the step of increasing sums in which a part (0 to 1) of the last sum lies, and how far into the step, from 0
+/// to 1.
 pub(super) fn find(sums: &[f64], part: f64) -> (usize, f64) {
     let whole = sums.last().copied().unwrap_or(0.0);
     let at = part * whole;
@@ -53,8 +57,8 @@ pub(super) fn find(sums: &[f64], part: f64) -> (usize, f64) {
     (step, rest)
 }
 
-/// The digits of `i` mirrored at the point: evenly spread over 0 to 1 however many are taken (van der Corput 1935; Halton
-/// 1960).
+/// Returns the radical inverse of `i`: its digits in `base`, mirrored at the point. The first values of any number are
+/// spread evenly from 0 to 1 (van der Corput 1935; Halton 1960).
 pub fn radical_inverse(base: usize, mut i: usize) -> f64 {
     let (mut sum, mut digit) = (0.0, 1.0);
     while i > 0 {
@@ -70,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn digits_are_mirrored() {
+    fn radical_inverses_mirror_the_digits() {
         assert_eq!([1, 2, 3, 4].map(|i| radical_inverse(2, i)), [0.5, 0.25, 0.75, 0.125]);
     }
 }

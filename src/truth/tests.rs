@@ -18,10 +18,10 @@ fn exact(shape: Shape) -> Exact {
     of_shape(shape).unwrap()
 }
 
-/// How far a point is from fulfilling its surface's equation, for those that have one.
+/// Returns by how much a point fails its surface's equation, for shapes that have one.
 fn off_surface(shape: Shape, p: DVec3) -> f64 {
     let out = p.x.hypot(p.z);
-    // Shapes have f32's 0.6 and 0.8.
+    // The shapes' sizes are f32 numbers.
     let [major, minor, radius, half, third] = [0.7, 0.3, 0.6, 0.75, 0.8].map(|x: f32| f64::from(x));
     match shape {
         Shape::Icosahedron | Shape::Icosphere => p.length() - 1.0,
@@ -39,7 +39,7 @@ fn is_closed(shape: Shape) -> bool {
 }
 
 #[test]
-fn shapes_with_levels_have_a_truth() {
+fn shapes_with_levels_have_an_exact_surface() {
     for shape in Shape::ALL {
         assert_eq!(Truth::of_shape(shape).is_some(), shape.has_levels(), "{shape}");
         assert_eq!(EXACT.contains(&shape), shape.has_levels(), "{shape}");
@@ -66,10 +66,10 @@ fn corners_of_every_level_lie_on_the_surface_with_its_normals() {
 }
 
 #[test]
-fn a_level_has_twice_the_segments() {
+fn every_level_doubles_the_segments() {
     for shape in EXACT {
         let [coarse, fine] = [0, 1].map(|level| shape.build_at(level).triangles.len());
-        // Fans around an apex or a cap's middle get a row of quads: six triangles for each.
+        // In a fan around an apex or the middle of a cap, each triangle becomes six: two at the tip and a row of two quads.
         let expected = match shape {
             Shape::Cylinder => 4 * 24 + 6 * 24,
             Shape::Cone => 6 * 24,
@@ -124,16 +124,16 @@ fn areas_and_boxes_are_those_of_closed_forms() {
     }
 }
 
-/// Places where formulas divide by 0, or where much is equally near.
+/// Tests places where formulas would divide by 0, or where many points are equally near.
 #[test]
-fn axes_centres_and_rims_have_a_nearest_point() {
+fn axes_centres_and_borders_have_a_nearest_point() {
     let far = |shape, p: [f64; 3]| exact(shape).closest(DVec3::from(p)).distance;
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-7, "{a} for {b}");
     near(far(Shape::Icosphere, [0.0, 0.0, 0.0]), 1.0);
     near(far(Shape::Ellipsoid, [0.0, 0.0, 0.0]), 0.6);
     near(far(Shape::Ellipsoid, [3.0, 0.0, 0.0]), 2.0);
     near(far(Shape::Ellipsoid, [0.0, -2.0, 0.0]), 1.4);
-    // Within the plane of the larger radii the shortest way leads out of it: x / (1 - 0.36), and up from there.
+    // From the plane of the larger radii the shortest way leaves that plane. Its end has x = 0.1 / (1 - 0.36).
     let x: f64 = 0.1 / 0.64;
     near(far(Shape::Ellipsoid, [0.1, 0.0, 0.0]), (x - 0.1).hypot(0.6 * (1.0 - x * x).sqrt()));
     near(far(Shape::Ellipsoid, [0.1, 1e-300, 1e-30]), (x - 0.1).hypot(0.6 * (1.0 - x * x).sqrt()));
@@ -147,7 +147,7 @@ fn axes_centres_and_rims_have_a_nearest_point() {
     near(far(Shape::Cone, [0.0, -0.7, 0.0]), 0.05);
     near(far(Shape::Saddle, [0.0, 0.0, 0.0]), 0.0);
     near(far(Shape::Saddle, [0.0, 0.5, 0.0]), 0.5);
-    // Beyond the centre of curvature both sides of the valley are nearer than its middle: x^2 = 2 (1.25 - 1).
+    // Above the centre of curvature both sides of the valley are nearer than its middle: x^2 = 2 (1.25 - 1).
     near(far(Shape::Saddle, [0.0, 1.25, 0.0]), 0.5_f64.sqrt().hypot(1.0));
     near(far(Shape::Saddle, [0.0, -1.25, 0.0]), 0.5_f64.sqrt().hypot(1.0));
     near(far(Shape::Saddle, [1.8, 0.0, 1.8]), 2.0_f64.sqrt());
@@ -155,11 +155,11 @@ fn axes_centres_and_rims_have_a_nearest_point() {
 }
 
 #[test]
-fn a_crease_gives_the_normal_that_is_asked_for() {
+fn on_a_crease_the_normal_is_the_one_nearest_to_facing() {
     let cylinder = exact(Shape::Cylinder);
-    let rim = DVec3::new(0.6_f32.into(), 0.75, 0.0);
-    assert_eq!(cylinder.closest_facing(rim, DVec3::new(0.1, 1.0, 0.0)).normal, DVec3::Y);
-    assert_eq!(cylinder.closest_facing(rim, DVec3::new(1.0, 0.1, 0.0)).normal, DVec3::X);
+    let on_edge = DVec3::new(0.6_f32.into(), 0.75, 0.0);
+    assert_eq!(cylinder.closest_facing(on_edge, DVec3::new(0.1, 1.0, 0.0)).normal, DVec3::Y);
+    assert_eq!(cylinder.closest_facing(on_edge, DVec3::new(1.0, 0.1, 0.0)).normal, DVec3::X);
     let slope = DVec3::new(0.0, 0.6, 1.5).normalize();
     let apex = exact(Shape::Cone).closest_facing(DVec3::Y * 0.75, slope);
     assert!(apex.distance < 1e-12 && apex.normal.distance(slope) < 1e-6);
@@ -174,7 +174,7 @@ fn a_dense_mesh_is_nearly_its_surface() {
     let mesh = Truth::of_mesh(&Shape::Icosphere.build_at(4)).unwrap();
     let sphere = Truth::of_shape(Shape::Icosphere).unwrap();
     assert!((mesh.area() / sphere.area() - 1.0).abs() < 2e-3);
-    // The sphere's corners reach all six sides of the box but for what its triangles leave.
+    // The bounding box is smaller than the sphere's, since the flat triangles lie inside the sphere.
     assert!((mesh.diagonal() / sphere.diagonal() - 1.0).abs() < 2e-3);
     for sample in Truth::of_shape(Shape::Torus).unwrap().samples(500) {
         let p = 2.0 * sample.point;
@@ -184,7 +184,7 @@ fn a_dense_mesh_is_nearly_its_surface() {
 }
 
 #[test]
-fn a_mesh_truth_has_even_samples_of_its_triangles() {
+fn samples_of_a_mesh_are_spread_evenly_over_its_triangles() {
     let mesh = Reference::new(&Shape::CubeSplit.build()).unwrap();
     let samples = mesh.samples(12_000);
     assert_eq!(samples, mesh.samples(12_000));
@@ -199,7 +199,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn what_is_nearest_lies_on_the_surface_and_nothing_is_nearer(
+    fn the_nearest_point_lies_on_the_surface_and_no_sample_is_nearer(
         p in prop::array::uniform3(-1.5_f64..1.5), scale in prop::sample::select(vec![1e-9, 1e-3, 1.0, 3.0]),
     ) {
         let p = DVec3::from(p) * scale;
@@ -221,7 +221,7 @@ proptest! {
     }
 
     #[test]
-    fn the_tree_finds_what_trying_all_finds(
+    fn the_hierarchy_finds_the_nearest_point_of_all_triangles(
         corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-4_i8..4)), 1..40),
         p in prop::array::uniform3(-6.0_f64..6.0),
         size in prop::sample::select(vec![1e-25_f32, 1.0, 1e25]),
@@ -249,7 +249,7 @@ struct Sampled {
     samples: Vec<Sample>,
 }
 
-/// Made once: samples take longer than answers.
+/// Returns a shape's surface with samples, which are made only once.
 fn exact_of(shape: Shape) -> &'static Sampled {
     static ALL: std::sync::OnceLock<Vec<Sampled>> = std::sync::OnceLock::new();
     let make = || EXACT.map(|shape| Sampled { samples: exact(shape).samples(5000), surface: exact(shape) }).into();
@@ -258,10 +258,13 @@ fn exact_of(shape: Shape) -> &'static Sampled {
 }
 
 #[test]
-fn profile_corners_are_those_of_the_shapes() {
+fn the_profile_of_the_cone_has_its_corner_at_the_edge_of_its_base() {
     let cone = exact(Shape::Cone);
-    let rim = DVec2::new(0.6, -0.75);
+    let corner = DVec2::new(0.6, -0.75);
     assert!(
-        cone.closest(DVec3::new(rim.x + 1.0, rim.y - 1.0, 0.0)).point.distance(DVec3::new(rim.x, rim.y, 0.0)) < 1e-6
+        cone.closest(DVec3::new(corner.x + 1.0, corner.y - 1.0, 0.0))
+            .point
+            .distance(DVec3::new(corner.x, corner.y, 0.0))
+            < 1e-6
     );
 }

@@ -1,4 +1,4 @@
-//! Triangles, and which point of them is nearest to a place.
+//! Triangles, and the point of them that is nearest to a place.
 
 use std::time::Duration;
 
@@ -8,23 +8,24 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
-/// Triangles in a tree of boxes. Which those are is the crate's; distances are computed here, in f64.
+/// Triangles in a bounding volume hierarchy. The crate builds the hierarchy; distances are computed here, in f64.
 pub struct Triangles {
     tree: Bvh2,
-    /// In the tree's order, scaled.
+    /// The triangles in the order of the hierarchy, scaled.
     corners: Vec<[Vec3; 3]>,
-    /// A power of two that brings coordinates near 1, where boxes' areas stay within f32; it rounds nothing.
+    /// A power of two that brings coordinates near 1, so that the areas of boxes are within the range of f32. It causes
+    /// no rounding.
     scale: f64,
 }
 
-/// A point of a triangle.
+/// The nearest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// Which of those that were given.
+    /// The index of the triangle.
     pub triangle: u32,
-    /// Of its corners.
+    /// The weights of the triangle's corners.
     pub weights: [f64; 3],
-    /// Object units, as `distance`.
+    /// The point, and its distance from the place, in object units.
     pub point: DVec3,
     pub distance: f64,
 }
@@ -39,7 +40,8 @@ impl Boundable for Bounded {
 }
 
 impl Triangles {
-    /// Corners of triangles; none if there is no triangle. Coordinates must be finite.
+    /// Builds the hierarchy from the corners of triangles, which must be finite. Returns `None` if there are no
+    /// triangles.
     pub fn new(triangles: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
         triangles.clone().next()?;
         let largest = triangles.clone().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);
@@ -51,20 +53,20 @@ impl Triangles {
         Some(Self { tree, corners, scale })
     }
 
-    /// Least and greatest coordinates.
+    /// Returns the least and the greatest coordinates.
     pub fn extent(&self) -> [DVec3; 2] {
         let root = self.tree.nodes[0].aabb();
         [root.min, root.max].map(|corner| Vec3::from(corner).as_dvec3() / self.scale)
     }
 
-    /// The nearest point, if one is nearer than `within`.
+    /// Returns the nearest point, if one is nearer than `within`.
     pub fn closest(&self, p: DVec3, within: f64) -> Option<Closest> {
         let mut best = None;
         self.search(p, within, 0.0, |closest| best = Some(closest));
         best
     }
 
-    /// The nearest points of all triangles that come as near as the nearest does, to within `slack`.
+    /// Returns the nearest points of all triangles that are at most `slack` farther away than the nearest triangle.
     pub fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
         let mut all: Vec<Closest> = Vec::new();
         self.search(p, f64::INFINITY, slack, |closest| all.push(closest));
@@ -73,8 +75,8 @@ impl Triangles {
         all
     }
 
-    /// Calls `take` with points that are nearer than `within` and all before, or farther than the nearest by no more than
-    /// `slack`.
+    /// Calls `take` with each nearest point of a triangle that is nearer than `within` and at most `slack` farther than
+    /// the nearest one so far.
     fn search(&self, p: DVec3, within: f64, slack: f64, mut take: impl FnMut(Closest)) {
         let (p, slack) = (p * self.scale, slack * self.scale);
         let mut nearest = within * self.scale;
@@ -115,7 +117,7 @@ impl Triangles {
     }
 }
 
-/// The weights of the point of a triangle that is nearest to p, and the point. Triangles may be segments or points.
+/// Returns the point of a triangle that is nearest to p, and its weights before it. Triangles may be degenerate.
 fn closest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> ([f64; 3], DVec3) {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let normal = ab.cross(ac);

@@ -190,7 +190,7 @@ fn what_is_wrong_with_a_file_is_one_sentence() {
     wrong(&bare, b"", &["its 0 bytes"]);
     wrong(&bare, &[&bin[..], &bin[..144]].concat(), &["its 576 bytes", "with --indices 12"]);
     wrong(&bare, &[&bin[..428], &[24, 0, 0, 0]].concat(), &["patch 11 has index 24", "corners are 0 to 23"]);
-    wrong(&text, &bin, &["wrong.json: this is no JSON as the adjacency command writes it"]);
+    wrong(&text, &bin, &["wrong.json: this is not JSON as the adjacency command writes it"]);
     wrong(&text, b"{\"indices_per_patch\": 9}", &["missing field `patches`"]);
     let document = json("shape:cube-split", "9").to_string();
     let six = json("shape:cube-split", "6").to_string();
@@ -200,7 +200,7 @@ fn what_is_wrong_with_a_file_is_one_sentence() {
     wrong(&text, other.as_bytes(), &["it has 20 patches, but the mesh has 12"]);
     let smooth = json("shape:cube-smooth", "9").to_string();
     wrong(&text, smooth.as_bytes(), &["differ from the mesh's", "another mesh"]);
-    wrong(&text, document.replacen("[[", "[[9,", 2).as_bytes(), &["this is no JSON as"]);
+    wrong(&text, document.replacen("[[", "[[9,", 2).as_bytes(), &["this is not JSON as"]);
 
     let compare = |path: &str| ["adjacency", "shape:cube-split", "--against", path].map(str::to_owned);
     for (path, words) in [

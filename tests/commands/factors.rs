@@ -188,7 +188,7 @@ fn what_is_wrong_with_a_file_is_one_sentence() {
         (with(3, "two,8,8,8,8"), ["wrong.csv, line 4", "patch is \"two\""]),
         (with(3, "2,8,8,8"), ["wrong.csv, line 4", "number of values is 4"]),
         (with(3, "12,8,8,8,8"), ["wrong.csv, line 4", "no patch 12: the mesh has 12 triangles"]),
-        (with(3, "1,8,8,8,8"), ["wrong.csv, line 4", "patch 1 is here again, after line 3"]),
+        (with(3, "1,8,8,8,8"), ["wrong.csv, line 4", "patch 1 occurs twice; its first line is 3"]),
         (lines[..9].join("\n"), ["wrong.csv, line 9", "without a line for patch 8 and 3 more"]),
     ] {
         std::fs::write(&file, text).expect("a writable folder");

@@ -271,7 +271,10 @@ fn twins_have_the_same_functions_in_the_same_order() {
         (include_str!("../../src/tessellate/rings.rs"), include_str!("../../shaders/rings.wgsl")),
         (include_str!("../../src/tessellate/domain.rs"), include_str!("../../shaders/domain.wgsl")),
         (include_str!("../../src/tessellate/connectivity.rs"), include_str!("../../shaders/connectivity.wgsl")),
-        (include_str!("../../src/tessellate/patterns.rs"), include_str!("../../shaders/patterns.wgsl")),
+        (
+            include_str!("../../src/tessellate/connectivity_table.rs"),
+            include_str!("../../shaders/connectivity_table.wgsl"),
+        ),
         (include_str!("../../src/tessellate/control_points.rs"), include_str!("../../shaders/control_points.wgsl")),
         (include_str!("../../src/tessellate/subtriangulation.rs"), include_str!("../../shaders/subtriangulation.wgsl")),
         (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),

@@ -8,7 +8,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::measure::{DeviationField, DeviationMeasurement, DeviationTarget, WorstPoint};
 use crate::progress::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
-use crate::tessellate::{Posed, Surface};
+use crate::tessellate::{PosedMesh, Surface};
 
 /// What is known about the distance to the truth.
 #[derive(Default)]
@@ -171,7 +171,7 @@ impl DeviationJob {
 /// Measures the parts as they come. `None` if no longer wanted, or the device was lost.
 fn field(
     parts: &Receiver<Part>,
-    posed: &Posed,
+    posed: &PosedMesh,
     target: &DeviationTarget,
     triangles: u64,
     wanted: &Progress,

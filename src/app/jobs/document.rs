@@ -40,7 +40,7 @@ impl Document {
 
     /// The same; none while nobody knows.
     pub fn posed(&self) -> Option<Deformed> {
-        self.scene.tessellator.posed().deformed_soon()
+        self.scene.tessellator.posed().deformed_if_quick()
     }
 
     /// Bytes on the device: topology and output, of both halves if there are two surfaces.

@@ -17,8 +17,8 @@ use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
     BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, CANCELLED,
     DETAIL_SHARE, EDGE_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD, FACTOR_VALUE, FIXED_HALF,
-    FIXED_ONE, FIXED_TWO_THIRDS, NESTING, OUT_OF_VIEW, PARALLEL, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES,
-    POLAR_WEIGHTS, ROW_SAMPLES, SEEN, SUBTRIANGULATED, SURFACE_SHARE, TURN_SHARE, UNIT,
+    FIXED_ONE, FIXED_TWO_THIRDS, NESTING, NOT_CULLED, OUT_OF_VIEW, PARALLEL, PATTERN_HALVES, PATTERN_STEPS,
+    POLAR_INDICES, POLAR_WEIGHTS, ROW_SAMPLES, SUBTRIANGULATED, SURFACE_SHARE, TURN_SHARE, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
@@ -112,7 +112,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("FACING_ROUNDING", number(FACING_ROUNDING)),
         ("POLAR_INDICES", numbers(POLAR_INDICES.map(|index| index as u32))),
         ("POLAR_WEIGHTS", numbers(POLAR_WEIGHTS)),
-        ("SEEN", number(SEEN)),
+        ("NOT_CULLED", number(NOT_CULLED)),
         ("OUT_OF_VIEW", number(OUT_OF_VIEW)),
         ("FACING_AWAY", number(FACING_AWAY)),
         ("EDGE_SHARE", number(EDGE_SHARE)),

@@ -1,5 +1,5 @@
-//! The tessellator as the specification tells it, one point and one triangle after another: what the closed forms are
-//! held against. It shares nothing with them but the factors' words.
+//! A serial tessellator for tests: it follows the specification point by point and triangle by triangle, and is what
+//! the closed forms are compared with. It shares only the factors' words with them.
 
 use crate::tessellate::factors::{FACTOR_ODD, PatchFactors};
 
@@ -13,7 +13,7 @@ pub struct Patch {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// The whole patch.
+/// Tessellates a patch.
 pub fn patch(factors: PatchFactors) -> Patch {
     if factors == PatchFactors::default() {
         return Patch::default();
@@ -101,7 +101,7 @@ fn rings(x: &[u32], odd: bool, points: &mut Vec<[u32; 2]>) {
     }
 }
 
-/// The sides of a closed ring, as point numbers, each with the first point of the next side.
+/// Returns the sides of a closed ring, as point numbers. Each ends with the first point of the next side.
 fn closed_sides(start: u32, lengths: [u32; 3]) -> [Vec<u32>; 3] {
     let total: u32 = lengths.iter().sum();
     let mut first = 0;
@@ -155,14 +155,14 @@ fn regular(inner: &[u32], outer: &[u32], out: &mut Vec<[u32; 3]>) {
     out.push([outer[b], outer[b + 1], inner[ni - 1]]);
 }
 
-/// When the pair of points at place `i` of a side's two halves appears.
+/// Returns when the pair of points at place `i` of a side's two halves appears as factors grow.
 fn order(i: u32) -> u32 {
     let j = i - 1;
     let z = j.trailing_zeros();
     (1 << (4 - z)) + (j >> (z + 1))
 }
 
-/// Walks along both sides at once.
+/// A walk along an edge and the ring's side beside it, which emits the triangles between them.
 struct Walk<'a> {
     inner: &'a [u32],
     outer: &'a [u32],

@@ -25,7 +25,7 @@ fn row_of(p: Partitioning, factor: f32) -> Vec<u32> {
     (0..=segments(word)).map(|i| row_location(row, i)).collect()
 }
 
-/// Factor sets with every parity, the extremes, and what rounding and clamping make special.
+/// Returns factors with every parity, with the smallest and largest values, and near where rounding and clamping begin.
 fn mixed_factors(partitionings: &[Partitioning]) -> Vec<PatchFactors> {
     let values = [0.0, 1.0, 1.000_007_6, 1.000_015_3, 1.5, 2.0, 2.3, 3.0, 4.7, 6.0, 17.2, 31.9, 33.0, 63.0, 64.0];
     let mut sets = Vec::new();
@@ -42,7 +42,7 @@ fn mixed_factors(partitionings: &[Partitioning]) -> Vec<PatchFactors> {
 }
 
 #[test]
-fn rows_lie_where_the_specification_puts_them() {
+fn row_locations_are_those_of_the_specification() {
     use Partitioning::{FractionalEven as Even, FractionalOdd as Odd};
     let rows: [(Partitioning, f32, &[u32]); 7] = [
         (Odd, 1.5, &[0, 5461, 60075, 65536]),
@@ -59,7 +59,7 @@ fn rows_lie_where_the_specification_puts_them() {
 }
 
 #[test]
-fn rows_are_symmetric_and_never_run_back() {
+fn rows_are_symmetric_and_sorted() {
     for p in Partitioning::DIRECT3D {
         for step in 0..=64 * 16 {
             let row = row_of(p, step as f32 / 16.0 + 1e-6);
@@ -101,7 +101,7 @@ fn one_split_edge_gives_a_fan_around_the_centre() {
 }
 
 #[test]
-fn every_whole_factor_is_as_the_serial_tessellator_has_it() {
+fn every_whole_factor_agrees_with_the_serial_tessellator() {
     for p in Partitioning::DIRECT3D {
         for factor in 1..=64 {
             let f = uniform(p, factor as f32);
@@ -111,7 +111,7 @@ fn every_whole_factor_is_as_the_serial_tessellator_has_it() {
 }
 
 #[test]
-fn every_pair_of_edge_and_inside_is_as_the_serial_tessellator_has_it() {
+fn every_pair_of_edge_and_inside_factor_agrees_with_the_serial_tessellator() {
     for inside in 1..=64 {
         for edge in 1..=62 {
             let edges = [edge, edge + 1, edge + 2].map(|e| e as f32);
@@ -122,7 +122,7 @@ fn every_pair_of_edge_and_inside_is_as_the_serial_tessellator_has_it() {
 }
 
 #[test]
-fn mixed_factors_are_as_the_serial_tessellator_has_them() {
+fn mixed_factors_agree_with_the_serial_tessellator() {
     for f in mixed_factors(&Partitioning::DIRECT3D) {
         assert_eq!(closed_form(f), serial::patch(f), "{f:x?}");
     }
@@ -144,7 +144,7 @@ fn triangles_cover_the_domain_once() {
 }
 
 #[test]
-fn no_triangle_of_whole_factors_is_turned_over() {
+fn no_triangle_of_whole_factors_is_flipped() {
     for f in mixed_factors(&Partitioning::ALL)
         .into_iter()
         .filter(|f| f.outside[0] & 0xffff == 0 && f.outside[2] & 0xffff == 0)
@@ -156,9 +156,9 @@ fn no_triangle_of_whole_factors_is_turned_over() {
     }
 }
 
-// Each edge inside belongs to two triangles, which run along it in opposite directions; the others are the outline.
+/// Each edge inside belongs to two triangles, which run along it in opposite directions. The other edges are the outline.
 #[test]
-fn triangles_are_a_disc() {
+fn triangles_form_a_disc() {
     for f in mixed_factors(&Partitioning::ALL).into_iter().step_by(7).filter(|f| !patch_is_culled(*f)) {
         let triangles = closed_form(f).triangles;
         let mut sides = HashMap::new();
@@ -182,7 +182,7 @@ fn triangles_are_a_disc() {
 fn a_segments_length_is_rounded_half_up() {
     for segments in 1..=128 {
         assert_eq!(segment_length(segments), (2 * FIXED_ONE + segments) / (2 * segments), "{segments}");
-        // As far off as a GPU may be.
+        // The largest relative error that WGSL allows a GPU.
         for off in [1.0 - 3e-7, 1.0 + 3e-7] {
             let quotient = ((2 * FIXED_ONE + segments) as f32 + 0.5) / (2 * segments) as f32 * off;
             assert_eq!(quotient as u32, segment_length(segments), "{segments}");
@@ -218,7 +218,7 @@ fn any_factor() -> impl Strategy<Value = f32> {
 
 proptest! {
     #[test]
-    fn any_patch_is_as_the_serial_tessellator_has_it(
+    fn any_patch_agrees_with_the_serial_tessellator(
         p in prop::sample::select(Partitioning::DIRECT3D.to_vec()),
         edges in prop::array::uniform3(any_factor()),
         inside in any_factor(),
@@ -240,7 +240,7 @@ proptest! {
     }
 
     #[test]
-    fn words_are_factors_with_a_parity(p in prop::sample::select(Partitioning::ALL.to_vec()), x in any_factor()) {
+    fn words_hold_a_factor_in_range_or_zero(p in prop::sample::select(Partitioning::ALL.to_vec()), x in any_factor()) {
         let f = process(p, [x; 3], x);
         for word in f.outside.into_iter().chain([f.inside]) {
             prop_assert!(word == 0 || (FIXED_ONE..=64 << 16).contains(&(word & FACTOR_VALUE)));

@@ -4,7 +4,7 @@ use glam::{Mat4, Vec4, vec3};
 
 const VIEW: LodView = LodView::new(Mat4::IDENTITY, Vec2::splat(100.0));
 
-/// A patch between these corners whose centre is lifted by `z`.
+/// Returns the net of a flat patch whose centre control point is lifted by `z`.
 fn raised(corners: [Vec3; 3], z: f32) -> ControlNet {
     let third = |a: Vec3, b: Vec3| a.lerp(b, 1.0 / 3.0);
     let [a, b, c] = corners;
@@ -27,8 +27,8 @@ fn control_points_are_found_by_their_indices() {
 }
 
 #[test]
-fn a_parabola_takes_the_segments_of_the_closed_form() {
-    // Both second differences are d: n segments are off by 3/4 d / n^2 in the middle of each.
+fn the_factor_of_a_parabola_is_that_of_the_closed_form() {
+    // Both second differences are d, so the error of n segments is 3/4 d / n^2.
     let d = 0.2;
     let net = [vec3(-0.9, 0.0, 0.5), vec3(-0.3, d, 0.5), vec3(0.3, d, 0.5), vec3(0.9, 0.0, 0.5)];
     let height = 0.75 * d * 100.0;
@@ -39,7 +39,7 @@ fn a_parabola_takes_the_segments_of_the_closed_form() {
 }
 
 #[test]
-fn a_triangles_error_is_the_largest_sum_over_its_weights() {
+fn triangle_error_is_the_maximum_over_all_weights() {
     for [a, b, c] in [
         [1.0, 1.0, 1.0],
         [1.0, 1.0, 2.0],
@@ -58,7 +58,7 @@ fn a_triangles_error_is_the_largest_sum_over_its_weights() {
 }
 
 #[test]
-fn what_is_flat_stays_whole() {
+fn flat_edges_and_patches_get_a_factor_of_1() {
     let net = raised(CORNERS, 0.0);
     for partitioning in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
         assert_eq!(inside_error_factor(&VIEW, 0.25, partitioning, &net, [1.0; 3]), 1.0);
@@ -67,7 +67,7 @@ fn what_is_flat_stays_whole() {
 }
 
 #[test]
-fn what_no_number_of_segments_suffices_for_can_be_told() {
+fn the_factor_is_above_64_if_no_number_of_segments_suffices() {
     let net = raised(CORNERS, 0.0);
     let twisted = ControlNet { center: net.center + Vec3::X * 0.2, ..net };
     for partitioning in Partitioning::DIRECT3D {
@@ -79,7 +79,7 @@ fn what_no_number_of_segments_suffices_for_can_be_told() {
 }
 
 #[test]
-fn depth_alone_is_not_seen_without_perspective_and_is_with() {
+fn errors_in_depth_count_with_perspective_only() {
     let net = raised(CORNERS, 0.3);
     assert_eq!(inside_error_factor(&VIEW, 0.25, Partitioning::Integer, &net, [1.0; 3]), 1.0);
     let mut clip_from_object = Mat4::IDENTITY;
@@ -90,32 +90,36 @@ fn depth_alone_is_not_seen_without_perspective_and_is_with() {
 }
 
 #[test]
-fn what_lies_between_an_edge_and_a_point_behind_the_eye_is_as_near_as_that() {
+fn mixed_bounds_hold_for_means_with_a_point_behind_the_eye() {
     let mut clip_from_object = Mat4::IDENTITY;
     clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
     clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
     let view = LodView { clip_from_object, ..VIEW };
     let (beside, behind) = (vec3(0.5, 0.0, 10.0), vec3(0.5, 0.0, -50.0));
-    let own = edge_sight(&view, [beside; 4]);
+    let own = edge_bounds(&view, [beside; 4]);
     let other = widen(&view, own, behind);
     let between = beside.lerp(behind, 0.1);
-    assert!(mixed_sight(own, other, 0.1).nearest <= between.z, "{between}");
+    assert!(mixed_bounds(own, other, 0.1).nearest <= between.z, "{between}");
 }
 
 #[test]
-fn levels_are_the_least_that_nest() {
-    let of = |partitioning, least: &[f32]| least.iter().map(|&x| level(partitioning, x)).collect::<Vec<_>>();
-    let asked = [1.0, 1.1, 2.5, 3.0, 3.1, 4.5, 8.0, 9.5, 33.0];
-    assert_eq!(of(Partitioning::Integer, &asked), [1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 8.0, 16.0, 64.0]);
-    assert_eq!(of(Partitioning::Pow2, &asked), [1.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
-    assert_eq!(of(Partitioning::FractionalEven, &asked), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
-    assert_eq!(of(Partitioning::FractionalOdd, &asked), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
+fn levels_are_the_least_nesting_factors_of_each_partitioning() {
+    let of = |partitioning, least: &[f32]| least.iter().map(|&x| nesting_factor(partitioning, x)).collect::<Vec<_>>();
+    let least = [1.0, 1.1, 2.5, 3.0, 3.1, 4.5, 8.0, 9.5, 33.0];
+    assert_eq!(of(Partitioning::Integer, &least), [1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 8.0, 16.0, 64.0]);
+    assert_eq!(of(Partitioning::Pow2, &least), [1.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+    assert_eq!(of(Partitioning::FractionalEven, &least), [2.0, 2.0, 4.0, 4.0, 4.0, 8.0, 8.0, 16.0, 64.0]);
+    assert_eq!(of(Partitioning::FractionalOdd, &least), [1.0, 3.0, 3.0, 3.0, 5.0, 5.0, 9.0, 17.0, 33.0]);
     for partitioning in Partitioning::DIRECT3D {
-        assert!(level(partitioning, 64.1) > 64.0 && level(partitioning, 1e9) > 64.0, "{partitioning:?}: one can tell");
+        assert!(
+            nesting_factor(partitioning, 64.1) > 64.0 && nesting_factor(partitioning, 1e9) > 64.0,
+            "{partitioning:?}: beyond the last level"
+        );
     }
 }
 
-/// How far the triangles of the row along U == 0 reach along it, in the longer of both rows' segments.
+/// Returns how far the triangles of the row beside the edge U == 0 reach along it, in the longer one of the segments of
+/// the edge and of the first ring.
 fn reach(partitioning: Partitioning, factor: f32, inside: f32) -> f64 {
     let factors = process(partitioning, [factor, inside, inside], inside);
     let plan = domain_plan(factors);
@@ -132,7 +136,7 @@ fn reach(partitioning: Partitioning, factor: f32, inside: f32) -> f64 {
     longest * f64::from(factor.min(inside))
 }
 
-/// How far the sides across the row along U == 0 lean along it, as a part of the edge.
+/// Returns how far the sides across the row beside the edge U == 0 lean along the edge, as a part of the edge.
 fn slant(factor: f32, inside: f32) -> f64 {
     let factors = process(Partitioning::Integer, [factor, inside, inside], inside);
     let plan = domain_plan(factors);
@@ -141,7 +145,7 @@ fn slant(factor: f32, inside: f32) -> f64 {
         let corners = domain_triangle(&plan, triangle).map(|i| domain_point(&plan, i).map(|x| f64::from(x) / 65536.0));
         for (a, b) in [(0, 1), (1, 2), (2, 0)] {
             let ([a, v], [b, w]) = (corners[a], corners[b]);
-            // Other edges' rows start at this one's ends.
+            // Leave out the rows of the other two edges, which start at this edge's ends.
             let beside = v.min(1.0 - a - v) >= a - 1e-4 && w.min(1.0 - b - w) >= b - 1e-4;
             if beside && (a == 0.0) != (b == 0.0) {
                 longest = longest.max((v + a / 2.0 - w - b / 2.0).abs());
@@ -152,19 +156,19 @@ fn slant(factor: f32, inside: f32) -> f64 {
 }
 
 #[test]
-fn an_edge_of_one_segment_gives_each_end_half_of_its_row() {
+fn half_of_the_triangles_beside_an_edge_of_one_segment_start_at_each_end() {
     for inside in 2..=64u8 {
         let (slant, most) = (slant(1.0, inside.into()), 0.5 + 0.5 / f64::from(inside));
         assert!(slant <= most * 1.0005 && slant >= 0.4995, "{inside}: {slant}");
     }
-    assert!(slant(2.0, 64.0) > 0.48, "of longer rows one end may get all");
+    assert!(slant(2.0, 64.0) > 0.48, "with two segments, all triangles of a row may start at one end");
 }
 
 #[test]
-fn rows_of_levels_nest_and_others_reach_far() {
-    // Whatever the levels of its edges, a patch finds numbers that nest with all of them.
+fn triangles_between_rows_of_levels_are_short_and_others_are_long() {
+    // All levels nest with each other, so for any levels of the edges there is a number of segments that nests with all.
     for partitioning in Partitioning::DIRECT3D {
-        let mut levels: Vec<f32> = (1..=33).map(|least| level(partitioning, least as f32)).collect();
+        let mut levels: Vec<f32> = (1..=33).map(|least| nesting_factor(partitioning, least as f32)).collect();
         levels.dedup();
         for (&factor, &inside) in levels.iter().flat_map(|a| levels.iter().map(move |b| (a, b))) {
             let reach = reach(partitioning, factor, inside);
@@ -181,5 +185,8 @@ fn rows_of_levels_nest_and_others_reach_far() {
             assert_eq!(nests(factor, n), masks[k] >> (n - 1) & 1 == 1, "{factor} beside {n}");
         }
     }
-    assert!(reach(Partitioning::Integer, 64.0, 48.0) > 4.9, "the pattern is as it was when levels were made");
+    assert!(
+        reach(Partitioning::Integer, 64.0, 48.0) > 4.9,
+        "other factors still cost what levels were introduced to save"
+    );
 }

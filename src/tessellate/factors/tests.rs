@@ -9,7 +9,7 @@ fn whole(factor: u32) -> u32 {
 }
 
 #[test]
-fn an_edge_that_is_not_positive_culls() {
+fn edge_factors_that_are_not_positive_cull_the_patch() {
     for bad in [0.0, -0.0, -1.0, f32::NAN, -f32::NAN, f32::NEG_INFINITY] {
         for p in Partitioning::ALL {
             for k in 0..3 {
@@ -25,7 +25,7 @@ fn an_edge_that_is_not_positive_culls() {
 }
 
 #[test]
-fn denormals_are_positive() {
+fn denormal_factors_count_as_positive() {
     for p in Partitioning::ALL {
         assert_eq!(process(p, [f32::from_bits(1); 3], 1.0), process(p, [1.0; 3], 1.0));
         assert!(!patch_is_culled(process(p, [f32::from_bits(1); 3], 1.0)));
@@ -33,7 +33,7 @@ fn denormals_are_positive() {
 }
 
 #[test]
-fn the_inside_never_culls() {
+fn inside_factors_never_cull() {
     for bad in [0.0, -0.0, -7.0, f32::NAN, -f32::NAN, f32::NEG_INFINITY, 1e-40] {
         for p in Partitioning::ALL {
             assert_eq!(process(p, [5.0; 3], bad), process(p, [5.0; 3], 1.0), "{bad} in {p:?}");
@@ -57,7 +57,7 @@ fn factors_are_clamped() {
 }
 
 #[test]
-fn integer_rounds_up_and_keeps_each_parity() {
+fn integer_factors_are_rounded_up_and_have_the_parity_of_the_result() {
     for p in [Partitioning::Integer, Partitioning::Pow2] {
         let f = process(p, [1.0, 1.000_000_1, 2.5], 4.0);
         assert_eq!(f, PatchFactors { outside: [ODD_ONE, 2 << 16, whole(3)], inside: 4 << 16 });
@@ -68,7 +68,7 @@ fn integer_rounds_up_and_keeps_each_parity() {
 }
 
 #[test]
-fn fractions_round_to_even_ties() {
+fn fractional_factors_are_rounded_with_ties_to_even() {
     let steps = |x: f32| process(Partitioning::FractionalEven, [x; 3], x).inside;
     let half_step = 0.5 / 65536.0;
     assert_eq!(steps(2.0 + half_step), 2 << 16);
@@ -79,7 +79,7 @@ fn fractions_round_to_even_ties() {
 }
 
 #[test]
-fn an_odd_patch_with_a_split_edge_has_a_ring() {
+fn an_odd_patch_with_a_divided_edge_has_a_ring_inside() {
     let with_edge = |x: f32| process(Partitioning::FractionalOdd, [1.0, x, 1.0], 1.0);
     let tie = f32::from_bits(0x3f80_0040);
     for minimal in [0.5, 1.0, f32::from_bits(0x3f80_0001), tie] {
@@ -112,7 +112,7 @@ fn counts_of_known_patches() {
 }
 
 #[test]
-fn pow2_rounds_up_and_leaves_what_culls() {
+fn pow2_rounds_up_and_keeps_factors_that_cull() {
     let cases = [(0.1, 1.0), (1.0, 1.0), (1.01, 2.0), (3.0, 4.0), (4.0, 4.0), (33.0, 64.0), (64.0, 64.0), (1e9, 64.0)];
     for (x, power) in cases {
         assert_eq!(round_pow2(x), power, "{x}");
@@ -125,7 +125,7 @@ fn pow2_rounds_up_and_leaves_what_culls() {
 }
 
 proptest! {
-    /// The bits say what arithmetic in f64, which is exact here, says.
+    /// The words agree with arithmetic in f64, which is exact here.
     #[test]
     fn words_agree_with_exact_arithmetic(x in 0.5f32..70.0, p in prop::sample::select(Partitioning::ALL.to_vec())) {
         let f = process(p, [x; 3], x);

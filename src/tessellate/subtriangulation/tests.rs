@@ -7,7 +7,7 @@ use crate::tessellate::factors::{
 };
 use crate::tessellate::{domain_plan, domain_point, domain_triangle};
 
-/// What a factor makes of a patch: points and triangles.
+/// Returns a patch's points and triangles.
 fn pattern(factors: PatchFactors) -> (Vec<[u32; 2]>, Vec<[u32; 3]>) {
     let plan = domain_plan(factors);
     let points = (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect();
@@ -18,7 +18,7 @@ fn uniform(factor: f32) -> PatchFactors {
     process(Partitioning::Subtriangulation, [factor; 3], factor)
 }
 
-/// Of every number of segments.
+/// Returns the points and triangles of every number of segments.
 fn all() -> impl Iterator<Item = (u32, Vec<[u32; 2]>, Vec<[u32; 3]>)> {
     (1..=64).map(|n| {
         let (points, triangles) = pattern(uniform(n as f32));
@@ -26,7 +26,7 @@ fn all() -> impl Iterator<Item = (u32, Vec<[u32; 2]>, Vec<[u32; 3]>)> {
     })
 }
 
-/// Points as they are written by hand: `i` and `j` of `n`, in 65536ths.
+/// Converts points from pairs of `i` and `j` (parts of `n`) to 16.16 fixed point.
 fn by_hand(n: u32, points: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let exact = |k: u32| (f64::from(k) / f64::from(n) * 65536.0).round() as u32;
     points.iter().map(|point| point.map(exact)).collect()
@@ -58,7 +58,7 @@ fn the_first_levels_of_detail_are_those_of_the_figure() {
 }
 
 #[test]
-fn factors_are_rounded_up_to_segments() {
+fn factors_are_rounded_up_to_whole_segments() {
     for (factor, n) in [(0.2, 1), (1.0, 1), (1.000_000_1, 2), (2.0, 2), (4.6, 5), (63.01, 64), (64.0, 64), (1e9, 64)] {
         let factors = uniform(factor);
         assert_eq!((segments(factors.inside), outer_count(factors)), (n, 3 * n), "{factor}");
@@ -67,7 +67,7 @@ fn factors_are_rounded_up_to_segments() {
 }
 
 #[test]
-fn the_largest_edge_factor_counts_for_all_whatever_the_bits() {
+fn the_largest_edge_factor_is_used_for_everything() {
     let of = |edges, inside| process(Partitioning::Subtriangulation, edges, inside);
     for inside in [f32::NAN, -3.0, 0.0, 1.0, 17.0, f32::INFINITY] {
         assert_eq!(of([2.5, 1.0, 6.1], inside), uniform(7.0), "{inside}");
@@ -81,7 +81,7 @@ fn the_largest_edge_factor_counts_for_all_whatever_the_bits() {
 }
 
 #[test]
-fn words_say_which_pattern_it_is_and_edges_do_not() {
+fn only_the_inside_word_marks_a_subtriangulated_patch() {
     for n in 1..=64 {
         let (own, integer) = (uniform(n as f32), process(Partitioning::Integer, [n as f32; 3], n as f32));
         assert_eq!((own.outside, own.inside & FACTOR_VALUE), (integer.outside, n << 16));
@@ -109,12 +109,12 @@ fn whole_rings_are_counted_exactly() {
     }
 }
 
-/// `i` and `j` of `n` of a point that is `(i, j, n - i - j) / n` as nearly as 65536ths can say.
+/// Returns `i` and `j` of a point, which must be `(i, j, n - i - j) / n` rounded to 16.16 fixed point.
 fn lattice(n: u32, [u, v]: [u32; 2]) -> [i64; 2] {
     let [u, v, w, n] = [u, v, 65536 - u - v, n].map(i64::from);
     let [i, j, k] = [u, v, w].map(|x| (2 * x * n + 65536) / (2 * 65536));
     assert_eq!(i + j + k, n, "{u} {v} of {n}");
-    // Half a unit; what is left for w a whole one, and half a one on edges, where only two weights share the rounding.
+    // U and V are off by at most half a unit. W gets the errors of both: a whole unit, but on edges half a unit.
     let off = |x: i64, i: i64| 2 * (x * n - i * 65536).abs();
     assert!(off(u, i) <= n && off(v, j) <= n && off(w, k) <= 2 * n, "{u} {v} of {n}");
     assert!(i * j * k != 0 || off(w, k) <= n, "{u} {v} of {n}");
@@ -122,7 +122,7 @@ fn lattice(n: u32, [u, v]: [u32; 2]) -> [i64; 2] {
 }
 
 #[test]
-fn points_are_those_of_the_lattice_each_once() {
+fn every_point_of_the_lattice_occurs_once() {
     for (n, points, _) in all() {
         assert_eq!(points.len() as u32, (n + 1) * (n + 2) / 2);
         let found: BTreeSet<_> = points.iter().map(|&point| lattice(n, point)).collect();
@@ -132,7 +132,7 @@ fn points_are_those_of_the_lattice_each_once() {
 }
 
 #[test]
-fn edges_are_symmetric_and_like_the_tessellators_outline() {
+fn edges_are_symmetric_and_in_the_order_of_the_tessellators_outline() {
     for (n, points, _) in all() {
         let along = |side: u32, p: u32| points[((side * n + p) % (3 * n)) as usize];
         let row: Vec<_> = (0..=n).map(|p| along(1, p)[0]).collect();
@@ -156,7 +156,10 @@ fn triangles_are_equal_and_cover_the_domain_once() {
     for (n, points, triangles) in all() {
         assert_eq!(triangles.len() as u32, n * n);
         let whole: Vec<_> = points.iter().map(|&point| lattice(n, point)).collect();
-        assert!(triangles.iter().all(|&t| doubled_area(&whole, t) == 1), "{n}: the lattice's smallest, and upright");
+        assert!(
+            triangles.iter().all(|&t| doubled_area(&whole, t) == 1),
+            "{n}: every triangle is one of the lattice's smallest and wound like the patch"
+        );
         let fixed: Vec<_> = points.iter().map(|point| point.map(i64::from)).collect();
         let areas = triangles.iter().map(|&t| doubled_area(&fixed, t));
         assert!(areas.clone().all(|area| area > 0) && areas.sum::<i64>() == 1 << 32, "{n}");

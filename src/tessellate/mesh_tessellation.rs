@@ -1,33 +1,34 @@
-//! A whole mesh, tessellated on the CPU: what the passes do, in the same order, one patch after another.
+//! Tessellates a whole mesh on the CPU, patch after patch, in the same order as the GPU's passes.
 
 use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 
-use super::nets::Nets;
-use super::relief::{Relief, reach};
+use super::control_nets::ControlNets;
+use super::mesh_displacement::{MeshDisplacement, displacement_reach};
 use super::vertex::{Vertex, pack_key};
 use super::{
-    ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, Normals, PatchFactors, SEEN, Solid, corner_weights,
-    domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv, linear_normal, linear_uv,
-    pack_normal, patch_position, place, point_count, quadratic_edge_normal, quadratic_normal, surface_normal,
-    triangle_count, unseen,
+    ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, NOT_CULLED, Normals, PatchFactors, Solid,
+    corner_weights, cull_reason, domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv,
+    linear_normal, linear_uv, outline_place, pack_normal, patch_position, point_count, quadratic_edge_normal,
+    quadratic_normal, surface_normal, triangle_count,
 };
 use crate::mesh::{Mesh, Topology};
 
-/// Everything emitted, patch after patch.
+/// The output of a tessellation, patch after patch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tessellated {
     pub vertices: Vec<Vertex>,
     /// Indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,
-    /// One for each patch.
+    /// The factors of each patch.
     pub patch_factors: Vec<PatchFactors>,
-    /// As LOD gave them: one for each edge, or as published one for each side. None where patches' were given.
+    /// The factors that LOD gave: one for each edge, or with edges as published one for each side. Empty if the
+    /// patches' factors were given.
     pub edge_factors: Vec<f32>,
 }
 
 impl Tessellated {
-    /// Takes vertices, and triangles of indices into these.
+    /// Appends vertices, and triangles whose indices refer to these vertices.
     pub fn append(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
         let base = self.vertices.len() as u32;
         self.vertices.extend_from_slice(vertices);
@@ -35,74 +36,74 @@ impl Tessellated {
     }
 }
 
-/// Tessellates the mesh. With `factors`, those are used in place of the ones that LOD gives: one for each edge, or as
-/// published one for each curve (see [`crate::mesh::Curves::factor`]).
+/// Tessellates the mesh. `factors` replace the ones that LOD gives: one for each edge, or with edges as published one
+/// for each curve (see [`crate::mesh::Curves::factor`]).
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let inputs = &seen_with_reach(mesh, inputs);
-    let nets = Nets::new(mesh, topology, inputs);
-    let relief = Relief::new(&nets, inputs);
-    let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs, relief.as_ref()), <[f32]>::to_vec);
+    let nets = ControlNets::new(mesh, topology, inputs);
+    let displacement = MeshDisplacement::new(&nets, inputs);
+    let edge_factors = factors.map_or_else(|| nets.edge_factors(inputs, displacement.as_ref()), <[f32]>::to_vec);
     let culls_back = culls_back(mesh, topology, inputs);
-    let relief = relief.map(|relief| relief.with_levels(&edge_factors));
-    let relief = relief.as_ref();
-    let written = |patch, net: &ControlNet| nets.hull_factors(inputs, relief, &edge_factors, patch, net);
-    let out = nets.emit(inputs, relief, culls_back, written);
+    let displacement = displacement.map(|displacement| displacement.with_levels(&edge_factors));
+    let displacement = displacement.as_ref();
+    let written = |patch, net: &ControlNet| nets.hull_factors(inputs, displacement, &edge_factors, patch, net);
+    let out = nets.emit(inputs, displacement, culls_back, written);
     Tessellated { edge_factors, ..out }
 }
 
-/// The same inputs, with a view that knows how far the mesh is displaced.
+/// Returns the inputs with the view's `reach` set to how far the mesh is displaced.
 fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
-    Inputs { view: LodView { reach: reach(mesh, inputs), ..inputs.view }, ..*inputs }
+    Inputs { view: LodView { reach: displacement_reach(mesh, inputs), ..inputs.view }, ..*inputs }
 }
 
-/// Whether patches that face away are left out.
+/// Returns whether patches that show only their backs are left out.
 fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
     inputs.tessellation.cull_back_faces && Solid::find(mesh, topology).is_some_and(|solid| solid.hides_backs(inputs))
 }
 
-/// Tessellates the mesh with what a hull shader wrote, one for each patch, in place of what LOD gives. Backs stay: given
-/// factors may tear any edge.
+/// Tessellates the mesh with the factors that a hull shader wrote for each patch, instead of LOD's. Patches that show
+/// only their backs are drawn, since given factors may crack any edge.
 pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given: &[HullFactors]) -> Tessellated {
     let inputs = &seen_with_reach(mesh, inputs);
-    let nets = Nets::new(mesh, topology, inputs);
-    let relief = Relief::new(&nets, inputs).map(|relief| {
-        let factors = relief.given_factors(inputs.tessellation.convention, given);
-        relief.with_levels(&factors)
+    let nets = ControlNets::new(mesh, topology, inputs);
+    let displacement = MeshDisplacement::new(&nets, inputs).map(|displacement| {
+        let factors = displacement.given_factors(inputs.tessellation.convention, given);
+        displacement.with_levels(&factors)
     });
     let written = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.tessellation.partitioning);
-    nets.emit(inputs, relief.as_ref(), false, written)
+    nets.emit(inputs, displacement.as_ref(), false, written)
 }
 
-/// What the hull shader writes under LOD, one for each patch; zeros for those that are left out.
+/// Returns the factors that the hull shader writes for each patch under LOD; zeros for patches that are left out.
 pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
     let inputs = &seen_with_reach(mesh, inputs);
-    let nets = Nets::new(mesh, topology, inputs);
-    let relief = Relief::new(&nets, inputs);
-    let edge_factors = nets.edge_factors(inputs, relief.as_ref());
+    let nets = ControlNets::new(mesh, topology, inputs);
+    let displacement = MeshDisplacement::new(&nets, inputs);
+    let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
     let culls_back = culls_back(mesh, topology, inputs);
     let written = |patch| {
         let net = nets.patch(patch);
-        match unseen(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-            SEEN => nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &net),
+        match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
+            NOT_CULLED => nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch, &net),
             _ => HullFactors::default(),
         }
     };
     (0..topology.patches.len() as u32).map(written).collect()
 }
 
-/// Vertices and triangles that [`tessellate`] would emit, clipping aside.
+/// Returns the numbers of vertices and triangles that [`tessellate`] would emit without clipping and culling.
 pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let inputs = &seen_with_reach(mesh, inputs);
-    let nets = Nets::new(mesh, topology, inputs);
-    let relief = Relief::new(&nets, inputs);
-    let edge_factors = nets.edge_factors(inputs, relief.as_ref());
+    let nets = ControlNets::new(mesh, topology, inputs);
+    let displacement = MeshDisplacement::new(&nets, inputs);
+    let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
     let patches = 0..topology.patches.len() as u32;
     let written =
-        patches.map(|patch| nets.hull_factors(inputs, relief.as_ref(), &edge_factors, patch, &nets.patch(patch)));
+        patches.map(|patch| nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch, &nets.patch(patch)));
     sums(written.map(|written| written.process(inputs.tessellation.partitioning)))
 }
 
-/// Vertices and triangles that [`tessellate_given`] would emit, clipping aside.
+/// Returns the numbers of vertices and triangles that [`tessellate_given`] would emit without clipping.
 pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
     sums(
         given
@@ -111,39 +112,40 @@ pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
     )
 }
 
+/// Adds up the numbers of points and triangles of patches.
 fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
     let counts = patches.map(|factors| (u64::from(point_count(factors)), u64::from(triangle_count(factors))));
     counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1))
 }
 
-/// The factors that LOD gives: one for each edge, or as published one for each curve.
+/// Returns the factors that LOD gives: one for each edge, or with edges as published one for each curve.
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
-    let nets = Nets::new(mesh, topology, inputs);
-    nets.edge_factors(inputs, Relief::new(&nets, inputs).as_ref())
+    let nets = ControlNets::new(mesh, topology, inputs);
+    nets.edge_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref())
 }
 
-impl Nets<'_> {
-    /// Every patch's output, given what the hull shader writes for it.
+impl ControlNets<'_> {
+    /// Emits all patches. `written` returns the factors that the hull shader writes for a patch.
     fn emit(
         &self,
         inputs: &Inputs,
-        relief: Option<&Relief>,
+        displacement: Option<&MeshDisplacement>,
         culls_back: bool,
         written: impl Fn(u32, &ControlNet) -> HullFactors,
     ) -> Tessellated {
         let mut out = Tessellated::default();
         for patch in 0..self.topology.patches.len() as u32 {
             let net = self.patch(patch);
-            let factors = match unseen(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-                SEEN => written(patch, &net).process(inputs.tessellation.partitioning),
+            let factors = match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
+                NOT_CULLED => written(patch, &net).process(inputs.tessellation.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
             let plan = domain_plan(factors);
             let vertex = |i| {
                 let uv = corner_weights(inputs.tessellation.convention, domain_point(&plan, i));
                 let own = self.vertex(patch, &net, uv);
-                relief.map_or(own, |relief| relief.displaced(self, factors, own))
+                displacement.map_or(own, |displacement| displacement.displaced(self, factors, own))
             };
             let base = out.vertices.len() as u32;
             out.vertices.extend((0..point_count(factors)).map(vertex));
@@ -154,14 +156,15 @@ impl Nets<'_> {
         out
     }
 
+    /// Returns the vertex of a patch at the weights `uv` of corners 0 and 1, before displacement.
     fn vertex(&self, patch: u32, net: &ControlNet, uv: [u32; 2]) -> Vertex {
         let [u, v] = uv;
-        let (position, normal, texture_uv) = match place(u, v) {
-            Some((side, t)) if self.edges == Edges::PerEdge => self.rim(patch, side, t),
+        let (position, normal, texture_uv) = match outline_place(u, v) {
+            Some((side, t)) if self.edges == Edges::PerEdge => self.on_outline(patch, side, t),
             _ => self.inside(patch, net, u, v),
         };
         let normal = match self.normals {
-            // Every patch's own, also on its rim, where its neighbours' differ.
+            // The patch's own normal, on the outline too, where neighbouring patches have other normals.
             Normals::Surface => surface_normal(self.surface, net, u, v, normal),
             Normals::Linear | Normals::Quadratic => normal,
         };
@@ -173,7 +176,7 @@ impl Nets<'_> {
         }
     }
 
-    /// Position, normal and uv as the patch alone has them.
+    /// Returns the position, normal and texture coordinate that the patch has by itself.
     fn inside(&self, patch: u32, net: &ControlNet, u: u32, v: u32) -> (Vec3, Vec3, Vec2) {
         let corners = self.topology.patch_corners(patch).map(|c| self.mesh.corners[c as usize]);
         let normals = corners.map(|corner| corner.normal);
@@ -184,8 +187,9 @@ impl Nets<'_> {
         (patch_position(self.surface, net, u, v), normal, linear_uv(corners.map(|corner| corner.uv), u, v))
     }
 
-    /// Position, normal and uv of a point on a patch's rim, computed in the edge's own direction.
-    fn rim(&self, patch: u32, side: usize, t: u32) -> (Vec3, Vec3, Vec2) {
+    /// Returns the position, normal and texture coordinate of a point on a patch's outline, computed in the edge's own
+    /// direction, so that all its sides get the same.
+    fn on_outline(&self, patch: u32, side: usize, t: u32) -> (Vec3, Vec3, Vec2) {
         let (curve, reversed) = self.curve(patch, side);
         let corners = self.topology.patch_corners(patch);
         let (start, end) = (side, (side + 1) % 3);

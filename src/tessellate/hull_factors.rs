@@ -1,26 +1,27 @@
-//! What a hull shader hands to the tessellator for a patch.
+//! The tessellation factors that a hull shader writes for a patch.
 
 use bytemuck::{Pod, Zeroable};
 
 use super::{Convention, Partitioning, PatchFactors, factor_side, patch_is_culled, process, round_pow2};
 
-/// A patch's factors before the tessellator clamps and rounds them.
+/// A patch's tessellation factors before the tessellator clamps and rounds them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct HullFactors {
-    /// TessFactor[0..2]: which side each is for is a [`Convention`].
+    /// TessFactor[0..2]. Which side each one is for depends on the [`Convention`].
     pub edges: [f32; 3],
     /// InsideTessFactor.
     pub inside: f32,
 }
 
 impl HullFactors {
-    /// As a convention writes the factors of sides 0, 1 and 2.
+    /// Orders the factors of sides 0, 1 and 2 as a convention writes them.
     pub fn of_sides(convention: Convention, sides: [f32; 3], inside: f32) -> Self {
         Self { edges: [0, 1, 2].map(|i| sides[factor_side(convention, i) as usize]), inside }
     }
 
-    /// As a shader compiler hands them on: under pow2 rounded up to powers of two, otherwise as they are.
+    /// Returns the factors as a shader compiler passes them to the tessellator: under pow2 they are rounded up to
+    /// powers of two.
     pub fn rounded(self, partitioning: Partitioning) -> Self {
         if partitioning != Partitioning::Pow2 {
             return self;
@@ -28,17 +29,17 @@ impl HullFactors {
         Self { edges: self.edges.map(round_pow2), inside: round_pow2(self.inside) }
     }
 
-    /// What the tessellator makes of them.
+    /// Returns the clamped and rounded factors that the tessellator works with.
     pub fn process(self, partitioning: Partitioning) -> PatchFactors {
         process(partitioning, self.edges, self.inside)
     }
 
-    /// Whether all four are equal, as subtriangulation needs them; or leave the patch out, whatever the others are.
+    /// Returns whether subtriangulation can use the factors: all four are equal, or they cull the patch.
     pub fn is_uniform(self) -> bool {
         self.culls() || self.edges.into_iter().all(|factor| factor == self.inside)
     }
 
-    /// Whether the tessellator leaves the patch out: an edge's factor is not greater than zero.
+    /// Returns whether the tessellator culls the patch: the factor of an edge isn't greater than zero.
     pub fn culls(self) -> bool {
         patch_is_culled(self.process(Partitioning::Integer))
     }
@@ -49,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn sides_are_written_in_the_order_of_the_convention() {
+    fn factors_of_sides_are_written_in_the_order_of_the_convention() {
         let edges = |convention| HullFactors::of_sides(convention, [10.0, 11.0, 12.0], 0.0).edges;
         assert_eq!(edges(Convention::D3d11), [11.0, 12.0, 10.0]);
         assert_eq!(edges(Convention::AmdPn), [12.0, 10.0, 11.0]);
@@ -59,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn factors_are_uniform_where_all_are_equal_or_nothing_is_drawn() {
+    fn factors_are_uniform_if_all_are_equal_or_the_patch_is_culled() {
         let is_uniform = |edges, inside| HullFactors { edges, inside }.is_uniform();
         assert!(is_uniform([3.5; 3], 3.5) && is_uniform([f32::INFINITY; 3], f32::INFINITY));
         assert!(is_uniform([f32::NAN; 3], 2.0) && is_uniform([1.0, 0.0, 7.0], f32::NAN));
@@ -67,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn what_culls_a_patch_culls_it_rounded_too() {
+    fn rounding_changes_nothing_about_culling() {
         for (factor, culls) in [(0.0, true), (-1.0, true), (f32::NAN, true), (0.3, false), (f32::INFINITY, false)] {
             for at in 0..3 {
                 let mut given = HullFactors { edges: [2.0; 3], inside: f32::NAN };

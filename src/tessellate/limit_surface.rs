@@ -1,37 +1,43 @@
-//! What a tessellation converges to: the surface itself, displaced if it is.
+//! The limit surface of a tessellation, which it converges to as its factors grow, with displacement.
 
 use glam::{DVec3, Vec3};
 
 use super::Inputs;
-use super::nets::Nets;
-use super::relief::Relief;
+use super::control_nets::ControlNets;
+use super::mesh_displacement::MeshDisplacement;
 use super::{ControlNet, Surface};
 use crate::mesh::{Mesh, Topology};
 
-/// The surface that a tessellation stands for, at any place and in double precision.
-pub struct Limit<'a> {
-    nets: Nets<'a>,
-    relief: Option<Relief<'a>>,
+/// The surface that a tessellation approximates, evaluated in f64 at any point.
+pub struct LimitSurface<'a> {
+    nets: ControlNets<'a>,
+    displacement: Option<MeshDisplacement<'a>>,
 }
 
-impl<'a> Limit<'a> {
+impl<'a> LimitSurface<'a> {
+    /// Builds the surface of a mesh.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        let nets = Nets::new(mesh, topology, inputs);
-        Self { relief: Relief::new(&nets, inputs), nets }
+        let nets = ControlNets::new(mesh, topology, inputs);
+        Self { displacement: MeshDisplacement::new(&nets, inputs), nets }
     }
 
-    /// A patch's control net, for [`Self::position`].
+    /// Returns a patch's control net, which [`Self::position`] needs.
     pub fn net(&self, patch: u32) -> ControlNet {
         self.nets.patch(patch)
     }
 
-    /// The point at weights `u` and `v` of a patch, whose net this is; w is the rest. Displaced by its own heights at full
-    /// detail: at a seam whose sides disagree, they are not the edge's. Object units.
+    /// Returns the point of a patch at weights `u` and `v` (w is the rest of 1), in object units. `net` is the patch's
+    /// net.
+    ///
+    /// Heights are read at the patch's own texture coordinates from mip level 0. So at a seam the sides of an edge may
+    /// have different limits.
     pub fn position(&self, patch: u32, net: &ControlNet, u: f64, v: f64) -> DVec3 {
-        let moved = self.relief.as_ref().map(|relief| relief.displacement(patch, [u, v, 1.0 - u - v]));
+        let moved =
+            self.displacement.as_ref().map(|displacement| displacement.exact_displacement(patch, [u, v, 1.0 - u - v]));
         self.surface(net, u, v) + moved.unwrap_or_default()
     }
 
+    /// Returns the point without displacement.
     fn surface(&self, net: &ControlNet, u: f64, v: f64) -> DVec3 {
         let weights = [u, v, 1.0 - u - v];
         let [a, b, c] = net.corners.map(Vec3::as_dvec3);

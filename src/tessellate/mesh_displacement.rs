@@ -1,60 +1,62 @@
-//! A mesh's displacement on the CPU: what `shaders/pass_levels.wgsl` and `shaders/pass_displace.wgsl` do.
+//! Displacement of a whole mesh on the CPU: what `shaders/pass_levels.wgsl` and `shaders/pass_displace.wgsl` do.
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::Inputs;
+use super::control_nets::ControlNets;
 use super::displace::{
     Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
-use super::error::{edge_sight, relief_factor};
-use super::nets::Nets;
+use super::error::{displacement_factor, edge_bounds};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
-use super::spans::{Maps, Span, map_number, spans};
-use super::surface::{UNIT, linear_uv, patch_tangents, place};
+use super::surface::{UNIT, linear_uv, outline_place, patch_tangents};
+use super::texel_lengths::{Maps, TexelLength, map_number, texel_lengths};
 use super::vertex::Vertex;
 use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, factor_side};
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
-/// What displaces a mesh under these inputs, if anything does.
-pub fn displacing<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
+/// Returns the heights that displace a mesh with these inputs, if any.
+pub fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
     mesh.heights.as_deref().filter(|_| inputs.tessellation.displacement != Displacement::Off)
 }
 
-/// How far white is above black, in object units: by the size of the mesh at rest, so that it is the same in every pose.
+/// Returns the distance between black and white in object units. It depends on the size of the mesh at rest, so that it
+/// is the same in every pose.
 pub fn height_units(heights: &Heights, inputs: &Inputs) -> f32 {
     inputs.tessellation.height_scale * heights.radius
 }
 
-/// How far any point is moved at most, in object units.
-pub fn reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
-    displacing(mesh, inputs)
+/// Returns the largest distance by which a point is displaced, in object units.
+pub fn displacement_reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
+    displacing_heights(mesh, inputs)
         .map_or(0.0, |heights| height_units(heights, inputs).abs() * heights.reach(inputs.tessellation.midlevel))
 }
 
-/// Heights over a mesh, and what its patches agree on.
-pub struct Relief<'a> {
+/// The heights over a mesh, and what its patches share at edges and points.
+pub struct MeshDisplacement<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     heights: &'a Heights,
     mode: Displacement,
     normals: Normals,
-    /// Object units.
+    /// The distance between black and white, in object units.
     scale: f32,
     midlevel: f32,
     dominance: Dominance,
-    /// One for each point.
+    /// The unit direction of displacement of each point.
     directions: Vec<Vec3>,
-    /// How both texture coordinates change at each corner, over the triangles around it: what linear and quadratic normals
-    /// rise by, which bend over edges as they do.
+    /// The gradients of both texture coordinates at each corner, averaged over the triangles around it. Linear and
+    /// quadratic shading normals are tilted by heights along these, which are as smooth across edges as the normals
+    /// are.
     frames: Vec<[Vec3; 2]>,
-    /// How long each factor's edge is in its sides' maps.
-    spans: Vec<Span>,
-    /// One for each factor, and for each point the finest of its edges'.
+    /// The lengths of the edge of each factor in its sides' maps.
+    texel_lengths: Vec<TexelLength>,
+    /// The mip level of each factor's edge. `point_levels` has for each point the finest level of its edges.
     factor_levels: Vec<f32>,
     point_levels: Vec<f32>,
 }
 
-/// Where heights are looked up for a point: a patch, weights in it, and a level.
+/// Where the height of a point is read: weights `u` and `v` in a patch, and a mip level.
 #[derive(Clone, Copy)]
 struct Lookup {
     patch: u32,
@@ -63,21 +65,22 @@ struct Lookup {
     level: f32,
 }
 
-/// Where a point lies on its patch.
+/// Where a point lies in its patch.
 enum Spot {
     Corner(usize),
-    /// A side, and the weight of its far end.
+    /// A side, and the weight of its end.
     Side(usize, u32),
     Inside,
 }
 
+/// Returns where the domain point (u, v) lies in its patch.
 fn spot(u: u32, v: u32) -> Spot {
     let corner = [u, v, FIXED_ONE - u - v].iter().position(|&weight| weight == FIXED_ONE);
-    let rim = || place(u, v).map_or(Spot::Inside, |(side, t)| Spot::Side(side, t));
-    corner.map_or_else(rim, Spot::Corner)
+    let on_outline = || outline_place(u, v).map_or(Spot::Inside, |(side, t)| Spot::Side(side, t));
+    corner.map_or_else(on_outline, Spot::Corner)
 }
 
-/// Weights of the point at `t` along a side.
+/// Returns the weights of corners 0 and 1 for the point at `t` (16.16 fixed point) along a side.
 fn side_weights(side: usize, t: u32) -> [u32; 2] {
     match side {
         0 => [FIXED_ONE - t, t],
@@ -86,11 +89,12 @@ fn side_weights(side: usize, t: u32) -> [u32; 2] {
     }
 }
 
-impl<'a> Relief<'a> {
-    /// What the mesh is displaced by under these inputs, if anything. It has no levels yet.
-    pub(super) fn new(nets: &Nets<'a>, inputs: &Inputs) -> Option<Self> {
+impl<'a> MeshDisplacement<'a> {
+    /// Returns what displaces the mesh with these inputs, if anything. Mip levels aren't set yet: see
+    /// [`Self::with_levels`].
+    pub(super) fn new(nets: &ControlNets<'a>, inputs: &Inputs) -> Option<Self> {
         let (mesh, topology) = (nets.mesh, nets.topology);
-        let heights = displacing(mesh, inputs)?;
+        let heights = displacing_heights(mesh, inputs)?;
         let dominance = Dominance::new(topology, &nets.curves, &heights.angles);
         Some(Self {
             mesh,
@@ -102,14 +106,14 @@ impl<'a> Relief<'a> {
             midlevel: inputs.tessellation.midlevel,
             directions: directions(mesh, &dominance),
             frames: frames(mesh, topology),
-            spans: spans(heights, mesh, topology, &dominance),
+            texel_lengths: texel_lengths(heights, mesh, topology, &dominance),
             factor_levels: vec![0.0; dominance.sides.len()],
             point_levels: vec![0.0; dominance.corners.len()],
             dominance,
         })
     }
 
-    /// The same with the levels that these factors ask for: LOD's, one for each of the curves'.
+    /// Sets the mip levels for the factors that LOD gives to edges.
     pub(super) fn with_levels(mut self, factors: &[f32]) -> Self {
         self.factor_levels = (0..factors.len()).map(|factor| self.factor_level(factor, factors[factor])).collect();
         let starts = self.dominance.factor_starts.windows(2);
@@ -121,7 +125,7 @@ impl<'a> Relief<'a> {
         self
     }
 
-    /// What a hull shader wrote for edges: their dominant sides' factors.
+    /// Returns each edge's factor if a hull shader's factors are given: the one of its dominant side.
     pub(super) fn given_factors(&self, convention: Convention, given: &[HullFactors]) -> Vec<f32> {
         let of = |&dominant: &u32| {
             let own = given[dominant as usize / 4].edges;
@@ -131,7 +135,8 @@ impl<'a> Relief<'a> {
         self.dominance.sides.iter().map(of).collect()
     }
 
-    /// The fewest segments that show the heights of these maps over a factor's curve, within the tolerance of `inputs`.
+    /// Returns the least factor that shows the heights of these maps along a curve of an edge within the tolerance of
+    /// `inputs`.
     pub(super) fn edge_factor(
         &self,
         inputs: &Inputs,
@@ -142,29 +147,31 @@ impl<'a> Relief<'a> {
     ) -> f32 {
         let [a, b] = points.map(|point| self.directions[point as usize]);
         let (view, turn, scale) = (&inputs.view, a.distance(b), self.scale.abs());
-        let sight = edge_sight(view, curve);
-        let asked = |span: &Span| {
-            let detail = self.heights.detail[span.map as usize - 1];
-            relief_factor(view, sight, inputs.tessellation.tolerance, span.texels, turn, scale, detail)
+        let bounds = edge_bounds(view, curve);
+        let needed = |length: &TexelLength| {
+            let detail = self.heights.detail[length.map as usize - 1];
+            displacement_factor(view, bounds, inputs.tessellation.tolerance, length.texels, turn, scale, detail)
         };
-        let counts = |span: &&Span| span.map > 0 && (maps == Maps::All || maps == Maps::Only(span.map));
-        self.spans_of(factor).filter(counts).map(asked).fold(1.0, f32::max)
+        let counts = |length: &&TexelLength| length.map > 0 && (maps == Maps::All || maps == Maps::Only(length.map));
+        self.texel_lengths_of(factor).filter(counts).map(needed).fold(1.0, f32::max)
     }
 
-    /// The maps of a patch, if its side has others too: what its inside is then asked by.
+    /// Returns the map of a patch, if the side with this factor depends on other maps too. The inside then needs a
+    /// factor of its own for that side.
     pub(super) fn own_maps(&self, patch: u32, factor: u32) -> Option<Maps> {
         let own = map_number(self.heights, self.topology, patch);
-        self.spans_of(factor).any(|span| span.map != own).then_some(Maps::Only(own))
+        self.texel_lengths_of(factor).any(|length| length.map != own).then_some(Maps::Only(own))
     }
 
-    fn spans_of(&self, factor: u32) -> impl Iterator<Item = &Span> {
-        let next = |span: &&Span| (span.next > 0).then(|| &self.spans[span.next as usize]);
-        std::iter::successors(self.spans.get(factor as usize), next)
+    /// Returns the lengths of a factor's edge in its sides' maps.
+    fn texel_lengths_of(&self, factor: u32) -> impl Iterator<Item = &TexelLength> {
+        let next = |length: &&TexelLength| (length.next > 0).then(|| &self.texel_lengths[length.next as usize]);
+        std::iter::successors(self.texel_lengths.get(factor as usize), next)
     }
 
-    /// How far and which way a place of a patch moves in the end, at full detail and in double precision, as the patch has it
-    /// by itself. Object units.
-    pub(super) fn displacement(&self, patch: u32, weights: [f64; 3]) -> DVec3 {
+    /// Returns the displacement of a place in a patch in object units, in f64. Heights are read from mip level 0 at the
+    /// patch's own texture coordinates.
+    pub(super) fn exact_displacement(&self, patch: u32, weights: [f64; 3]) -> DVec3 {
         let Some(map) = self.map(patch) else { return DVec3::ZERO };
         let uv = (0..3).map(|k| self.uvs(patch)[k].as_dvec2() * weights[k]).sum::<DVec2>();
         let directions = self.corner_directions(patch);
@@ -172,7 +179,7 @@ impl<'a> Relief<'a> {
         direction * f64::from(self.scale * (height_at(map, 0.0, uv.as_vec2()) - self.midlevel))
     }
 
-    /// The level of an edge, from its dominant side's texture coordinates.
+    /// Returns the mip level of an edge, by the length of its dominant side in the image.
     fn factor_level(&self, factor: usize, segments: f32) -> f32 {
         let dominant = self.dominance.sides[factor];
         let (patch, side) = (dominant / 4, dominant as usize % 4);
@@ -185,6 +192,7 @@ impl<'a> Relief<'a> {
         )
     }
 
+    /// Returns the height map of a patch.
     fn map(&self, patch: u32) -> Option<&'a HeightMap> {
         let material = self.topology.material_of(patch);
         let map = self.heights.of_material.get(material).copied().flatten()?;
@@ -195,7 +203,7 @@ impl<'a> Relief<'a> {
         self.topology.patch_corners(patch).map(|corner| self.mesh.corners[corner as usize].uv)
     }
 
-    /// The level inside a patch that is cut into so many segments.
+    /// Returns the mip level inside a patch that has so many segments inside.
     fn inside_level(&self, patch: u32, segments: f32) -> f32 {
         let Some(map) = self.map(patch) else { return 0.0 };
         let [a, b, c] = self.uvs(patch);
@@ -203,28 +211,29 @@ impl<'a> Relief<'a> {
         segment_level(map, longest, segments)
     }
 
-    /// A patch's vertex, moved; the patch has these factors.
-    pub(super) fn displaced(&self, nets: &Nets, factors: PatchFactors, vertex: Vertex) -> Vertex {
+    /// Displaces a vertex of a patch with these factors.
+    pub(super) fn displaced(&self, nets: &ControlNets, factors: PatchFactors, vertex: Vertex) -> Vertex {
         let (patch, [u, v]) = (vertex.patch(), vertex.domain());
         let segments = (factors.inside & FACTOR_VALUE) as f32 * UNIT;
         let (position, normal) = (Vec3::from(vertex.position), unpack_normal(vertex.normal));
         let (own, shared) = self.lookups(patch, u, v, segments);
-        let asked = if self.mode == Displacement::PerPatch { own } else { shared };
+        let lookup = if self.mode == Displacement::PerPatch { own } else { shared };
         let direction = self.direction(patch, u, v);
-        let offset = self.offset(asked);
+        let offset = self.offset(lookup);
         let moved = position + direction * offset;
         let normal = if self.normals == Normals::Surface {
-            // Every patch's own, as without displacement.
+            // The patch's own normal, as without displacement.
             let (slopes, tangents) = self.slopes(nets, own, offset);
             let (along_u, along_v) = (tangents[0] + direction * slopes.x, tangents[1] + direction * slopes.y);
             facing_or([along_u, along_v], normal)
         } else {
-            raised_normal(self.uphill(asked), normal)
+            raised_normal(self.uphill(lookup), normal)
         };
         Vertex { position: moved.to_array(), normal: pack_normal(normal), ..vertex }
     }
 
-    /// Where a patch would look up its point's height by itself, and where it does if patches agree.
+    /// Returns where a patch by itself would read its point's height, and where all patches read it that share the
+    /// point.
     fn lookups(&self, patch: u32, u: u32, v: u32, segments: f32) -> (Lookup, Lookup) {
         match spot(u, v) {
             Spot::Inside => {
@@ -259,8 +268,8 @@ impl<'a> Relief<'a> {
         self.dominance.patch_factors[patch as usize][side]
     }
 
-    /// The direction in which a patch's point moves. On a side it is computed in the
-    /// dominant side's direction, so that all sides compute the same.
+    /// Returns the unit direction in which a patch's point is displaced. On a side it is computed in the direction of
+    /// the dominant side, so that all sides get the same.
     fn direction(&self, patch: u32, u: u32, v: u32) -> Vec3 {
         let corners = self.corner_directions(patch);
         match spot(u, v) {
@@ -276,7 +285,7 @@ impl<'a> Relief<'a> {
         }
     }
 
-    /// What a patch's corners move along: their points' own directions, or as published their own normals.
+    /// Returns the directions of displacement at a patch's corners: their points' or, as published, their own normals.
     fn corner_directions(&self, patch: u32) -> [Vec3; 3] {
         if self.mode == Displacement::On {
             return [0, 1, 2].map(|k| self.directions[self.point(patch, k) as usize]);
@@ -284,14 +293,14 @@ impl<'a> Relief<'a> {
         self.topology.patch_corners(patch).map(|corner| self.mesh.corners[corner as usize].normal)
     }
 
-    /// How far a point moves, in object units.
+    /// Returns how far a point is displaced, in object units.
     fn offset(&self, at: Lookup) -> f32 {
         let Some(map) = self.map(at.patch) else { return 0.0 };
         let level = at.level.min((map.levels - 1) as f32);
         self.scale * (height_at(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) - self.midlevel)
     }
 
-    /// Where heights rise, and how steeply, by the frames of a patch's corners.
+    /// Returns the gradient of the height in object space, by the frames of the patch's corners.
     fn uphill(&self, at: Lookup) -> Vec3 {
         let Some(map) = self.map(at.patch) else { return Vec3::ZERO };
         let level = at.level.min((map.levels - 1) as f32);
@@ -303,8 +312,9 @@ impl<'a> Relief<'a> {
         along_u * rises.x + along_v * rises.y
     }
 
-    /// How a patch's height changes with u and with v, and its tangents, moved by `offset` as a whole. Object units.
-    fn slopes(&self, nets: &Nets, at: Lookup, offset: f32) -> (Vec2, [Vec3; 2]) {
+    /// Returns the derivatives of a patch's height by u and by v, in object units, and the tangents of the surface that
+    /// is displaced by `offset` everywhere.
+    fn slopes(&self, nets: &ControlNets, at: Lookup, offset: f32) -> (Vec2, [Vec3; 2]) {
         let uvs = self.uvs(at.patch);
         let net = nets.patch(at.patch);
         let [along_u, along_v] = patch_tangents(nets.surface, &net, at.u, at.v);
@@ -321,7 +331,8 @@ impl<'a> Relief<'a> {
     }
 }
 
-/// The mean of the gradients of both texture coordinates over the patches around each corner, by their areas.
+/// Returns the gradients of both texture coordinates at each corner: their mean over the patches around it, weighted by
+/// area.
 fn frames(mesh: &Mesh, topology: &Topology) -> Vec<[Vec3; 2]> {
     let mut sums = vec![([Vec3::ZERO; 2], 0.0_f32); mesh.corners.len()];
     for (index, patch) in (0..).zip(&topology.patches) {
@@ -335,7 +346,8 @@ fn frames(mesh: &Mesh, topology: &Topology) -> Vec<[Vec3; 2]> {
     sums.into_iter().map(|(sum, area)| if area > 0.0 { sum.map(|x| x * (1.0 / area)) } else { sum }).collect()
 }
 
-/// The mean of all normals at each point, by the angles that they stand for; its dominant corner's where they cancel.
+/// Returns the direction of displacement of each point: the mean of the normals there, weighted by angle, or the normal
+/// of the dominant corner if they cancel.
 fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
     let of = |ends: &[u32]| {
         let parts = &dominance.parts[ends[0] as usize..ends[1] as usize];

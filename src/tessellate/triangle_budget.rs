@@ -1,16 +1,16 @@
-//! A budget of triangles, kept by a larger tolerance.
+//! Triangle budgets: finds the tolerance of LOD by error at which a mesh has no more than a given number of triangles.
 
 use std::ops::RangeInclusive;
 
-/// Tolerances are tried to within this ratio.
+/// The search ends when the largest tolerance that doesn't fit and the smallest that does are within this ratio.
 const PRECISION: f32 = 1.02;
 
-/// The least tolerance of a range for which `count` gives no more than `most` triangles, to within 2 percent; none if
-/// it gives more even for the largest. Tries about a dozen.
+/// Returns the least tolerance of a range at which `count` (the number of triangles at a tolerance) is at most `most`,
+/// to within 2 percent. Returns `None` if there are more triangles even at the largest tolerance. Calls `count` about a
+/// dozen times.
 ///
-/// # Errors
-/// As soon as `count` fails.
-pub fn fit_budget<E>(
+/// # Errors Returns the first error of `count`.
+pub fn tolerance_within_budget<E>(
     tolerances: RangeInclusive<f32>,
     most: u64,
     mut count: impl FnMut(f32) -> Result<u64, E>,
@@ -52,7 +52,7 @@ mod tests {
             assert!(tried < 24, "too many tries");
             Ok::<_, Infallible>(100 + (1000.0 / tolerance) as u64)
         };
-        fit_budget(from..=100.0, most, count).unwrap_or_else(|never| match never {})
+        tolerance_within_budget(from..=100.0, most, count).unwrap_or_else(|never| match never {})
     }
 
     #[test]

@@ -1,20 +1,22 @@
 // Reads what patches share where they are displaced. The module declares the buffers `params`, `points`, `patches`,
 // `corners` and `shares`; see Share in types.wgsl.
 
+// Returns the dominant side and the mip level of a factor's edge.
 fn share_of_factor(index: u32) -> Share {
     return shares[params.point_count + index];
 }
 
-// The gradient of texture coordinate 0 or 1 at a corner.
+// Returns the gradient of texture coordinate 0 or 1 at a corner.
 fn corner_gradient(corner: u32, coordinate: u32) -> vec3<f32> {
     return shares[params.point_count + params.factor_count + 2u * corner + coordinate].direction;
 }
 
-// The number of a patch's height image: 1 for the first, 0 for none.
+// Returns the number of a patch's height image: 1 for the first, 0 for none.
 fn map_of(patch_index: u32) -> u32 {
     return u32(points[params.point_count + patch_index].w);
 }
 
+// Returns the texture coordinates of a patch's corners.
 fn patch_uvs(patch_index: u32) -> array<vec2<f32>, 3> {
     let at = patches[patch_index].corners;
     return array<vec2<f32>, 3>(corners[at[0]].uv, corners[at[1]].uv, corners[at[2]].uv);

@@ -1,5 +1,5 @@
-//! A whole mesh in a pose: what the deform pass does on the device, for whatever measures, exports or asks where things
-//! are.
+//! Meshes deformed into a pose on the CPU, as the deform pass does on the GPU: for measuring, exporting and finding
+//! positions.
 
 use std::sync::{Arc, OnceLock};
 
@@ -10,20 +10,20 @@ use super::normal::unit_or;
 use crate::mesh::rig::{Binding, JointMatrix};
 use crate::mesh::{Bounds, Mesh, Moment, Pose, Rig, Topology};
 
-/// Positions that the bounds of a clip are taken from, at most.
+/// The largest number of positions from which the bounds of an animation clip are taken.
 const BOUNDS_POSITIONS: usize = 1 << 19;
-/// Times at which they are taken, ends included.
+/// The number of times of a clip at which they are taken, with both its ends.
 const BOUNDS_TIMES: usize = 17;
 
-/// Corners of a mesh that is deformed in no time that a person notices.
+/// Meshes of up to this many corners are deformed so quickly that no one notices.
 const QUICK: usize = 1 << 16;
 
-/// A mesh, and the pose in which it is wanted. Clones share what has been made of it.
+/// A mesh with the pose in which it is wanted. The deformed mesh is made when first asked for; clones share it.
 #[derive(Clone, Debug)]
-pub struct Posed {
+pub struct PosedMesh {
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
-    /// None at rest.
+    /// `None` for the mesh at rest.
     pose: Option<Arc<Pose>>,
     deformed: Arc<OnceLock<Deformed>>,
 }
@@ -31,7 +31,7 @@ pub struct Posed {
 /// A mesh and its topology.
 pub type Deformed = (Arc<Mesh>, Arc<Topology>);
 
-impl Posed {
+impl PosedMesh {
     pub fn new(mesh: Arc<Mesh>, topology: Arc<Topology>, pose: Option<Arc<Pose>>) -> Self {
         Self { mesh, topology, pose, deformed: Arc::default() }
     }
@@ -40,7 +40,7 @@ impl Posed {
         self.pose.as_deref()
     }
 
-    /// Both in the pose. May take a while the first time.
+    /// Returns the deformed mesh and its topology. The first call may take long.
     pub fn deformed(&self) -> Deformed {
         let make = || match &self.pose {
             None => (self.mesh.clone(), self.topology.clone()),
@@ -52,15 +52,16 @@ impl Posed {
         self.deformed.get_or_init(make).clone()
     }
 
-    /// The same for who can't wait: none where it would take long and nobody has asked for it before.
-    pub fn deformed_soon(&self) -> Option<Deformed> {
+    /// Returns the deformed mesh and its topology, or `None` if making them would take long and no one has made them
+    /// before.
+    pub fn deformed_if_quick(&self) -> Option<Deformed> {
         let is_quick = self.pose.is_none() || self.mesh.corners.len() <= QUICK;
         if is_quick { Some(self.deformed()) } else { self.deformed.get().cloned() }
     }
 }
 
-/// The mesh and its topology in a pose; both as they are where the mesh doesn't move. What was connected stays so, also
-/// where points fall together, and edges keep their kinds. The deformed mesh moves no further.
+/// Returns a mesh and its topology in a pose, or copies of both if the mesh doesn't move. Connections and the kinds of
+/// edges stay as they are, even if points come to lie on each other. The returned mesh has no rig.
 pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
     let (mut mesh, mut topology) = (mesh.clone(), topology.clone());
     let Some(rig) = mesh.rig.take() else { return (mesh, topology) };
@@ -74,8 +75,8 @@ pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology)
     (mesh, topology)
 }
 
-/// The bounds of a mesh at rest and all through a clip, taken at 17 of its times, of meshes with many corners from some of
-/// them; at rest alone without a clip.
+/// Returns the bounds of a mesh at rest and during an animation clip, or at rest only if there is no clip. The clip is
+/// sampled at 17 times. Of meshes with many corners only some are used.
 pub fn bounds_through(mesh: &Mesh, clip: Option<usize>) -> Bounds {
     let moving = mesh.rig.as_ref().zip(clip).and_then(|(rig, index)| Some((rig, index, rig.clips.get(index)?)));
     let Some((rig, index, clip)) = moving else { return mesh.bounds() };
@@ -90,7 +91,7 @@ pub fn bounds_through(mesh: &Mesh, clip: Option<usize>) -> Bounds {
     Bounds::of(positions.into_iter())
 }
 
-/// Morph targets come first, then joints (glTF 2.0, section 3.7.2.2).
+/// Applies morph targets and then joints to a corner's position (glTF 2.0, section 3.7.2.2).
 fn posed_position(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
     let bound = &rig.bindings[corner as usize];
     let mut position = Vec3::from(bound.position);
@@ -100,6 +101,7 @@ fn posed_position(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
     deform_position(&posed_matrix(pose, bound), position)
 }
 
+/// Applies morph targets and then joints to a corner's normal.
 fn posed_normal(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
     let bound = &rig.bindings[corner as usize];
     let mut normal = Vec3::from(bound.normal);
@@ -109,6 +111,7 @@ fn posed_normal(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
     deform_normal(&posed_matrix(pose, bound), unit_or(normal, bound.normal.into()))
 }
 
+/// Returns the blended matrix of a corner's joints.
 fn posed_matrix(pose: &Pose, bound: &Binding) -> JointMatrix {
     let [a, b, c, d] = bound.joints.map(|joint| &pose.palette[joint as usize]);
     blend(a, b, c, d, bound.weights)
