@@ -30,7 +30,7 @@ fn png() -> Vec<u8> {
 
 #[test]
 fn textures_are_decoded_wherever_they_are() {
-    let data = json!({ "uri": format!("data:image/png;base64,{}", BASE64_STANDARD.encode(&png())) });
+    let data = json!({ "uri": format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png())) });
     let mut in_view = textured(json!({ "mimeType": "image/png", "bufferView": 0 }));
     let view = in_view.view(&png());
     in_view.root["images"][0]["bufferView"] = json!(view);
