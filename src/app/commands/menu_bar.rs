@@ -59,6 +59,7 @@ impl App {
         let response = ui.add_enabled_ui(why_not.is_none(), |ui| match self.is_on(ui.ctx(), &command.action) {
             Some(is_on) if matches!(command.action, Action::Theme(_)) => ui.radio(is_on, &*command.name),
             Some(mut is_on) => ui.checkbox(&mut is_on, &*command.name),
+            None if key.is_empty() => ui.button(&*command.name),
             None => ui.add(egui::Button::new(&*command.name).shortcut_text(&key)),
         });
         // A switch has no room for its key.
