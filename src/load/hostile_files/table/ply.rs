@@ -50,7 +50,7 @@ pub fn cases() -> Vec<Case> {
         case(Ply, ply(VERTICES, ""), Refused("Broken | line 3 | property | element")),
         case(Ply, ply("float x", "real x"), Refused("Broken | line 4 | \"real\"")),
         case(Ply, ply("float x", "x"), Refused("Broken | line 4 | property | list")),
-        case(Ply, ply("list uchar", "list float"), Refused("Broken | line 8 | list | whole number")),
+        case(Ply, ply("list uchar", "list float"), Refused("Broken | line 8 | list | whole numbers")),
         case(Ply, ply("end_header", "endheader"), Refused("Broken | line 9 | \"endheader\"")),
         case(Ply, ply("float z", "float w"), Refused("Broken | line 9 | x, y and z")),
         case(Ply, ply("vertex_indices", "corners"), Refused("Broken | line 12 | \"face\" | \"vertex_indices\"")),
