@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::settings::options::LOD_IS_FIXED;
+
 /// The window's state as far as commands depend on it.
 #[derive(Clone, Debug, Default)]
 pub struct Availability {
@@ -96,8 +98,6 @@ pub fn redo(now: &Availability) -> Option<&'static str> {
 /// Why patches that show their backs can't be left out.
 pub const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen: it is open, a part of it is wound inward, a material is \
                                   double-sided, it is displaced, or it moves.";
-const LOD_IS_FIXED: &str =
-    "Subtriangulation has one number of segments everywhere. Another partitioning brings back the LOD that was chosen.";
 
 pub fn selection(now: &Availability) -> Option<&'static str> {
     unless(now.has_selection, "Nothing is selected.")

@@ -109,11 +109,11 @@ fn mesh() -> Vec<Command> {
             "Leaves creases as the mesh has them.",
         )
         .unless(when::document),
-        Command::new(Action::Prepare(Preparing::NoHeights), "Heights: None", "Displaces the mesh by nothing.")
+        Command::new(Action::Prepare(Preparing::NoHeights), "Height map: None", "Displaces the mesh by nothing.")
             .unless(when::document),
         Command::new(
             Action::Prepare(Preparing::HeightsFromMaterials),
-            "Heights: Material",
+            "Height map: Material",
             "Displaces the mesh by the brightness of each material's base colour image.",
         )
         .unless(when::document),

@@ -137,6 +137,10 @@ pub static PARTITIONING: Declaration = Declaration {
     access: field!(tessellation.partitioning),
 };
 
+/// Why LOD can't be chosen under subtriangulation.
+pub const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another partitioning brings back \
+                                the LOD that was chosen.";
+
 pub static LOD: Declaration = Declaration {
     name: "lod",
     label: "LOD",
@@ -147,10 +151,7 @@ pub static LOD: Declaration = Declaration {
     saved_as: &["lod"],
     no_effect: |settings| {
         let is_fixed = settings.tessellation.partitioning == Partitioning::Subtriangulation;
-        is_fixed.then_some(
-            "Subtriangulation has the same number of segments everywhere. Another partitioning brings back the LOD that was \
-             chosen.",
-        )
+        is_fixed.then_some(LOD_IS_FIXED)
     },
     access: field!(tessellation.lod),
 };
