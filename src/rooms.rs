@@ -75,7 +75,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     /// A path from the crate; none if it leads to another crate.
-    fn from_crate(&self, segments: &[String]) -> Option<ModulePath> {
+    fn path_in_crate(&self, segments: &[String]) -> Option<ModulePath> {
         let mut base = match segments.first()?.as_str() {
             "crate" => Vec::new(),
             "self" | "super" => self.path.clone(),
@@ -100,7 +100,7 @@ impl Reader<'_> {
         let mut add = |before: &[String], last: &str, name: String| {
             let segments: Vec<String> = before.iter().cloned().chain([last.to_owned()]).collect();
             let segments = if last == "self" { before.to_vec() } else { segments };
-            let Some(path) = self.from_crate(&segments) else { return };
+            let Some(path) = self.path_in_crate(&segments) else { return };
             if is_public {
                 self.module.reexports.insert(name, path.clone());
             }
@@ -159,7 +159,7 @@ impl<'ast> Visit<'ast> for Reader<'_> {
     fn visit_path(&mut self, path: &'ast syn::Path) {
         let segments: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
         if segments.len() > 1 {
-            self.module.paths.extend(self.from_crate(&segments));
+            self.module.paths.extend(self.path_in_crate(&segments));
         }
         syn::visit::visit_path(self, path);
     }
@@ -227,10 +227,11 @@ fn imports_run_from_room_to_room_downwards_only() {
     let place = |room: &str| ORDER.iter().position(|line| line.contains(&room)).expect("every room has a place");
     let mut upward = Vec::new();
     for (from, to) in imports() {
-        if let [Some(own), Some(other)] = [&from, &to].map(|path| path.first()) {
-            if own != other && place(own) <= place(other) {
-                upward.push(format!("{} imports {}", from.join("::"), to.join("::")));
-            }
+        if let [Some(own), Some(other)] = [&from, &to].map(|path| path.first())
+            && own != other
+            && place(own) <= place(other)
+        {
+            upward.push(format!("{} imports {}", from.join("::"), to.join("::")));
         }
     }
     assert!(upward.is_empty(), "imports that run upwards, or to a room side by side:\n{}", upward.join("\n"));

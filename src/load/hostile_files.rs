@@ -57,8 +57,9 @@ pub fn mentions(message: &str, parts: &str) -> bool {
     let in_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
     let is_whole = |start: usize, part: &str| {
         let (before, after) = (&message[..start], &message[start + part.len()..]);
-        !(in_word(part.chars().next()) && in_word(before.chars().next_back()))
-            && !(in_word(part.chars().next_back()) && in_word(after.chars().next()))
+        let joins_before = in_word(before.chars().next_back()) && in_word(part.chars().next());
+        let joins_after = in_word(part.chars().next_back()) && in_word(after.chars().next());
+        !joins_before && !joins_after
     };
     parts.split(" | ").all(|part| message.match_indices(part).any(|(start, _)| is_whole(start, part)))
 }

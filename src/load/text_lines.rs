@@ -151,7 +151,7 @@ mod tests {
         let mut lines = Lines::new(&text);
         assert!(lines.next().is_ok() && lines.next().is_ok());
         let message = lines.next().err().unwrap().to_string();
-        assert_eq!(message, "line 3: the line has 4194305 bytes, and at most 4194304 are read; export the model again");
+        assert_eq!(message, "line 3: the line has 4194305 bytes, but at most 4194304 are read; export the model again");
     }
 
     #[test]

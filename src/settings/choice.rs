@@ -18,9 +18,14 @@ impl Description {
         Self { name, label, text }
     }
 
-    /// Whether a text is this name, with hyphens or with underscores as HLSL has them (`fractional_odd`).
+    /// Returns how HLSL spells the name of a partitioning, where that differs: `fractional_odd`, `fractional_even`.
+    pub fn hlsl_name(&self) -> Option<String> {
+        self.name.starts_with("fractional-").then(|| self.name.replace('-', "_"))
+    }
+
+    /// Whether a text is this name, or HLSL's spelling of it.
     pub fn is_named(&self, text: &str) -> bool {
-        text.replace('_', "-") == self.name
+        text == self.name || self.hlsl_name().is_some_and(|name| name == text)
     }
 }
 
@@ -331,7 +336,8 @@ mod tests {
             let Description { name, label, text } = value.description();
             assert!(!T::ALL[..index].contains(&value), "{value:?} is listed twice");
             assert_eq!(T::named(name), Some(value), "{value:?}");
-            assert_eq!(T::named(&name.replace('-', "_")), Some(value), "{value:?}");
+            let hlsl = value.description().hlsl_name();
+            assert!(hlsl.is_none_or(|hlsl| T::named(&hlsl) == Some(value)), "{value:?}");
             assert!(T::ALL[..index].iter().all(|other| other.label() != label), "{label} is there twice");
             assert!(text.ends_with('.') && text.len() > 10, "{value:?}: {text}");
             assert_eq!(label.trim(), label);

@@ -88,7 +88,7 @@ fn broken_files_are_refused_in_one_sentence() {
             "a.obj: line 4: the face uses position 4, but the file has 3",
         ),
         ("points.OBJ", b"v 0 0 0\np 1\n", "points.OBJ has no triangles to show: it holds 1 positions, 1 points (p)"),
-        ("a.stl", &[0; 100], "a.stl has no triangles to show: its header counts 0 triangles"),
+        ("a.stl", &[0; 100], "a.stl has no triangles to show: its header says that it has 0 triangles"),
         (
             "cut.stl",
             &[1; 100],

@@ -69,7 +69,7 @@ fn info_tells_what_is_odd_and_what_a_weld_tolerance_changes() {
         (&exact["repairs"]["normals_rescaled"], &exact["normal_faults"]["against_face"]),
         (&9.into(), &9.into())
     );
-    assert!(exact["warnings"][0].as_str().is_some_and(|warning| warning.contains("length isn't 1")), "{exact}");
+    assert!(exact["warnings"][0].as_str().is_some_and(|warning| warning.contains("length wasn't 1")), "{exact}");
 }
 
 #[test]

@@ -142,7 +142,7 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
     for list in ["barycentric,factors", "triangle-size,wireframe,low-factors", "deviation,factors"] {
         let errors = failure(&overlays(list), 2);
-        assert!(errors.contains("each colours the whole surface"), "{errors}");
+        assert!(errors.contains("each of these colours the whole surface"), "{errors}");
         assert!(!Path::new(&picture).exists(), "before anything is drawn");
     }
     output(&overlays("triangle-size,wireframe,normals,back-faces"));

@@ -107,7 +107,7 @@ impl App {
         let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
         let radius = heights.map_or(0.0, |heights| heights.radius);
         let settings = &mut self.settings;
-        option_row(ui, &options::DISPLACEMENT, settings, &key_name(&Action::ToggleDisplacement));
+        option_row(ui, &options::DISPLACEMENT, settings, key_name(&Action::ToggleDisplacement));
         let units = short(f64::from(settings.tessellation.height_scale * radius));
         let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
         option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);

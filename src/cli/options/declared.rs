@@ -112,9 +112,8 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
     }
 }
 
-fn possible(Description { name, text, .. }: Description) -> PossibleValue {
-    let value = PossibleValue::new(name).help(text.trim_end_matches('.'));
-    if name.contains('-') { value.alias(name.replace('-', "_")) } else { value }
+fn possible(description: Description) -> PossibleValue {
+    PossibleValue::new(description.name).help(description.text.trim_end_matches('.')).aliases(description.hlsl_name())
 }
 
 /// Puts what was given on the command line into settings.
@@ -124,11 +123,13 @@ fn take(declaration: &Declaration, matches: &ArgMatches, settings: &mut Settings
     let value = match declaration.kind {
         Kind::Switch => Some(Value::Switch(matches.get_flag(name))),
         Kind::Several(_) => Some(Value::Names(given().filter_map(|value| name_of(&value)).collect())),
-        _ => given().last(),
+        _ => given().next_back(),
     };
     match value {
         Some(value) if !declaration.set(settings, value.clone()) => {
-            let message = format!("--{name} can't be {value}. {}\n", declaration.text);
+            // Only a list of overlays is refused as a whole: values that are wrong by themselves never come here.
+            let message =
+                format!("--{name} can't be {value}: each of these colours the whole surface, so choose one\n");
             Err(Error::raw(ErrorKind::ValueValidation, message))
         }
         _ => Ok(()),

@@ -233,7 +233,7 @@ fn sparse_values_replace_the_base_and_zeros() {
     draft.root["accessors"][0]["sparse"] = sparse(far);
     assert!(
         message(&draft)
-            .contains("/accessors/0 (POSITION of /meshes/0/primitives/0 (\"thing\")) replaces element 9 of 3")
+            .contains("/accessors/0 (POSITION of /meshes/0/primitives/0 (\"thing\")) replaces element 9 by /sparse/indices, but has 3 elements")
     );
 }
 
@@ -283,7 +283,7 @@ fn bad_normals_are_made_and_counted() {
     let mesh = draft.read().unwrap();
     assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
     let replaced = "normals without a direction, replaced by ones that are smooth within 60 degrees: 2.";
-    assert_eq!(mesh.warnings, [replaced, "normals whose length isn't 1, brought to it: 1."]);
+    assert_eq!(mesh.warnings, [replaced, "normals whose length wasn't 1, scaled to it: 1."]);
     assert_eq!(mesh.repairs, Repairs { normals_replaced: 2, normals_rescaled: 1, ..Repairs::default() });
     // A transform makes no difference.
     draft.root["nodes"][0]["scale"] = json!([1.0, 3.0, -1.0]);

@@ -122,7 +122,7 @@ fn normals_and_texture_coordinates_of_every_name_are_read() {
         let uvs: Vec<_> = mesh.corners.iter().map(|corner| corner.uv).collect();
         assert_eq!(uvs, [Vec2::Y, Vec2::ONE, Vec2::ZERO], "v upwards in the file");
         assert!(mesh.corners.iter().all(|corner| corner.normal == Vec3::Z));
-        assert_eq!(mesh.warnings, ["normals whose length isn't 1, brought to it: 3."]);
+        assert_eq!(mesh.warnings, ["normals whose length wasn't 1, scaled to it: 3."]);
     }
     // Two coordinates don't make a normal.
     let mesh = read(TRIANGLE.replace("float nz", "float confidence").as_bytes());

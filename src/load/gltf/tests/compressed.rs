@@ -126,7 +126,7 @@ fn compressed_rotations_turn() {
 fn a_view_must_be_as_long_as_what_it_holds() {
     let mut draft = grid();
     draft.root["bufferViews"][0]["byteLength"] = json!(647);
-    let expected = "/bufferViews/0/extensions/EXT_meshopt_compression has 81 elements of 8 bytes, 648, and its view's \
+    let expected = "/bufferViews/0/extensions/EXT_meshopt_compression has 81 elements of 8 bytes, which are 648 bytes, but its view's \
                     byteLength is 647; export the model again";
     assert_eq!(message(&draft), expected);
 }

@@ -98,7 +98,7 @@ fn files_next_to_the_document_are_found() {
     assert_eq!((mesh.name.as_str(), progress.fraction()), ("model", 1.0));
     std::fs::write(folder.0.join("data.bin"), &draft.bytes[1..]).unwrap();
     let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
-    assert!(error.contains("it should have 96 bytes and has 95"), "{error}");
+    assert!(error.contains("it should have 96 bytes but has 95"), "{error}");
     progress.cancel();
     assert!(matches!(load(&path, &Limits::default(), &progress), Err(LoadError::Cancelled(Cancelled))));
 }

@@ -238,7 +238,7 @@ fn data_beside_are_read_unless_draco_is_required() {
     draft.root["extensionsUsed"] = json!([DRACO]);
     assert_eq!(positions(&draft.read().unwrap()), TRIANGLE);
     draft.root["extensionsRequired"] = json!([DRACO]);
-    let expected = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression is of data that don't begin with DRACO; \
+    let expected = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression has data that doesn't begin with DRACO; \
                     export the model again";
     assert_eq!(message(&draft), expected);
 }
