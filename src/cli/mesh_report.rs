@@ -34,7 +34,7 @@ pub struct Info {
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
     pub joins: Vec<WeldPreview>,
-    /// See [`t_junctions`].
+    /// See [`t_junctions()`].
     pub t_junctions: u32,
     /// Where they are, in their order.
     pub t_junctions_at: Vec<TJunctionInfo>,
