@@ -48,7 +48,7 @@ impl CopiedCommand<'_> {
         let Preparation { weld, crease_band, heights, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
         line.changed("--weld", weld, &0.0);
-        line.changed("--rim", crease_band, &0.0);
+        line.changed("--crease-band", crease_band, &0.0);
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         let Some(heights) = heights else { return };

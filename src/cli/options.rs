@@ -22,7 +22,7 @@ use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, 
 pub use declared::{PictureOptions, TessellationOptions, choice, number_of};
 pub use values::{CameraOption, Place, Size, model, picture, source, threshold};
 
-use values::{bytes, rim, weld};
+use values::{bytes, crease_band, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
@@ -91,9 +91,9 @@ impl SurfaceOptions {
                 "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
             ));
         }
-        if self.weld.rim > 0.0 && self.animation.animation.is_some() {
+        if self.weld.crease_band > 0.0 && self.animation.animation.is_some() {
             return Err(CliError::Usage(
-                "--animation can't be with --rim: a rim's triangles hang on nothing that moves",
+                "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
             ));
         }
         let usual = Tessellation::default();
@@ -184,24 +184,24 @@ impl SurfaceOptions {
     }
 }
 
-/// What is done to a mesh before it is tessellated: points are welded, and creases get a rim.
+/// What is done to a mesh before it is tessellated: points are welded, and creases get a crease band.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
     pub weld: f32,
-    /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a rim of small triangles
-    /// that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative to the
-    /// bounding diagonal, 0 to 0.1; 0 makes no rim. At most a third of an edge, and half the radius of a triangle's incircle
-    #[arg(long, value_name = "WIDTH", default_value_t = 0.0, value_parser = rim, allow_hyphen_values = true)]
-    pub rim: f32,
+    /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small
+    /// triangles that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative
+    /// to the bounding diagonal, 0 to 0.1; 0 makes no band. At most a third of an edge, and half the radius of a triangle's incircle
+    #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = crease_band, allow_hyphen_values = true)]
+    pub crease_band: f32,
     #[command(flatten)]
     pub limit: LimitOption,
 }
 
 impl WeldOption {
     pub fn preparation(&self) -> Preparation {
-        Preparation { weld: self.weld, crease_band: self.rim, heights: None, limits: self.limit.limits() }
+        Preparation { weld: self.weld, crease_band: self.crease_band, heights: None, limits: self.limit.limits() }
     }
 }
 

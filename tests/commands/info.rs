@@ -16,7 +16,7 @@ fn info_is_for_people_and_for_programs() {
 
 #[test]
 fn a_rim_is_told_and_in_what_is_written() {
-    let band = ["--rim", "0.02"];
+    let band = ["--crease-band", "0.02"];
     let info = |file: &str| output(&[&["info", file, "--json"], &band[..]].concat());
     let json: Value = serde_json::from_str(&info("shape:cube-split")).expect("JSON");
     assert_eq!((&json["triangles"], &json["edges"]["split"], &json["closed"]), (&108.into(), &0.into(), &true.into()));

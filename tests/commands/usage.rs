@@ -74,7 +74,7 @@ fn wrong_usage_exits_with_2() {
         &["tessellate", "shape:torus", "-o", "x.glb", "--weld", "nan"],
         &["stability", "shape:torus", "--device", "cpu", "--weld=-0.001"],
         &["stability", "shape:torus", "--device", "cpu", "--weld", "nan"],
-        &["info", "shape:torus", "--rim", "0.11"],
+        &["info", "shape:torus", "--crease-band", "0.11"],
         &["render", "shape:torus", "-o", "x.png", "--rim=-0.001"],
         &["stability", "shape:torus", "--device", "cpu", "--rim", "nan"],
         &["render", "shape:torus", "-o", "x.png", "--edges", "published"],

@@ -13,7 +13,7 @@ impl App {
         let wide = short(f64::from(percent / 100.0 * document.scene.bounds.diagonal()));
         let hover = format!(
             "A band of small triangles along edges with split normals, with one normal on the crease, so that PN triangles don't \
-             tear there (Vlachos et al. 2001; --rim). Its width is a part of the bounding diagonal, and less where triangles are \
+             tear there (Vlachos et al. 2001; --crease-band). Its width is a part of the bounding diagonal, and less where triangles are \
              small.{}",
             match document.loaded.crease_band.creases {
                 0 => String::new(),

@@ -118,8 +118,8 @@ pub fn weld(text: &str) -> Result<f32, String> {
     within(text, 0.0..=0.1)
 }
 
-/// The width of a rim, relative to the bounding diagonal.
-pub fn rim(text: &str) -> Result<f32, String> {
+/// The width of a crease band, relative to the bounding diagonal.
+pub fn crease_band(text: &str) -> Result<f32, String> {
     within(text, 0.0..=WIDEST)
 }
 
