@@ -84,7 +84,7 @@ pub fn export(now: &Availability) -> Option<&'static str> {
 }
 
 pub fn truth(now: &Availability) -> Option<&'static str> {
-    unless(now.has_truth, "No truth was chosen.")
+    unless(now.has_truth, "No reference surface was chosen.")
 }
 
 pub fn undo(now: &Availability) -> Option<&'static str> {

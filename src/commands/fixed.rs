@@ -40,16 +40,16 @@ fn file() -> Vec<Command> {
             .keys([plain(Key::R)])
             .menu(File, 1)
             .unless(when::document),
-        Command::new(Action::File(FileAction::Truth), "Truth…", TRUTH).menu(File, 2),
+        Command::new(Action::File(FileAction::Truth), "Reference surface…", TRUTH).menu(File, 2),
         Command::new(
             Action::File(FileAction::TruthPath),
-            "Truth path…",
-            "Types the path of what the mesh should have been.",
+            "Reference surface path…",
+            "Opens a reference surface by its typed path.",
         )
         .menu(File, 2),
         Command::new(
             Action::File(FileAction::ForgetTruth),
-            "No truth",
+            "No reference surface",
             "Goes back to the surface that a shape is sampled from, or that the tessellation converges to.",
         )
         .menu(File, 2)

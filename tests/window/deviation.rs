@@ -76,7 +76,7 @@ fn a_truth_is_loaded_beside_the_window_and_the_old_one_stays_where_it_fails() {
     assert_eq!(harness.state().deviation(SplitSide::Right), Some(bulge), "the old one stays");
     click(&mut harness, "Close");
     click(&mut harness, "File");
-    click(&mut harness, "No truth");
+    click(&mut harness, "No reference surface");
     assert_eq!((harness.state().truth(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
 }
 

@@ -59,7 +59,7 @@ fn letters_are_the_truths_path_too_and_buttons_are_reached_by_tab() {
     let mut harness = window(None);
     let settings = *harness.state().settings();
     click(&mut harness, "File");
-    harness.get_by_label("Truth path…").click();
+    harness.get_by_label("Reference surface path…").click();
     typed("elephant").into_iter().for_each(|event| harness.event(event));
     settle(&mut harness);
     assert_eq!((field(&harness).as_deref(), harness.state().settings()), (Some("elephant"), &settings));

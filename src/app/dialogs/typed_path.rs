@@ -59,7 +59,7 @@ impl Purpose {
         match self {
             Self::Open => "Open path",
             Self::Heights => "Height image path",
-            Self::Truth => "Truth path",
+            Self::Truth => "Reference surface path",
             Self::SaveChart => "Save chart",
             Self::SavePicture => "Save picture",
             Self::ExportMesh => "Export mesh",

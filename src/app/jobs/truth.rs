@@ -36,7 +36,7 @@ impl TruthLoad {
         let (wanted, own_progress) = (source.clone(), progress.clone());
         let load = move || match Truth::load(&wanted, &limits, &own_progress) {
             Ok(Some(truth)) => Ok(Chosen { source: wanted, truth: Arc::new(truth), generation }),
-            Ok(None) => Err(Some(format!("{wanted} can't be a truth: it has no triangles"))),
+            Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
             Err(LoadError::Cancelled(_)) => Err(None),
             Err(error) => Err(Some(error.to_string())),
         };

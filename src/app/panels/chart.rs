@@ -206,7 +206,7 @@ impl Of {
         } else if self.moment != now.moment {
             Some("another moment: measure again")
         } else if self.truth != now.truth {
-            Some("another truth: measure again")
+            Some("another reference surface: measure again")
         } else if (self.camera, self.size) != (now.camera, now.size) {
             Some("another view: measure again")
         } else {

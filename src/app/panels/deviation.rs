@@ -184,9 +184,10 @@ impl App {
     fn deviation_rows(&self, ui: &mut egui::Ui, half: SplitSide, place: &str) -> bool {
         let found = self.known_deviation(half);
         let text = |number: Option<f64>, unit| format!("{} {unit}", number.map_or_else(|| "…".into(), short));
-        let hover = "The largest distance from what is shown to the truth, in object units.";
+        let hover = "The largest distance between the emitted triangles and the reference surface, in object units.";
         fact(ui, "Largest", &text(found.map(Found::largest), "units"), hover);
-        let hover = "On screen, between the worst point and the truth's point nearest to it.";
+        let hover =
+            "The distance on screen between the worst point and the nearest point of the reference surface, in px.";
         fact(ui, "", &text(self.deviation_px(half), "px"), hover);
         let hover = "Root mean square of the distance over the area that is shown, in object units.";
         fact(ui, "RMS", &text(found.map(|found| found.rms), "units"), hover);

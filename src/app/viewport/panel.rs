@@ -223,7 +223,7 @@ impl App {
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if let Some(load) = &self.jobs.truth_load {
-            let title = format!("Loading the truth {}", load.source.title());
+            let title = format!("Loading the reference surface {}", load.source.title());
             let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what the mesh is held against stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.truth_load = None;
