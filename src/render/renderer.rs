@@ -85,6 +85,14 @@ impl Renderer {
         draws.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
+    /// Makes the pipelines of all draws, also of those that no picture has needed yet: for whoever measures memory.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn prepare_all(&self) -> Result<(), GpuError> {
+        Draw::ALL.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
+    }
+
     /// Draws the scene, whose counts must be known, into the target: chunk after chunk, each emitted unless the arena still holds
     /// it. Normals are drawn after all surfaces, since surfaces may hide them; for that the chunks are gone through once more.
     ///

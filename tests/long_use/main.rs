@@ -169,10 +169,22 @@ fn change(harness: &mut Harness<App>, random: &mut Random) {
     settle(harness);
 }
 
+/// Makes every pipeline that the settings can need: they are made when they are first needed, and stay.
+fn need_every_pipeline(harness: &mut Harness<App>) {
+    harness.state().engine().renderer.prepare_all().expect("pipelines");
+    for normals in ["Quadratic normals", "Surface normals", "Linear normals"] {
+        harness.get_by_role_and_label(Role::ComboBox, "Shading").click();
+        settle(harness);
+        harness.query_all_by_label(normals).last().expect("an entry of the list").click();
+        settle(harness);
+    }
+}
+
 fn settings(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::CubeSplit));
     settle(harness);
+    need_every_pipeline(harness);
     let (mut part, mut random) = (Part { what: "settings", taken: Vec::new() }, Random(5));
     for step in 0..effort.settings {
         change(harness, &mut random);
