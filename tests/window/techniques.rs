@@ -106,5 +106,5 @@ fn a_height_image_can_be_chosen_from_the_file_menu() {
     entry.hover();
     // A hover text comes after a while.
     harness.run_steps(60);
-    harness.get_by_label_contains("Displaces the mesh by a PNG or JPEG image");
+    harness.get_by_label_contains("Displaces the mesh by the brightness of a PNG or JPEG image");
 }
