@@ -99,7 +99,7 @@ fn broken_files_are_refused_in_one_sentence() {
             b"ply\nformat ascii 1.0\nelement vertex 4611686018427387904\nproperty float x\nend_header\n",
             "a.ply: line 5: the header says",
         ),
-        ("empty.ply", b"", "empty.ply is empty: export the model again"),
+        ("empty.ply", b"", "empty.ply is empty; export the model again"),
     ];
     for (name, bytes, expected) in cases {
         std::fs::write(folder.path(name), bytes).expect("a writable folder");

@@ -35,7 +35,8 @@ pub fn place(document: &Document) -> Result<Placed, GltfError> {
     }
     for &node in &order {
         let above = parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
-        global[node] = above * local(&nodes[node]);
+        let own = local(&nodes[node]);
+        global[node] = if own == DMat4::IDENTITY { above } else { above * own };
     }
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let roots = scene.map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
@@ -89,6 +90,12 @@ fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
 pub fn local(node: &Node) -> DMat4 {
     match node.transform() {
         Transform::Matrix { matrix } => Mat4::from_cols_array_2d(&matrix).as_dmat4(),
+        // Most nodes have no transform: that is worth a shortcut where there are hundreds of thousands.
+        Transform::Decomposed { translation, rotation, scale }
+            if (translation, rotation, scale) == ([0.0; 3], [0.0, 0.0, 0.0, 1.0], [1.0; 3]) =>
+        {
+            DMat4::IDENTITY
+        }
         Transform::Decomposed { .. } => placement(node).unwrap_or_default().matrix(),
     }
 }
