@@ -53,6 +53,7 @@ fn a_picture_too_large_for_the_device_is_a_sentence() {
 
 #[test]
 fn wrong_usage_exits_with_2() {
+    let folder = Folder::new("wrong-usage");
     for arguments in [
         &["render", "shape:torus"][..],
         &["render", "shape:teapot", "-o", "x.png"],
@@ -84,8 +85,11 @@ fn wrong_usage_exits_with_2() {
         &["tessellate", "shape:torus", "-o", "x.glb", "--clip", "frusta"],
         &["frobnicate", "--hard"],
     ] {
-        failure(arguments, 2);
+        // What is written by mistake goes into a folder of this test's own.
+        let output = command(arguments).current_dir(&folder.0).output().expect("the program starts");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
+    assert_eq!(std::fs::read_dir(&folder.0).expect("its folder").count(), 0, "nothing is written");
 }
 
 #[test]
