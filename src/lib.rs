@@ -1,34 +1,95 @@
-//! pnaen: loads a mesh, tessellates it in compute passes, and shows what the tessellation did.
+//! pnaen tessellates meshes on the GPU, with PN-AEN triangles and their relatives, in compute passes that follow the
+//! Direct3D 11 tessellator. The program of the same name shows what the tessellation did.
 //!
-//! The way through the crate: [`mesh`] (what a file becomes) -> [`tessellate`] (the mathematics, on the CPU: the
-//! reference) -> [`gpu`] (the same mathematics as compute passes) -> [`render`] (one indirect draw into a texture).
-//! [`measure`] looks at what came out, also against a [`truth`], [`export`] writes it to files, [`engine`] puts them together. [`app`] (the
-//! window) and [`cli`] (the commands) are two thin faces of all that, and hold no mathematics.
+//! As a library it serves programs that have a wgpu device of their own. [`embed`] tessellates a mesh into vertex and index
+//! buffers that the host draws. [`mesh::Mesh::from_slices`] makes a mesh from arrays; with the feature `formats`,
+//! [`load::load`] reads one from a file. [`tessellate::tessellate`] does the same as the passes on the CPU.
+//!
+//! ```
+//! use pnaen::mesh::{Mesh, MeshSlices, Topology};
+//! use pnaen::tessellate::{Inputs, LodView, Tessellation, tessellate};
+//!
+//! // A roof of two triangles whose normals lean apart, so that the surface between them is curved.
+//! let mesh = Mesh::from_slices(&MeshSlices {
+//!     positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+//!     normals: &[[-1.0, -1.0, 2.0], [1.0, -1.0, 2.0], [1.0, 1.0, 2.0], [-1.0, 1.0, 2.0]],
+//!     indices: &[0, 1, 2, 0, 2, 3],
+//!     ..Default::default()
+//! })?;
+//! let inputs = Inputs::new(&Tessellation { factor: 8.0, ..Default::default() }, LodView::default());
+//! let made = tessellate(&mesh, &Topology::of(&mesh), &inputs, None);
+//! let highest = made.vertices.iter().map(|vertex| vertex.position[2]).fold(0.0, f32::max);
+//! assert!(highest > 0.1, "the surface rises above its corners");
+//! # Ok::<(), pnaen::mesh::SliceError>(())
+//! ```
+//!
+//! The way through the crate: [`mesh`] (triangles, and how they are connected), [`tessellate`] (the mathematics on the CPU:
+//! the reference), `gpu` (the same mathematics as compute passes), then for the program `render` (pictures), `measure` (what
+//! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
+// The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
+#![cfg_attr(not(feature = "app"), allow(dead_code))]
 
-pub mod adjacency_file;
-pub mod app;
-pub mod chart;
-pub mod cli;
-pub mod commands;
-pub mod engine;
-pub mod export;
-pub mod factors_file;
-pub mod files;
-pub mod gallery;
-pub mod gpu;
-pub mod load;
-pub mod markdown;
-pub mod measure;
+pub mod embed;
 pub mod mesh;
-pub mod names;
-pub mod numbers;
-pub mod plot;
 pub mod progress;
+pub mod tessellate;
+
+pub mod gpu;
+pub mod names;
+
+#[cfg(feature = "formats")]
+pub mod files;
+#[cfg(feature = "formats")]
+pub mod load;
+#[cfg(feature = "formats")]
+pub mod markdown;
+
+#[cfg(feature = "cli")]
+pub mod adjacency_file;
+#[cfg(feature = "cli")]
+pub mod chart;
+#[cfg(feature = "cli")]
+pub mod cli;
+#[cfg(feature = "cli")]
+pub mod engine;
+#[cfg(feature = "cli")]
+pub mod export;
+#[cfg(feature = "cli")]
+pub mod factors_file;
+#[cfg(feature = "cli")]
+pub mod gallery;
+#[cfg(feature = "cli")]
+pub mod measure;
+#[cfg(feature = "cli")]
+pub mod numbers;
+#[cfg(feature = "cli")]
+pub mod plot;
+#[cfg(feature = "cli")]
+mod program;
+#[cfg(feature = "cli")]
 pub mod render;
+#[cfg(feature = "cli")]
+pub mod settings;
+#[cfg(feature = "cli")]
+pub mod stability;
+#[cfg(feature = "cli")]
+pub mod truth;
+#[cfg(feature = "cli")]
+pub mod view;
+
+#[cfg(feature = "app")]
+pub mod app;
+#[cfg(feature = "app")]
+pub mod commands;
+
+// Tests of the whole program, which name the crate as other crates do.
+#[cfg(test)]
+extern crate self as pnaen;
+#[cfg(test)]
+#[path = "../tests/gpu/mod.rs"]
+mod gpu_tests;
 #[cfg(test)]
 mod rooms;
-pub mod settings;
-pub mod stability;
-pub mod tessellate;
-pub mod truth;
-pub mod view;
+
+#[cfg(feature = "cli")]
+pub use program::run;

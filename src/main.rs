@@ -1,41 +1,7 @@
-//! Arguments in, window or command out.
+//! The program `pnaen`.
 
-use std::io::Write;
-use std::path::Path;
 use std::process::ExitCode;
 
-use clap::Parser;
-use pnaen::app::{self, WindowError};
-use pnaen::cli::{self, Cli};
-
-/// Where the picture goes when there is no display to open a window on.
-const PREVIEW: &str = "pnaen-preview.png";
-
 fn main() -> ExitCode {
-    let Cli { command, file, limit, adapter } = Cli::parse();
-    quiet_driver();
-    if let Some(command) = command {
-        return cli::run(command);
-    }
-    let reason = match app::run(file.clone(), limit.limits(), adapter.choice()) {
-        Ok(()) => return ExitCode::SUCCESS,
-        Err(WindowError::NoDisplay(reason)) => reason,
-        Err(error) => return cli::fail(&error),
-    };
-    if let Err(error) = cli::preview(file, limit, adapter, Path::new(PREVIEW)) {
-        return cli::fail(&error);
-    }
-    let said = "There is no display to open a window on";
-    // A closed standard output is no failure.
-    let _ = writeln!(std::io::stdout(), "{said} ({reason}); the picture it would have shown is in {PREVIEW}.");
-    ExitCode::SUCCESS
-}
-
-/// Without a session, Mesa's device selection asks for a Wayland display and complains on standard error; commands need
-/// none, and choose their adapter themselves.
-fn quiet_driver() {
-    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
-        // SAFETY: nothing else runs yet that could read the environment at the same time.
-        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
-    }
+    pnaen::run()
 }

@@ -19,6 +19,7 @@ const ORDER: &[&[&str]] = &[
     &["load", "tessellate"],
     &["adjacency_file", "factors_file", "truth", "view"],
     &["gpu"],
+    &["embed"],
     &["settings"],
     &["measure"],
     &["render"],
@@ -27,6 +28,7 @@ const ORDER: &[&[&str]] = &[
     &["chart", "stability", "gallery", "commands"],
     &["cli"],
     &["app"],
+    &["program"],
 ];
 
 /// A module's path below the crate, such as `["mesh", "topology"]`; the crate itself is empty.

@@ -32,7 +32,16 @@ impl Arena {
             (half / item as u64).clamp(u64::from(patch), needed.max(u64::from(patch))) as u32
         };
         let vertex_capacity = capacity(size_of::<Vertex>(), patch_vertices);
-        let triangle_capacity = capacity(size_of::<[u32; 3]>(), patch_triangles);
+        Self::with_room(gpu, vertex_capacity, capacity(size_of::<[u32; 3]>(), patch_triangles))
+    }
+
+    /// Takes memory for so many vertices and triangles, and at least for those of the largest patch.
+    ///
+    /// # Errors
+    /// A buffer would be larger than the adapter binds.
+    pub fn with_room(gpu: &Gpu, vertices: u32, triangles: u32) -> Result<Self, GpuError> {
+        let (patch_vertices, patch_triangles) = largest_patch();
+        let (vertex_capacity, triangle_capacity) = (vertices.max(patch_vertices), triangles.max(patch_triangles));
         Ok(Self {
             vertices: empty::<Vertex>(gpu, "arena.vertices", vertex_capacity as usize)?,
             indices: empty::<[u32; 3]>(gpu, "arena.indices", triangle_capacity as usize)?,

@@ -11,7 +11,8 @@ use super::adapters::{AdapterChoice, adapters, best_adapter};
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
-    adapter: wgpu::Adapter,
+    /// None if the device was borrowed from a host program.
+    adapter: Option<wgpu::Adapter>,
     /// Name, driver and kind of the adapter.
     pub info: wgpu::AdapterInfo,
     reported: Reported,
@@ -40,17 +41,18 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
     }
 }
 
+/// Every Vulkan adapter has at least this many (Vulkan specification, required limits).
+const LEAST_SUBPIXEL_BITS: u32 = 4;
+
 /// The number of fractional bits, in px, of the positions that an adapter rasterises.
 fn subpixel_bits(adapter: &wgpu::Adapter) -> u32 {
-    // Every Vulkan adapter has at least this many (Vulkan specification, required limits).
-    const LEAST: u32 = 4;
     let info = adapter.get_info();
     match info.backend {
         // lavapipe claims 8, but it covers samples that thin triangles miss by 1/100 px.
-        _ if info.device_type == wgpu::DeviceType::Cpu => LEAST,
+        _ if info.device_type == wgpu::DeviceType::Cpu => LEAST_SUBPIXEL_BITS,
         // Direct3D 11.3 functional specification, 3.4.4.1.
         wgpu::Backend::Dx12 => 8,
-        _ => vulkan_subpixel_bits(adapter).unwrap_or(LEAST),
+        _ => vulkan_subpixel_bits(adapter).unwrap_or(LEAST_SUBPIXEL_BITS),
     }
 }
 
@@ -139,10 +141,24 @@ impl Gpu {
             device,
             queue,
             info: adapter.get_info(),
-            adapter: adapter.clone(),
+            adapter: Some(adapter.clone()),
             reported,
             most_samples: 4,
             subpixel_bits: subpixel_bits(adapter),
+        }
+    }
+
+    /// Borrows the device of a host program. No error handlers are installed and no limits are asked for: what the device
+    /// refuses outside of [`Self::attempt`] reaches the host's own handlers.
+    pub fn borrowed(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
+        Self {
+            device: device.clone(),
+            queue: queue.clone(),
+            info: device.adapter_info(),
+            adapter: None,
+            reported: Reported::default(),
+            most_samples: 1,
+            subpixel_bits: LEAST_SUBPIXEL_BITS,
         }
     }
 
@@ -150,8 +166,10 @@ impl Gpu {
     /// [`Self::most_samples`] allows it, else 1.
     pub fn samples(&self, formats: &[wgpu::TextureFormat]) -> u32 {
         let four = wgpu::TextureFormatFeatureFlags::MULTISAMPLE_X4;
-        let has_four =
-            |format: &wgpu::TextureFormat| self.adapter.get_texture_format_features(*format).flags.contains(four);
+        let has_four = |format: &wgpu::TextureFormat| {
+            let features = self.adapter.as_ref().map(|adapter| adapter.get_texture_format_features(*format));
+            features.is_some_and(|features| features.flags.contains(four))
+        };
         if self.most_samples >= 4 && formats.iter().all(has_four) { 4 } else { 1 }
     }
 

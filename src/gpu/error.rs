@@ -24,6 +24,10 @@ pub enum GpuError {
         "the mesh's {what} take {bytes} bytes and the adapter binds at most {limit}: use a mesh with fewer triangles or another adapter"
     )]
     TooLarge { what: &'static str, bytes: u64, limit: u64 },
+    #[error("the mesh has {patches} patches, and at most {limit} can be tessellated in a single run: split the mesh")]
+    TooManyPatches { patches: u64, limit: u64 },
+    #[error("the device allows {has} of {what}, and the passes need {needs}: request wgpu's default limits")]
+    Limits { what: &'static str, has: u64, needs: u64 },
     #[error("a picture of {width} x {height} px is larger than the adapter's {limit} px a side: ask for a smaller one")]
     PictureTooLarge { width: u32, height: u32, limit: u32 },
     #[error("the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh")]

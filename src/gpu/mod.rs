@@ -40,7 +40,7 @@ pub use lazy::Lazy;
 pub use mesh_buffers::MeshBuffers;
 pub use pipelines::{ComputePipeline, ComputePipelines, GRID_WIDTH, ShaderModule, WORKGROUP, bind_group, grid};
 pub use readback::{Readback, read_buffer, read_buffers, read_texture};
-pub use recorder::{DRAWING, PASSES, PassTime, Recorder, Timing, take_times};
+pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
 pub use tessellator::{ChunkBuffers, Tessellator};
 pub use wgsl::WgslFile;
 

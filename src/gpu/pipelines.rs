@@ -7,7 +7,7 @@ use wgpu::util::DeviceExt;
 use super::lazy::Lazy;
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_SHARES, DOMAIN, ERROR, FACTORS, LOAD_NET, LOADS, LOD,
-    NORMAL, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
+    NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -26,10 +26,30 @@ pub(super) static PASS_COUNTS: WgslFile =
     wgsl!("pass_counts", CONVENTION, CULL, ERROR, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
 pub(super) static PASS_SCAN: WgslFile = wgsl!("pass_scan", TYPES, WORKGROUP_SCAN);
 pub(super) static PASS_CHUNKS: WgslFile = wgsl!("pass_chunks", TYPES);
-pub(super) static PASS_EMIT: WgslFile =
-    wgsl!("pass_emit", CONVENTION, DOMAIN, FACTORS, LOAD_NET, NORMAL, CONNECTIVITY_TABLE, SURFACE, TYPES);
-pub(super) static PASS_DISPLACE: WgslFile =
-    wgsl!("pass_displace", DISPLACE, FACTORS, LOAD_NET, LOADS, NORMAL, DISPLACEMENT_SHARES, SURFACE, TYPES);
+pub(super) static PASS_EMIT: WgslFile = wgsl!(
+    "pass_emit",
+    CONVENTION,
+    DOMAIN,
+    FACTORS,
+    LOAD_NET,
+    NORMAL,
+    OCTAHEDRAL_NORMAL,
+    CONNECTIVITY_TABLE,
+    SURFACE,
+    TYPES
+);
+pub(super) static PASS_DISPLACE: WgslFile = wgsl!(
+    "pass_displace",
+    DISPLACE,
+    FACTORS,
+    LOAD_NET,
+    LOADS,
+    NORMAL,
+    OCTAHEDRAL_NORMAL,
+    DISPLACEMENT_SHARES,
+    SURFACE,
+    TYPES
+);
 
 /// A shader module, made when it is first needed.
 pub struct ShaderModule {

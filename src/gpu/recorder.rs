@@ -34,6 +34,32 @@ impl Timing {
     }
 }
 
+/// Whatever compute passes can be recorded into.
+pub trait RecordPasses {
+    /// Records one compute pass named `pass`.
+    fn compute(&mut self, pass: &'static str, record: impl FnOnce(&mut wgpu::ComputePass));
+}
+
+/// The encoder of a host program, which submits it.
+impl RecordPasses for wgpu::CommandEncoder {
+    fn compute(&mut self, pass: &'static str, record: impl FnOnce(&mut wgpu::ComputePass)) {
+        record(
+            &mut self.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(pass), timestamp_writes: None }),
+        );
+    }
+}
+
+impl RecordPasses for Recorder<'_> {
+    fn compute(&mut self, pass: &'static str, record: impl FnOnce(&mut wgpu::ComputePass)) {
+        self.timed(pass, |encoder, query| {
+            record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some(pass),
+                timestamp_writes: query.and_then(|query| query.compute_pass_timestamp_writes()),
+            }));
+        });
+    }
+}
+
 /// Records passes into a command encoder, which [`Recorder::submit`] submits.
 pub struct Recorder<'a> {
     gpu: &'a Gpu,
@@ -49,16 +75,6 @@ impl<'a> Recorder<'a> {
     /// The encoder itself, for copies.
     pub fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         &mut self.encoder
-    }
-
-    /// Records one compute pass named `pass`.
-    pub fn compute(&mut self, pass: &'static str, record: impl FnOnce(&mut wgpu::ComputePass)) {
-        self.timed(pass, |encoder, query| {
-            record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some(pass),
-                timestamp_writes: query.and_then(|query| query.compute_pass_timestamp_writes()),
-            }));
-        });
     }
 
     /// Records one render pass named `pass`, with a colour and a depth attachment.

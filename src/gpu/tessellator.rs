@@ -75,7 +75,28 @@ impl Tessellator {
     ) -> Result<Self, GpuError> {
         let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
         let solid = Solid::find(&mesh, &topology);
-        Self::with(gpu, pipelines, (mesh, topology), solid, images, arena_bytes)
+        Self::with(gpu, pipelines, (mesh, topology), solid, images, |patches| Arena::new(gpu, patches, arena_bytes))
+    }
+
+    /// Uploads a mesh for a host program that draws without waiting for the GPU: all output has to fit the arena at once, which has
+    /// room for so many vertices and triangles.
+    ///
+    /// # Errors
+    /// The mesh is larger than the adapter binds, or has more patches than one scan covers.
+    pub fn with_room(
+        gpu: &Gpu,
+        pipelines: Arc<ComputePipelines>,
+        mesh: Arc<Mesh>,
+        topology: Arc<Topology>,
+        [vertices, triangles]: [u32; 2],
+    ) -> Result<Self, GpuError> {
+        let (patches, limit) = (topology.patches.len() as u64, u64::from(SLAB_PATCHES));
+        if patches > limit {
+            return Err(GpuError::TooManyPatches { patches, limit });
+        }
+        let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
+        let (solid, arena) = (Solid::find(&mesh, &topology), Arena::with_room(gpu, vertices, triangles)?);
+        Self::with(gpu, pipelines, (mesh, topology), solid, images, |_| Ok(arena))
     }
 
     /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
@@ -84,7 +105,7 @@ impl Tessellator {
         let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid);
         let (mesh, images) =
             ((self.mesh.clone(), self.topology.clone()), self.images.as_ref().map(HeightImages::shared));
-        move || Self::with(&gpu, pipelines, mesh, solid, images, arena_bytes)
+        move || Self::with(&gpu, pipelines, mesh, solid, images, |patches| Arena::new(&gpu, patches, arena_bytes))
     }
 
     fn with(
@@ -93,10 +114,10 @@ impl Tessellator {
         (mesh, topology): (Arc<Mesh>, Arc<Topology>),
         solid: Option<Solid>,
         images: Option<HeightImages>,
-        arena_bytes: u64,
+        make_arena: impl FnOnce(u32) -> Result<Arena, GpuError>,
     ) -> Result<Self, GpuError> {
         let buffers = MeshBuffers::new(gpu, &mesh, &topology, Sharing::AllSides)?;
-        let arena = Arena::new(gpu, buffers.patch_count, arena_bytes)?;
+        let arena = make_arena(buffers.patch_count)?;
         let mut slabs = Vec::new();
         for first_patch in (0..buffers.patch_count.max(1)).step_by(SLAB_PATCHES as usize) {
             let patch_count = (buffers.patch_count - first_patch).min(SLAB_PATCHES);

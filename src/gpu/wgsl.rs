@@ -34,6 +34,7 @@ pub(crate) static CONNECTIVITY: WgslFile = wgsl!("connectivity", DOMAIN, RINGS);
 pub(crate) static CONNECTIVITY_TABLE: WgslFile = wgsl!("connectivity_table", DOMAIN, RINGS);
 pub(crate) static CONVENTION: WgslFile = wgsl!("convention", FACTORS);
 pub(crate) static SURFACE: WgslFile = wgsl!("surface", FACTORS);
+pub(crate) static OCTAHEDRAL_NORMAL: WgslFile = wgsl!("octahedral_normal");
 pub(crate) static NORMAL: WgslFile = wgsl!("normal", FACTORS, SURFACE);
 pub(crate) static LOD: WgslFile = wgsl!("lod");
 pub(crate) static TYPES: WgslFile = wgsl!("types", LOD);

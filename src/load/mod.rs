@@ -20,6 +20,7 @@ mod text_lines;
 mod uri;
 mod warnings;
 
+pub use crate::files::Limits;
 pub use gltf::GltfError;
 pub use heights::{HeightError, HeightSource};
 pub use loaded_mesh::LoadedMesh;

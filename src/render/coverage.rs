@@ -8,8 +8,8 @@ use bytemuck::{Pod, Zeroable};
 use crate::gpu::layout::DrawArgs;
 use crate::gpu::wgsl::{TYPES, WORKGROUP_SCAN, WgslFile, wgsl};
 use crate::gpu::{
-    BoundPass, ChunkBuffers, ComputePipeline, Gpu, GpuError, Recorder, ShaderModule, WORKGROUP, empty, grid,
-    read_buffer, uniform_buffer,
+    BoundPass, ChunkBuffers, ComputePipeline, Gpu, GpuError, RecordPasses, Recorder, ShaderModule, WORKGROUP, empty,
+    grid, read_buffer, uniform_buffer,
 };
 use crate::tessellate::CoverageView;
 

@@ -12,7 +12,7 @@ use super::steps::halves;
 use super::target::DEPTH_FORMAT;
 use crate::gpu::layout::Vertex;
 use crate::gpu::wgsl::{FACTORS, SURFACE, TYPES, WgslFile, wgsl};
-use crate::gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, Timing};
+use crate::gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing};
 
 pub static DRAW_PICK: WgslFile = wgsl!("draw_pick", DRAW_TYPES, FACTORS, SURFACE, TYPES);
 

@@ -2,15 +2,15 @@
 
 use super::scene::LineSegment;
 use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
-use crate::gpu::wgsl::{CONVENTION, FACTORS, NORMAL, SURFACE, TYPES, WgslFile, wgsl};
+use crate::gpu::wgsl::{CONVENTION, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl};
 use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 
 pub static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
-pub static DRAW_PLAIN: WgslFile = wgsl!("draw_plain", DRAW_LIGHT, DRAW_TYPES, NORMAL);
+pub static DRAW_PLAIN: WgslFile = wgsl!("draw_plain", DRAW_LIGHT, DRAW_TYPES, OCTAHEDRAL_NORMAL);
 pub static DRAW_SURFACE: WgslFile =
-    wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_TYPES, FACTORS, NORMAL, SURFACE, TYPES);
-pub static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, NORMAL, TYPES);
+    wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
+pub static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
 
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

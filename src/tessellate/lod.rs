@@ -38,6 +38,13 @@ pub struct LodView {
     pub radius: f32,
 }
 
+impl Default for LodView {
+    /// A view that shows nothing in particular, for a tessellation that depends on none: uniform factors without clipping.
+    fn default() -> Self {
+        Self::new(Mat4::IDENTITY, Vec2::ONE)
+    }
+}
+
 impl LodView {
     /// Builds the view of a mesh of bounding radius 1 without displacement. The eye is at the origin.
     pub const fn new(clip_from_object: Mat4, half_viewport: Vec2) -> Self {

@@ -8,7 +8,8 @@ use super::displace::{
     Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
 use super::error::{displacement_factor, edge_bounds};
-use super::normal::{Normals, edge_normal, facing_or, linear_normal, pack_normal, unit_or, unpack_normal};
+use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
+use super::octahedral_normal::{pack_normal, unpack_normal};
 use super::surface::{UNIT, linear_uv, outline_place, patch_tangents};
 use super::texel_lengths::{Maps, TexelLength, map_number, texel_lengths};
 use super::vertex::Vertex;

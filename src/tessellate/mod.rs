@@ -24,6 +24,7 @@ mod mesh_displacement;
 mod mesh_factors;
 mod mesh_tessellation;
 mod normal;
+mod octahedral_normal;
 mod posed_mesh;
 mod rings;
 mod solid;
@@ -64,9 +65,9 @@ pub use mesh_tessellation::{
     Tessellated, edge_factors, given_totals, hull_factors, tessellate, tessellate_given, totals,
 };
 pub use normal::{
-    Normals, edge_normal, linear_normal, middle_normal, pack_normal, quadratic_edge_normal, quadratic_normal,
-    surface_normal, unpack_normal,
+    Normals, edge_normal, linear_normal, middle_normal, quadratic_edge_normal, quadratic_normal, surface_normal,
 };
+pub use octahedral_normal::{pack_normal, unpack_normal};
 pub use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{

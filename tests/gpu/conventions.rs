@@ -12,8 +12,8 @@ use pnaen::tessellate::{
     patch_is_culled, segments, tessellate, tessellate_given,
 };
 
-use crate::passes::{assert_agree, edge_factors, inputs, on_gpu};
-use crate::{engine, loaded, scene};
+use crate::gpu_tests::passes::{assert_agree, edge_factors, inputs, on_gpu};
+use crate::gpu_tests::{engine, loaded, scene};
 
 const CONSISTENT: [Convention; 3] = [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder];
 const MISTAKES: [Convention; 2] = [Convention::Rotated, Convention::Mirrored];

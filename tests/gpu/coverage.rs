@@ -10,7 +10,7 @@ use pnaen::settings::{Colors, Overlays, Settings};
 use pnaen::stability::random_camera;
 use pnaen::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing, screen_corner};
 
-use crate::{engine, scene};
+use crate::gpu_tests::{engine, scene};
 
 /// An engine that leaves out what covers nothing, from so many triangles a px on.
 pub fn sifting(from: f32) -> Engine {

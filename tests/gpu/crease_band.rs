@@ -10,8 +10,8 @@ use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::stability::{CASES, soup};
 use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellation};
 
-use crate::engine;
-use crate::stability::{measured, scene_of};
+use crate::gpu_tests::engine;
+use crate::gpu_tests::stability::{measured, scene_of};
 
 const SIZE: [u32; 2] = [320, 240];
 

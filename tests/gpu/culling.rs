@@ -9,7 +9,7 @@ use pnaen::settings::{Overlays, Settings};
 use pnaen::stability::random_camera;
 use pnaen::tessellate::{Clip, Edges, Lod, Surface, Tessellation, tessellate};
 
-use crate::{engine, scene};
+use crate::gpu_tests::{engine, scene};
 
 const CAMERAS: u32 = 500;
 

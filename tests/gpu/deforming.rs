@@ -12,9 +12,9 @@ use pnaen::settings::{ARENA_BYTES, Settings};
 use pnaen::tessellate::{Edges, Lod, Partitioning, Surface, Tessellation, tessellate};
 use pnaen::view::ulp;
 
-use crate::engine;
-use crate::moving::{CLIPS, moving};
-use crate::passes::{assert_agree, inputs, on_gpu};
+use crate::gpu_tests::engine;
+use crate::gpu_tests::moving::{CLIPS, moving};
+use crate::gpu_tests::passes::{assert_agree, inputs, on_gpu};
 
 fn scene() -> (Loaded, Scene) {
     let path =
@@ -158,7 +158,7 @@ fn the_pass_is_timed_where_something_is_deformed() {
     let times = engine().time(&mut scene, &target, &camera, &Settings::default(), Runs::default()).expect("a draw");
     // Triangles that cover nothing are left out where the device is faster for it.
     let passes: Vec<_> = times.iter().map(|time| time.pass).filter(|&pass| pass != "coverage").collect();
-    assert_eq!((passes[0], &passes[1..]), ("deform", &crate::passes::RIGID_PASSES[..]));
+    assert_eq!((passes[0], &passes[1..]), ("deform", &crate::gpu_tests::passes::RIGID_PASSES[..]));
 }
 
 #[test]
@@ -201,7 +201,7 @@ fn a_clip_is_framed_all_through() {
 
 #[test]
 fn a_mesh_that_cannot_move_takes_no_pose() {
-    let (loaded, mut scene) = crate::scene(pnaen::mesh::Shape::Torus);
+    let (loaded, mut scene) = crate::gpu_tests::scene(pnaen::mesh::Shape::Torus);
     let inputs = inputs(&loaded, &Settings::default());
     let before = on_gpu(&mut scene, &inputs);
     scene.set_moment(Some(Moment { clip: 0, time: 1.0 })).expect("nothing to upload");

@@ -20,8 +20,8 @@ use pnaen::tessellate::{
 };
 use pnaen::view::ulp;
 
-use crate::engine;
-use crate::passes::{inputs, on_gpu};
+use crate::gpu_tests::engine;
+use crate::gpu_tests::passes::{inputs, on_gpu};
 
 /// Waves that repeat with the image; two crests of either length across it.
 pub fn waves(size: u32) -> HeightMap {
@@ -307,7 +307,7 @@ fn lod_by_error_holds_with_gentle_heights() {
         let worst = results.screen_error.expect("it is in view");
         assert!(worst.px <= 1.0, "{shape:?}: {} px", worst.px);
         let without = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
-        let plain = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &without)).triangles.len() as u64;
+        let plain = on_gpu(&mut scene, &crate::gpu_tests::passes::inputs(&loaded, &without)).triangles.len() as u64;
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         assert!(scene.tessellator.totals().1 > plain, "{shape:?}: heights cost triangles");
     }
@@ -342,7 +342,7 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         assert_eq!((cracks.different_bits, cracks.different_normals), (0, 0), "{time} s");
         let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
         let camera = pnaen::render::Camera::framing(&scene.bounds, target.viewport());
-        let engine = crate::coverage::sifting(0.0);
+        let engine = crate::gpu_tests::coverage::sifting(0.0);
         let times = engine.time(&mut scene, &target, &camera, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();
     }

@@ -12,9 +12,9 @@ use pnaen::tessellate::{
 };
 use proptest::prelude::*;
 
-use crate::passes::edge_factors;
-use crate::stability::{Trial, any_trial};
-use crate::{engine, scene};
+use crate::gpu_tests::passes::edge_factors;
+use crate::gpu_tests::stability::{Trial, any_trial};
+use crate::gpu_tests::{engine, scene};
 
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 

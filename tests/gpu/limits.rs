@@ -11,7 +11,7 @@ use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use pnaen::tessellate::{Clip, Displacement, Lod, Normals, Surface, Tessellation};
 
-use crate::{engine, loaded};
+use crate::gpu_tests::{engine, loaded};
 
 /// A device with what WebGPU has by default and nothing else: 128 MiB a binding, 256 MiB a buffer, 8 storage buffers a
 /// stage, no features; and one sample a px if `samples` says so.

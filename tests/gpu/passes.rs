@@ -16,8 +16,8 @@ use pnaen::tessellate::{
 };
 use pnaen::view::{ScreenView, ulp};
 
-use crate::coverage::sifting;
-use crate::{engine, loaded, picture, scene};
+use crate::gpu_tests::coverage::sifting;
+use crate::gpu_tests::{engine, loaded, picture, scene};
 
 /// Width and height in px.
 const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);

@@ -9,7 +9,7 @@ use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Partitioning, Surface, Tessellated, Tessellation, tessellate};
 use pnaen::view::project;
 
-use crate::{engine, loaded, scene};
+use crate::gpu_tests::{engine, loaded, scene};
 
 /// Width and height in px.
 const SIZE: [u32; 2] = [640, 480];

@@ -17,10 +17,10 @@ use pnaen::tessellate::{
 };
 use pnaen::view::project;
 
-use crate::displacement::wavy;
-use crate::passes::sheet;
-use crate::stability::{case, seen};
-use crate::{engine, picture, scene};
+use crate::gpu_tests::displacement::wavy;
+use crate::gpu_tests::passes::sheet;
+use crate::gpu_tests::stability::{case, seen};
+use crate::gpu_tests::{engine, picture, scene};
 
 pub const SIZE: [u32; 2] = [200, 160];
 /// Drivers rasterise a little differently: a few px along edges and lines, 0.0002 at most between the software driver and
@@ -404,7 +404,7 @@ fn small_triangles_and_low_factors_are_marked_and_others_are_not() {
 
 #[test]
 fn normals_are_drawn_chunk_by_chunk_and_not_hidden_by_later_chunks() {
-    let loaded = crate::loaded(Shape::Torus);
+    let loaded = crate::gpu_tests::loaded(Shape::Torus);
     let settings = Settings {
         tessellation: Tessellation { factor: 63.0, ..Tessellation::default() },
         overlays: Overlays { normals: true, ..Overlays::default() },

@@ -6,7 +6,7 @@ use clap::Parser;
 use pnaen::cli::{Cli, Command, render_with, tessellate_with};
 use pnaen::engine::Engine;
 
-use crate::engine;
+use crate::gpu_tests::engine;
 
 /// Chunks that a command reads back, on an engine that nothing else uses.
 fn chunks_read(engine: &Engine, arguments: &[&str], output: &Path) -> u64 {

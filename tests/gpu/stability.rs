@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
-use crate::{engine, scene};
+use crate::gpu_tests::{engine, scene};
 
 /// Width and height in px.
 const SIZE: [u32; 2] = [160, 120];

@@ -75,6 +75,11 @@ impl Tessellator {
         }
     }
 
+    /// What [`Self::record_first_chunk`] leaves: draw arguments, and the table whose first entry is a [`Chunk`].
+    pub fn first_chunk(&self) -> (&wgpu::Buffer, &wgpu::Buffer) {
+        (&self.slabs[0].draw_args, &self.slabs[0].chunks)
+    }
+
     /// Room for vertices and for indices, whatever chunk they hold.
     pub fn arena(&self) -> (&wgpu::Buffer, &wgpu::Buffer) {
         (&self.arena.vertices, &self.arena.indices)

@@ -6,7 +6,7 @@ use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
 use crate::gpu::pipelines::grid;
 use crate::gpu::readback::Readback;
-use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::{RecordPasses, Recorder};
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
 use crate::tessellate::{Displacement, Normals};
 
@@ -17,6 +17,26 @@ impl Tessellator {
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
     pub fn count(&mut self, recorder: &mut Recorder) -> Result<(), GpuError> {
+        self.record_chunks(recorder)?;
+        let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
+        self.pending = Some(Readback::of_buffers(&self.gpu, recorder.encoder(), tables));
+        Ok(())
+    }
+
+    /// Records everything up to the first chunk's output in the arena, without a readback; and nothing if the arena holds that
+    /// already. Draw arguments cover the patches that fit the arena: see [`Self::first_chunk`].
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
+    pub fn record_first_chunk(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
+        if self.inputs.is_none() || self.emitted == Some((0, 0)) {
+            return Ok(());
+        }
+        self.record_chunks(recorder)?;
+        self.record_emission(recorder, 0, 0)
+    }
+
+    fn record_chunks(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         if let Some(rig) = self.rig.as_ref().filter(|_| self.posed.pose().is_some() && !self.is_deformed) {
             let passes = rig.passes(&self.inputs_of_passes())?;
             recorder.compute("deform", |pass| passes.iter().for_each(|(bound, grid)| bound.dispatch(pass, *grid)));
@@ -31,8 +51,6 @@ impl Tessellator {
         for slab in &self.slabs {
             self.record_counts(recorder, slab)?;
         }
-        let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
-        self.pending = Some(Readback::of_buffers(&self.gpu, recorder.encoder(), tables));
         Ok(())
     }
 
@@ -77,7 +95,7 @@ impl Tessellator {
         }
     }
 
-    fn record_nets(&self, recorder: &mut Recorder) -> Result<(), GpuError> {
+    fn record_nets(&self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
         let (curve_nets, centers) = (passes.curve_nets(&on)?, passes.centers(&on)?);
         recorder.compute("nets", |pass| {
@@ -95,7 +113,7 @@ impl Tessellator {
     }
 
     /// LOD's factors, and if vertices are displaced the levels at which heights are looked up.
-    fn record_factors(&self, recorder: &mut Recorder) -> Result<(), GpuError> {
+    fn record_factors(&self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
         if self.given.is_none() {
             let edge_factors = passes.edge_factors(&on)?;
@@ -117,7 +135,7 @@ impl Tessellator {
         Ok(())
     }
 
-    fn record_counts(&self, recorder: &mut Recorder, slab: &SlabPasses) -> Result<(), GpuError> {
+    fn record_counts(&self, recorder: &mut impl RecordPasses, slab: &SlabPasses) -> Result<(), GpuError> {
         let on = self.inputs_of_passes();
         let (counts, scan, chunks) = (slab.counts(&on)?, slab.scan(&on)?, slab.chunks(&on)?);
         let blocks = [(slab.slab.patch_count + 1).div_ceil(SCAN_BLOCK), 1, 1];
@@ -131,11 +149,20 @@ impl Tessellator {
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
-    pub fn emit(&mut self, recorder: &mut Recorder, index: usize) -> Result<(), GpuError> {
+    pub fn emit(&mut self, recorder: &mut impl RecordPasses, index: usize) -> Result<(), GpuError> {
         let (slab_index, chunk_index, _) = self.chunks[index];
         if self.emitted == Some((slab_index, chunk_index)) {
             return Ok(());
         }
+        self.record_emission(recorder, slab_index, chunk_index)
+    }
+
+    fn record_emission(
+        &mut self,
+        recorder: &mut impl RecordPasses,
+        slab_index: usize,
+        chunk_index: u32,
+    ) -> Result<(), GpuError> {
         let (on, slab) = (self.inputs_of_passes(), &self.slabs[slab_index]);
         let vertices = slab.emit_vertices(&on, self.params.normals as usize)?;
         let triangles = slab.emit_triangles(&on)?;

@@ -10,6 +10,7 @@ mod deforming;
 mod deviation;
 mod displacement;
 mod domain;
+mod embed;
 mod error;
 mod limits;
 #[path = "../documents/moving.rs"]

@@ -1,0 +1,59 @@
+//! The program: arguments in, window or command out.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+#[cfg(feature = "app")]
+use crate::app::{self, WindowError};
+use crate::cli::{self, Cli};
+
+/// The picture's file when no window can be opened.
+const PREVIEW: &str = "pnaen-preview.png";
+
+/// Runs the program `pnaen` with the arguments of this process, and returns its exit code: 0, 1 if something went wrong, or
+/// 130 after Ctrl-C. Wrong usage ends the process with exit code 2.
+pub fn run() -> ExitCode {
+    let arguments = Cli::parse();
+    quiet_driver();
+    if let Some(command) = arguments.command {
+        return cli::run(command);
+    }
+    let reason = match open_window(&arguments) {
+        Ok(reason) => reason,
+        Err(code) => return code,
+    };
+    let Cli { file, limit, adapter, .. } = arguments;
+    if let Err(error) = cli::preview(file, limit, adapter, Path::new(PREVIEW)) {
+        return cli::fail(&error);
+    }
+    // A closed standard output is no failure.
+    let _ = writeln!(std::io::stdout(), "{reason}; the picture it would have shown is in {PREVIEW}.");
+    ExitCode::SUCCESS
+}
+
+/// Opens the window, and returns when it is closed: with the program's exit code, or with the reason why there is none.
+#[cfg(feature = "app")]
+fn open_window(Cli { file, limit, adapter, .. }: &Cli) -> Result<String, ExitCode> {
+    match app::run(file.clone(), limit.limits(), adapter.choice()) {
+        Ok(()) => Err(ExitCode::SUCCESS),
+        Err(WindowError::NoDisplay(reason)) => Ok(format!("There is no display to open a window on ({reason})")),
+        Err(error) => Err(cli::fail(&error)),
+    }
+}
+
+#[cfg(not(feature = "app"))]
+fn open_window(_: &Cli) -> Result<String, ExitCode> {
+    Ok("This program was built without a window".to_owned())
+}
+
+/// Silences a complaint: without a session, Mesa's device selection asks for a Wayland display and reports on standard error
+/// that there is none. Commands need none, and choose their adapter themselves.
+fn quiet_driver() {
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: no other thread runs yet that could read the environment at the same time.
+        unsafe { std::env::set_var("NODEVICE_SELECT", "1") };
+    }
+}

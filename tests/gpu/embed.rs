@@ -1,0 +1,241 @@
+//! Tessellation on a host program's own device, and the two examples.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::{Mat4, Vec2, Vec3};
+use pnaen::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
+use pnaen::engine::Engine;
+use pnaen::gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
+use pnaen::mesh::{Corner, Mesh, MeshSlices, Moment, Shape, Topology};
+use pnaen::tessellate::{Clip, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
+
+use crate::gpu_tests::engine;
+use crate::gpu_tests::pictures::differing;
+
+#[path = "../../examples/animate.rs"]
+mod animate;
+#[path = "../../examples/embed.rs"]
+mod embed;
+
+/// A device as a host has it: with WebGPU's default limits and no features.
+fn host() -> (wgpu::Device, wgpu::Queue) {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+    let device = adapter.expect("an adapter").request_device(&wgpu::DeviceDescriptor::default());
+    pollster::block_on(device).expect("a device")
+}
+
+const ROOM: Room = Room { vertices: 40_000, triangles: 70_000 };
+
+fn uniform(factor: f32) -> Tessellation {
+    Tessellation { factor, ..Tessellation::default() }
+}
+
+/// Records and submits, and reads what was emitted.
+fn emitted(queue: &wgpu::Queue, device: &wgpu::Device, mesh: &mut TessellatedMesh) -> (OutputStatus, Tessellated) {
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    mesh.record(&mut encoder).expect("passes");
+    queue.submit([encoder.finish()]);
+    let gpu = pnaen::gpu::Gpu::borrowed(device, queue);
+    let (buffer, range) = mesh.status_buffer();
+    let status: OutputStatus =
+        bytemuck::pod_read_unaligned(&read_buffer(&gpu, buffer, range.start, range.end - range.start).expect("status"));
+    let read = |slice: wgpu::BufferSlice, bytes: u32| {
+        read_buffer(&gpu, slice.buffer(), slice.offset(), u64::from(bytes)).expect("a readback")
+    };
+    let halves = mesh.vertex_buffers().map(|half| read(half, 16 * status.vertices)).concat();
+    let triangles = bytemuck::pod_collect_to_vec(&read(mesh.index_buffer(), 12 * status.triangles));
+    (status, Tessellated { vertices: vertices_of(&halves), triangles, ..Tessellated::default() })
+}
+
+/// The corners of a mesh as arrays.
+fn from_arrays(mesh: &Mesh) -> Mesh {
+    let array = |of: fn(&Corner) -> Vec3| mesh.corners.iter().map(|corner| of(corner).to_array()).collect::<Vec<_>>();
+    let uvs: Vec<_> = mesh.corners.iter().map(|corner| corner.uv.to_array()).collect();
+    let (positions, normals) = (array(|corner| corner.position), array(|corner| corner.normal));
+    let indices = mesh.triangles.as_flattened();
+    Mesh::from_slices(&MeshSlices { positions: &positions, normals: &normals, uvs: &uvs, indices }).expect("a mesh")
+}
+
+#[test]
+fn a_host_gets_what_the_reference_emits() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let shape = from_arrays(&Shape::CubeSplit.build());
+    let mut mesh = TessellatedMesh::new(&context, shape.clone(), ROOM).expect("a small mesh");
+    let (before, _) = emitted(&queue, &device, &mut mesh);
+    assert_eq!((before.patches, before.triangles), (0, 0), "nothing was asked for yet");
+    for factor in [1.0, 7.3, 12.0, 3.0] {
+        let tessellation = uniform(factor);
+        mesh.set(&tessellation, LodView::default()).expect("a small mesh");
+        let (status, output) = emitted(&queue, &device, &mut mesh);
+        let inputs = Inputs::new(&tessellation, LodView::default());
+        let expected = tessellate(&shape, &Topology::of(&shape), &inputs, None);
+        assert!(!mesh.has_overflowed(&status));
+        assert_eq!((status.first_patch, status.first, status.patches), (0, [0; 2], mesh.patches()));
+        assert_eq!(output.triangles, expected.triangles);
+        assert_eq!(output.vertices.len(), expected.vertices.len());
+        for (vertex, expected) in output.vertices.iter().zip(&expected.vertices) {
+            assert_eq!(vertex.key, expected.key);
+            // Drivers may fuse multiplications and additions.
+            let [position, other] = [vertex, expected].map(|vertex| Vec3::from(vertex.position));
+            assert!(position.distance(other) < 1e-6, "{position} {other}");
+        }
+    }
+}
+
+#[test]
+fn output_that_does_not_fit_is_a_flag_and_whole_patches() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let shape = Shape::Icosphere.build();
+    let mut mesh = TessellatedMesh::new(&context, shape.clone(), Room { vertices: 0, triangles: 0 }).expect("small");
+    mesh.set(&uniform(20.0), LodView::default()).expect("a small mesh");
+    let (status, output) = emitted(&queue, &device, &mut mesh);
+    assert!(mesh.has_overflowed(&status));
+    let whole = tessellate(&shape, &Topology::of(&shape), &Inputs::new(&uniform(20.0), LodView::default()), None);
+    assert!(status.patches > 0 && status.patches < mesh.patches(), "{status:?}");
+    assert_eq!(output.triangles, whole.triangles[..output.triangles.len()]);
+    assert!(output.vertices.iter().all(|vertex| vertex.patch() < status.patches));
+    // The same room is enough for less.
+    mesh.set(&uniform(1.0), LodView::default()).expect("a small mesh");
+    let (status, _) = emitted(&queue, &device, &mut mesh);
+    assert!(!mesh.has_overflowed(&status) && status.patches == mesh.patches());
+}
+
+#[test]
+fn what_clipping_leaves_out_is_no_overflow() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, Shape::CubeSplit.build(), ROOM).expect("a small mesh");
+    // Everything is moved out of the view to the right.
+    let view = LodView::new(Mat4::from_translation(Vec3::X * 100.0), Vec2::splat(100.0));
+    mesh.set(&Tessellation { clip: Clip::Frustum, ..uniform(4.0) }, view).expect("a small mesh");
+    let (status, _) = emitted(&queue, &device, &mut mesh);
+    assert_eq!((status.triangles, mesh.has_overflowed(&status)), (0, false));
+}
+
+/// The names of passes, which don't run.
+#[derive(Default)]
+struct Names(Vec<&'static str>);
+
+impl RecordPasses for Names {
+    fn compute(&mut self, pass: &'static str, _: impl FnOnce(&mut wgpu::ComputePass)) {
+        self.0.push(pass);
+    }
+}
+
+#[test]
+fn only_what_changed_is_recorded() {
+    let Engine { gpu, pipelines, .. } = engine();
+    let (mesh, topology) = (Arc::new(Shape::CubeSplit.build()), Arc::new(Topology::of(&Shape::CubeSplit.build())));
+    let mut tessellator = Tessellator::with_room(gpu, pipelines.clone(), mesh, topology, [0, 0]).expect("a small mesh");
+    let mut recorded = |tessellation: Option<Tessellation>| {
+        let mut names = Names::default();
+        if let Some(tessellation) = tessellation {
+            tessellator.set(&Inputs::new(&tessellation, LodView::default())).expect("a small mesh");
+        }
+        tessellator.record_first_chunk(&mut names).expect("pipelines");
+        names.0
+    };
+    let after_nets = ["factors", "counts", "scan", "chunks", "emit"];
+    assert_eq!(recorded(None), Vec::<&str>::new(), "nothing was asked for yet");
+    assert_eq!(recorded(Some(uniform(4.0))), [&["nets"], &after_nets[..]].concat());
+    assert_eq!(recorded(None), Vec::<&str>::new());
+    assert_eq!(recorded(Some(uniform(4.0))), Vec::<&str>::new());
+    assert_eq!(recorded(Some(uniform(5.0))), after_nets);
+    let flat = Tessellation { surface: Surface::Flat, ..uniform(5.0) };
+    assert_eq!(recorded(Some(flat)), [&["nets"], &after_nets[..]].concat());
+}
+
+#[test]
+fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tube.gltf");
+    let tube = pnaen::load::load(&path, &pnaen::load::Limits::default(), &pnaen::progress::Progress::new());
+    let tube = tube.expect("a small file").mesh;
+    assert_eq!(tube.triangles.len(), 160);
+    let rig = tube.rig.clone().expect("a skin");
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, tube, ROOM).expect("a small mesh");
+    let mut at = |time: Option<f64>| {
+        mesh.set_pose(time.map(|time| rig.pose(Moment { clip: 0, time }))).expect("a small rig");
+        mesh.set(&uniform(3.0), LodView::default()).expect("a small mesh");
+        emitted(&queue, &device, &mut mesh).1
+    };
+    let (rest, bent, rest_again) = (at(None), at(Some(0.5)), at(None));
+    assert_eq!(rest.vertices, rest_again.vertices);
+    assert_eq!(rest.triangles, bent.triangles);
+    let top = |output: &Tessellated| output.vertices.iter().map(|vertex| vertex.position[1]).fold(0.0, f32::max);
+    assert!((top(&rest) - 3.0).abs() < 1e-6);
+    // The upper half, 1.5 long and 0.35 thick, leans by 1.2 radians.
+    assert!((top(&bent) - (1.5 + 1.5 * 1.2_f32.cos() + 0.35 * 1.2_f32.sin())).abs() < 0.1, "{}", top(&bent));
+}
+
+#[test]
+fn the_hosts_own_handlers_stay() {
+    let (device, queue) = host();
+    let heard = Arc::new(AtomicUsize::new(0));
+    let counter = heard.clone();
+    device.on_uncaptured_error(Arc::new(move |_| {
+        counter.fetch_add(1, Ordering::Relaxed);
+    }));
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, Shape::CubeSplit.build(), ROOM).expect("a small mesh");
+    mesh.set(&uniform(4.0), LodView::default()).expect("a small mesh");
+    emitted(&queue, &device, &mut mesh);
+    assert_eq!(heard.load(Ordering::Relaxed), 0, "the passes are valid");
+    // A buffer without a usage can't be made.
+    let _ = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 4,
+        usage: wgpu::BufferUsages::empty(),
+        mapped_at_creation: false,
+    });
+    assert_eq!(heard.load(Ordering::Relaxed), 1);
+}
+
+#[test]
+fn a_device_that_allows_too_little_is_refused_by_name() {
+    let required_limits = wgpu::Limits { max_compute_invocations_per_workgroup: 128, ..wgpu::Limits::default() };
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
+    let device = pollster::block_on(adapter.expect("an adapter").request_device(&descriptor));
+    let (device, queue) = device.expect("a device");
+    let error = Context::new(&device, &queue).err().expect("too little");
+    let GpuError::Limits { what, has: 128, needs: 256 } = error else { panic!("{error}") };
+    assert!(what.contains("invocations"), "{what}");
+}
+
+#[test]
+fn a_mesh_of_too_many_patches_is_refused_with_their_number() {
+    let count = (1 << 19) + 1;
+    // A strip of small triangles.
+    let positions: Vec<_> = (0..count + 2).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect();
+    let indices: Vec<u32> = (0..count).flat_map(|i| [i, i + 1, i + 2]).collect();
+    let normals = vec![[0.0, 0.0, 1.0]; positions.len()];
+    let slices = MeshSlices { positions: &positions, normals: &normals, indices: &indices, ..Default::default() };
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let error = TessellatedMesh::new(&context, Mesh::from_slices(&slices).expect("a strip"), ROOM).err();
+    let Some(GpuError::TooManyPatches { patches, limit }) = error else { panic!("{error:?}") };
+    assert_eq!((patches, limit), (524_289, 524_288));
+}
+
+#[test]
+fn the_examples_draw_their_pictures() {
+    let _ = engine();
+    let (picture, status, has_overflowed) = embed::picture(0.5, ROOM).expect("a picture");
+    assert!(!has_overflowed && status.triangles > 10_000, "{status:?}");
+    let frames = animate::frames().expect("pictures");
+    let triangles: Vec<_> = frames.iter().map(|(_, triangles)| *triangles).collect();
+    assert_eq!(triangles[0], 160, "factor 1 is the mesh itself");
+    assert!(triangles.is_sorted() && triangles[5] > 10_000, "{triangles:?}");
+    let mut pictures = vec![("example-embed".to_owned(), picture)];
+    for moment in [0, 2, 5] {
+        pictures.push((format!("example-animate-{moment}"), frames[moment].0.clone()));
+    }
+    assert_eq!(differing(pictures), Vec::<String>::new());
+}
