@@ -28,59 +28,64 @@
 //! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
 // The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
 #![cfg_attr(not(feature = "app"), allow(dead_code))]
+#![warn(unreachable_pub)]
 
 pub mod embed;
+#[cfg(feature = "formats")]
+pub mod load;
 pub mod mesh;
 pub mod progress;
 pub mod tessellate;
 
-pub mod gpu;
-pub mod names;
+mod gpu;
+mod names;
 
 #[cfg(feature = "formats")]
-pub mod files;
+mod files;
 #[cfg(feature = "formats")]
-pub mod load;
-#[cfg(feature = "formats")]
-pub mod markdown;
+mod markdown;
 
 #[cfg(feature = "cli")]
-pub mod adjacency_file;
+mod adjacency_file;
 #[cfg(feature = "cli")]
-pub mod chart;
+mod chart;
 #[cfg(feature = "cli")]
-pub mod cli;
+mod cli;
 #[cfg(feature = "cli")]
-pub mod engine;
+mod engine;
 #[cfg(feature = "cli")]
-pub mod export;
+mod export;
 #[cfg(feature = "cli")]
-pub mod factors_file;
+mod factors_file;
 #[cfg(feature = "cli")]
-pub mod gallery;
+mod gallery;
 #[cfg(feature = "cli")]
-pub mod measure;
+mod measure;
 #[cfg(feature = "cli")]
-pub mod numbers;
+mod numbers;
 #[cfg(feature = "cli")]
-pub mod plot;
+mod plot;
 #[cfg(feature = "cli")]
 mod program;
 #[cfg(feature = "cli")]
-pub mod render;
+mod render;
 #[cfg(feature = "cli")]
-pub mod settings;
+mod settings;
 #[cfg(feature = "cli")]
-pub mod stability;
+mod stability;
 #[cfg(feature = "cli")]
-pub mod truth;
+mod truth;
 #[cfg(feature = "cli")]
-pub mod view;
+mod view;
 
 #[cfg(feature = "app")]
-pub mod app;
+mod app;
 #[cfg(feature = "app")]
-pub mod commands;
+mod commands;
+
+#[cfg(feature = "app")]
+#[doc(hidden)]
+pub mod internals;
 
 // Tests of the whole program, which name the crate as other crates do.
 #[cfg(test)]
@@ -90,6 +95,9 @@ extern crate self as pnaen;
 mod gpu_tests;
 #[cfg(test)]
 mod rooms;
+#[cfg(test)]
+#[path = "../tests/window/mod.rs"]
+mod window_tests;
 
 #[cfg(feature = "cli")]
 pub use program::run;

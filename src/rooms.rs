@@ -28,7 +28,7 @@ const ORDER: &[&[&str]] = &[
     &["chart", "stability", "gallery", "commands"],
     &["cli"],
     &["app"],
-    &["program"],
+    &["internals", "program"],
 ];
 
 /// A module's path below the crate, such as `["mesh", "topology"]`; the crate itself is empty.

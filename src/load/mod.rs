@@ -3,29 +3,31 @@
 
 mod face_builder;
 mod gltf;
-mod heights;
+pub(crate) mod heights;
 #[cfg(test)]
 mod hostile_files;
 mod images;
 mod jpeg_memory;
 mod loaded_mesh;
-mod memory_budget;
-mod mesh_file;
+pub(crate) mod memory_budget;
+pub(crate) mod mesh_file;
 mod obj;
 mod ply;
 mod read_error;
-mod source;
+pub(crate) mod source;
 mod stl;
 mod text_lines;
 mod uri;
 mod warnings;
 
-pub use crate::files::Limits;
+pub use crate::files::{FileError, Limits};
 pub use gltf::GltfError;
-pub use heights::{HeightError, HeightSource};
 pub use loaded_mesh::LoadedMesh;
-pub use memory_budget::Budget;
-pub use mesh_file::{Format, LoadError, load, read};
+pub use mesh_file::{LoadError, load};
 pub use read_error::ReadError;
-pub use source::Source;
-pub use warnings::{crease_band_warnings, untextured_warning};
+
+pub(crate) use heights::{HeightError, HeightSource};
+pub(crate) use memory_budget::Budget;
+pub(crate) use mesh_file::{Format, read};
+pub(crate) use source::Source;
+pub(crate) use warnings::{crease_band_warnings, untextured_warning};

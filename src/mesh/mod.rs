@@ -1,30 +1,30 @@
 //! Geometry: triangles with corners ([`Mesh`]); and the points, edges and sides that they meet in ([`Topology`]).
 
-pub mod adjacency;
+pub(crate) mod adjacency;
 mod bounding_box_tree;
-pub mod bounds;
-pub mod build_limits;
-pub mod chunked_vec;
-pub mod crease_band;
-pub mod curves;
+pub(crate) mod bounds;
+pub(crate) mod build_limits;
+pub(crate) mod chunked_vec;
+pub(crate) mod crease_band;
+pub(crate) mod curves;
 mod dominance;
-pub mod generate_normals;
-pub mod heights;
-pub mod interner;
-pub mod mesh_builder;
-pub mod normal_faults;
-pub mod normals;
-pub mod polygon;
-pub mod repairs;
-pub mod rig;
-pub mod shapes;
+pub(crate) mod generate_normals;
+pub(crate) mod heights;
+pub(crate) mod interner;
+pub(crate) mod mesh_builder;
+pub(crate) mod normal_faults;
+pub(crate) mod normals;
+pub(crate) mod polygon;
+pub(crate) mod repairs;
+pub(crate) mod rig;
+pub(crate) mod shapes;
 mod slices;
 mod spatial_hash;
-pub mod t_junctions;
-pub mod topology;
+pub(crate) mod t_junctions;
+pub(crate) mod topology;
 mod union_find;
-pub mod weld;
-pub mod weld_preview;
+pub(crate) mod weld;
+pub(crate) mod weld_preview;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -32,19 +32,21 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 
 pub use bounds::Bounds;
-pub use build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount, MemoryRefused, Unlimited};
-pub use crease_band::{CreaseBand, with_crease_band};
-pub use curves::{Curve, Curves, Sharing};
-pub use dominance::Dominance;
-pub use heights::{HeightMap, Heights, MAX_LEVELS, MAX_MAPS};
-pub use normal_faults::NormalFaults;
+pub use heights::{HeightMap, Heights};
 pub use repairs::Repairs;
-pub use rig::{Moment, Pose, Rig};
-pub use shapes::{Shape, ShapeError};
+pub use rig::{Clip, Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
-pub use t_junctions::{TJunction, t_junctions};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
-pub use weld_preview::{WeldPreview, weld_previews};
+
+pub(crate) use build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount, MemoryRefused, Unlimited};
+pub(crate) use crease_band::{CreaseBand, with_crease_band};
+pub(crate) use curves::{Curve, Curves, Sharing};
+pub(crate) use dominance::Dominance;
+pub(crate) use heights::{MAX_LEVELS, MAX_MAPS};
+pub(crate) use normal_faults::NormalFaults;
+pub(crate) use shapes::{Shape, ShapeError};
+pub(crate) use t_junctions::{TJunction, t_junctions};
+pub(crate) use weld_preview::{WeldPreview, weld_previews};
 
 /// A triangle's vertex: a position in object units, a unit normal and a texture coordinate (uv, in texture widths and
 /// heights, v downwards as in glTF).

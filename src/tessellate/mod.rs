@@ -13,10 +13,10 @@ mod coverage;
 mod cull;
 mod deform;
 mod displace;
-pub mod domain;
+pub(crate) mod domain;
 mod error;
-pub mod factors;
-mod hull_factors;
+pub(crate) mod factors;
+pub(crate) mod hull_factors;
 mod inputs;
 mod limit_surface;
 mod lod;
@@ -34,48 +34,58 @@ mod texel_lengths;
 mod triangle_budget;
 mod vertex;
 
-pub use control_points::{
+pub use convention::Convention;
+pub use cull::Clip;
+pub use displace::Displacement;
+pub use factors::{Partitioning, PatchFactors};
+pub use inputs::{Edges, Inputs, Tessellation};
+pub use lod::{Lod, LodView};
+pub use mesh_tessellation::{Tessellated, tessellate};
+pub use normal::Normals;
+pub use octahedral_normal::unpack_normal;
+pub use surface::Surface;
+pub use vertex::Vertex;
+
+pub(crate) use control_points::{
     DistinctNormals, add_normal, center_control_point, crease_control_point, edge_control_point, nagata_control_point,
     phong_control_point, side_control_points, straight_control_point,
 };
-pub use convention::{Convention, corner_weights, domain_side, factor_side, weight_corner};
-pub use coverage::{CoverageView, ScreenCorner, covers_nothing, screen_corner};
-pub use cull::{
-    Clip, FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, faces_away, is_clipped, patch_is_outside, planes_outside,
+pub(crate) use convention::{corner_weights, domain_side, factor_side, weight_corner};
+pub(crate) use coverage::{CoverageView, ScreenCorner, covers_nothing, screen_corner};
+pub(crate) use cull::{
+    FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, faces_away, is_clipped, patch_is_outside, planes_outside,
 };
-pub use displace::{
-    Displacement, bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level,
-    texel_length, uv_gradients,
+pub(crate) use displace::{
+    bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length,
+    uv_gradients,
 };
-pub use domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
-pub use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, nesting_factor};
-pub use factors::{
-    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, Partitioning, PatchFactors, outer_count, patch_is_culled, patch_is_low,
-    point_count, process, round_pow2, segments, triangle_count,
+pub(crate) use domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
+pub(crate) use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, nesting_factor};
+pub(crate) use factors::{
+    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, outer_count, patch_is_culled, patch_is_low, point_count, process, round_pow2,
+    segments, triangle_count,
 };
-pub use hull_factors::HullFactors;
-pub use inputs::{Edges, Inputs, Tessellation, sharing};
-pub use limit_surface::LimitSurface;
-pub use lod::{
-    Lod, LodView, beyond_near, distance_factor, edge_length_factor, max_with_one, near_edge_factor, paper_edge_factor,
+pub(crate) use hull_factors::HullFactors;
+pub(crate) use inputs::sharing;
+pub(crate) use limit_surface::LimitSurface;
+pub(crate) use lod::{
+    beyond_near, distance_factor, edge_length_factor, max_with_one, near_edge_factor, paper_edge_factor,
     project_and_scale,
 };
-pub use mesh_displacement::{displacement_reach, displacing_heights, height_units};
-pub use mesh_tessellation::{
-    Tessellated, edge_factors, given_totals, hull_factors, tessellate, tessellate_given, totals,
+pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};
+pub(crate) use mesh_tessellation::{edge_factors, given_totals, hull_factors, tessellate_given, totals};
+pub(crate) use normal::{
+    edge_normal, linear_normal, middle_normal, quadratic_edge_normal, quadratic_normal, surface_normal,
 };
-pub use normal::{
-    Normals, edge_normal, linear_normal, middle_normal, quadratic_edge_normal, quadratic_normal, surface_normal,
+pub(crate) use octahedral_normal::pack_normal;
+pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
+pub(crate) use solid::{Solid, is_beyond_near};
+pub(crate) use surface::{
+    ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position, patch_tangents,
 };
-pub use octahedral_normal::{pack_normal, unpack_normal};
-pub use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
-pub use solid::{Solid, is_beyond_near};
-pub use surface::{
-    ControlNet, Surface, edge_position, edge_uv, linear_uv, outline_place, patch_position, patch_tangents,
-};
-pub use texel_lengths::{TexelLength, has_mixed_maps, map_number, texel_lengths};
-pub use triangle_budget::tolerance_within_budget;
-pub use vertex::{Vertex, pack_key};
+pub(crate) use texel_lengths::{TexelLength, has_mixed_maps, map_number, texel_lengths};
+pub(crate) use triangle_budget::tolerance_within_budget;
+pub(crate) use vertex::pack_key;
 
 /// The constants of the mathematics that the shaders have too, for the test that compares them.
 #[cfg(test)]

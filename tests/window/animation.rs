@@ -8,8 +8,8 @@ use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::{Moment, Shape};
 
-use crate::moving::{CLIPS, moving};
-use crate::{choose, click, press, settle, uniform, window};
+use crate::window_tests::moving::{CLIPS, moving};
+use crate::window_tests::{choose, click, press, settle, uniform, window};
 
 /// A window on a mesh that moves, and the file, which stays for who loads it again.
 fn moving_window(name: &str) -> (Harness<'static, App>, std::path::PathBuf) {
@@ -78,7 +78,7 @@ fn space_plays_and_pauses_and_measuring_waits() {
     let mut times = Vec::new();
     let start = std::time::Instant::now();
     while harness.state().pictures() < pictures + 4 {
-        assert!(start.elapsed() < crate::PATIENCE, "no pictures while playing");
+        assert!(start.elapsed() < crate::window_tests::PATIENCE, "no pictures while playing");
         harness.step();
         times.push(time(&harness));
     }

@@ -13,7 +13,7 @@ use pnaen::measure::AccuracyOptions;
 use pnaen::mesh::Shape;
 use pnaen::tessellate::{Clip, Surface};
 
-use crate::{PATIENCE, choose, click, press, settle, window};
+use crate::window_tests::{PATIENCE, choose, click, press, settle, window};
 
 /// Ten settings of few triangles; the window's own is none of them.
 fn plan() -> Plan {

@@ -17,8 +17,8 @@ use pnaen::progress::Progress;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Lod, Surface};
 
-use crate::driver::PATIENCE;
-use crate::{choose, moving, press, settle, uniform, window};
+use crate::window_tests::driver::PATIENCE;
+use crate::window_tests::{choose, moving, press, settle, uniform, window};
 
 /// A folder of its own for what is written.
 struct Folder(PathBuf);

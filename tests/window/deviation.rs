@@ -11,7 +11,7 @@ use pnaen::render::layout::CRACK_COLOR;
 use pnaen::settings::{Colors, DeviationUnit, SplitSide};
 use pnaen::tessellate::Surface;
 
-use crate::{choose, click, press, settle, uniform, window};
+use crate::window_tests::{choose, click, press, settle, uniform, window};
 
 #[test]
 fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames() {

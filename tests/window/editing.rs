@@ -12,7 +12,7 @@ use pnaen::load::{HeightSource, Source};
 use pnaen::mesh::Shape;
 use pnaen::tessellate::{Displacement, Lod, Surface, Tessellation};
 
-use crate::{choose, click, press, settle, uniform, vase, window};
+use crate::window_tests::{choose, click, press, settle, uniform, vase, window};
 
 fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);

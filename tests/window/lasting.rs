@@ -12,7 +12,7 @@ use pnaen::mesh::Shape;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Displacement, Surface};
 
-use crate::{choose, click, press, settle, vase};
+use crate::window_tests::{choose, click, press, settle, vase};
 
 /// A folder of this test's own, gone when the test is.
 pub struct Folder(PathBuf);
@@ -123,7 +123,7 @@ fn what_changed_is_written_after_a_while_and_the_picture_stays() {
     let (pictures, start) = (harness.state().pictures(), std::time::Instant::now());
     let written = || Persistence::read(folder.file().parent()).settings().tessellation.surface;
     while written() != Surface::Nagata {
-        assert!(start.elapsed() < crate::PATIENCE, "it isn't written");
+        assert!(start.elapsed() < crate::window_tests::PATIENCE, "it isn't written");
         harness.step();
         std::thread::sleep(std::time::Duration::from_millis(2));
     }

@@ -11,7 +11,7 @@ use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::tessellate::Surface;
 
-use crate::{PATIENCE, choose, press, settle, uniform};
+use crate::window_tests::{PATIENCE, choose, press, settle, uniform};
 
 #[test]
 fn choosing_pn_lights_up_the_cracks() {

@@ -11,8 +11,8 @@ use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 
-use crate::lasting::Folder;
-use crate::{click, press, settle, uniform, vase};
+use crate::window_tests::lasting::Folder;
+use crate::window_tests::{click, press, settle, uniform, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);

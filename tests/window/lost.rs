@@ -14,7 +14,7 @@ use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
 use pnaen::settings::SplitSide;
 
-use crate::{choose, click, press, settle, uniform, window};
+use crate::window_tests::{choose, click, press, settle, uniform, window};
 
 const SENTENCE: &str = "The graphics device was lost (it was destroyed). The window goes on with a new one";
 
@@ -23,7 +23,7 @@ fn lose(harness: &mut Harness<App>) {
     harness.state().gpu().device.destroy();
     let start = std::time::Instant::now();
     while !harness.state().is_lost() {
-        assert!(start.elapsed() < crate::PATIENCE, "it hasn't heard");
+        assert!(start.elapsed() < crate::window_tests::PATIENCE, "it hasn't heard");
         let _ = harness.state().gpu().device.poll(wgpu::PollType::wait_indefinitely());
         harness.step();
     }
@@ -117,9 +117,9 @@ fn what_was_under_way_goes_on_and_nothing_is_said_twice() {
 
 #[test]
 fn a_clip_goes_on_where_it_was() {
-    let folder = crate::lasting::Folder::new("lost-clip");
+    let folder = crate::window_tests::lasting::Folder::new("lost-clip");
     let path = folder.path("moving.glb");
-    std::fs::write(&path, crate::moving::moving()).expect("a writable folder");
+    std::fs::write(&path, crate::window_tests::moving::moving()).expect("a writable folder");
     let mut harness = window(Some(Source::File(path)));
     harness.state_mut().choose_clip(Some(0));
     settle(&mut harness);
@@ -139,7 +139,7 @@ fn a_clip_goes_on_where_it_was() {
 
 #[test]
 fn lost_again_it_offers_to_save_and_tries_again_only_when_told_to() {
-    let folder = crate::lasting::Folder::new("lost-again");
+    let folder = crate::window_tests::lasting::Folder::new("lost-again");
     let path = folder.path("saved.obj");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (totals, loaded) = (harness.state().totals(), harness.state().loaded().cloned().expect("a torus"));
@@ -179,7 +179,7 @@ fn save_as(harness: &mut Harness<App>, path: &Path) {
 fn said(harness: &mut Harness<App>, text: &str) {
     let start = std::time::Instant::now();
     while harness.query_by_label_contains(text).is_none() {
-        assert!(start.elapsed() < crate::PATIENCE, "{text}");
+        assert!(start.elapsed() < crate::window_tests::PATIENCE, "{text}");
         std::thread::sleep(std::time::Duration::from_millis(2));
         harness.step();
     }

@@ -8,7 +8,7 @@ use pnaen::load::Source;
 use pnaen::mesh::{EdgeKind, Shape};
 use pnaen::tessellate::Surface;
 
-use crate::{choose, click, press, settle, uniform};
+use crate::window_tests::{choose, click, press, settle, uniform};
 
 fn cube() -> Harness<'static, App> {
     uniform(Some(Source::Shape(Shape::CubeSplit)))

@@ -11,7 +11,7 @@ use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use pnaen::tessellate::Convention;
 
-use crate::{PATIENCE, choose, click, press, settle, uniform};
+use crate::window_tests::{PATIENCE, choose, click, press, settle, uniform};
 
 #[test]
 fn colours_exclude_each_other_and_numbers_have_a_legend() {

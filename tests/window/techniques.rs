@@ -7,7 +7,7 @@ use pnaen::load::{HeightSource, Source};
 use pnaen::mesh::Shape;
 use pnaen::tessellate::{Displacement, Normals, Surface};
 
-use crate::{choose, press, settle, uniform};
+use crate::window_tests::{choose, press, settle, uniform};
 
 #[test]
 fn every_surface_can_be_chosen_and_those_that_agree_have_no_cracks() {

@@ -1,34 +1,20 @@
 //! The real window, driven by the names that its controls have for a screen reader.
 
-#[path = "window/animation.rs"]
 mod animation;
-#[path = "window/chart.rs"]
 mod chart;
-#[path = "window/commands.rs"]
 mod commands;
-#[path = "window/deviation.rs"]
 mod deviation;
-#[path = "window/driver.rs"]
 mod driver;
-#[path = "window/editing.rs"]
 mod editing;
-#[path = "window/lasting.rs"]
 mod lasting;
-#[path = "window/lists.rs"]
 mod lists;
-#[path = "window/loading.rs"]
 mod loading;
-#[path = "window/lost.rs"]
 mod lost;
-#[path = "documents/moving.rs"]
+#[path = "../documents/moving.rs"]
 mod moving;
-#[path = "window/picking.rs"]
 mod picking;
-#[path = "window/spending.rs"]
 mod spending;
-#[path = "window/techniques.rs"]
 mod techniques;
-#[path = "window/typing.rs"]
 mod typing;
 
 use std::path::PathBuf;
