@@ -11,7 +11,7 @@ use crate::mesh::{Mesh, Topology};
 
 /// The format of a file of indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub(crate) enum Format {
     /// Indices, the corners that they refer to, and the triangle of each patch
     Json,
     /// The indices only: unsigned 32-bit integers, little-endian
@@ -20,7 +20,7 @@ pub enum Format {
 
 impl Format {
     /// Returns the format that is written into a file of this name: bare indices for .bin, otherwise JSON.
-    pub fn of_name(path: &Path) -> Self {
+    pub(crate) fn of_name(path: &Path) -> Self {
         if ends_in(path, "bin") { Self::Bin } else { Self::Json }
     }
 
@@ -38,7 +38,7 @@ fn ends_in(path: &Path, ending: &str) -> bool {
 
 /// Why a file isn't an index buffer of the mesh.
 #[derive(Debug, PartialEq, Eq, Error)]
-pub enum Fault {
+pub(crate) enum Fault {
     #[error("this is not JSON as the adjacency command writes it ({0})")]
     Json(String),
     #[error("it has {given} indices a patch, but {computed} are computed: --indices says how many")]
@@ -60,7 +60,7 @@ pub enum Fault {
 
 /// A possible reason for a wrong size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hint {
+pub(crate) enum Hint {
     None,
     /// The size is that of another layout.
     Layout(Layout),
@@ -133,13 +133,13 @@ fn same<T: PartialEq>(list: &'static str, given: &Option<Vec<T>>, own: &Option<V
 /// Returns a JSON document of a mesh's indices, with a line end. Numbers are written so that they read back exactly.
 ///
 /// # Errors None occur: every key is a plain name.
-pub fn to_json(mesh: &Mesh, topology: &Topology, layout: Layout, indices: &[u32]) -> serde_json::Result<String> {
+pub(crate) fn to_json(mesh: &Mesh, topology: &Topology, layout: Layout, indices: &[u32]) -> serde_json::Result<String> {
     let text = serde_json::to_string(&Document::new(mesh, topology, layout, indices))?;
     Ok(text + "\n")
 }
 
 /// Returns the bare indices.
-pub fn to_bin(indices: &[u32]) -> Vec<u8> {
+pub(crate) fn to_bin(indices: &[u32]) -> Vec<u8> {
     indices.iter().flat_map(|index| index.to_le_bytes()).collect()
 }
 
@@ -147,7 +147,13 @@ pub fn to_bin(indices: &[u32]) -> Vec<u8> {
 /// starts with a brace, otherwise bare indices.
 ///
 /// # Errors The file doesn't hold the indices of this mesh's patches in this layout.
-pub fn read(path: &Path, bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<Vec<u32>, Fault> {
+pub(crate) fn read(
+    path: &Path,
+    bytes: &[u8],
+    mesh: &Mesh,
+    topology: &Topology,
+    layout: Layout,
+) -> Result<Vec<u32>, Fault> {
     let indices = match Format::of_file(path, bytes) {
         Format::Json => read_json(bytes, mesh, topology, layout)?,
         Format::Bin => read_bin(bytes, mesh, topology, layout)?,

@@ -1,7 +1,7 @@
 //! The engine that the window and the commands share: a device with its pipelines, and everything that is done with a scene
 //! without a window.
 
-mod measurements;
+pub(crate) mod measurements;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Settings, SplitSide};
 use crate::tessellate::{Inputs, PatchFactors, PosedMesh, Tessellated};
 
-pub use measurements::{MeasurementResults, Measurements};
+pub(crate) use measurements::{MeasurementResults, Measurements};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ const HEADER: [&str; 5] = ["patch", "e0", "e1", "e2", "inside"];
 /// An error in a file of factors, and its line.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("line {line}: {fault}")]
-pub struct FactorsError {
+pub(crate) struct FactorsError {
     /// The line, counted from 1.
     pub line: usize,
     pub fault: Fault,
@@ -21,7 +21,7 @@ pub struct FactorsError {
 
 /// What is wrong with a line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum Fault {
+pub(crate) enum Fault {
     #[error("expected the header patch,e0,e1,e2,inside")]
     Header,
     #[error("expected five values, patch,e0,e1,e2,inside, but the number of values is {0}")]
@@ -47,7 +47,7 @@ fn and_more(count: usize) -> String {
 
 /// Returns a CSV file with the factors that were written for each patch, under the index of its triangle. Degenerate
 /// triangles have no patch and no line. Numbers are written so that they read back exactly.
-pub fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
+pub(crate) fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
     let mut text = HEADER.join(",") + "\n";
     for (patch, HullFactors { edges: [e0, e1, e2], inside }) in topology.patches.iter().zip(written) {
         text += &format!("{},{e0},{e1},{e2},{inside}\n", patch.triangle);
@@ -59,7 +59,7 @@ pub fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
 /// degenerate triangles are allowed and ignored.
 ///
 /// # Errors The text isn't such a file, or its patches aren't those of the mesh.
-pub fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Result<Vec<HullFactors>, FactorsError> {
+pub(crate) fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Result<Vec<HullFactors>, FactorsError> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let byte = |at: Option<&csv::Position>| at.map_or(0, |at| at.byte() as usize);
     let fault = |byte: usize, fault| FactorsError { line: line_at(text, byte), fault };

@@ -44,7 +44,7 @@ pub enum FileError {
 }
 
 /// Returns why a file couldn't be read or written, as a clause that says what to do.
-pub fn file_reason(error: &io::Error) -> String {
+pub(crate) fn file_reason(error: &io::Error) -> String {
     match error.kind() {
         // An error that this program made has a reason already.
         _ if error.raw_os_error().is_none() => error.to_string(),
@@ -65,7 +65,7 @@ pub fn file_reason(error: &io::Error) -> String {
 ///
 /// # Errors
 /// The errors of the file system.
-pub fn open_file(path: &Path) -> io::Result<Option<(File, Metadata)>> {
+pub(crate) fn open_file(path: &Path) -> io::Result<Option<(File, Metadata)>> {
     if !std::fs::metadata(path)?.is_file() {
         return Ok(None);
     }
@@ -77,14 +77,14 @@ pub fn open_file(path: &Path) -> io::Result<Option<(File, Metadata)>> {
 
 /// A file's length and time of change. If one of them differs, the file was changed.
 #[derive(Debug, PartialEq)]
-pub struct Stamp {
+pub(crate) struct Stamp {
     bytes: u64,
     /// None if the file system stores no times.
     modified: Option<SystemTime>,
 }
 
 impl Stamp {
-    pub fn of(about: &Metadata) -> Self {
+    pub(crate) fn of(about: &Metadata) -> Self {
         Self { bytes: about.len(), modified: about.modified().ok() }
     }
 
@@ -93,7 +93,7 @@ impl Stamp {
     ///
     /// # Errors
     /// [`FileError::Changed`].
-    pub fn check(&self, path: &Path) -> Result<(), FileError> {
+    pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
         match std::fs::metadata(path) {
             Ok(about) if Self::of(&about) != *self => Err(FileError::Changed { path: path.to_owned() }),
             // A file that was removed had been read before.
@@ -109,7 +109,7 @@ impl Stamp {
 ///
 /// # Errors
 /// [`FileError`], and the errors of `check_start`.
-pub fn read_file<E: From<FileError>>(
+pub(crate) fn read_file<E: From<FileError>>(
     path: &Path,
     limits: &Limits,
     check_start: impl FnOnce(&[u8]) -> Result<(), E>,
@@ -170,7 +170,7 @@ const MAX_LINKS: usize = 40;
 ///
 /// # Errors
 /// The errors of the file system. An existing file that is read-only isn't replaced.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if path.exists() && !path.is_file() {
         return std::fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
     }

@@ -1,12 +1,17 @@
 //! What the project's own benches, fuzzers and tests in other processes use. It is no part of the library's interface, and
 //! changes without notice.
 
-pub use crate::app::{App, Persistence, run_watched};
-pub use crate::cli::{CompareError, compare};
-pub use crate::engine::{Engine, Loaded, Measurements, Preparation, load as load_and_prepare};
+pub use crate::app::window::run::run_watched;
+pub use crate::app::{App, persistence::Persistence};
+pub use crate::cli::picture_comparison::{CompareError, compare};
+pub use crate::engine::measurements::Measurements;
+pub use crate::engine::{Engine, Loaded, Preparation, load as load_and_prepare};
 pub use crate::files::Limits;
+pub use crate::gpu::adapters::AdapterChoice;
+pub use crate::gpu::device::Gpu;
 pub use crate::gpu::layout::{CurveNet, Patch as PatchLayout};
-pub use crate::gpu::{AdapterChoice, DRAWING, Gpu, PASSES, PassTime, Timing, read_buffer, take_times};
+pub use crate::gpu::readback::read_buffer;
+pub use crate::gpu::recorder::{DRAWING, PASSES, PassTime, Timing, take_times};
 pub use crate::load::heights::{HeightError, HeightSource};
 pub use crate::load::memory_budget::Budget;
 pub use crate::load::mesh_file::{Format, read};
@@ -17,9 +22,11 @@ pub use crate::mesh::shapes::Shape;
 pub use crate::mesh::weld_preview::weld_previews;
 pub use crate::numbers::utc;
 pub use crate::plot::{BLUE, FONT, INK, use_font};
-pub use crate::render::{Camera, Scene, Target, samples};
+pub use crate::render::camera::Camera;
+pub use crate::render::scene::Scene;
+pub use crate::render::target::{Target, samples};
 pub use crate::settings::options::TOLERANCE_RANGE;
 pub use crate::settings::{ARENA_BYTES, Settings};
-pub use crate::tessellate::factors::{outer_count, point_count, triangle_count};
 pub use crate::tessellate::domain::{domain_plan, domain_point, domain_triangle};
+pub use crate::tessellate::factors::{outer_count, point_count, triangle_count};
 pub use crate::tessellate::hull_factors::HullFactors;

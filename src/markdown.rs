@@ -1,7 +1,7 @@
 //! Building blocks of the Markdown pages that commands write.
 
 /// Formats a table. The columns whose indices are in `words` are aligned to the left, all others to the right.
-pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String {
+pub(crate) fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
         let cell = |text: &str| if text.is_empty() { " |".to_owned() } else { format!(" {text} |") };
         format!("|{}\n", cells.map(cell).collect::<String>())
@@ -13,7 +13,7 @@ pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String 
 }
 
 /// Joins words with commas, and with "and" before the last.
-pub fn listed(words: &[String]) -> String {
+pub(crate) fn listed(words: &[String]) -> String {
     match words {
         [] => String::new(),
         [only] => only.clone(),
@@ -22,7 +22,7 @@ pub fn listed(words: &[String]) -> String {
 }
 
 /// Escapes a text so that Markdown shows all its characters as they are.
-pub fn plain(text: &str) -> String {
+pub(crate) fn plain(text: &str) -> String {
     let mut out = String::new();
     for letter in text.chars() {
         if matches!(letter, '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#') {

@@ -6,12 +6,12 @@ use std::path::Path;
 const MAX_LENGTH: usize = 200;
 
 /// Replaces every control character by U+FFFD, so that a name can neither break a line nor command a terminal.
-pub fn on_one_line(text: &str) -> String {
+pub(crate) fn on_one_line(text: &str) -> String {
     text.replace(char::is_control, "\u{fffd}")
 }
 
 /// Cuts a text to at most `most` characters; a text that was cut ends in an ellipsis.
-pub fn shortened(name: &str, most: usize) -> String {
+pub(crate) fn shortened(name: &str, most: usize) -> String {
     if name.chars().count() <= most {
         return name.to_owned();
     }
@@ -19,13 +19,13 @@ pub fn shortened(name: &str, most: usize) -> String {
 }
 
 /// Returns a name for display: on one line, with at most 200 characters.
-pub fn shown(name: &str) -> String {
+pub(crate) fn shown(name: &str) -> String {
     shortened(&on_one_line(name), MAX_LENGTH)
 }
 
 /// Returns a path for display: on one line, with at most 200 characters. A longer path loses its start, since its end
 /// names the file.
-pub fn shown_path(path: &Path) -> String {
+pub(crate) fn shown_path(path: &Path) -> String {
     let path = on_one_line(&path.display().to_string());
     let surplus = path.chars().count().saturating_sub(MAX_LENGTH);
     if surplus == 0 { path } else { ['…'].into_iter().chain(path.chars().skip(surplus + 1)).collect() }

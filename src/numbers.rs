@@ -3,7 +3,7 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Formats a number with commas between groups of three digits.
-pub fn grouped(number: u64) -> String {
+pub(crate) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
@@ -16,7 +16,7 @@ pub fn grouped(number: u64) -> String {
 }
 
 /// Formats a number with three significant digits; numbers below 0.001 or from 10,000 on are in scientific notation.
-pub fn short(number: f64) -> String {
+pub(crate) fn short(number: f64) -> String {
     let magnitude = number.abs();
     if number == 0.0 {
         "0".into()
@@ -29,13 +29,13 @@ pub fn short(number: f64) -> String {
 }
 
 /// Formats an f32 with all its digits; numbers below 1e-5 or from 1e9 on are in scientific notation.
-pub fn exact(number: f32) -> String {
+pub(crate) fn exact(number: f32) -> String {
     if number == 0.0 || (1e-5..1e9).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
 /// Formats a number that isn't negative with two decimals, for columns of px or ms. Returns "0" for 0 and "< 0.01" for
 /// anything less than that.
-pub fn hundredths(number: f64) -> String {
+pub(crate) fn hundredths(number: f64) -> String {
     if number == 0.0 {
         "0".into()
     } else if number < 0.01 {

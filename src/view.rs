@@ -13,18 +13,18 @@ pub struct ScreenView {
 }
 
 /// Where a position lands, in px from the viewport's top left; `None` behind the eye.
-pub fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
+pub(crate) fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
     let clip = clip_from_object * position.extend(1.0);
     (clip.w > 0.0).then(|| (vec2(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * viewport)
 }
 
 /// One unit in the last place of the largest coordinate of a mesh (in magnitude), in object units.
-pub fn ulp(topology: &Topology) -> f64 {
+pub(crate) fn ulp(topology: &Topology) -> f64 {
     ulp_at(topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max))
 }
 
 /// One unit in the last place of a coordinate, in the coordinate's own units.
-pub fn ulp_at(coordinate: f32) -> f64 {
+pub(crate) fn ulp_at(coordinate: f32) -> f64 {
     f64::from(coordinate.next_up()) - f64::from(coordinate)
 }
 

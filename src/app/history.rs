@@ -11,7 +11,7 @@ const MOST: usize = 200;
 
 /// What settings were before they changed, and after.
 #[derive(Default)]
-pub struct History {
+pub(super) struct History {
     /// None before there is a window.
     now: Option<Settings>,
     past: VecDeque<Settings>,

@@ -7,12 +7,12 @@ mod jobs;
 mod option_rows;
 mod panels;
 mod patch_names;
-mod persistence;
+pub(crate) mod persistence;
 mod style;
 mod text;
 mod viewport;
 mod widgets;
-mod window;
+pub(crate) mod window;
 
 use image::RgbaImage;
 
@@ -34,8 +34,8 @@ use panels::Panels;
 use viewport::Viewport;
 use window::WindowState;
 
-pub use persistence::Persistence;
-pub use window::{WindowError, run, run_watched};
+pub(crate) use persistence::Persistence;
+pub(crate) use window::{WindowError, run, run_watched};
 
 /// The window's state, grouped as the rooms below are.
 pub struct App {

@@ -4,12 +4,12 @@ use super::widgets::{chooser, fixed};
 use crate::settings::{Declaration, Range, Settings, Value};
 
 /// A row with which an option is changed; greyed out where it has no effect. `key` is the key that changes it too.
-pub fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
+pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
     option_row_with(ui, option, settings, &option_hover(option, key));
 }
 
 /// The same with another hover text.
-pub fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, hover: &str) {
+pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, hover: &str) {
     match (option.get(settings), option.range()) {
         (Value::Number(number), Some(range)) => number_row(ui, option, range, number, settings, hover),
         (Value::Name(name), _) => choice_row(ui, option, Some(name), settings, hover),
@@ -20,13 +20,13 @@ pub fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings: &mut S
 }
 
 /// What an option sets, the key that changes it too, and its name on the command line.
-pub fn option_hover(option: &Declaration, key: &str) -> String {
+pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
     let name = format!("--{}", option.name);
     with_note(option.text, &if key.is_empty() { name } else { format!("{key}; {name}") })
 }
 
 /// A text with a note in parentheses at its end, if there is one.
-pub fn with_note(text: &str, note: &str) -> String {
+pub(super) fn with_note(text: &str, note: &str) -> String {
     if note.is_empty() { text.to_owned() } else { format!("{} ({note}).", text.trim_end_matches('.')) }
 }
 

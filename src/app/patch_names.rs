@@ -3,21 +3,21 @@
 use crate::tessellate::{Convention, domain_side, factor_side, weight_corner};
 
 /// Names of the weights.
-pub const LETTERS: [char; 3] = ['u', 'v', 'w'];
+pub(super) const LETTERS: [char; 3] = ['u', 'v', 'w'];
 
 /// The weight that is 1 on corner `k`.
-pub fn letter(convention: Convention, k: u32) -> char {
+pub(super) fn letter(convention: Convention, k: u32) -> char {
     let found = (0..3).find(|&i| weight_corner(convention, i) == k);
     found.map_or(' ', |i| LETTERS[i as usize])
 }
 
 /// A side by the corners that it runs between.
-pub fn ends_text(k: u32) -> String {
+pub(super) fn ends_text(k: u32) -> String {
     format!("{k}-{}", (k + 1) % 3)
 }
 
 /// What goes wrong with factor `i`, if anything does.
-pub fn mistake(convention: Convention, i: u32) -> Option<String> {
+pub(super) fn mistake(convention: Convention, i: u32) -> Option<String> {
     let (of, cuts) = (factor_side(convention, i), domain_side(convention, i));
     (of != cuts)
         .then(|| format!("TessFactor[{i}] is that of edge {} and cuts edge {}.", ends_text(of), ends_text(cuts)))

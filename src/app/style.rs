@@ -1,7 +1,7 @@
 //! Spacing and colours of the window.
 
 /// Sets the spacing that both themes share, and the colours that egui has too pale.
-pub fn style(context: &egui::Context) {
+pub(super) fn style(context: &egui::Context) {
     // Its keys are the command table's.
     context.options_mut(|options| options.zoom_with_keyboard = false);
     context.all_styles_mut(|style| {

@@ -1,21 +1,21 @@
 //! Numbers and names as people read them.
 
-pub use crate::names::shortened;
-pub use crate::numbers::{grouped, short};
+pub(super) use crate::names::shortened;
+pub(super) use crate::numbers::{grouped, short};
 
 /// A number and its share of all.
-pub fn part(number: u64, all: u64) -> String {
+pub(super) fn part(number: u64, all: u64) -> String {
     let percent = 100.0 * number as f64 / all.max(1) as f64;
     format!("{} ({percent:.1} %)", grouped(number))
 }
 
 /// Bytes in MiB.
-pub fn mebibytes(bytes: u64) -> String {
+pub(super) fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
 /// A factor with so many decimals; some forms of LOD ask for huge ones.
-pub fn factor(number: f64, decimals: usize) -> String {
+pub(super) fn factor(number: f64, decimals: usize) -> String {
     if number.abs() < 1000.0 { format!("{number:.decimals$}") } else { short(number) }
 }
 

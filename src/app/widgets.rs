@@ -3,14 +3,14 @@
 use egui::RichText;
 
 /// A section's name, and a line under it.
-pub fn heading(ui: &mut egui::Ui, text: &str) {
+pub(super) fn heading(ui: &mut egui::Ui, text: &str) {
     ui.add_space(8.0);
     ui.label(RichText::new(text).strong());
     ui.separator();
 }
 
 /// A row with a name and a list to choose from.
-pub fn chooser<T: Copy + PartialEq>(
+pub(super) fn chooser<T: Copy + PartialEq>(
     ui: &mut egui::Ui,
     name: &str,
     hover: &str,
@@ -30,7 +30,7 @@ pub fn chooser<T: Copy + PartialEq>(
 }
 
 /// The same where there is nothing to choose, and why.
-pub fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
+pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
     let label = ui.label(name).on_hover_text(why);
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown);
     let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
@@ -39,19 +39,19 @@ pub fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
 }
 
 /// A row with a name and a right-aligned number.
-pub fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
+pub(super) fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
     ui.label(name).on_hover_text(hover);
     number(ui, value);
     ui.end_row();
 }
 
 /// Right-aligned, all digits as wide.
-pub fn number(ui: &mut egui::Ui, text: &str) {
+pub(super) fn number(ui: &mut egui::Ui, text: &str) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(RichText::new(text).monospace()));
 }
 
 /// A row of text in columns that can't be clicked, in line with those that can; the columns' names are weak.
-pub fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
+pub(super) fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
     let text = RichText::new(text).monospace();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -65,7 +65,12 @@ pub fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
 const LIST_ROWS: f32 = 6.0;
 
 /// A list of many rows, of which only those in sight are made. Up, Down, Home and End go from row to row.
-pub fn list(ui: &mut egui::Ui, name: &str, count: usize, mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response) {
+pub(super) fn list(
+    ui: &mut egui::Ui,
+    name: &str,
+    count: usize,
+    mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response,
+) {
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
     let pitch = height + ui.spacing().item_spacing.y;
     let shown = LIST_ROWS.min(count as f32) * pitch;
@@ -115,21 +120,21 @@ fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
 }
 
 /// Width and height of a swatch, in points.
-pub const SWATCH: egui::Vec2 = egui::vec2(14.0, 10.0);
+pub(super) const SWATCH: egui::Vec2 = egui::vec2(14.0, 10.0);
 
 /// An sRGB colour as egui has it.
-pub fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
+pub(super) fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
     egui::Color32::from_rgb(r, g, b)
 }
 
 /// A patch of colour, as in a legend.
-pub fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
+pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
     ui.painter().rect_filled(rect, 2.0, rgb(color));
 }
 
 /// A field of the status line, of one width whatever it says.
-pub fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
+pub(super) fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
     let height = ui.spacing().interact_size.y;
     ui.allocate_ui_with_layout(egui::vec2(width, height), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);

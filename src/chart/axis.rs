@@ -4,7 +4,7 @@ use crate::numbers::grouped;
 
 /// From one value to another, along px.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     pub values: [f64; 2],
     pub px: [f64; 2],
     /// How far beyond the low end what is as good as 0 has its place, in px; 0 if nothing is.
@@ -13,7 +13,7 @@ pub struct Axis {
 
 /// A marked value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tick {
+pub(crate) struct Tick {
     pub value: f64,
     /// Whether it is written beside the axis.
     pub named: bool,
@@ -24,7 +24,7 @@ const SLACK: f64 = 1.25;
 
 impl Axis {
     /// Around these values, all that are above `floor`.
-    pub fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
+    pub(crate) fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
         let (mut least, mut most, mut has_zero) = (f64::INFINITY, 0.0_f64, false);
         for value in values {
             if value > floor {
@@ -39,7 +39,7 @@ impl Axis {
     }
 
     /// In px; values too small for the axis are at its zero.
-    pub fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         let [from, to] = self.px;
         let zero = from + self.zero_px * (to - from).signum();
         if value < self.values[0] {
@@ -50,7 +50,7 @@ impl Axis {
     }
 
     /// Powers of ten named, the digits between them not; where there are few powers, 2 and 5 are named too.
-    pub fn ticks(&self) -> Vec<Tick> {
+    pub(crate) fn ticks(&self) -> Vec<Tick> {
         let [low, high] = self.values;
         let decades = (high / low).log10();
         let named: &[u32] = match decades {
@@ -72,7 +72,7 @@ impl Axis {
 }
 
 /// A tick's value, as short as it goes.
-pub fn tick_text(value: f64) -> String {
+pub(crate) fn tick_text(value: f64) -> String {
     if value >= 0.999e6 {
         format!("{} M", grouped((value / 1e6).round() as u64))
     } else if value >= 0.999 {

@@ -28,7 +28,7 @@ impl Default for Effort {
 }
 
 /// A mesh on the device, seen from one place, and what it is held against.
-pub struct Bench<'a> {
+pub(crate) struct Bench<'a> {
     pub engine: &'a Engine,
     /// As it is named in rows.
     pub mesh: String,
@@ -56,13 +56,13 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn measure(&mut self, setting: &Setting) -> Result<Option<Row>, GpuError> {
+    pub(crate) fn measure(&mut self, setting: &Setting) -> Result<Option<Row>, GpuError> {
         let probe = self.probe(&setting.applied(&self.base))?;
         Ok(probe.map(|probe| self.row(setting, probe)))
     }
 
     /// What came of a setting, as a row.
-    pub fn row(&self, setting: &Setting, probe: Probe) -> Row {
+    pub(crate) fn row(&self, setting: &Setting, probe: Probe) -> Row {
         let Probe { triangles, vertices, time, errors, max_error_px } = probe;
         let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
         Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px }
@@ -73,7 +73,7 @@ impl Bench<'_> {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn probe(&mut self, settings: &Settings) -> Result<Option<Probe>, GpuError> {
+    pub(crate) fn probe(&mut self, settings: &Settings) -> Result<Option<Probe>, GpuError> {
         let Self { engine, scene, target, camera, .. } = self;
         let settings = whole(settings);
         let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
@@ -103,7 +103,7 @@ impl Bench<'_> {
 }
 
 /// What is measured of settings: the surface alone, all of it.
-pub fn whole(settings: &Settings) -> Settings {
+pub(crate) fn whole(settings: &Settings) -> Settings {
     let Settings { overlays, deviation_in, split, background, .. } = Settings::default();
     Settings {
         tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },

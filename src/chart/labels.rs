@@ -2,28 +2,28 @@
 
 /// A box in px: least and greatest coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rect {
+pub(super) struct Rect {
     pub min: [f64; 2],
     pub max: [f64; 2],
 }
 
 /// A point that is to have a label of this size, in px.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub(super) struct Wanted {
     pub at: [f64; 2],
     pub size: [f64; 2],
 }
 
 impl Rect {
-    pub fn around([x, y]: [f64; 2], half: f64) -> Self {
+    pub(super) fn around([x, y]: [f64; 2], half: f64) -> Self {
         Self { min: [x - half, y - half], max: [x + half, y + half] }
     }
 
-    pub fn overlaps(&self, other: &Self) -> bool {
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
         (0..2).all(|k| self.min[k] < other.max[k] && other.min[k] < self.max[k])
     }
 
-    pub fn contains(&self, other: &Self) -> bool {
+    pub(super) fn contains(&self, other: &Self) -> bool {
         (0..2).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
     }
 
@@ -50,7 +50,12 @@ const GAP: f64 = 6.0;
 
 /// Places labels one after another, the first where it likes, inside `bounds`, over no point, no line and no other label;
 /// none for a label that fits nowhere.
-pub fn place(wanted: &[Wanted], points: &[[f64; 2]], lines: &[[[f64; 2]; 2]], bounds: Rect) -> Vec<Option<Rect>> {
+pub(super) fn place(
+    wanted: &[Wanted],
+    points: &[[f64; 2]],
+    lines: &[[[f64; 2]; 2]],
+    bounds: Rect,
+) -> Vec<Option<Rect>> {
     let markers: Vec<Rect> = points.iter().map(|&point| Rect::around(point, 4.0)).collect();
     let mut placed: Vec<Option<Rect>> = Vec::new();
     for wish in wanted {

@@ -10,7 +10,7 @@ use crate::tessellate::Surface;
 
 /// What a method's points and lines look like.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub(crate) struct Look {
     pub color: RGBColor,
     pub shape: Shape,
     pub fill: Fill,
@@ -19,7 +19,7 @@ pub struct Look {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub(crate) enum Shape {
     Disc,
     /// So many corners, the first this many degrees from the top, to the right.
     Polygon(u32, u32),
@@ -28,7 +28,7 @@ pub enum Shape {
 
 /// What tells partitionings and normals apart, where there are several of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fill {
+pub(crate) enum Fill {
     Full,
     Hollow,
     Pale,
@@ -36,7 +36,7 @@ pub enum Fill {
 
 impl Shape {
     /// Convex pieces that make it up, as corners around its middle, so large that all shapes look alike; none of a disc.
-    pub fn pieces(self, radius: f64) -> Vec<Vec<[f64; 2]>> {
+    pub(crate) fn pieces(self, radius: f64) -> Vec<Vec<[f64; 2]>> {
         let around = |degrees: f64, radius: f64| {
             let (sin, cos) = (TAU * degrees / 360.0).sin_cos();
             [radius * sin, -radius * cos]
@@ -60,13 +60,13 @@ impl Shape {
 
 impl Look {
     /// `variant` counts methods of the same surface and LOD.
-    pub fn of(method: Method, variant: usize) -> Self {
+    pub(crate) fn of(method: Method, variant: usize) -> Self {
         let fill = [Fill::Full, Fill::Hollow, Fill::Pale][variant % 3];
         Self { fill, dash: dash(method.lod), ..Self::of_surface(method.surface) }
     }
 
     /// What a surface's points look like, and its lines under uniform LOD.
-    pub fn of_surface(surface: Surface) -> Self {
+    pub(crate) fn of_surface(surface: Surface) -> Self {
         let (color, shape) = match surface {
             Surface::Flat => (INK, Shape::Disc),
             Surface::PnAen => (BLUE, Shape::Polygon(4, 45)),
@@ -81,7 +81,7 @@ impl Look {
     }
 }
 
-pub fn dash(lod: LodKind) -> Option<[f64; 2]> {
+pub(crate) fn dash(lod: LodKind) -> Option<[f64; 2]> {
     match lod {
         LodKind::Uniform => None,
         LodKind::Paper => Some([7.0, 4.0]),

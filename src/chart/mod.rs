@@ -9,28 +9,28 @@ mod look;
 mod pen;
 mod picture;
 mod race;
-pub mod report;
+pub(crate) mod report;
 mod save;
 mod setting;
 mod words;
 
-pub use axis::{Axis, Tick, tick_text};
-pub use bench::{Bench, Effort, Probe, whole};
-pub use cost::Cost;
-pub use legend::looks;
-pub use look::{Fill, Look, Shape, dash};
-pub use pen::RADIUS;
-pub use picture::{bitmap, svg};
-pub use race::{Race, Win, front, has_converged};
-pub use save::{SaveError, save};
-pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
+pub(crate) use axis::{Axis, Tick, tick_text};
+pub(crate) use bench::{Bench, Effort, Probe, whole};
+pub(crate) use cost::Cost;
+pub(crate) use legend::looks;
+pub(crate) use look::{Fill, Look, Shape, dash};
+pub(crate) use pen::RADIUS;
+pub(crate) use picture::{bitmap, svg};
+pub(crate) use race::{Race, Win, front, has_converged};
+pub(crate) use save::{SaveError, save};
+pub(crate) use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use crate::gpu::{DRAWING, PassTime};
 use crate::settings::Choice;
 use crate::tessellate::Vertex;
 
 /// The columns of a row written as CSV.
-pub const COLUMNS: [&str; 17] = [
+pub(crate) const COLUMNS: [&str; 17] = [
     "mesh",
     "adapter",
     "surface",
@@ -133,7 +133,7 @@ impl Row {
 
 /// A mesh, and what was measured of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Subject {
+pub(crate) struct Subject {
     /// What it is called.
     pub title: String,
     /// What it was held against, in words; none for the limits of its own surfaces.
@@ -146,12 +146,12 @@ pub struct Subject {
 
 impl Subject {
     /// How far a row is off: a part of the truth's diagonal, or px without a truth.
-    pub fn error(&self, row: &Row) -> Option<f64> {
+    pub(crate) fn error(&self, row: &Row) -> Option<f64> {
         self.error_of(row.errors, row.max_error_px)
     }
 
     /// The same, of anything measured as rows are.
-    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
+    pub(crate) fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
         let error = match self.truth {
             Some(_) => errors.map(|errors| errors.largest),
             None => max_error_px,

@@ -9,20 +9,20 @@ use super::look::{Fill, Look, Shape};
 use crate::plot::{self, DENSITY, INK};
 
 /// An area, and how one draws in px of the chart.
-pub struct Pen<'a, DB: DrawingBackend>(pub &'a DrawingArea<DB, Shift>);
+pub(super) struct Pen<'a, DB: DrawingBackend>(pub &'a DrawingArea<DB, Shift>);
 
-pub type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
+pub(super) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 /// Where text is beside its place.
-pub const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
-pub const MIDDLE: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
-pub const RIGHT: Pos = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
+pub(super) const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
+pub(super) const MIDDLE: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
+pub(super) const RIGHT: Pos = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
 
 /// Under the points that nothing beats.
-pub const FRONT: RGBColor = RGBColor(214, 214, 214);
+pub(super) const FRONT: RGBColor = RGBColor(214, 214, 214);
 
 /// From the middle of a point to its rim.
-pub const RADIUS: f64 = 3.6;
+pub(crate) const RADIUS: f64 = 3.6;
 
 fn px([x, y]: [f64; 2]) -> (i32, i32) {
     let density = f64::from(DENSITY);
@@ -34,7 +34,7 @@ fn width(px: f64) -> u32 {
 }
 
 impl<DB: DrawingBackend> Pen<'_, DB> {
-    pub fn line(&self, points: &[[f64; 2]], color: impl Color, thick: f64, dash: Option<[f64; 2]>) -> Drawn<DB> {
+    pub(super) fn line(&self, points: &[[f64; 2]], color: impl Color, thick: f64, dash: Option<[f64; 2]>) -> Drawn<DB> {
         let points: Vec<_> = points.iter().copied().map(px).collect();
         let style = color.stroke_width(width(thick));
         match dash {
@@ -45,28 +45,28 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
         }
     }
 
-    pub fn rect(&self, min: [f64; 2], max: [f64; 2], style: impl Into<ShapeStyle>) -> Drawn<DB> {
+    pub(super) fn rect(&self, min: [f64; 2], max: [f64; 2], style: impl Into<ShapeStyle>) -> Drawn<DB> {
         self.0.draw(&Rectangle::new([px(min), px(max)], style))
     }
 
     /// Text of a size in px, beside a place.
-    pub fn text(&self, text: &str, at: [f64; 2], size: i32, pos: Pos) -> Drawn<DB> {
+    pub(super) fn text(&self, text: &str, at: [f64; 2], size: i32, pos: Pos) -> Drawn<DB> {
         self.0.draw_text(text, &font(size).pos(pos), px(at))
     }
 
     /// The same, read from below.
-    pub fn text_upwards(&self, text: &str, at: [f64; 2], size: i32) -> Drawn<DB> {
+    pub(super) fn text_upwards(&self, text: &str, at: [f64; 2], size: i32) -> Drawn<DB> {
         self.0.draw_text(text, &font(size).pos(MIDDLE).transform(FontTransform::Rotate270), px(at))
     }
 
     /// How wide text will be; letters of another font may be wider.
-    pub fn text_width(&self, text: &str, size: i32) -> f64 {
+    pub(super) fn text_width(&self, text: &str, size: i32) -> f64 {
         let letters = 0.55 * f64::from(size) * text.chars().count() as f64;
         self.0.estimate_text_size(text, &font(size)).map_or(letters, |(px, _)| f64::from(px) / f64::from(DENSITY))
     }
 
     /// A point of a method, with a rim of white, so that it is seen before others.
-    pub fn marker(&self, at: [f64; 2], look: &Look) -> Drawn<DB> {
+    pub(super) fn marker(&self, at: [f64; 2], look: &Look) -> Drawn<DB> {
         self.shape(at, look.shape, RADIUS + 1.2, WHITE.filled())?;
         self.shape(at, look.shape, RADIUS, look.color.filled())?;
         match look.fill {

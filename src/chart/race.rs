@@ -6,7 +6,7 @@ use crate::tessellate::Surface;
 /// Rows of a mesh that can be compared, with their errors: all, if they were held against one truth; otherwise those of one
 /// surface, as each is off from its own limit.
 #[derive(Clone, Debug)]
-pub struct Race<'a> {
+pub(crate) struct Race<'a> {
     /// The one that all are of, without a truth.
     pub surface: Option<Surface>,
     pub entries: Vec<(&'a Row, f64)>,
@@ -14,7 +14,7 @@ pub struct Race<'a> {
 
 /// The fastest to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Win<'a> {
+pub(crate) struct Win<'a> {
     pub error: f64,
     pub fastest: &'a Row,
     /// The fastest of another method; none if no other reaches it.
@@ -23,7 +23,7 @@ pub struct Win<'a> {
 
 /// Of points with a cost and an error, the indices of those that no other one beats, by growing cost: each has less error
 /// than all that cost as much or less. Of equal points it is the first.
-pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {
         let ((cost_a, error_a), (cost_b, error_b)) = (points[a], points[b]);
@@ -48,7 +48,7 @@ const CLOSER: f64 = 0.05;
 /// coarse to fine, the last has three times the triangles of another, and each of its errors is less by a twentieth at most.
 /// What triangles are off from their surface falls as their number grows, or faster, so that half of that twentieth at most is
 /// left to gain.
-pub fn has_converged(rows: &[Row], method: Method) -> bool {
+pub(crate) fn has_converged(rows: &[Row], method: Method) -> bool {
     let mut own = rows.iter().rev().filter(|row| row.setting.method == method);
     let Some(last) = own.next() else { return false };
     let errors = |row: &Row| {
@@ -65,7 +65,7 @@ pub fn has_converged(rows: &[Row], method: Method) -> bool {
 
 impl Subject {
     /// Rows whose error is known, as they can be compared.
-    pub fn races(&self) -> Vec<Race<'_>> {
+    pub(crate) fn races(&self) -> Vec<Race<'_>> {
         let mut races: Vec<Race> = Vec::new();
         for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
             let surface = self.truth.is_none().then_some(row.setting.method.surface);
@@ -78,7 +78,7 @@ impl Subject {
     }
 
     /// Every method once, in the order of rows.
-    pub fn methods(&self) -> Vec<Method> {
+    pub(crate) fn methods(&self) -> Vec<Method> {
         let mut methods = Vec::new();
         for row in &self.rows {
             if !methods.contains(&row.setting.method) {
@@ -91,14 +91,14 @@ impl Subject {
 
 impl<'a> Race<'a> {
     /// The rows that no other one beats, with their errors; `cost` is what a row costs.
-    pub fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
+    pub(crate) fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
         let points: Vec<_> = self.entries.iter().map(|(row, error)| (cost(row), *error)).collect();
         front(&points).into_iter().map(|index| self.entries[index]).collect()
     }
 
     /// Errors to ask for, the largest first: up to `count` of 1, 2 and 5 times powers of ten, no smaller than `floor`, that
     /// some rows reach and others don't.
-    pub fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
+    pub(crate) fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
         let errors = self.entries.iter().map(|(_, error)| error.max(floor));
         let [least, most] = errors.fold([f64::INFINITY, 0.0], |[a, b], error| [a.min(error), b.max(error)]);
         if least >= most {
@@ -117,13 +117,13 @@ impl<'a> Race<'a> {
     }
 
     /// The row that is off by no more than `error` at the least cost.
-    pub fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
+    pub(crate) fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
         let reached = self.entries.iter().filter(|(row, own)| *own <= error && of(row)).map(|(row, _)| *row);
         reached.min_by(|a, b| cost.of(a).total_cmp(&cost.of(b)))
     }
 
     /// Who is the fastest to be off by no more than `error`; nobody, if no row is.
-    pub fn win(&self, error: f64) -> Option<Win<'a>> {
+    pub(crate) fn win(&self, error: f64) -> Option<Win<'a>> {
         let fastest = self.cheapest(error, Cost::Ms, |_| true)?;
         let next = self.cheapest(error, Cost::Ms, |row| row.setting.method != fastest.setting.method);
         Some(Win { error, fastest, next })

@@ -6,10 +6,10 @@ use super::CliError;
 use crate::gpu::{AdapterChoice, GpuError, adapters, best_adapter, kind};
 
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub(crate) struct Args {}
 
 /// One line an adapter.
-pub fn run(_: &Args) -> Result<(), CliError> {
+pub(super) fn run(_: &Args) -> Result<(), CliError> {
     let all = adapters();
     if all.is_empty() {
         return Err(GpuError::NoAdapter.into());
@@ -42,7 +42,7 @@ pub fn run(_: &Args) -> Result<(), CliError> {
 
 /// Where to compute and draw.
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct AdapterOption {
+pub(crate) struct AdapterOption {
     /// Graphics adapter: part of its name as `pnaen adapters` lists it, or `software`; by default the fastest
     #[arg(long, value_name = "NAME|software")]
     pub adapter: Option<AdapterChoice>,
@@ -53,7 +53,7 @@ impl AdapterOption {
     ///
     /// # Errors
     /// There is one, and `is_cpu` is set.
-    pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
+    pub(crate) fn check(&self, is_cpu: bool) -> Result<(), CliError> {
         match is_cpu && self.adapter.is_some() {
             true => Err(CliError::Usage(
                 "--adapter says which graphics adapter computes, and --device cpu that none does: leave one of them out",
@@ -62,7 +62,7 @@ impl AdapterOption {
         }
     }
 
-    pub fn choice(&self) -> AdapterChoice {
+    pub(crate) fn choice(&self) -> AdapterChoice {
         self.adapter.clone().unwrap_or_default()
     }
 }

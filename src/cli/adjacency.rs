@@ -13,7 +13,7 @@ use crate::names::shown_path;
 use crate::settings::{Choice, Description};
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
@@ -72,7 +72,7 @@ impl Choice for Format {
 /// Differences that are said one by one.
 const SAID: usize = 10;
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.output.is_none() && args.against.is_none() {
         return Err(CliError::Usage("give -o to write a file, --against to hold one against the mesh, or both"));
     }

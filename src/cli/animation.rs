@@ -10,7 +10,7 @@ use crate::mesh::Moment;
 
 /// What moves, and where it is.
 #[derive(Clone, Debug, Default, Args)]
-pub struct AnimationOption {
+pub(crate) struct AnimationOption {
     /// Show the mesh as this animation has it; `pnaen info` lists them
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
@@ -24,7 +24,7 @@ impl AnimationOption {
     ///
     /// # Errors
     /// There is no animation of that name.
-    pub fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
+    pub(crate) fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
         let Some(name) = &self.animation else { return Ok(None) };
         let rig = loaded.mesh.rig.as_deref();
         let found = rig.and_then(|rig| rig.clip(name).map(|clip| (clip, rig.clips[clip].duration)));

@@ -29,7 +29,7 @@ use crate::tessellate::{Normals, Partitioning, Surface};
 use crate::truth::Truth;
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// .gltf, .glb, .obj, .stl or .ply files, or shapes made in code such as shape:torus, or shape:torus@2 (finer); with
     /// --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
@@ -92,7 +92,7 @@ pub struct Args {
 }
 
 /// The exit code after Ctrl-C, as shells have it.
-pub const INTERRUPTED: u8 = 130;
+pub(super) const INTERRUPTED: u8 = 130;
 
 /// Reads where to write a picture: its ending says of which kind.
 fn picture() -> impl TypedValueParser<Value = PathBuf> {
@@ -171,7 +171,7 @@ struct Loading {
     truth: Option<(Truth, String)>,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let settings = args.settings()?;
     let read = args.files.iter().chain(&args.truth).map(file_of);
     keep_apart(read, [args.output.as_deref(), args.csv.as_deref()])?;

@@ -11,7 +11,7 @@ use crate::settings::{Settings, Value, options};
 use crate::tessellate::{Displacement, Tessellation};
 
 /// What a window shows, and from where.
-pub struct CopiedCommand<'a> {
+pub(crate) struct CopiedCommand<'a> {
     pub source: &'a Source,
     pub preparation: &'a Preparation,
     pub settings: &'a Settings,
@@ -29,7 +29,7 @@ pub struct CopiedCommand<'a> {
 
 impl CopiedCommand<'_> {
     /// The command on one line, quoted for a shell. The picture is named after the mesh.
-    pub fn line(&self) -> String {
+    pub(crate) fn line(&self) -> String {
         let name = match self.source {
             Source::File(path) => path.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned()),
             Source::Shape(shape) | Source::FineShape(shape, _) => shape.to_string(),

@@ -12,7 +12,7 @@ use crate::tessellate::{
 };
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// How factors become segments; subtriangulation takes four equal ones
     #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]
     pub partitioning: Partitioning,
@@ -37,12 +37,12 @@ pub struct Args {
 }
 
 /// Three edge factors and the inside factor.
-pub type FactorSet = [f32; 4];
+pub(super) type FactorSet = [f32; 4];
 
 /// Sets that go to the GPU together.
 const BATCH: usize = 256;
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.adapter.check(args.device == Device::Cpu)?;
     let (sets, numbered) = match (&args.input, args.factors) {
         (Some(path), _) => (read_sets(path, args.partitioning)?, true),

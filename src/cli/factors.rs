@@ -12,7 +12,7 @@ use crate::settings::Settings;
 use crate::tessellate::{self, bounds_through};
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
@@ -28,7 +28,7 @@ pub struct Args {
     pub adapter: AdapterOption,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
     let heights = file_of_heights(args.surface.height.as_ref());

@@ -14,7 +14,7 @@ use crate::settings::Choice;
 use crate::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
 
 #[derive(Clone, Debug, Default, clap::Args)]
-pub struct FactorsOption {
+pub(crate) struct FactorsOption {
     /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
     /// patch,e0,e1,e2,inside and a line for each triangle, as the factors command or another engine writes it. Standard error
     /// tells on which edges the factors of the two sides differ, and under which convention they don't
@@ -27,7 +27,7 @@ pub struct FactorsOption {
 }
 
 /// A file's factors, held against the mesh.
-pub struct Given {
+pub(crate) struct Given {
     /// One for each patch.
     pub factors: Vec<HullFactors>,
     pub stats: FactorsFile,
@@ -43,7 +43,7 @@ impl FactorsOption {
     ///
     /// # Errors
     /// The file can't be read, or isn't one of this mesh, or has factors that the partitioning doesn't take.
-    pub fn read(
+    pub(crate) fn read(
         &self,
         mesh: &Mesh,
         topology: &Topology,
@@ -145,7 +145,7 @@ fn named_or_own(order: &Order) -> Option<Convention> {
 
 /// What was found, for programs.
 #[derive(Debug, Serialize)]
-pub struct FactorsFile {
+pub(crate) struct FactorsFile {
     path: String,
     convention: &'static str,
     edges_compared: u64,

@@ -12,7 +12,7 @@ use crate::load::{HeightSource, Source};
 use crate::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code; without one, each exhibit has the shape that suits it
     #[arg(value_parser = super::options::source())]
     pub file: Option<Source>,
@@ -41,7 +41,7 @@ pub struct Args {
     pub adapter: AdapterOption,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.camera.distance.is_some() {
         return Err(CliError::Usage(
             "--camera takes AZIMUTH,ELEVATION here: every tile is filled, from its own distance",

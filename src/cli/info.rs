@@ -9,7 +9,7 @@ use crate::mesh::weld_previews;
 use crate::progress::Progress;
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
@@ -20,7 +20,7 @@ pub struct Args {
     pub json: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let info = info(&args.file, args.weld)?;
     let text = if args.json { to_json(&info)? } else { info.to_string() };
     write_text("-".as_ref(), &text)

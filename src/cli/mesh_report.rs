@@ -18,7 +18,7 @@ const SHOWN: usize = 10;
 
 /// A mesh in numbers.
 #[derive(Clone, Debug, Serialize)]
-pub struct Info {
+pub(super) struct Info {
     pub name: String,
     pub triangles: u32,
     /// Within what points were welded, relative to the bounding diagonal; 0 is exactly.
@@ -50,7 +50,7 @@ pub struct Info {
 
 /// A material in numbers.
 #[derive(Clone, Debug, Serialize)]
-pub struct MaterialInfo {
+pub(super) struct MaterialInfo {
     pub name: String,
     pub triangles: u32,
     /// Width and height in px, where there is a texture.
@@ -59,7 +59,7 @@ pub struct MaterialInfo {
 
 /// An animation in numbers.
 #[derive(Clone, Debug, Serialize)]
-pub struct AnimationInfo {
+pub(super) struct AnimationInfo {
     pub name: String,
     /// s.
     pub duration: f64,
@@ -70,7 +70,7 @@ pub struct AnimationInfo {
 
 /// A T-junction with positions, in object units.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct TJunctionInfo {
+pub(super) struct TJunctionInfo {
     /// The edge's ends, in its own direction.
     pub edge: [[f32; 3]; 2],
     pub point: [f32; 3],
@@ -82,7 +82,7 @@ pub struct TJunctionInfo {
 
 /// The bounding box, in object units.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct BoundsInfo {
+pub(super) struct BoundsInfo {
     pub min: [f32; 3],
     pub max: [f32; 3],
     pub diagonal: f32,
@@ -94,7 +94,7 @@ impl Info {
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn of(
+    pub(super) fn of(
         mesh: &Mesh,
         topology: &Topology,
         weld: f32,

@@ -13,7 +13,7 @@ mod info;
 mod mesh_report;
 mod options;
 mod output_guard;
-mod picture_comparison;
+pub(crate) mod picture_comparison;
 mod reference;
 mod render;
 mod stability;
@@ -30,17 +30,17 @@ use clap::{Parser, Subcommand};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use thiserror::Error;
 
-pub use adapters::AdapterOption;
-pub use animation::AnimationOption;
-pub use factors_option::FactorsOption;
+pub(crate) use adapters::AdapterOption;
+pub(crate) use animation::AnimationOption;
+pub(crate) use factors_option::FactorsOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
-pub use copied_command::CopiedCommand;
-pub use options::{LimitOption, SurfaceOptions, WeldOption};
-pub use picture_comparison::{CompareError, Comparison, compare};
-pub use render::run_with as render_with;
-pub use tessellate::run_with as tessellate_with;
-pub use truth::TruthOption;
+pub(crate) use copied_command::CopiedCommand;
+pub(crate) use options::{LimitOption, SurfaceOptions, WeldOption};
+pub(crate) use picture_comparison::{CompareError, Comparison, compare};
+pub(crate) use render::run_with as render_with;
+pub(crate) use tessellate::run_with as tessellate_with;
+pub(crate) use truth::TruthOption;
 
 use crate::engine::{Loaded, Preparation};
 use crate::export::ExportError;
@@ -54,7 +54,7 @@ use crate::progress::Progress;
 /// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
-pub struct Cli {
+pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
     /// What the window opens on: a .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split,
@@ -68,7 +68,7 @@ pub struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(crate) enum Command {
     /// Draw the picture that the window shows, into a PNG file
     Render(render::Args),
     /// Write the tessellated mesh
@@ -104,7 +104,7 @@ pub enum Command {
 
 /// Why a command failed, in one sentence.
 #[derive(Debug, Error)]
-pub enum CliError {
+pub(crate) enum CliError {
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -162,7 +162,7 @@ pub enum CliError {
 }
 
 /// Runs a command. A closed pipe is no failure: whoever reads has seen enough.
-pub fn run(command: Command) -> ExitCode {
+pub(crate) fn run(command: Command) -> ExitCode {
     let result = match command {
         Command::Render(args) => render::run(&args),
         Command::Tessellate(args) => tessellate::run(&args),
@@ -191,14 +191,14 @@ pub fn run(command: Command) -> ExitCode {
 }
 
 /// Says what went wrong on standard error; the exit code of a failure.
-pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
+pub(crate) fn fail(error: &dyn std::fmt::Display) -> ExitCode {
     // Standard error may be closed too; then there is nobody to tell.
     let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
     ExitCode::FAILURE
 }
 
 /// Writes the picture that the window would have shown, for machines without a display.
-pub fn preview(
+pub(crate) fn preview(
     source: Option<Source>,
     limit: LimitOption,
     adapter: AdapterOption,

@@ -19,14 +19,14 @@ use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
-pub use declared::{PictureOptions, TessellationOptions, choice, number_of};
-pub use values::{CameraOption, Place, Size, model, picture, source, threshold};
+pub(super) use declared::{PictureOptions, TessellationOptions, choice, number_of};
+pub(super) use values::{CameraOption, Place, Size, model, picture, source, threshold};
 
 use values::{bytes, crease_band, weld};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
-pub struct SurfaceOptions {
+pub(crate) struct SurfaceOptions {
     #[command(flatten)]
     pub tessellation: TessellationOptions,
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
@@ -75,7 +75,7 @@ impl SurfaceOptions {
     ///
     /// # Errors
     /// Names the options that can't be together, or the one that is missing.
-    pub fn check(&self) -> Result<(), CliError> {
+    pub(crate) fn check(&self) -> Result<(), CliError> {
         self.check_with(None)
     }
 
@@ -83,7 +83,7 @@ impl SurfaceOptions {
     ///
     /// # Errors
     /// The same.
-    pub fn check_with(&self, other: Option<Surface>) -> Result<(), CliError> {
+    pub(crate) fn check_with(&self, other: Option<Surface>) -> Result<(), CliError> {
         let settings = self.settings();
         let own = settings.tessellation;
         if own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform {
@@ -112,13 +112,13 @@ impl SurfaceOptions {
     }
 
     /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.
-    pub fn preparation(&self) -> Preparation {
+    pub(crate) fn preparation(&self) -> Preparation {
         let wanted = (self.tessellation().displacement != Displacement::Off).then_some(HeightSource::Materials);
         Preparation { heights: self.height.clone().or(wanted), ..self.weld.preparation() }
     }
 
     /// How the mesh is tessellated.
-    pub fn tessellation(&self) -> Tessellation {
+    pub(crate) fn tessellation(&self) -> Tessellation {
         let TessellationOptions { tessellation, displacement } = self.tessellation;
         let usual = if self.height.is_some() { Displacement::On } else { Displacement::Off };
         Tessellation {
@@ -130,7 +130,7 @@ impl SurfaceOptions {
     }
 
     /// Settings with these options, and nothing over the surface.
-    pub fn settings(&self) -> Settings {
+    pub(crate) fn settings(&self) -> Settings {
         self.tessellation().into()
     }
 
@@ -139,7 +139,7 @@ impl SurfaceOptions {
     ///
     /// # Errors
     /// There are more triangles at any tolerance, or `count` fails.
-    pub fn within_budget(
+    pub(crate) fn within_budget(
         &self,
         mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
     ) -> Result<Settings, CliError> {
@@ -162,12 +162,12 @@ impl SurfaceOptions {
     }
 
     /// Memory for output on the device.
-    pub fn arena_bytes(&self) -> u64 {
+    pub(crate) fn arena_bytes(&self) -> u64 {
         self.arena << 20
     }
 
     /// Looks at everything that is drawn of a mesh with these bounds; its distance is in their radii.
-    pub fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
+    pub(crate) fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
         let mut camera = Camera::framing(&bounds.grown(self.settings().reach(mesh)), self.viewport());
         (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
         if let Some(radii) = self.camera.distance {
@@ -179,14 +179,14 @@ impl SurfaceOptions {
     }
 
     /// Width and height in px.
-    pub fn viewport(&self) -> Vec2 {
+    pub(crate) fn viewport(&self) -> Vec2 {
         Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
     }
 }
 
 /// What is done to a mesh before it is tessellated: points are welded, and creases get a crease band.
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub struct WeldOption {
+pub(crate) struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = weld)]
     pub weld: f32,
@@ -200,14 +200,14 @@ pub struct WeldOption {
 }
 
 impl WeldOption {
-    pub fn preparation(&self) -> Preparation {
+    pub(crate) fn preparation(&self) -> Preparation {
         Preparation { weld: self.weld, crease_band: self.crease_band, heights: None, limits: self.limit.limits() }
     }
 }
 
 /// How large files may be, and how much memory they may take.
 #[derive(Clone, Copy, Debug, Args)]
-pub struct LimitOption {
+pub(crate) struct LimitOption {
     /// Refuse a file larger than this, and larger buffers and images that it refers to: a number of bytes, or one with the
     /// unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = bytes)]
@@ -226,7 +226,7 @@ impl Default for LimitOption {
 }
 
 impl LimitOption {
-    pub fn limits(&self) -> Limits {
+    pub(crate) fn limits(&self) -> Limits {
         Limits { file: self.max_size, memory: self.max_memory }
     }
 }

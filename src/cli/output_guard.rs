@@ -9,7 +9,7 @@ use crate::names::shown_path;
 
 /// # Errors
 /// A file to be written is read as well, or written already; or there is no folder for it.
-pub fn keep_apart<'a>(
+pub(super) fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
 ) -> Result<(), CliError> {
@@ -29,7 +29,7 @@ pub fn keep_apart<'a>(
 }
 
 /// The file of a mesh that has one.
-pub fn file_of(source: &Source) -> Option<&Path> {
+pub(super) fn file_of(source: &Source) -> Option<&Path> {
     match source {
         Source::File(path) => Some(path),
         Source::Shape(..) | Source::FineShape(..) => None,
@@ -37,7 +37,7 @@ pub fn file_of(source: &Source) -> Option<&Path> {
 }
 
 /// The same of heights.
-pub fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
+pub(super) fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
     match heights? {
         HeightSource::File(path) => Some(path),
         HeightSource::Materials => None,

@@ -13,7 +13,7 @@ use crate::names::shown_path;
 ///
 /// # Errors
 /// It can't be read.
-pub fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
+pub(super) fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
     let fail = |reason: &dyn std::fmt::Display| file_error(path, "read", reason);
     let file = open_file(path).map_err(|error| fail(&error))?;
     let file = file.ok_or_else(|| fail(&"it is not a file; name a PNG or JPEG image"))?.0;
@@ -29,7 +29,7 @@ pub fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
 ///
 /// # Errors
 /// It differs, or is of another size.
-pub fn hold_against(
+pub(super) fn hold_against(
     output: &Path,
     picture: &image::RgbaImage,
     path: &Path,

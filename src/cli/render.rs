@@ -23,7 +23,7 @@ use crate::tessellate::{HullFactors, Inputs, Lod};
 use crate::view::ScreenView;
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
@@ -60,7 +60,7 @@ pub struct Args {
 
 impl Args {
     /// What the window shows when it opens.
-    pub fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
+    pub(crate) fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
         let opening = Settings::opening();
         let tessellation = TessellationOptions { tessellation: opening.tessellation, displacement: None };
         let weld = WeldOption { limit, ..WeldOption::default() };
@@ -91,7 +91,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     run_with(args, || Engine::chosen(&args.adapter.choice()))
 }
 
@@ -99,7 +99,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 ///
 /// # Errors
 /// As the command's.
-pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let PictureOptions(Settings { overlays, split_surface, .. }) = args.picture;
     args.surface.check_with(split_surface)?;
     args.keep_apart()?;

@@ -15,7 +15,7 @@ use crate::stability::{
 };
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Meshes to run as well, after the cases chosen with --case; without --case, only these
     #[arg(value_parser = super::options::source())]
     pub files: Vec<Source>,
@@ -62,7 +62,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.adapter.check(args.device == Some(Device::Cpu))?;
     let subjects = args.subjects()?;
     let engine = if args.device == Some(Device::Cpu) { None } else { Some(Engine::chosen(&args.adapter.choice())?) };

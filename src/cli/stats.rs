@@ -17,7 +17,7 @@ use crate::view::{ScreenView, ulp};
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
-pub struct Stats {
+pub(super) struct Stats {
     adapter: String,
     settings: SettingsStats,
     triangles_in: u64,
@@ -108,7 +108,7 @@ impl SettingsStats {
 }
 
 #[derive(Debug, Serialize)]
-pub struct AnimationStats {
+pub(super) struct AnimationStats {
     pub name: String,
     /// s.
     pub time: f64,
@@ -126,7 +126,7 @@ struct Bytes {
 }
 
 #[derive(Debug, Serialize)]
-pub struct CrackStats {
+pub(super) struct CrackStats {
     edge_points: u64,
     edges_compared: u64,
     different_bits: u64,
@@ -142,7 +142,7 @@ pub struct CrackStats {
 
 impl CrackStats {
     /// As seen from `view`.
-    pub fn new(measured: &Measured, topology: &Topology, view: ScreenView) -> Self {
+    pub(super) fn new(measured: &Measured, topology: &Topology, view: ScreenView) -> Self {
         let cracks = &measured.cracks;
         Self {
             edge_points: cracks.edge_points,
@@ -160,7 +160,7 @@ impl CrackStats {
 
 impl Stats {
     /// What is known of every picture, seen from `view`.
-    pub fn new(
+    pub(super) fn new(
         engine: &Engine,
         loaded: &Loaded,
         scene: &Scene,
@@ -213,7 +213,7 @@ impl Stats {
 
 /// The other surface, left of the split.
 #[derive(Debug, Serialize)]
-pub struct LeftStats {
+pub(super) struct LeftStats {
     surface: &'static str,
     triangles_out: u64,
     vertices_out: u64,
@@ -226,7 +226,7 @@ pub struct LeftStats {
 
 impl LeftStats {
     /// Tessellated with these settings, and seen from `view`.
-    pub fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
+    pub(super) fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         Self {
             surface: settings.tessellation.surface.name(),

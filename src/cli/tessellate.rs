@@ -15,7 +15,7 @@ use crate::settings::Settings;
 use crate::tessellate::{self, bounds_through};
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// A .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = super::options::source())]
     pub file: Source,
@@ -35,12 +35,12 @@ pub struct Args {
 
 /// Where the mathematics runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Device {
+pub(crate) enum Device {
     Gpu,
     Cpu,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub(super) fn run(args: &Args) -> Result<(), CliError> {
     run_with(args, || Engine::chosen(&args.adapter.choice()))
 }
 
@@ -48,7 +48,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 ///
 /// # Errors
 /// As the command's.
-pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
     Exported::check(&args.output, 0, 0)?;

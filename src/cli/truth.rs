@@ -16,7 +16,7 @@ use crate::tessellate::{Displacement, Inputs};
 use crate::truth::Truth;
 
 #[derive(Clone, Debug, Default, Args)]
-pub struct TruthOption {
+pub(crate) struct TruthOption {
     /// Reference surface for the deviation overlay and the stats: a .gltf, .glb, .obj, .stl or .ply file, such as the
     /// high-poly original, or a shape. By default the exact surface of a shape; for other meshes the overlay takes the
     /// surface that the tessellation converges to
@@ -25,7 +25,7 @@ pub struct TruthOption {
 }
 
 /// What a picture is held against.
-pub enum Held {
+pub(crate) enum Held {
     /// With its name.
     Truth(String, Arc<Truth>),
     /// What the tessellation converges to.
@@ -37,7 +37,12 @@ impl TruthOption {
     ///
     /// # Errors
     /// The truth can't be read, or doesn't move as the mesh does.
-    pub fn held(&self, loaded: &Loaded, surface: &SurfaceOptions, is_shown: bool) -> Result<Option<Held>, CliError> {
+    pub(crate) fn held(
+        &self,
+        loaded: &Loaded,
+        surface: &SurfaceOptions,
+        is_shown: bool,
+    ) -> Result<Option<Held>, CliError> {
         let moves = surface.animation.animation.is_some();
         if let Some(source) = &self.truth {
             if moves {
@@ -59,7 +64,7 @@ impl TruthOption {
 
 impl Held {
     /// For what was emitted with these inputs.
-    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
+    pub(crate) fn target(&self, inputs: &Inputs) -> DeviationTarget {
         match self {
             Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
             Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
@@ -67,7 +72,7 @@ impl Held {
     }
 
     /// The truth and its name, if it is more than what the tessellation converges to.
-    pub fn truth(&self) -> Option<(&str, &Truth)> {
+    pub(crate) fn truth(&self) -> Option<(&str, &Truth)> {
         match self {
             Self::Truth(name, truth) => Some((name, truth)),
             Self::Limit => None,
@@ -77,7 +82,7 @@ impl Held {
 
 /// How far all that was emitted is from the truth, sampled.
 #[derive(Debug, Serialize)]
-pub struct AccuracyStats {
+pub(super) struct AccuracyStats {
     truth: String,
     /// Of the truth's bounding box, in object units.
     diagonal: f64,
@@ -108,7 +113,7 @@ struct AngleStats {
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
-    pub fn new(truth: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
+    pub(super) fn new(truth: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
         let distances = |distances: Distances| {
             let (Distances { largest, rms }, relative) = (distances, accuracy.relative(distances));
             DistanceStats { max: largest, rms, max_of_diagonal: relative.largest, rms_of_diagonal: relative.rms }
@@ -127,7 +132,7 @@ impl AccuracyStats {
 
 /// What the overlay shows, in object units.
 #[derive(Debug, Serialize)]
-pub struct DeviationStats {
+pub(super) struct DeviationStats {
     max: f64,
     rms: f64,
     /// What the first and the last colour stand for, when distances are in object units; between them it is logarithmic.
@@ -147,7 +152,7 @@ struct WorstStats {
 }
 
 impl DeviationStats {
-    pub fn new(field: &DeviationField, scale: Scale) -> Self {
+    pub(super) fn new(field: &DeviationField, scale: Scale) -> Self {
         let max = field.worst().map_or(0.0, |worst| worst.value);
         let worst = field.worst().map(|worst| {
             let [emitted, truth] = [worst.emitted, worst.truth].map(|place: DVec3| place.to_array());

@@ -71,74 +71,74 @@ fn unless(holds: bool, why_not: &'static str) -> Option<&'static str> {
     if holds { None } else { Some(why_not) }
 }
 
-pub fn document(now: &Availability) -> Option<&'static str> {
+pub(super) fn document(now: &Availability) -> Option<&'static str> {
     unless(now.has_document, "No mesh is open.")
 }
 
-pub fn picture(now: &Availability) -> Option<&'static str> {
+pub(super) fn picture(now: &Availability) -> Option<&'static str> {
     unless(now.has_picture, "Nothing is drawn yet.")
 }
 
-pub fn export(now: &Availability) -> Option<&'static str> {
+pub(super) fn export(now: &Availability) -> Option<&'static str> {
     document(now).or(unless(!now.is_exporting, "A mesh is being exported."))
 }
 
-pub fn truth(now: &Availability) -> Option<&'static str> {
+pub(super) fn truth(now: &Availability) -> Option<&'static str> {
     unless(now.has_truth, "No reference surface was chosen.")
 }
 
-pub fn undo(now: &Availability) -> Option<&'static str> {
+pub(super) fn undo(now: &Availability) -> Option<&'static str> {
     unless(now.can_undo, "No setting was changed.")
 }
 
-pub fn redo(now: &Availability) -> Option<&'static str> {
+pub(super) fn redo(now: &Availability) -> Option<&'static str> {
     unless(now.can_redo, "No change was undone.")
 }
 
 /// Why patches that show their backs can't be left out.
-pub const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen: it is open, a part of it is wound inward, a material is \
+pub(crate) const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen: it is open, a part of it is wound inward, a material is \
                                   double-sided, it is displaced, or it moves.";
 
-pub fn selection(now: &Availability) -> Option<&'static str> {
+pub(super) fn selection(now: &Availability) -> Option<&'static str> {
     unless(now.has_selection, "Nothing is selected.")
 }
 
-pub fn selected_patch(now: &Availability) -> Option<&'static str> {
+pub(super) fn selected_patch(now: &Availability) -> Option<&'static str> {
     unless(now.has_selected_patch, "No patch is selected: click on one.")
 }
 
-pub fn heights(now: &Availability) -> Option<&'static str> {
+pub(super) fn heights(now: &Availability) -> Option<&'static str> {
     unless(now.has_heights, "The mesh has no heights: choose a height image.")
 }
 
-pub fn factor(now: &Availability) -> Option<&'static str> {
+pub(super) fn factor(now: &Availability) -> Option<&'static str> {
     unless(now.takes_factor, "Adaptive LOD computes a factor for every edge.")
 }
 
-pub fn lod(now: &Availability) -> Option<&'static str> {
+pub(super) fn lod(now: &Availability) -> Option<&'static str> {
     unless(now.takes_lod, LOD_IS_FIXED)
 }
 
-pub fn culling(now: &Availability) -> Option<&'static str> {
+pub(super) fn culling(now: &Availability) -> Option<&'static str> {
     unless(now.can_cull_back_faces, BACKS_ARE_SEEN)
 }
 
-pub fn split(now: &Availability) -> Option<&'static str> {
+pub(super) fn split(now: &Availability) -> Option<&'static str> {
     unless(now.is_split, "Only a split view has a left half.")
 }
 
-pub fn deviation(now: &Availability) -> Option<&'static str> {
+pub(super) fn deviation(now: &Availability) -> Option<&'static str> {
     unless(now.shows_deviation, "Only deviation colours distances.")
 }
 
-pub fn measure_chart(now: &Availability) -> Option<&'static str> {
+pub(super) fn measure_chart(now: &Availability) -> Option<&'static str> {
     unless(now.can_measure_chart, "The chart is not open, or has no surface and LOD to measure.")
 }
 
-pub fn chart(now: &Availability) -> Option<&'static str> {
+pub(super) fn chart(now: &Availability) -> Option<&'static str> {
     unless(now.has_chart, "The chart has no points yet.")
 }
 
-pub fn clips(now: &Availability) -> Option<&'static str> {
+pub(super) fn clips(now: &Availability) -> Option<&'static str> {
     unless(!now.clips.is_empty(), "The mesh has no animation.")
 }

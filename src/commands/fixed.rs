@@ -10,11 +10,11 @@ use crate::mesh::Shape;
 use crate::render::Standpoint;
 
 /// What displacing by a height image does.
-pub const HEIGHT_IMAGE: &str =
+pub(crate) const HEIGHT_IMAGE: &str =
     "Displaces the mesh by the brightness of a PNG or JPEG image, which covers all materials.";
 
 /// All of them, in the order of the menus.
-pub fn commands() -> Vec<Command> {
+pub(super) fn commands() -> Vec<Command> {
     [file(), edit(), view(), camera(), look(), tessellation(), help()].into_iter().flatten().collect()
 }
 

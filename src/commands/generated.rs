@@ -16,7 +16,7 @@ const CLIPS: usize = 1000;
 /// The width of the crease band that is switched on by a command, as a part of the bounding diagonal.
 const CREASE_BAND: f32 = 0.02;
 
-pub fn commands(now: &Availability) -> Vec<Command> {
+pub(super) fn commands(now: &Availability) -> Vec<Command> {
     let mut all = settings();
     all.extend(colors_and_overlays());
     all.extend(mesh());

@@ -17,9 +17,9 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use crate::mesh::Shape;
 use crate::render::Standpoint;
 
-pub use availability::{Availability, BACKS_ARE_SEEN};
-pub use change::Change;
-pub use fixed::HEIGHT_IMAGE;
+pub(crate) use availability::{Availability, BACKS_ARE_SEEN};
+pub(crate) use change::Change;
+pub(crate) use fixed::HEIGHT_IMAGE;
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -231,7 +231,7 @@ impl Command {
 }
 
 /// The keys of an action as hover texts name them; empty without any.
-pub fn key_name(action: &Action) -> &'static str {
+pub(crate) fn key_name(action: &Action) -> &'static str {
     static NAMES: LazyLock<Vec<(Action, String)>> = LazyLock::new(|| {
         let named = |command: Command| (command.action, key_names(&command.keys));
         all(&Availability::default()).into_iter().map(named).collect()
@@ -240,7 +240,7 @@ pub fn key_name(action: &Action) -> &'static str {
 }
 
 /// A sentence, and the keys of the action that it tells of.
-pub fn with_key(sentence: &str, action: &Action) -> String {
+pub(crate) fn with_key(sentence: &str, action: &Action) -> String {
     match key_name(action) {
         "" => sentence.to_owned(),
         keys => format!("{} ({keys}).", sentence.trim_end_matches('.')),
@@ -248,23 +248,23 @@ pub fn with_key(sentence: &str, action: &Action) -> String {
 }
 
 /// Keys as they are called where the platform has no names of its own for them.
-pub fn key_names(keys: &[KeyboardShortcut]) -> String {
+pub(crate) fn key_names(keys: &[KeyboardShortcut]) -> String {
     let name = |key: &KeyboardShortcut| key.format(&egui::ModifierNames::NAMES, false);
     keys.iter().map(name).collect::<Vec<_>>().join(", ")
 }
 
 /// Every command that there is now.
-pub fn all(now: &Availability) -> Vec<Command> {
+pub(crate) fn all(now: &Availability) -> Vec<Command> {
     let mut all = fixed::commands();
     all.extend(generated::commands(now));
     all
 }
 
 /// The shortcut that closes the window, for a screen that has no other command.
-pub const QUIT: KeyboardShortcut = ctrl(Key::Q);
+pub(crate) const QUIT: KeyboardShortcut = ctrl(Key::Q);
 
 /// What the pointer does in the picture: no command, but listed with the keys.
-pub const GESTURES: [(&str, &str); 4] = [
+pub(crate) const GESTURES: [(&str, &str); 4] = [
     ("Click", "Selects the triangle, its patch and its nearest edge."),
     ("Left drag", "Orbits."),
     ("Middle drag, Shift+left drag", "Pans."),

@@ -11,14 +11,14 @@ use super::{ExportError, Exported};
 use crate::mesh::Texture;
 
 /// A GLB file's length is 32 bits; leave room for its JSON.
-pub const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
+pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
 
 /// Size of the attributes and indices of a mesh.
-pub fn bytes(vertices: u64, triangles: u64) -> u64 {
+pub(super) fn bytes(vertices: u64, triangles: u64) -> u64 {
     vertices * 32 + triangles * 12
 }
 
-pub fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
+pub(super) fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
     let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
     let bytes = bytes(mesh.positions.len() as u64, triangles as u64);
     if bytes > MAX_BYTES {

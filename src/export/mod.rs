@@ -14,7 +14,7 @@ use crate::names::shown_path;
 use crate::tessellate::{Tessellated, linear_normal, linear_uv};
 
 /// A mesh with attributes, one run of triangles a material.
-pub struct Exported<'a> {
+pub(crate) struct Exported<'a> {
     pub mesh: &'a Mesh,
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
@@ -24,7 +24,7 @@ pub struct Exported<'a> {
 }
 
 #[derive(Debug, Error)]
-pub enum ExportError {
+pub(crate) enum ExportError {
     #[error("{path}: the name must end in .glb or .obj")]
     Extension { path: String },
     #[error("{path}: could not be written ({})", file_reason(reason))]
@@ -40,7 +40,7 @@ pub enum ExportError {
 impl<'a> Exported<'a> {
     /// Attributes of every emitted vertex: positions and uvs as they are; normals in full precision, which what is drawn
     /// doesn't need.
-    pub fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
         let corners = |patch: u32| topology.patch_corners(patch).map(|c| &mesh.corners[c as usize]);
         let vertices = &tessellated.vertices;
         let attributes = vertices.iter().map(|vertex| {
@@ -62,7 +62,7 @@ impl<'a> Exported<'a> {
     ///
     /// # Errors
     /// Another ending than .glb or .obj, or more than the format holds.
-    pub fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
+    pub(crate) fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
         let shown = shown_path(path);
         match ending(path).as_str() {
             // Indices of either are 32 bits here.
@@ -78,7 +78,7 @@ impl<'a> Exported<'a> {
     ///
     /// # Errors
     /// Another ending, a file that can't be written, or more than the format holds.
-    pub fn write(&self, path: &Path) -> Result<(), ExportError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), ExportError> {
         let shown = shown_path(path);
         let bytes = match ending(path).as_str() {
             "glb" => glb::encode(self, &shown)?,
@@ -90,6 +90,6 @@ impl<'a> Exported<'a> {
 }
 
 /// In lower case; empty without one.
-pub fn ending(path: &Path) -> String {
+pub(crate) fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }

@@ -6,7 +6,7 @@ use crate::tessellate::{Displacement, Normals, Partitioning, Surface, Tessellati
 
 /// One question, and a tile for every answer.
 #[derive(Clone, Debug)]
-pub struct Exhibit {
+pub(crate) struct Exhibit {
     /// Of its picture's file.
     pub name: &'static str,
     pub title: &'static str,
@@ -19,7 +19,7 @@ pub struct Exhibit {
 
 /// One technique.
 #[derive(Clone, Debug)]
-pub struct Tile {
+pub(crate) struct Tile {
     /// As the command line has it.
     pub name: String,
     /// What it is, and whose: a sentence.
@@ -50,7 +50,7 @@ impl Tile {
 }
 
 /// All of them, in the order in which a patch is made: surface, creases, normals, pattern, heights.
-pub fn exhibits() -> [Exhibit; 5] {
+pub(crate) fn exhibits() -> [Exhibit; 5] {
     [surfaces(), creases(), normals(), patterns(), heights()]
 }
 
@@ -137,7 +137,7 @@ fn heights() -> Exhibit {
 }
 
 /// A height image for shapes made in code: waves that repeat with it.
-pub fn waves(mesh: &Mesh) -> Heights {
+pub(super) fn waves(mesh: &Mesh) -> Heights {
     const SIZE: u32 = 128;
     let height = |i: u32| {
         let [x, y] = [i % SIZE, i / SIZE].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / SIZE as f32);

@@ -10,9 +10,9 @@ use glam::Vec3;
 use image::RgbImage;
 use thiserror::Error;
 
-pub use exhibits::{Exhibit, Tile, exhibits};
-pub use page::{PAGE, page};
-pub use tile::Shown;
+pub(crate) use exhibits::{Exhibit, Tile, exhibits};
+pub(crate) use page::{PAGE, page};
+pub(crate) use tile::Shown;
 
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
@@ -27,7 +27,7 @@ use tile::{Wall, draw_tile};
 
 /// Why there is no gallery.
 #[derive(Debug, Error)]
-pub enum GalleryError {
+pub(crate) enum GalleryError {
     #[error(transparent)]
     Load(#[from] LoadError),
     #[error(transparent)]
@@ -51,7 +51,7 @@ const FARTHEST: f32 = 1.1;
 
 /// What is looked at, and how.
 #[derive(Clone, Debug)]
-pub struct Look {
+pub(crate) struct Look {
     /// The mesh; none for a shape made in code that suits each exhibit.
     pub source: Option<Source>,
     pub preparation: Preparation,
@@ -66,7 +66,7 @@ pub struct Look {
 }
 
 /// The room in which exhibits are hung.
-pub struct Gallery<'a> {
+pub(crate) struct Gallery<'a> {
     look: Look,
     engine: &'a Engine,
     /// What was loaded already: a mesh of one's own is in every exhibit.
@@ -74,7 +74,7 @@ pub struct Gallery<'a> {
 }
 
 impl<'a> Gallery<'a> {
-    pub fn new(look: Look, engine: &'a Engine) -> Self {
+    pub(crate) fn new(look: Look, engine: &'a Engine) -> Self {
         Self { look, engine, loaded: Vec::new() }
     }
 
@@ -83,7 +83,7 @@ impl<'a> Gallery<'a> {
     ///
     /// # Errors
     /// [`GalleryError`].
-    pub fn draw(
+    pub(crate) fn draw(
         &mut self,
         exhibit: &Exhibit,
         mut starting: impl FnMut(usize),
@@ -115,7 +115,7 @@ impl<'a> Gallery<'a> {
     ///
     /// # Errors
     /// It can't be loaded.
-    pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
+    pub(crate) fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
         match self.look.source.clone() {
             Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),
             None => Ok(Vec::new()),

@@ -7,7 +7,7 @@ use crate::markdown;
 use crate::numbers::{grouped, hundredths, short};
 
 /// The page's file.
-pub const PAGE: &str = "gallery.md";
+pub(crate) const PAGE: &str = "gallery.md";
 
 /// What the columns and colours mean.
 const LEGEND: &str = "Red edges: their sides are half a px apart or more, in this view. Blue ones: less, if only by the last \
@@ -34,7 +34,7 @@ const COLUMNS: [&str; 11] = [
 
 /// Every exhibit with its picture, and a line for each of its tiles. `subject` is the mesh, if one was named; `adapter` is
 /// what drew.
-pub fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<Shown>)]) -> String {
+pub(crate) fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<Shown>)]) -> String {
     let on = subject.map_or("shapes made in code".to_owned(), ToOwned::to_owned);
     let mut text = format!(
         "# Every technique, side by side\n\nWritten by `pnaen gallery -o DIR`: {on}, drawn and timed on {adapter}.\n\n{LEGEND}"

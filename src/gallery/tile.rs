@@ -23,7 +23,7 @@ const CALM_COLOR: [u8; 3] = [120, 160, 205];
 const HALF_WIDTHS: [f32; 2] = [1.25, 0.75];
 
 /// What an exhibit's tiles have in common.
-pub struct Wall<'a> {
+pub(super) struct Wall<'a> {
     pub engine: &'a Engine,
     pub target: &'a Target,
     pub camera: &'a Camera,
@@ -32,7 +32,7 @@ pub struct Wall<'a> {
 
 /// What one tile showed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub(crate) struct Shown {
     pub factor: f32,
     pub triangles: u64,
     /// The largest distance on screen between what was drawn and its surface, in px; none if nothing is in view.
@@ -50,7 +50,7 @@ pub struct Shown {
 }
 
 /// The same with a factor that the mesh isn't too large for; a whole one, if it has to be lower than asked.
-pub fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
+pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     // The tessellator makes about 1.5 triangles a patch for each square of the factor.
     let most = (MOST_TRIANGLES / (1.5 * scene.tessellator.topology().patches.len().max(1) as f32)).sqrt();
     debug_assert!(inputs.tessellation.lod == Lod::Uniform);
@@ -63,7 +63,7 @@ pub fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     }
 }
 
-pub fn draw_tile(
+pub(super) fn draw_tile(
     wall: &Wall,
     settings: Settings,
     loaded: &Loaded,

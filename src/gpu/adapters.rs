@@ -90,7 +90,7 @@ impl AdapterChoice {
 }
 
 /// What adapters are looked for by. OpenGL shows no texture in another format than it has, which pictures need.
-pub const BACKENDS: wgpu::Backends = wgpu::Backends::PRIMARY;
+pub(crate) const BACKENDS: wgpu::Backends = wgpu::Backends::PRIMARY;
 
 fn instance() -> wgpu::Instance {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
@@ -101,7 +101,7 @@ fn instance() -> wgpu::Instance {
 ///
 /// # Errors
 /// There is none.
-pub fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
+pub(crate) fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
     let instance = instance();
     let options =
         wgpu::RequestAdapterOptions { power_preference: wgpu::PowerPreference::HighPerformance, ..Default::default() };
@@ -109,7 +109,7 @@ pub fn best_adapter() -> Result<wgpu::Adapter, GpuError> {
 }
 
 /// All adapters that there are, graphics cards first and software last.
-pub fn adapters() -> Vec<wgpu::Adapter> {
+pub(crate) fn adapters() -> Vec<wgpu::Adapter> {
     let instance = instance();
     let mut all = pollster::block_on(instance.enumerate_adapters(BACKENDS));
     all.sort_by_key(|adapter| match adapter.get_info().device_type {
@@ -123,7 +123,7 @@ pub fn adapters() -> Vec<wgpu::Adapter> {
 }
 
 /// What an adapter is, in words.
-pub fn kind(device_type: wgpu::DeviceType) -> &'static str {
+pub(crate) fn kind(device_type: wgpu::DeviceType) -> &'static str {
     match device_type {
         wgpu::DeviceType::DiscreteGpu => "graphics card",
         wgpu::DeviceType::IntegratedGpu => "integrated",

@@ -9,7 +9,7 @@ use super::{Gpu, GpuError};
 use crate::tessellate::{Partitioning, point_count, process, triangle_count};
 
 /// Memory for the vertices and triangles of one chunk.
-pub struct Arena {
+pub(super) struct Arena {
     /// The first halves of all vertices that there is room for, then the second halves: see `Vertex` in `shaders/types.wgsl`.
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
@@ -23,7 +23,7 @@ impl Arena {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Gpu, patch_count: u32, arena_bytes: u64) -> Result<Self, GpuError> {
         let (patch_vertices, patch_triangles) = largest_patch();
         let limits = gpu.device.limits();
         let half = (arena_bytes / 2).min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
@@ -39,7 +39,7 @@ impl Arena {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn with_room(gpu: &Gpu, vertices: u32, triangles: u32) -> Result<Self, GpuError> {
+    pub(super) fn with_room(gpu: &Gpu, vertices: u32, triangles: u32) -> Result<Self, GpuError> {
         let (patch_vertices, patch_triangles) = largest_patch();
         let (vertex_capacity, triangle_capacity) = (vertices.max(patch_vertices), triangles.max(patch_triangles));
         Ok(Self {
@@ -52,7 +52,7 @@ impl Arena {
 
     /// A bound on the number of chunks that any tessellation of so many patches takes. It follows from this: every chunk but the
     /// last has no room left for the vertices, or for the triangles, of one more patch.
-    pub fn chunk_capacity(&self, patch_count: u32) -> u32 {
+    pub(super) fn chunk_capacity(&self, patch_count: u32) -> u32 {
         let (patch_vertices, patch_triangles) = largest_patch();
         let full = |capacity: u32, patch: u32| {
             let needed = u64::from(patch) * u64::from(patch_count);
@@ -63,10 +63,10 @@ impl Arena {
 }
 
 /// Bytes of half a vertex: its position and normal, or its key and texture coordinates.
-pub const VERTEX_HALF: u64 = 16;
+pub(crate) const VERTEX_HALF: u64 = 16;
 
 /// Puts vertices together: `halves` holds the first halves of all of them, then the second halves.
-pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
+pub(crate) fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
     let (first, second) = halves.split_at(halves.len() / 2);
     let half = VERTEX_HALF as usize;
     let whole = |(a, b): (&[u8], &[u8])| {

@@ -9,7 +9,7 @@ use super::pipelines::{ComputePipeline, ComputePipelines, bind_group};
 use super::{Gpu, GpuError};
 
 /// What passes are bound to, besides the buffers of a slab.
-pub struct PassInputs<'a> {
+pub(super) struct PassInputs<'a> {
     pub gpu: &'a Gpu,
     pub pipelines: &'a ComputePipelines,
     pub mesh: &'a MeshBuffers,
@@ -21,7 +21,7 @@ pub struct PassInputs<'a> {
 }
 
 /// A compute pipeline, and its bind group 0.
-pub struct BoundPass {
+pub(crate) struct BoundPass {
     pub pipeline: wgpu::ComputePipeline,
     pub group: wgpu::BindGroup,
 }
@@ -31,7 +31,11 @@ impl BoundPass {
     ///
     /// # Errors
     /// The pipeline can't be made: out of memory, or a lost device.
-    pub fn new(gpu: &Gpu, pipeline: &ComputePipeline, buffers: &[(u32, &wgpu::Buffer)]) -> Result<Self, GpuError> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        pipeline: &ComputePipeline,
+        buffers: &[(u32, &wgpu::Buffer)],
+    ) -> Result<Self, GpuError> {
         let (label, pipeline) = (pipeline.entry_point(), pipeline.get(gpu)?.clone());
         let group = bind_group(gpu, label, &pipeline.get_bind_group_layout(0), buffers);
         Ok(Self { pipeline, group })
@@ -41,7 +45,7 @@ impl BoundPass {
     ///
     /// # Errors
     /// The pipeline can't be made: out of memory, or a lost device.
-    pub fn once<'a>(
+    pub(crate) fn once<'a>(
         cell: &'a OnceLock<Self>,
         gpu: &Gpu,
         pipeline: &ComputePipeline,
@@ -51,7 +55,7 @@ impl BoundPass {
     }
 
     /// Runs it over a grid of workgroups.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass, [x, y, z]: [u32; 3]) {
+    pub(crate) fn dispatch(&self, pass: &mut wgpu::ComputePass, [x, y, z]: [u32; 3]) {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.group, &[]);
         pass.dispatch_workgroups(x, y, z);

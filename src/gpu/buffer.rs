@@ -10,7 +10,7 @@ use super::{Gpu, GpuError};
 ///
 /// # Errors
 /// It would be larger than the adapter binds.
-pub fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu::Buffer, GpuError> {
+pub(super) fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu::Buffer, GpuError> {
     check_size::<T>(gpu, what, items.len())?;
     let zero = [T::zeroed()];
     Ok(gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -25,7 +25,7 @@ pub fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Result<wgpu
 ///
 /// # Errors
 /// It would be larger than the adapter binds.
-pub fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buffer, GpuError> {
+pub(crate) fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buffer, GpuError> {
     check_size::<T>(gpu, what, count)?;
     Ok(gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(what),
@@ -40,7 +40,7 @@ pub fn empty<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<wgpu::Buf
 }
 
 /// A buffer that shaders bind as a uniform or as storage, and that the host may write again.
-pub fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
+pub(crate) fn uniform_buffer(gpu: &Gpu, label: &str, contents: &[u8]) -> wgpu::Buffer {
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: Some(label),
         contents,

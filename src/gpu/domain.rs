@@ -16,7 +16,7 @@ use crate::tessellate::Partitioning;
 /// Twin of `DomainParams` in `shaders/pass_domain.wgsl`.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct DomainParams {
+pub(crate) struct DomainParams {
     pub partitioning: u32,
     pub set_count: u32,
 }
@@ -30,7 +30,7 @@ pub(crate) const DOMAIN_TRIANGLES: usize = 6144;
 
 /// What the tessellator makes of one set of factors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct DomainPattern {
+pub(crate) struct DomainPattern {
     /// U and V in 16.16 fixed point.
     pub points: Vec<[u32; 2]>,
     /// Indices into `points`.
@@ -38,7 +38,7 @@ pub struct DomainPattern {
 }
 
 /// The pass that runs the tessellator. Its pipeline is made when it first runs.
-pub struct DomainPass {
+pub(crate) struct DomainPass {
     pipeline: ComputePipeline,
 }
 
@@ -49,7 +49,7 @@ impl Default for DomainPass {
 }
 
 impl DomainPass {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new(&PASS_DOMAIN)), "domain_main") }
     }
 
@@ -57,7 +57,7 @@ impl DomainPass {
     ///
     /// # Errors
     /// More sets than the adapter binds memory for, or a lost device.
-    pub fn run(
+    pub(crate) fn run(
         &self,
         gpu: &Gpu,
         partitioning: Partitioning,

@@ -11,7 +11,7 @@ use crate::tessellate::HullFactors;
 ///
 /// # Errors
 /// More patches than the adapter binds memory for, or a lost device.
-pub fn read(on: &PassInputs) -> Result<Vec<HullFactors>, GpuError> {
+pub(super) fn read(on: &PassInputs) -> Result<Vec<HullFactors>, GpuError> {
     let (gpu, mesh) = (on.gpu, on.mesh);
     let written = empty::<HullFactors>(gpu, "hull factors", mesh.patch_count as usize)?;
     let buffers = [

@@ -3,13 +3,13 @@
 
 use bytemuck::{Pod, Zeroable};
 
-pub use crate::mesh::rig::{Binding, Delta, JointMatrix};
-pub use crate::tessellate::{PatchFactors, Vertex};
+pub(crate) use crate::mesh::rig::{Binding, Delta, JointMatrix};
+pub(crate) use crate::tessellate::{PatchFactors, Vertex};
 
 /// The view that factors are computed for.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct LodView {
+pub(crate) struct LodView {
     pub clip_from_object: [[f32; 4]; 4],
     pub half_viewport: [f32; 2],
     /// How far what is emitted may be from the surface, in object units: it is displaced.
@@ -20,12 +20,12 @@ pub struct LodView {
 }
 
 /// A value of [`Params::lod`] that no [`crate::tessellate::Lod`] has: the factors of every patch were given.
-pub const LOD_GIVEN: u32 = 5;
+pub(crate) const LOD_GIVEN: u32 = 5;
 
 /// Settings and view of one tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Params {
+pub(crate) struct Params {
     pub view: LodView,
     pub factor: f32,
     pub pixels_per_segment: f32,
@@ -62,7 +62,7 @@ pub struct Params {
 /// The run of patches that one scan covers, and how much fits the arena.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Slab {
+pub(crate) struct Slab {
     pub first_patch: u32,
     pub patch_count: u32,
     pub vertex_capacity: u32,
@@ -87,7 +87,7 @@ pub struct Patch {
 /// A corner's shading attributes.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Corner {
+pub(crate) struct Corner {
     pub normal: [f32; 3],
     pub _pad: f32,
     pub uv: [f32; 2],
@@ -97,7 +97,7 @@ pub struct Corner {
 /// A curve, which some or all sides of an edge share: its end points in the edge's direction, and its run of sides.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Curve {
+pub(crate) struct Curve {
     pub points: [u32; 2],
     pub first_side: u32,
     pub side_count: u32,
@@ -120,7 +120,7 @@ pub struct CurveNet {
 /// - further height images of edges' sides, which `next` leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Share {
+pub(crate) struct Share {
     pub direction: [f32; 3],
     pub level: f32,
     /// 4 times a patch, plus which of its corners or sides.
@@ -137,7 +137,7 @@ pub struct Share {
 /// those of all images.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct HeightMap {
+pub(crate) struct HeightMap {
     pub size: [u32; 2],
     pub levels: u32,
     pub start: u32,
@@ -161,7 +161,7 @@ pub struct Chunk {
 /// Indirect arguments of the two dispatches that emit a chunk, and of the one that displaces it.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct EmitArgs {
+pub(crate) struct EmitArgs {
     pub vertices: [u32; 3],
     pub triangles: [u32; 3],
     pub displaced: [u32; 3],
@@ -171,7 +171,7 @@ pub struct EmitArgs {
 /// whose shader fetches (pulls) each corner's vertex itself.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct DrawArgs {
+pub(crate) struct DrawArgs {
     pub index_count: u32,
     pub instance_count: u32,
     pub first_index: u32,

@@ -7,7 +7,7 @@ use super::{Gpu, GpuError};
 /// Something that is made on a device when it is first needed, once, and then kept: a pipeline, say, whose shaders the driver
 /// takes a while to compile.
 #[derive(Debug)]
-pub struct Lazy<T> {
+pub(crate) struct Lazy<T> {
     made: OnceLock<T>,
     /// Held by the thread that makes it.
     making: Mutex<()>,
@@ -27,7 +27,7 @@ impl<T> Lazy<T> {
     ///
     /// # Errors
     /// Out of memory, a refused command, or a lost device.
-    pub fn get_or_make(&self, gpu: &Gpu, make: impl FnOnce() -> T) -> Result<&T, GpuError> {
+    pub(crate) fn get_or_make(&self, gpu: &Gpu, make: impl FnOnce() -> T) -> Result<&T, GpuError> {
         if let Some(made) = self.made.get() {
             return Ok(made);
         }
@@ -42,7 +42,7 @@ impl<T> Lazy<T> {
 
     /// Whether it was made.
     #[cfg(test)]
-    pub fn is_made(&self) -> bool {
+    pub(crate) fn is_made(&self) -> bool {
         self.made.get().is_some()
     }
 }
@@ -51,7 +51,7 @@ impl<T> Lazy<T> {
 ///
 /// # Errors
 /// Those of `make`.
-pub fn get_or_try<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
+pub(super) fn get_or_try<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
     match cell.get() {
         Some(made) => Ok(made),
         None => {

@@ -8,7 +8,7 @@ use super::relief_buffers::{HeightImages, ReliefBuffers};
 
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.
 #[derive(Default)]
-pub struct MeshPasses {
+pub(super) struct MeshPasses {
     curve_nets: OnceLock<BoundPass>,
     centers: OnceLock<BoundPass>,
     directions: OnceLock<BoundPass>,
@@ -23,7 +23,7 @@ type Bound<'a> = Result<&'a BoundPass, GpuError>;
 
 impl MeshPasses {
     /// The control points of every curve.
-    pub fn curve_nets(&self, on: &PassInputs) -> Bound<'_> {
+    pub(super) fn curve_nets(&self, on: &PassInputs) -> Bound<'_> {
         let mesh = on.mesh;
         let buffers = [
             (0, on.params),
@@ -37,21 +37,21 @@ impl MeshPasses {
     }
 
     /// The control point at the centre of every patch.
-    pub fn centers(&self, on: &PassInputs) -> Bound<'_> {
+    pub(super) fn centers(&self, on: &PassInputs) -> Bound<'_> {
         let mesh = on.mesh;
         let buffers = [(0, on.params), (1, &mesh.points), (5, &mesh.patches), (6, &mesh.curve_nets)];
         BoundPass::once(&self.centers, on.gpu, &on.pipelines.centers, &buffers)
     }
 
     /// The direction in which displacement moves every point.
-    pub fn directions(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
+    pub(super) fn directions(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
         let buffers =
             [(0, on.params), (2, &on.mesh.corners), (6, &on.mesh.shares), (7, &relief.part_starts), (8, &relief.parts)];
         BoundPass::once(&self.directions, on.gpu, &on.pipelines.directions, &buffers)
     }
 
     /// How texture coordinates change at every corner.
-    pub fn frames(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
+    pub(super) fn frames(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
         let mesh = on.mesh;
         let buffers = [
             (0, on.params),
@@ -66,18 +66,18 @@ impl MeshPasses {
     }
 
     /// LOD's factor of every edge.
-    pub fn edge_factors(&self, on: &PassInputs) -> Bound<'_> {
+    pub(super) fn edge_factors(&self, on: &PassInputs) -> Bound<'_> {
         BoundPass::once(&self.edge_factors, on.gpu, &on.pipelines.edge_factors, &factor_buffers(on))
     }
 
     /// The factor that the heights of every patch need inside it.
-    pub fn heights_inside(&self, on: &PassInputs) -> Bound<'_> {
+    pub(super) fn heights_inside(&self, on: &PassInputs) -> Bound<'_> {
         let buffers = [&factor_buffers(on)[..], &[(7, &on.mesh.patches)]].concat();
         BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
     }
 
     /// The level at which heights are looked up on every edge.
-    pub fn factor_levels(&self, on: &PassInputs, images: &HeightImages) -> Bound<'_> {
+    pub(super) fn factor_levels(&self, on: &PassInputs, images: &HeightImages) -> Bound<'_> {
         let mesh = on.mesh;
         let buffers = [
             (0, on.params),
@@ -93,7 +93,7 @@ impl MeshPasses {
     }
 
     /// The level at which heights are looked up at every point.
-    pub fn point_levels(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
+    pub(super) fn point_levels(&self, on: &PassInputs, relief: &ReliefBuffers) -> Bound<'_> {
         let buffers = [(0, on.params), (6, &on.mesh.shares), (7, &relief.factor_starts), (9, &relief.factors)];
         BoundPass::once(&self.point_levels, on.gpu, &on.pipelines.point_levels, &buffers)
     }

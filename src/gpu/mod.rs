@@ -7,42 +7,42 @@
 //!
 //! Pipelines are made when they are first needed, so recording a pass may fail.
 
-mod adapters;
+pub(crate) mod adapters;
 mod arena;
 mod bound_pass;
 mod buffer;
-mod device;
+pub(crate) mod device;
 pub(crate) mod domain;
 mod error;
 mod hull;
-pub mod layout;
+pub(crate) mod layout;
 mod lazy;
 mod mesh_buffers;
 mod mesh_passes;
 mod params;
 mod pipelines;
-mod readback;
-mod recorder;
+pub(crate) mod readback;
+pub(crate) mod recorder;
 pub(crate) mod relief_buffers;
 mod rig;
 mod slab;
 mod tessellator;
 pub(crate) mod wgsl;
 
-pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, kind};
-pub use arena::{VERTEX_HALF, vertices_of};
-pub use bound_pass::BoundPass;
-pub use buffer::{empty, uniform_buffer};
-pub use device::{Gpu, device_descriptor};
-pub use domain::{DomainParams, DomainPass, DomainPattern};
+pub(crate) use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, kind};
+pub(crate) use arena::{VERTEX_HALF, vertices_of};
+pub(crate) use bound_pass::BoundPass;
+pub(crate) use buffer::{empty, uniform_buffer};
+pub(crate) use device::{Gpu, device_descriptor};
+pub(crate) use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;
-pub use lazy::Lazy;
-pub use mesh_buffers::MeshBuffers;
-pub use pipelines::{ComputePipeline, ComputePipelines, GRID_WIDTH, ShaderModule, WORKGROUP, bind_group, grid};
-pub use readback::{Readback, read_buffer, read_buffers, read_texture};
-pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
-pub use tessellator::{ChunkBuffers, Tessellator};
-pub use wgsl::WgslFile;
+pub(crate) use lazy::Lazy;
+pub(crate) use mesh_buffers::MeshBuffers;
+pub(crate) use pipelines::{ComputePipeline, ComputePipelines, GRID_WIDTH, ShaderModule, WORKGROUP, bind_group, grid};
+pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
+pub(crate) use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
+pub(crate) use tessellator::{ChunkBuffers, Tessellator};
+pub(crate) use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
 #[cfg(test)]

@@ -7,7 +7,13 @@ use crate::tessellate::{self, Clip, Inputs, Lod};
 
 /// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
 /// `is_given`: factors were given in place of LOD's. `culls_back`: patches that face away are left out.
-pub fn params_of(inputs: &Inputs, mesh: &Mesh, buffers: &MeshBuffers, is_given: bool, culls_back: bool) -> Params {
+pub(super) fn params_of(
+    inputs: &Inputs,
+    mesh: &Mesh,
+    buffers: &MeshBuffers,
+    is_given: bool,
+    culls_back: bool,
+) -> Params {
     let lod = if is_given { None } else { Some(inputs.tessellation.lod) };
     let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
     let by_distance = lod == Some(Lod::Distance);

@@ -199,7 +199,7 @@ impl ComputePipelines {
 }
 
 /// A bind group of whole buffers, each at its binding number.
-pub fn bind_group(
+pub(crate) fn bind_group(
     gpu: &Gpu,
     label: &str,
     layout: &wgpu::BindGroupLayout,
@@ -213,13 +213,13 @@ pub fn bind_group(
 }
 
 /// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
-pub const WORKGROUP: u32 = 256;
+pub(crate) const WORKGROUP: u32 = 256;
 
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
-pub fn grid(items: u32) -> [u32; 3] {
+pub(crate) fn grid(items: u32) -> [u32; 3] {
     let workgroups = items.div_ceil(WORKGROUP);
     [workgroups.min(GRID_WIDTH), workgroups.div_ceil(GRID_WIDTH), 1]
 }
 
 /// `GRID_WIDTH` in `shaders/types.wgsl`: workgroups along a grid's first dimension. WebGPU allows 65,535.
-pub const GRID_WIDTH: u32 = 32768;
+pub(crate) const GRID_WIDTH: u32 = 32768;

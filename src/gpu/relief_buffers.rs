@@ -7,10 +7,10 @@ use crate::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
 use crate::tessellate::{TexelLength, map_number};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/displace.wgsl`.
-pub const HEIGHTS_ACROSS: u32 = 4096;
+pub(crate) const HEIGHTS_ACROSS: u32 = 4096;
 
 /// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.
-pub struct HeightImages {
+pub(crate) struct HeightImages {
     pub view: wgpu::TextureView,
     /// A [`HeightMap`] for each image.
     pub maps: wgpu::Buffer,
@@ -20,13 +20,13 @@ pub struct HeightImages {
 
 impl HeightImages {
     /// The same images for another tessellator; nothing is uploaded again.
-    pub fn shared(&self) -> Self {
+    pub(crate) fn shared(&self) -> Self {
         Self { view: self.view.clone(), maps: self.maps.clone(), bytes: 0 }
     }
 
     /// # Errors
     /// They are larger than the adapter's textures.
-    pub fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
         let texels: u64 = heights.maps.iter().map(|map| map.heights.len() as u64).sum();
         let rows = texels.div_ceil(u64::from(HEIGHTS_ACROSS)).max(1);
         let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
@@ -50,7 +50,7 @@ impl HeightImages {
         })
     }
 
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
 }
@@ -113,7 +113,7 @@ impl ReliefBuffers {
 
 /// The [`Share`] of every point, then of every factor, then two for every corner, then further texel lengths of factors; filled in
 /// as far as they depend on the mesh alone.
-pub fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
+pub(crate) fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
     let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
     let behind = (point_count + 2 * mesh.corners.len()) as u32;
     let share = |dominant, length: TexelLength| {
@@ -129,7 +129,7 @@ pub fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength])
 }
 
 /// How far each mip level of each height image is from its level 0, padded to 16 levels; zeros without heights.
-pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
+pub(crate) fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     let mut table = [[0.0_f32; 16]; MAX_MAPS];
     for (entry, detail) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.detail)) {
         entry[..MAX_LEVELS].copy_from_slice(detail);
@@ -155,7 +155,7 @@ fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<u32>, Vec<u32>) 
 }
 
 /// The number of each patch's height image: 1 for the first, 0 for none.
-pub fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
+pub(crate) fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
     let mut maps = vec![0.0; topology.patches.len()];
     for patches in topology.material_patches.iter().filter(|patches| !patches.is_empty()) {
         let map = heights.map_or(0, |heights| map_number(heights, topology, patches.start));

@@ -7,7 +7,7 @@ use super::{Gpu, GpuError};
 use crate::mesh::{Pose, Rig, Topology};
 
 /// A rig, and one pose of it.
-pub struct RigBuffers {
+pub(super) struct RigBuffers {
     bindings: wgpu::Buffer,
     deltas: wgpu::Buffer,
     palette: wgpu::Buffer,
@@ -22,7 +22,7 @@ impl RigBuffers {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, rig: &Rig, topology: &Topology, pose: &Pose) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Gpu, rig: &Rig, topology: &Topology, pose: &Pose) -> Result<Self, GpuError> {
         Ok(Self {
             bindings: filled(gpu, "bindings", &rig.bindings)?,
             deltas: filled(gpu, "morph targets", &rig.deltas)?,
@@ -38,7 +38,7 @@ impl RigBuffers {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn set_pose(&mut self, gpu: &Gpu, pose: &Pose) -> Result<(), GpuError> {
+    pub(super) fn set_pose(&mut self, gpu: &Gpu, pose: &Pose) -> Result<(), GpuError> {
         self.palette = filled(gpu, "palette", &pose.palette)?;
         self.morph_weights = filled(gpu, "morph weights", &pose.weights)?;
         Ok(())
@@ -49,7 +49,7 @@ impl RigBuffers {
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
-    pub fn passes(&self, on: &PassInputs) -> Result<[(BoundPass, [u32; 3]); 2], GpuError> {
+    pub(super) fn passes(&self, on: &PassInputs) -> Result<[(BoundPass, [u32; 3]); 2], GpuError> {
         let inputs = [(0, &self.bindings), (1, &self.deltas), (2, &self.palette), (3, &self.morph_weights)];
         let corners = [&inputs[..], &[(5, &on.mesh.corners)]].concat();
         let points = [&inputs[..], &[(4, &self.point_corners), (6, &on.mesh.points)]].concat();
@@ -59,7 +59,7 @@ impl RigBuffers {
         ])
     }
 
-    pub fn bytes(&self) -> u64 {
+    pub(super) fn bytes(&self) -> u64 {
         [&self.bindings, &self.deltas, &self.palette, &self.morph_weights, &self.point_corners]
             .iter()
             .map(|buffer| buffer.size())

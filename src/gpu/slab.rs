@@ -15,12 +15,12 @@ use super::{Gpu, GpuError};
 use crate::tessellate::Normals;
 
 /// Patches whose counts a workgroup adds up: as many as it has invocations.
-pub const SCAN_BLOCK: u32 = WORKGROUP;
+pub(super) const SCAN_BLOCK: u32 = WORKGROUP;
 /// Offsets of uniform bindings are multiples of this: WebGPU's default limit.
 const UNIFORM_STRIDE: u64 = 256;
 
 /// One slab's buffers, and its passes bound to them.
-pub struct SlabPasses {
+pub(super) struct SlabPasses {
     pub slab: Slab,
     pub slab_buffer: wgpu::Buffer,
     pub patch_factors: wgpu::Buffer,
@@ -50,7 +50,7 @@ struct Bound {
 impl SlabPasses {
     /// # Errors
     /// More patches than the adapter binds memory for.
-    pub fn new(
+    pub(super) fn new(
         gpu: &Gpu,
         buffers: &MeshBuffers,
         arena: &Arena,
@@ -86,7 +86,7 @@ impl SlabPasses {
     }
 
     /// Bytes of everything but uniforms.
-    pub fn bytes(&self) -> u64 {
+    pub(super) fn bytes(&self) -> u64 {
         [&self.patch_factors, &self.offsets, &self.chunks, &self.emit_args, &self.draw_args]
             .iter()
             .map(|buffer| buffer.size())
@@ -94,12 +94,12 @@ impl SlabPasses {
     }
 
     /// Lets go of what passes are bound to, since some of those buffers were replaced.
-    pub fn unbind(&mut self) {
+    pub(super) fn unbind(&mut self) {
         self.bound = Bound::default();
     }
 
     /// Factors and counts of every patch, added up within blocks of [`SCAN_BLOCK`].
-    pub fn counts(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+    pub(super) fn counts(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
         let buffers = [
             (0, on.params),
             (1, &self.slab_buffer),
@@ -115,13 +115,13 @@ impl SlabPasses {
     }
 
     /// Sums within blocks to offsets within the slab.
-    pub fn scan(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+    pub(super) fn scan(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
         let buffers = [(0, &self.slab_buffer), (1, &self.offsets)];
         BoundPass::once(&self.bound.scan, on.gpu, &on.pipelines.scan, &buffers)
     }
 
     /// Chunks that fit the arena, and their indirect arguments.
-    pub fn chunks(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+    pub(super) fn chunks(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
         let buffers = [
             (0, &self.slab_buffer),
             (1, &self.offsets),
@@ -134,7 +134,7 @@ impl SlabPasses {
     }
 
     /// The vertices of a chunk. Its pipeline depends on how normals are made: a number of [`Normals`].
-    pub fn emit_vertices(&self, on: &PassInputs, normals: usize) -> Result<&BoundPass, GpuError> {
+    pub(super) fn emit_vertices(&self, on: &PassInputs, normals: usize) -> Result<&BoundPass, GpuError> {
         let normals = normals.min(Normals::Surface as usize);
         let buffers = [
             &self.emit_buffers()[..],
@@ -146,7 +146,7 @@ impl SlabPasses {
     }
 
     /// The triangles of a chunk.
-    pub fn emit_triangles(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
+    pub(super) fn emit_triangles(&self, on: &PassInputs) -> Result<&BoundPass, GpuError> {
         let patterns = on.pipelines.patterns(on.gpu)?;
         let buffers = [&self.emit_buffers()[..], &[(10, &on.arena.indices), (11, patterns)]].concat();
         BoundPass::once(&self.bound.emit_triangles, on.gpu, &on.pipelines.emit_triangles, &buffers)
@@ -157,7 +157,7 @@ impl SlabPasses {
     }
 
     /// The displacement of a chunk's vertices.
-    pub fn displace(&self, on: &PassInputs, images: &HeightImages) -> Result<&BoundPass, GpuError> {
+    pub(super) fn displace(&self, on: &PassInputs, images: &HeightImages) -> Result<&BoundPass, GpuError> {
         get_or_try(&self.bound.displace, || {
             let pipeline = on.pipelines.displace.get(on.gpu)?.clone();
             let buffers = [
@@ -187,7 +187,7 @@ impl SlabPasses {
     }
 
     /// Bind group 1 of the passes over a chunk: the chunk's number in this slab.
-    pub fn chunk_number(&self, gpu: &Gpu, pipeline: &wgpu::ComputePipeline, chunk: u32) -> wgpu::BindGroup {
+    pub(super) fn chunk_number(&self, gpu: &Gpu, pipeline: &wgpu::ComputePipeline, chunk: u32) -> wgpu::BindGroup {
         let binding = wgpu::BufferBinding {
             buffer: &self.chunk_numbers,
             offset: u64::from(chunk) * UNIFORM_STRIDE,

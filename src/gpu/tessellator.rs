@@ -20,7 +20,7 @@ use super::{ComputePipelines, Gpu, GpuError, MeshBuffers, hull};
 use crate::mesh::{Mesh, Pose, Sharing, Topology};
 use crate::tessellate::{self, Clip, Convention, Displacement, Edges, HullFactors, Inputs, PosedMesh, Solid, sharing};
 
-pub use output::ChunkBuffers;
+pub(crate) use output::ChunkBuffers;
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
 const SLAB_PATCHES: u32 = 1 << 19;

@@ -70,6 +70,6 @@ impl WgslFile {
 }
 
 /// One text of these files.
-pub fn joined(files: &[&WgslFile]) -> String {
+pub(crate) fn joined(files: &[&WgslFile]) -> String {
     files.iter().map(|file| file.text).collect::<Vec<_>>().join("\n")
 }

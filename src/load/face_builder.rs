@@ -18,10 +18,10 @@ use crate::progress::Progress;
 const MAX_MATERIALS: usize = 1 << 16;
 
 /// The greatest number of corners of a face. A file with a larger face is refused.
-pub const MAX_CORNERS: usize = 1 << 19;
+pub(super) const MAX_CORNERS: usize = 1 << 19;
 
 /// The mesh that is being built, and counts of what was repaired or left out.
-pub struct FaceBuilder<'a> {
+pub(super) struct FaceBuilder<'a> {
     memory: &'a Budget,
     builder: MeshBuilder,
     materials: usize,
@@ -41,7 +41,7 @@ pub struct FaceBuilder<'a> {
 
 impl<'a> FaceBuilder<'a> {
     /// Starts a mesh from a file of `bytes` bytes.
-    pub fn new(bytes: usize, memory: &'a Budget) -> Self {
+    pub(super) fn new(bytes: usize, memory: &'a Budget) -> Self {
         Self {
             memory,
             builder: MeshBuilder::new(),
@@ -60,7 +60,7 @@ impl<'a> FaceBuilder<'a> {
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
-    pub fn material(&mut self, material: Material) -> Result<usize, ReadError> {
+    pub(super) fn material(&mut self, material: Material) -> Result<usize, ReadError> {
         self.materials += 1;
         if self.materials > MAX_MATERIALS {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
@@ -69,7 +69,7 @@ impl<'a> FaceBuilder<'a> {
     }
 
     /// Announces that about `triangles` more triangles, and about `corners` more distinct corners, will be added.
-    pub fn expect(&mut self, triangles: usize, corners: usize) {
+    pub(super) fn expect(&mut self, triangles: usize, corners: usize) {
         self.builder.expect(triangles.saturating_mul(3), corners);
     }
 
@@ -78,7 +78,7 @@ impl<'a> FaceBuilder<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`] for a position that isn't finite or too far away, and [`ReadError::TooMany`].
-    pub fn add(
+    pub(super) fn add(
         &mut self,
         material: usize,
         corners: &mut Vec<InputCorner>,
@@ -133,7 +133,7 @@ impl<'a> FaceBuilder<'a> {
     ///
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
-    pub fn finish(
+    pub(super) fn finish(
         self,
         name: &str,
         holds: String,
@@ -163,7 +163,7 @@ impl<'a> FaceBuilder<'a> {
 }
 
 /// Returns a sentence for each count that isn't 0.
-pub fn counted(sentences: impl IntoIterator<Item = (usize, &'static str)>) -> impl Iterator<Item = String> {
+pub(super) fn counted(sentences: impl IntoIterator<Item = (usize, &'static str)>) -> impl Iterator<Item = String> {
     let found = sentences.into_iter().filter(|(count, _)| *count > 0);
     found.map(|(count, sentence)| format!("{sentence}: {count}."))
 }

@@ -62,7 +62,7 @@ const MAX_WARNINGS: usize = 100;
 ///
 /// # Errors
 /// [`GltfError`].
-pub fn read(
+pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,

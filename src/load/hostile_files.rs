@@ -1,7 +1,7 @@
 //! Tests with OBJ, STL and PLY files that are broken or hostile: what the loader answers, and that it never takes long.
 
 mod mutated;
-pub mod page;
+pub(super) mod page;
 mod seeds;
 mod table;
 
@@ -16,17 +16,17 @@ use crate::load::LoadedMesh;
 use crate::progress::Progress;
 
 /// Xorshift, 64 bits, from a seed that isn't 0 (Marsaglia 2003).
-pub struct Random(pub u64);
+pub(super) struct Random(pub u64);
 
 impl Random {
-    pub fn next(&mut self) -> u64 {
+    pub(super) fn next(&mut self) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         self.0
     }
 
-    pub fn below(&mut self, end: usize) -> usize {
+    pub(super) fn below(&mut self, end: usize) -> usize {
         (self.next() % end.max(1) as u64) as usize
     }
 }
@@ -36,7 +36,7 @@ const LIMIT: Duration = Duration::from_secs(1);
 
 /// Returns this thread's CPU time, to which other tests on a busy machine don't add. Returns the elapsed time on systems without
 /// such a clock.
-pub fn time() -> Duration {
+pub(super) fn time() -> Duration {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = said.and_then(|said| said.split(' ').next()?.parse().ok());
@@ -45,7 +45,7 @@ pub fn time() -> Duration {
 
 /// Whether an error is the expected one: its variant, followed by parts of its message (the place and the numbers), all separated
 /// by ` | `. The pages in `docs/hostile` hold the whole sentences.
-pub fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
+pub(super) fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
     let (variant, parts) = expected.split_once(" | ").unwrap_or((expected, ""));
     let debug = format!("{error:?}");
     let own = debug.split(|letter: char| !letter.is_alphanumeric()).next();
@@ -53,7 +53,7 @@ pub fn is_expected(error: &(impl Debug + Display), expected: &str) -> bool {
 }
 
 /// Whether a message has all these parts, which are separated by ` | `, as whole words and numbers.
-pub fn mentions(message: &str, parts: &str) -> bool {
+pub(super) fn mentions(message: &str, parts: &str) -> bool {
     let in_word = |letter: Option<char>| letter.is_some_and(char::is_alphanumeric);
     let is_whole = |start: usize, part: &str| {
         let (before, after) = (&message[..start], &message[start + part.len()..]);
@@ -65,7 +65,7 @@ pub fn mentions(message: &str, parts: &str) -> bool {
 }
 
 /// The files that `PNAEN_MUTATE` names, as `a.glb:b.obj`.
-pub fn named_files() -> Vec<PathBuf> {
+pub(super) fn named_files() -> Vec<PathBuf> {
     let named = std::env::var("PNAEN_MUTATE").unwrap_or_default();
     named.split(':').filter(|path| !path.is_empty()).map(PathBuf::from).collect()
 }

@@ -17,7 +17,7 @@ const MAX_METADATA: u64 = 16 << 20;
 
 /// Borrows memory for the parts of a PNG image other than its pixels, and returns it as limits for the decoder. The
 /// colour profile isn't used, but may unpack to a thousand times its size.
-pub fn metadata_limits(budget: &Budget) -> Limits {
+pub(super) fn metadata_limits(budget: &Budget) -> Limits {
     let mut limits = Limits::default();
     let bytes = (budget.left() / 8).min(MAX_METADATA);
     // While a buffer grows, the old and the new one are both in memory.
@@ -29,7 +29,7 @@ pub fn metadata_limits(budget: &Budget) -> Limits {
 ///
 /// # Errors
 /// A clause that says what is wrong.
-pub fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
+pub(super) fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
     let known = coefficient_bytes(&mut Cursor::new(bytes)).map_err(|error| error.to_string())?;
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|error| error.to_string())?;

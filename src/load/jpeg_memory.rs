@@ -10,7 +10,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 ///
 /// # Errors
 /// The errors of reading.
-pub fn coefficient_bytes(file: &mut (impl Read + Seek)) -> io::Result<Option<u64>> {
+pub(super) fn coefficient_bytes(file: &mut (impl Read + Seek)) -> io::Result<Option<u64>> {
     file.seek(SeekFrom::Start(0))?;
     let frame = frame(file).or_else(|error| match error.kind() {
         io::ErrorKind::UnexpectedEof => Ok(None),
@@ -21,7 +21,7 @@ pub fn coefficient_bytes(file: &mut (impl Read + Seek)) -> io::Result<Option<u64
 }
 
 /// Returns the greatest size of the coefficients of any image of `size` px.
-pub fn most_coefficient_bytes(size: [u32; 2]) -> u64 {
+pub(super) fn most_coefficient_bytes(size: [u32; 2]) -> u64 {
     bytes(size, &[[1, 1]; 4])
 }
 

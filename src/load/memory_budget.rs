@@ -23,7 +23,7 @@ use crate::mesh::build_limits::{MemoryAccount, MemoryRefused};
 use crate::mesh::{Material, Mesh};
 
 /// How many bytes of memory each byte of a file allows, in addition to [`Limits::memory`].
-pub const PER_BYTE: u64 = 4;
+pub(crate) const PER_BYTE: u64 = 4;
 
 /// Counts memory before it is allocated, and refuses what is too much.
 pub struct Budget {

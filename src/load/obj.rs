@@ -64,7 +64,7 @@ const SILENT: [&[u8]; 24] = [
 ///
 /// # Errors
 /// [`ReadError`]. A missing material or texture isn't an error but a warning.
-pub fn read(
+pub(super) fn read(
     bytes: Vec<u8>,
     folder: &Path,
     name: &str,

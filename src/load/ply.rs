@@ -43,7 +43,7 @@ const ATTRIBUTES: [(&[u8], usize); 12] = [
 ///
 /// # Errors
 /// [`ReadError`].
-pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let (faces, holds, warnings) = gather(&bytes, &budget, progress)?;
     budget.release(bytes.len() as u64);

@@ -30,7 +30,7 @@ const TRIANGLE: usize = 50;
 ///
 /// # Errors
 /// [`ReadError`].
-pub fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+pub(super) fn read(bytes: Vec<u8>, name: &str, limits: &Limits, progress: &Progress) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), limits);
     let mut faces = FaceBuilder::new(bytes.len(), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;

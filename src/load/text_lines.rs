@@ -9,7 +9,7 @@ const MAX_LINE: usize = 1 << 22;
 
 /// The lines of a text, one after another.
 #[derive(Clone)]
-pub struct Lines<'a> {
+pub(super) struct Lines<'a> {
     rest: &'a [u8],
     /// The byte that ends a line.
     end: u8,
@@ -19,7 +19,7 @@ pub struct Lines<'a> {
 
 /// A line without its end.
 #[derive(Clone, Copy)]
-pub struct Line<'a> {
+pub(super) struct Line<'a> {
     pub text: &'a [u8],
     /// The line's number, from 1.
     pub number: usize,
@@ -27,13 +27,13 @@ pub struct Line<'a> {
 
 impl<'a> Lines<'a> {
     /// Splits lines as Unix, Windows or, in a text without `\n`, old Macs end them.
-    pub fn new(bytes: &'a [u8]) -> Self {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
         let end = if memchr(b'\n', bytes).is_some() { b'\n' } else { b'\r' };
         Self::ending(bytes, end)
     }
 
     /// Splits a text into lines that end with this byte. A byte order mark isn't part of the first line.
-    pub fn ending(bytes: &'a [u8], end: u8) -> Self {
+    pub(super) fn ending(bytes: &'a [u8], end: u8) -> Self {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0 }
     }
 
@@ -41,7 +41,7 @@ impl<'a> Lines<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`] for a line that is longer than 4 MiB.
-    pub fn next(&mut self) -> Result<Option<Line<'a>>, ReadError> {
+    pub(super) fn next(&mut self) -> Result<Option<Line<'a>>, ReadError> {
         if self.rest.is_empty() {
             return Ok(None);
         }
@@ -57,7 +57,7 @@ impl<'a> Lines<'a> {
     ///
     /// # Errors
     /// The same as [`next`](Self::next)'s.
-    pub fn check(&self, length: usize) -> Result<(), ReadError> {
+    pub(super) fn check(&self, length: usize) -> Result<(), ReadError> {
         if length <= MAX_LINE {
             return Ok(());
         }
@@ -66,46 +66,46 @@ impl<'a> Lines<'a> {
     }
 
     /// Returns the text that hasn't been read.
-    pub fn rest(&self) -> &'a [u8] {
+    pub(super) fn rest(&self) -> &'a [u8] {
         self.rest
     }
 
     /// Returns how many lines have been read.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.count
     }
 }
 
 impl<'a> Line<'a> {
-    pub fn place(&self) -> FilePosition {
+    pub(super) fn place(&self) -> FilePosition {
         FilePosition::Line(self.number)
     }
 
-    pub fn words(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
+    pub(super) fn words(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
         words(self.text)
     }
 }
 
 /// Returns the words of a text, which are separated by white space.
-pub fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+pub(super) fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
 /// Returns the first word, and the rest after it; both without white space around them.
-pub fn first_word(text: &[u8]) -> (&[u8], &[u8]) {
+pub(super) fn first_word(text: &[u8]) -> (&[u8], &[u8]) {
     let text = text.trim_ascii();
     let length = text.iter().position(u8::is_ascii_whitespace).unwrap_or(text.len());
     (&text[..length], text[length..].trim_ascii_start())
 }
 
 /// Parses a number, or returns why the word isn't one.
-pub fn number(word: &[u8]) -> Result<f32, String> {
+pub(super) fn number(word: &[u8]) -> Result<f32, String> {
     let number = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok());
     number.ok_or_else(|| format!("{} isn't a number", shown(word)))
 }
 
 /// Parses the first N words as the numbers of a statement of this name, and ignores further words.
-pub fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N], String> {
+pub(super) fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N], String> {
     let mut found = [0.0; N];
     let mut words = words(text);
     for (i, slot) in found.iter_mut().enumerate() {
@@ -116,7 +116,7 @@ pub fn numbers<const N: usize>(name: &str, text: &[u8]) -> Result<[f32; N], Stri
 }
 
 /// Returns the start of a word for a message, in quotes.
-pub fn shown(word: &[u8]) -> String {
+pub(super) fn shown(word: &[u8]) -> String {
     let start = String::from_utf8_lossy(&word[..word.len().min(160)]);
     let short: String = start.chars().take(40).collect();
     let cut = if short.len() < start.len() || word.len() > 160 { "..." } else { "" };

@@ -19,7 +19,7 @@ use crate::progress::Progress;
 const MAX_DATA: usize = 512 << 20;
 
 /// Reads the files that a document names.
-pub struct Files<'a> {
+pub(super) struct Files<'a> {
     /// The document's folder.
     folder: &'a Path,
     limits: &'a Limits,
@@ -30,7 +30,7 @@ pub struct Files<'a> {
 }
 
 impl<'a> Files<'a> {
-    pub fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget, progress: &'a Progress) -> Self {
+    pub(super) fn new(folder: &'a Path, limits: &'a Limits, budget: &'a Budget, progress: &'a Progress) -> Self {
         Self { folder, limits, budget, progress, counted: RefCell::default() }
     }
 
@@ -41,7 +41,7 @@ impl<'a> Files<'a> {
     ///
     /// # Errors
     /// A clause that says what is wrong and what to do.
-    pub fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
+    pub(super) fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
         let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
         if let Some(data) = strip_scheme(uri, "data:") {
             take(data.len() as u64)?;
@@ -59,7 +59,7 @@ impl<'a> Files<'a> {
     }
 
     /// Returns the files that were read, sorted by name.
-    pub fn named(&self) -> Vec<PathBuf> {
+    pub(super) fn named(&self) -> Vec<PathBuf> {
         let mut named: Vec<_> = self.counted.borrow().iter().cloned().collect();
         named.sort();
         named
@@ -94,7 +94,7 @@ impl<'a> Files<'a> {
 }
 
 /// Returns the start of a URI for a message; data URIs are long.
-pub fn shown(uri: &str) -> String {
+pub(super) fn shown(uri: &str) -> String {
     let (start, rest) = uri.split_at(uri.char_indices().nth(60).map_or(uri.len(), |(i, _)| i));
     // Without control characters.
     let start = on_one_line(start);

@@ -5,7 +5,7 @@ use crate::mesh::{Heights, Mesh, Repairs};
 
 /// Returns warnings about corners that were repaired. Normals that were missing don't cause one here, since files may
 /// leave them out on purpose.
-pub fn repair_warnings(repairs: &Repairs) -> Vec<String> {
+pub(super) fn repair_warnings(repairs: &Repairs) -> Vec<String> {
     let sentences = [
         (repairs.normals_replaced, "normals without a direction, replaced by ones that are smooth within 60 degrees"),
         (repairs.normals_rescaled, "normals whose length wasn't 1, scaled to it"),
@@ -16,7 +16,7 @@ pub fn repair_warnings(repairs: &Repairs) -> Vec<String> {
 }
 
 /// Returns warnings about a crease band: that the mesh has no crease, or that the band is narrower than requested in places.
-pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
+pub(crate) fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
     let mut warnings = Vec::new();
     if band.creases == 0 {
         warnings.push("no edge has split normals, so no crease band was made.".to_owned());
@@ -32,7 +32,7 @@ pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
 
 /// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a
 /// triangle as a whole.
-pub fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
+pub(crate) fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
     let mut count = 0;
     for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
         let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];

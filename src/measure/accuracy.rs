@@ -29,7 +29,7 @@ impl Default for AccuracyOptions {
 /// What was emitted, held against a truth chunk by chunk, wherever it was emitted.
 ///
 /// All of the mesh must be emitted: what is clipped or culled is missing, and counts as distance from the truth.
-pub struct AccuracyMeasurement<'a> {
+pub(crate) struct AccuracyMeasurement<'a> {
     truth: &'a Truth,
     options: AccuracyOptions,
     screen: Option<Screen>,
@@ -110,7 +110,7 @@ const MAX_STEPS: u32 = 200;
 
 impl<'a> AccuracyMeasurement<'a> {
     /// Nothing seen yet. With a view, distances in px too.
-    pub fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
+    pub(crate) fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
         let samples = truth.samples(options.samples).into_iter().map(|sample| (sample, None)).collect();
         Self { truth, options, screen: view.map(Screen::new), samples, sums: Sums::default() }
     }
@@ -169,7 +169,7 @@ impl<'a> AccuracyMeasurement<'a> {
     }
 
     /// What came of it; none if nothing was emitted, or nothing that has an area.
-    pub fn finish(self) -> Option<Accuracy> {
+    pub(crate) fn finish(self) -> Option<Accuracy> {
         let Sums { area, squares, angles, worst, worst_px, worst_normal, not_finite } = self.sums;
         let (worst_to_truth, worst_normal) = (worst?, worst_normal?);
         if area <= 0.0 {

@@ -6,7 +6,7 @@ use crate::tessellate::{Convention, HullFactors, domain_side, factor_side};
 
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Agreement {
+pub(crate) struct Agreement {
     /// Edges with several sides that emit something.
     pub edges_compared: u64,
     /// Patches that the tessellator leaves out: a factor of theirs is not greater than zero.
@@ -19,7 +19,7 @@ pub struct Agreement {
 
 /// An edge whose sides have different factors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Disagreement {
+pub(crate) struct Disagreement {
     /// Index in [`Topology::edges`].
     pub edge: u32,
     /// Of every side that emits something: the mesh's triangle, and its factor.
@@ -28,7 +28,7 @@ pub struct Disagreement {
 
 impl Disagreement {
     /// The sides with the least and the greatest factor.
-    pub fn extremes(&self) -> [(u32, f32); 2] {
+    pub(crate) fn extremes(&self) -> [(u32, f32); 2] {
         let less = |a: &&(u32, f32), b: &&(u32, f32)| a.1.total_cmp(&b.1);
         let (least, greatest) = (self.sides.iter().min_by(less), self.sides.iter().max_by(less));
         [least, greatest].map(|side| side.copied().unwrap_or_default())
@@ -42,7 +42,7 @@ impl Disagreement {
 
 /// An order that a patch's factors can be in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Order {
+pub(crate) struct Order {
     /// The sides that factors 0, 1 and 2 are for.
     pub sides: [u32; 3],
     /// Edges whose sides have different factors if that is so.
@@ -51,7 +51,7 @@ pub struct Order {
 
 impl Order {
     /// The first convention that writes factors so.
-    pub fn convention(&self) -> Option<Convention> {
+    pub(crate) fn convention(&self) -> Option<Convention> {
         Convention::ALL.into_iter().find(|&convention| order(convention, factor_side) == self.sides)
     }
 }
@@ -64,7 +64,7 @@ fn order(convention: Convention, side: fn(Convention, u32) -> u32) -> [u32; 3] {
 
 impl Agreement {
     /// Compares the sides of every edge as they will be cut under a convention.
-    pub fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
+    pub(crate) fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
         let culled: Vec<bool> = given.iter().map(|patch| patch.culls()).collect();
         let shown = order(convention, domain_side);
         let mut agreement = Self {
@@ -98,7 +98,7 @@ impl Agreement {
     }
 
     /// Orders that make all sides of every edge agree.
-    pub fn consistent(&self) -> impl Iterator<Item = &Order> {
+    pub(crate) fn consistent(&self) -> impl Iterator<Item = &Order> {
         self.orders.iter().filter(|order| order.different == 0)
     }
 }

@@ -45,7 +45,7 @@ const STEPS: [u32; 5] = [24, 12, 6, 3, 0];
 /// Samples that are taken at most, where fewer a triangle will do.
 const SAMPLES: u64 = 1_000_000;
 /// Triangles that are looked at: as many numbers as any adapter binds at once.
-pub const MOST_TRIANGLES: u64 = 1 << 24;
+pub(crate) const MOST_TRIANGLES: u64 = 1 << 24;
 
 /// Distances in object units. Samples of a triangle lie on a grid that cuts its edges into equal segments: row i has the
 /// weight i / steps of corner 1, and in it sample j the weight j / steps of corner 2.
@@ -63,12 +63,12 @@ pub struct DeviationField {
 }
 
 /// How many samples a triangle has.
-pub fn samples_of(steps: u32) -> u32 {
+pub(super) fn samples_of(steps: u32) -> u32 {
     (steps + 1) * (steps + 2) / 2
 }
 
 /// Measures a [`DeviationField`].
-pub struct DeviationMeasurement<'a> {
+pub(crate) struct DeviationMeasurement<'a> {
     target: TargetSurface<'a>,
     /// Is told how far the measurement is, and may be cancelled.
     progress: &'a Progress,
@@ -82,7 +82,7 @@ pub struct DeviationMeasurement<'a> {
 
 impl<'a> DeviationMeasurement<'a> {
     /// Nothing seen yet of a tessellation of this mesh with so many triangles.
-    pub fn new(
+    pub(crate) fn new(
         target: &'a DeviationTarget,
         mesh: &'a Mesh,
         topology: &'a Topology,
@@ -97,7 +97,7 @@ impl<'a> DeviationMeasurement<'a> {
     ///
     /// # Errors
     /// The progress was cancelled before all of a chunk was measured.
-    pub fn finish(self) -> Result<DeviationField, Cancelled> {
+    pub(crate) fn finish(self) -> Result<DeviationField, Cancelled> {
         self.cancelled.map_or(Ok(self.field), Err)
     }
 

@@ -7,7 +7,7 @@ use crate::mesh::{Mesh, Topology};
 
 /// What a difference means, the least harm first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Meaning {
+pub(crate) enum Meaning {
     /// The same patch, begun at another of its corners.
     Turned,
     /// Another corner of the point is the dominant one, for every patch around it.
@@ -26,7 +26,7 @@ pub enum Meaning {
 
 /// A part of a patch that differs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct IndexDifference {
+pub(crate) struct IndexDifference {
     pub patch: u32,
     pub part: Part,
     /// Where it is among all indices.
@@ -39,7 +39,7 @@ pub struct IndexDifference {
 ///
 /// # Panics
 /// When there are fewer indices given than computed, or one is no corner of the mesh.
-pub fn index_differences(
+pub(crate) fn index_differences(
     mesh: &Mesh,
     topology: &Topology,
     layout: Layout,

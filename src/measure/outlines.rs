@@ -29,7 +29,7 @@ pub struct Outlines {
 
 /// The edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut, point by point as they were
 /// emitted; straight where that isn't known, or nothing is emitted.
-pub fn patch_edges(
+pub(crate) fn patch_edges(
     topology: &Topology,
     patch: u32,
     outlines: Option<&Outlines>,

@@ -10,7 +10,7 @@ use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Ve
 
 /// The largest distance on screen between a point of what was emitted and the surface's at the same place of its domain.
 /// That is no less than the distance to the nearest point of the surface, and is what bounds on the error speak of.
-pub struct ScreenErrorMeasurement<'a> {
+pub(crate) struct ScreenErrorMeasurement<'a> {
     limit: LimitSurface<'a>,
     screen: Screen,
     /// Segments that each edge of a triangle is divided into for sampling.
@@ -40,7 +40,7 @@ const FINE: u64 = 100_000;
 impl<'a> ScreenErrorMeasurement<'a> {
     /// Nothing seen yet of a tessellation with these inputs, whose view is the one measured in. `triangles` is how many
     /// will come in all chunks together: the more there are, the fewer samples each gets.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
         let steps = match triangles {
             0..=FINE => 8,
             triangles if triangles <= 10 * FINE => 4,
@@ -50,7 +50,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
     }
 
     /// The worst so far; none if nothing was in view.
-    pub fn worst(&self) -> Option<ScreenError> {
+    pub(crate) fn worst(&self) -> Option<ScreenError> {
         self.worst
     }
 

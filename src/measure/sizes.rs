@@ -13,7 +13,7 @@ use crate::tessellate::{beyond_near, planes_outside};
 use crate::view::ScreenView;
 
 /// Triangles below this size cost more than they show, in px.
-pub const SMALL_PX: f64 = 3.0;
+pub(crate) const SMALL_PX: f64 = 3.0;
 
 /// Counts of triangles by their size, seen from one view.
 #[derive(Clone, Copy, Debug, PartialEq)]

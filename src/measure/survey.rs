@@ -12,7 +12,7 @@ use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, pat
 use crate::view::ulp;
 
 /// What has been seen so far.
-pub struct Survey<'a> {
+pub(crate) struct Survey<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     ulp: f64,
@@ -70,7 +70,7 @@ pub struct Measured {
 
 impl<'a> Survey<'a> {
     /// A survey of patches with these factors.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let culled = Culled::of(&factors);
         let outlines = Outlines::new(factors, asked);
@@ -78,7 +78,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Compares the sides of every edge, once all is taken.
-    pub fn finish(self) -> Measured {
+    pub(crate) fn finish(self) -> Measured {
         Measured {
             culled: self.culled,
             patches_low: self.outlines.low(),

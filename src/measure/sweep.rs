@@ -18,11 +18,11 @@ use crate::tessellate::{
 };
 
 /// The step that charts show.
-pub const SWEEP_STEP: f32 = 1.0 / 64.0;
+pub(crate) const SWEEP_STEP: f32 = 1.0 / 64.0;
 
 /// One partitioning, swept.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sweep {
+pub(crate) struct Sweep {
     pub partitioning: Partitioning,
     /// From one factor to the next.
     pub step: f32,
@@ -32,7 +32,7 @@ pub struct Sweep {
 
 /// From one factor to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SweepStep {
+pub(crate) struct SweepStep {
     /// After the step.
     pub factor: f32,
     /// The largest distance that any surface point moved, in object units.
@@ -45,7 +45,7 @@ pub struct SweepStep {
 
 impl Sweep {
     /// The step of the largest jump, the first of them if there are several; `None` without steps.
-    pub fn largest(&self) -> Option<SweepStep> {
+    pub(crate) fn largest(&self) -> Option<SweepStep> {
         self.steps.iter().copied().reduce(|best, step| if step.jump > best.jump { step } else { best })
     }
 }
@@ -57,7 +57,13 @@ impl Sweep {
 /// between; at factor 64 it has 6,144 triangles. From 1 to 64 by [`SWEEP_STEP`], a dozen patches take seconds for each
 /// fractional partitioning and less for the others, whose steps mostly change nothing. Time and memory grow with the
 /// patches; memory is two tessellations of the mesh for each processor.
-pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeInclusive<f32>, step: f32) -> Sweep {
+pub(crate) fn sweep(
+    mesh: &Mesh,
+    topology: &Topology,
+    inputs: &Inputs,
+    factors: RangeInclusive<f32>,
+    step: f32,
+) -> Sweep {
     let (first, last) = factors.into_inner();
     let count = ((last - first) / step).floor().max(0.0) as u32;
     let still = |k: u32| SweepStep { factor: first + k as f32 * step, jump: 0.0, patch: 0, place: [0, 0] };

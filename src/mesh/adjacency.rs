@@ -88,7 +88,7 @@ impl Layout {
 ///
 /// # Panics
 /// If `patch` isn't an index into [`Topology::patches`].
-pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
+pub(crate) fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
     let [nine @ .., _, _, _] = twelve(topology, patch);
     nine
 }
@@ -98,7 +98,7 @@ pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
 ///
 /// # Panics
 /// If `patch` isn't an index into [`Topology::patches`].
-pub fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
+pub(crate) fn twelve(topology: &Topology, patch: u32) -> [u32; 12] {
     let patch = &topology.patches[patch as usize];
     let mut indices = alone(topology, patch);
     for (k, &own) in patch.sides.iter().enumerate() {

@@ -23,7 +23,7 @@ struct Node {
 
 impl BoundingBoxTree {
     /// Builds the tree. Takes about n log n steps, wherever the positions lie.
-    pub fn new(mut places: Vec<(DVec3, u32)>) -> Self {
+    pub(super) fn new(mut places: Vec<(DVec3, u32)>) -> Self {
         let mut nodes = Vec::new();
         if !places.is_empty() {
             divide(&mut places, 0, &mut nodes);
@@ -32,7 +32,7 @@ impl BoundingBoxTree {
     }
 
     /// Calls `visit` with every position within `reach` of the segment from a to b, and with some others nearby.
-    pub fn near_segment(&self, [a, b]: [DVec3; 2], reach: f64, mut visit: impl FnMut(DVec3, u32)) {
+    pub(super) fn near_segment(&self, [a, b]: [DVec3; 2], reach: f64, mut visit: impl FnMut(DVec3, u32)) {
         let mut open = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(i) = open.pop() {
             let node = &self.nodes[i];

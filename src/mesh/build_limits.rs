@@ -5,7 +5,7 @@ use crate::progress::Cancelled;
 
 /// The greatest number of triangles of a mesh. Its sides are numbered with two bits of extra information each, which
 /// must fit into 32 bits (see [`super::Side`]).
-pub const MAX_TRIANGLES: u64 = 1 << 27;
+pub(crate) const MAX_TRIANGLES: u64 = 1 << 27;
 const _: () = assert!(6 * MAX_TRIANGLES <= 1 << 32);
 
 /// Why a mesh, or something that is made from one, could not be built.
@@ -79,7 +79,7 @@ pub trait MemoryAccount {
 }
 
 /// An account that refuses nothing, for meshes whose size no file determines.
-pub struct Unlimited;
+pub(crate) struct Unlimited;
 
 impl MemoryAccount for Unlimited {
     fn hold(&self, _: u64) -> Result<(), MemoryRefused> {

@@ -4,7 +4,7 @@
 const MAX_CHUNK: usize = 1 << 14;
 
 /// A list that allocates a new chunk when it grows, so that its items stay where they are.
-pub struct ChunkedVec<T> {
+pub(crate) struct ChunkedVec<T> {
     /// All chunks but the last are full.
     chunks: Vec<Vec<T>>,
     count: usize,
@@ -17,7 +17,7 @@ impl<T> Default for ChunkedVec<T> {
 }
 
 impl<T> ChunkedVec<T> {
-    pub fn push(&mut self, item: T) {
+    pub(crate) fn push(&mut self, item: T) {
         if self.count.is_multiple_of(MAX_CHUNK) {
             // The first chunk grows from nothing, since most lists are short.
             self.chunks.push(if self.count == 0 { Vec::new() } else { Vec::with_capacity(MAX_CHUNK) });
@@ -28,25 +28,25 @@ impl<T> ChunkedVec<T> {
         self.count += 1;
     }
 
-    pub fn get(&self, i: usize) -> Option<&T> {
+    pub(crate) fn get(&self, i: usize) -> Option<&T> {
         self.chunks.get(i / MAX_CHUNK)?.get(i % MAX_CHUNK)
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.count
     }
 
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.count == 0
     }
 
     /// Returns the size of the chunks, in bytes.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         (self.chunks.len() * MAX_CHUNK * size_of::<T>()) as u64
     }
 
     /// Returns how many bytes the next [`push`](Self::push) allocates.
-    pub fn next_bytes(&self) -> u64 {
+    pub(crate) fn next_bytes(&self) -> u64 {
         if self.count.is_multiple_of(MAX_CHUNK) { (MAX_CHUNK * size_of::<T>()) as u64 } else { 0 }
     }
 }

@@ -30,7 +30,7 @@ use fans::Fans;
 use pieces::Cutter;
 
 /// The greatest width of a crease band, relative to the bounding diagonal.
-pub const WIDEST: f32 = 0.1;
+pub(crate) const WIDEST: f32 = 0.1;
 
 /// Memory for each patch, in bytes: its corners, their fans, the fans' normals, and the search for patches on the same
 /// points.
@@ -62,7 +62,7 @@ pub struct CreaseBand {
 ///
 /// # Errors
 /// [`BuildError`].
-pub fn with_crease_band(
+pub(crate) fn with_crease_band(
     mesh: &Mesh,
     topology: &Topology,
     width: f32,

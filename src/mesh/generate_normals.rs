@@ -16,7 +16,7 @@ const PER_FACE: u64 = 160;
 
 /// A mesh that is being built. Missing normals are NaN.
 #[derive(Default)]
-pub struct UnfinishedMesh {
+pub(crate) struct UnfinishedMesh {
     pub corners: Vec<Corner>,
     /// The binding of each corner; empty if all are 0.
     pub bindings: Vec<u32>,
@@ -29,7 +29,7 @@ pub struct UnfinishedMesh {
 ///
 /// # Errors
 /// [`BuildError`].
-pub fn generate_normals(
+pub(crate) fn generate_normals(
     mesh: &mut UnfinishedMesh,
     budget: &dyn MemoryAccount,
     progress: &Progress,

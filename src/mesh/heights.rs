@@ -9,13 +9,13 @@ use super::Mesh;
 use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
-pub const MAX_KEPT: u32 = 4096;
+pub(crate) const MAX_KEPT: u32 = 4096;
 
 /// The greatest number of levels: 4096 px halved down to 1.
-pub const MAX_LEVELS: usize = 13;
+pub(crate) const MAX_LEVELS: usize = 13;
 
 /// The greatest number of maps of a mesh, for which the shaders have room.
-pub const MAX_MAPS: usize = 256;
+pub(crate) const MAX_MAPS: usize = 256;
 
 /// The heights of one image, from 0 (black) to 1 (white), in levels. Each level is half as wide and high as the one
 /// before, down to a single pixel.

@@ -7,20 +7,20 @@ use hashbrown::HashTable;
 
 /// Numbers items from 0 on. The table holds only the numbers: 5 to 12 bytes an item.
 #[derive(Default)]
-pub struct Interner {
+pub(crate) struct Interner {
     table: HashTable<u32>,
     hasher: RandomState,
 }
 
 impl Interner {
     /// Makes an empty table with room for `count` items.
-    pub fn with_capacity(count: usize) -> Self {
+    pub(crate) fn with_capacity(count: usize) -> Self {
         Self { table: HashTable::with_capacity(count), ..Self::default() }
     }
 
     /// Returns the number of the item with this key, and whether the item is new, in which case the number is the next
     /// one. `key_of` must return the key of each item that has a number.
-    pub fn number<K: Hash + Eq>(&mut self, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
+    pub(crate) fn number<K: Hash + Eq>(&mut self, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
         let hash = self.hasher.hash_one(&key);
         if let Some(&id) = self.table.find(hash, |&id| key_of(id) == key) {
             return (id, false);
@@ -34,7 +34,7 @@ impl Interner {
     }
 
     /// Makes room for `more` further items. The old table is freed before the new one is allocated.
-    pub fn reserve<K: Hash>(&mut self, more: usize, key_of: impl Fn(u32) -> K) {
+    pub(crate) fn reserve<K: Hash>(&mut self, more: usize, key_of: impl Fn(u32) -> K) {
         let count = self.table.len();
         if self.table.capacity() - count >= more {
             return;
@@ -48,18 +48,18 @@ impl Interner {
     }
 
     /// Returns how many more items there is room for.
-    pub fn room(&self) -> usize {
+    pub(crate) fn room(&self) -> usize {
         self.table.capacity() - self.table.len()
     }
 
     /// Returns the size of the table, in bytes.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.table.allocation_size() as u64
     }
 
     /// Returns the greatest size of a table with room for `count` items, in bytes. A table has a power of two of slots,
     /// of which an eighth stays free.
-    pub fn bytes_for(count: usize) -> u64 {
+    pub(crate) fn bytes_for(count: usize) -> u64 {
         let places = (count as u64 * 8).div_ceil(7).max(16).next_power_of_two();
         places * 5 + 64
     }

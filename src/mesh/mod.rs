@@ -34,7 +34,8 @@ use glam::{Vec2, Vec3};
 pub use bounds::Bounds;
 pub use heights::{HeightMap, Heights};
 pub use repairs::Repairs;
-pub use rig::{Clip, Moment, Pose, Rig};
+pub use rig::clip::Clip;
+pub use rig::{Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 

@@ -17,7 +17,7 @@ const TRIES: usize = 256;
 
 /// Numbers of suspicious normals. All three can be intended, as in a Möbius strip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct NormalFaults {
+pub(crate) struct NormalFaults {
     /// Corners of patches whose normal points to the back of their triangle (the dot product with its surface normal is
     /// below 0). Triangles without area don't count.
     pub against_face: u32,
@@ -32,7 +32,7 @@ pub struct NormalFaults {
 impl NormalFaults {
     /// Counts the suspicious normals, in f64, after welding. Takes linear time: of an edge with more than 256 sides,
     /// the first 256 are compared.
-    pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
+    pub(crate) fn of(mesh: &Mesh, topology: &Topology) -> Self {
         let mut faults = Self::default();
         for patch in &topology.patches {
             faults.add(mesh, topology, patch);

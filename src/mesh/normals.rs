@@ -28,7 +28,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// A normal from a file or a caller, checked and of unit length.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum GivenNormal {
+pub(crate) enum GivenNormal {
     /// The normal was zero or not finite; it counts as missing.
     None,
     /// The normal was of unit length to within 1e-2, and now is to within rounding.
@@ -40,7 +40,7 @@ pub enum GivenNormal {
 impl GivenNormal {
     /// Checks a normal. If its length is 1 to within half a millionth, it keeps its bits; others are normalised in f64,
     /// in which neither 1e-45 nor 1e38 is out of range.
-    pub fn new(normal: Vec3) -> Self {
+    pub(crate) fn new(normal: Vec3) -> Self {
         let wide = normal.as_dvec3();
         let square = wide.length_squared();
         let Some(unit) = wide.try_normalize().filter(|_| normal.is_finite()) else { return Self::None };
@@ -54,7 +54,7 @@ impl GivenNormal {
     }
 
     /// Returns the unit normal, if there is one.
-    pub fn unit(self) -> Option<Vec3> {
+    pub(crate) fn unit(self) -> Option<Vec3> {
         match self {
             Self::None => None,
             Self::Unit(normal) | Self::Rescaled(normal) => Some(normal),
@@ -64,7 +64,7 @@ impl GivenNormal {
 
 /// A triangle as one of the faces around a point.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Face {
+pub(crate) struct Face {
     /// The unit surface normal; zero for a triangle without area.
     normal: DVec3,
     /// The triangle's angle at the point, in radians.
@@ -74,7 +74,7 @@ pub struct Face {
 impl Face {
     /// Makes a triangle the face around its corner k. Computed in f64, where products of differences of f32 numbers
     /// neither overflow nor underflow.
-    pub fn new(triangle: [Vec3; 3], k: usize) -> Self {
+    pub(crate) fn new(triangle: [Vec3; 3], k: usize) -> Self {
         let p = triangle.map(Vec3::as_dvec3);
         let cross = (p[1] - p[0]).cross(p[2] - p[0]);
         let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
@@ -93,7 +93,7 @@ impl Face {
 ///
 /// Takes time linear in the number of faces, except in fans of up to 256 faces. Source of the weights: Thürmer and
 /// Wüthrich 1998, "Computing vertex normals from polygonal facets".
-pub fn fan_normals(fan: &[Face], normals: &mut Vec<Vec3>) {
+pub(crate) fn fan_normals(fan: &[Face], normals: &mut Vec<Vec3>) {
     normals.clear();
     if fan.len() <= FAN_LIMIT {
         normals.extend(averages(fan));

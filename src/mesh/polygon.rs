@@ -10,19 +10,19 @@ use glam::{DVec2, DVec3, Vec3};
 
 /// The work that the polygons of one file may still cause, counted in tests whether a corner lies in a triangle.
 #[derive(Clone, Copy, Debug)]
-pub struct WorkBudget(u64);
+pub(crate) struct WorkBudget(u64);
 
 impl WorkBudget {
     /// Returns the budget for a file of `bytes` bytes: enough for polygons of 3,000 corners in which every ear is
     /// tested against all other corners, and for many times as many corners in ordinary polygons.
-    pub fn new(bytes: usize) -> Self {
+    pub(crate) fn new(bytes: usize) -> Self {
         Self((1 << 23) + 4 * bytes as u64)
     }
 }
 
 /// How well a polygon was cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CutQuality {
+pub(crate) enum CutQuality {
     /// All triangles lie within the polygon, without overlaps.
     Exact,
     /// The polygon has no area, its sides cross, or the budget was used up: triangles may overlap.
@@ -32,7 +32,7 @@ pub enum CutQuality {
 /// Cuts a polygon of three corners or more into triangles, two fewer than it has corners. The triangles hold indices
 /// into `outline` and have its winding. Takes time quadratic in the number of corners that turn inward, but never more
 /// than the budget.
-pub fn triangulate(outline: &[Vec3], budget: &mut WorkBudget, triangles: &mut Vec<[usize; 3]>) -> CutQuality {
+pub(crate) fn triangulate(outline: &[Vec3], budget: &mut WorkBudget, triangles: &mut Vec<[usize; 3]>) -> CutQuality {
     if outline.len() == 3 {
         triangles.push([0, 1, 2]);
         return CutQuality::Exact;

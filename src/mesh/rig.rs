@@ -7,7 +7,7 @@
 //! Source: Khronos, glTF 2.0 specification, sections 3.7.2.2 (morph targets), 3.7.3 (skins) and 3.11 (animations).
 
 mod animated_node;
-mod clip;
+pub(crate) mod clip;
 
 use std::fmt;
 
@@ -15,8 +15,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::DMat4;
 use serde::Serialize;
 
-pub use animated_node::{AnimatedNode, Placement};
-pub use clip::{Channel, Clip, Interpolation, Keys, Property};
+pub(crate) use animated_node::{AnimatedNode, Placement};
+pub(crate) use clip::{Channel, Clip, Interpolation, Keys, Property};
 
 /// A mesh's bindings to joints and morph targets, and the clips that move those.
 #[derive(Clone, Debug, Default)]
@@ -156,7 +156,7 @@ impl fmt::Display for AnimatedCounts {
 
 /// The greatest coordinate of a pose, in object units. Control points, which are sums of several positions, then stay
 /// within f32.
-pub const LARGEST_COORDINATE: f32 = 1e37;
+pub(crate) const LARGEST_COORDINATE: f32 = 1e37;
 
 impl Rig {
     /// Finds a clip by name. If several have the name, it is the first one's; the second is `NAME#2`, and so on. If no

@@ -48,7 +48,7 @@ pub enum Shape {
 }
 
 /// The highest level of a shape with levels.
-pub const MAX_LEVEL: u32 = 6;
+pub(crate) const MAX_LEVEL: u32 = 6;
 
 /// Why a text doesn't name a shape.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

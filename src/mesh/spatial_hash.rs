@@ -20,17 +20,17 @@ pub(super) struct SpatialHash {
 
 impl SpatialHash {
     /// Makes an empty table for queries within `reach` (above 0, in object units). Cells are two reaches wide.
-    pub fn new(reach: f64) -> Self {
+    pub(super) fn new(reach: f64) -> Self {
         Self { reach, cells: HashTable::new(), hasher: RandomState::default() }
     }
 
     /// Returns the item in the cell of a position.
-    pub fn at(&self, place: DVec3, place_of: impl Fn(u32) -> DVec3) -> Option<u32> {
+    pub(super) fn at(&self, place: DVec3, place_of: impl Fn(u32) -> DVec3) -> Option<u32> {
         self.find(self.key(place), &place_of)
     }
 
     /// Adds an item to the cell of its position. Returns the item that the cell had before.
-    pub fn put(&mut self, id: u32, place_of: impl Fn(u32) -> DVec3) -> Option<u32> {
+    pub(super) fn put(&mut self, id: u32, place_of: impl Fn(u32) -> DVec3) -> Option<u32> {
         let Self { reach, cells, hasher } = self;
         let key = |id: u32| key(cell(*reach, place_of(id)));
         let own = key(id);
@@ -44,7 +44,7 @@ impl SpatialHash {
     }
 
     /// Returns the items of all cells that reach within `reach` of a position: up to 27 cells, but usually 8.
-    pub fn near(&self, place: DVec3, place_of: impl Fn(u32) -> DVec3) -> impl Iterator<Item = u32> {
+    pub(super) fn near(&self, place: DVec3, place_of: impl Fn(u32) -> DVec3) -> impl Iterator<Item = u32> {
         let [x, y, z] = place.to_array().map(|x| self.touched(x));
         let cells = (0..27).filter_map(move |i| Some([x[i / 9]?, y[i / 3 % 3]?, z[i % 3]?]));
         cells.filter_map(move |cell| self.find(key(cell), &place_of))

@@ -25,7 +25,7 @@ const MOST: usize = 1 << 20;
 /// A boundary point between the ends of a boundary edge. No tessellation closes the gap there: the edge curves and is
 /// divided without regard to the point. The mesh must be changed so that the edge ends at the point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TJunction {
+pub(crate) struct TJunction {
     /// Index into [`Topology::edges`].
     pub edge: u32,
     /// Index into [`Topology::points`].
@@ -62,7 +62,7 @@ pub struct TJunction {
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
-pub fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunction>, Cancelled> {
+pub(crate) fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunction>, Cancelled> {
     let on_edges = PointsOnEdges::new(topology);
     progress.check()?;
     let mut chains = ChainSearch::new(topology);

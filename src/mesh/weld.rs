@@ -12,7 +12,7 @@ use super::spatial_hash::SpatialHash;
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
 ///
 /// Returns the points, and for each position the index of its point. Takes expected linear time.
-pub fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) {
+pub(crate) fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec<u32>) {
     let (points, point_of) = weld_exactly(positions.into_iter().map(|position| (position, 0)));
     (points.into_iter().map(|(point, _)| point).collect(), point_of)
 }
@@ -47,12 +47,12 @@ fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32
 /// A tolerance that isn't above 0 gives the same result as [`weld`]. Returns the points, and for each position the
 /// index of its point. Takes expected linear time, since only a limited number of points that far apart fit into one
 /// cell of the spatial hash.
-pub fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+pub(crate) fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
 }
 
 /// WeldPreview positions as [`weld_within`] does; each has a number, and positions with different numbers aren't joined.
-pub fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
+pub(crate) fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     // WeldPreview equal positions first: they must stay together even if a nearer point comes between them.
     let (distinct, mut point_of) = weld_exactly(positions);
     if tolerance.is_nan() || tolerance <= 0.0 {

@@ -35,7 +35,7 @@ impl fmt::Display for WeldPreview {
 
 /// The tolerances to try, relative to the bounding diagonal: from the rounding of f32 to distances that visibly change
 /// a mesh.
-pub const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+pub(crate) const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// Returns how many edges a weld within each of [`TOLERANCES`] would join, and how many triangles it would collapse, in
 /// their order. `exact` is the mesh's topology without a tolerance, if the caller has it. To save time and memory, no

@@ -12,7 +12,7 @@ const GAP: u32 = 4;
 ///
 /// # Errors
 /// The font of the captions can't be used.
-pub fn contact_sheet(parts: &[(String, RgbImage)], columns: u32, text: u32) -> Result<RgbImage, ChartError> {
+pub(crate) fn contact_sheet(parts: &[(String, RgbImage)], columns: u32, text: u32) -> Result<RgbImage, ChartError> {
     let (width, height) = parts.first().map_or((0, 0), |(_, part)| part.dimensions());
     let room = text + text / 3;
     let (across, down) = (width + GAP, height + GAP + room);

@@ -13,10 +13,10 @@ use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use thiserror::Error;
 
-pub use contact_sheet::contact_sheet;
+pub(crate) use contact_sheet::contact_sheet;
 
 /// The smallest and largest side of a chart, in px.
-pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
+pub(crate) const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
 
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ChartError {
@@ -33,25 +33,25 @@ impl ChartError {
 }
 
 /// How many px are drawn for one px of the chart, along each side.
-pub const DENSITY: u32 = 2;
+pub(crate) const DENSITY: u32 = 2;
 /// The font's name as the plotting library knows it. SVG files carry the name alone, so that they are shown in the reader's
 /// own font of that kind.
 pub const FONT: &str = "sans-serif";
 pub const INK: RGBColor = RGBColor(40, 40, 40);
 
 /// Colours that can be told apart by everybody (Okabe and Ito 2008).
-pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
+pub(crate) const VERMILION: RGBColor = RGBColor(213, 94, 0);
 pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-pub const BLUISH_GREEN: RGBColor = RGBColor(0, 158, 115);
-pub const REDDISH_PURPLE: RGBColor = RGBColor(204, 121, 167);
-pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
-pub const SKY_BLUE: RGBColor = RGBColor(86, 180, 233);
+pub(crate) const BLUISH_GREEN: RGBColor = RGBColor(0, 158, 115);
+pub(crate) const REDDISH_PURPLE: RGBColor = RGBColor(204, 121, 167);
+pub(crate) const ORANGE: RGBColor = RGBColor(230, 159, 0);
+pub(crate) const SKY_BLUE: RGBColor = RGBColor(86, 180, 233);
 
 /// Makes a picture of this width and height in px; `draw` draws it at [`DENSITY`] times that size.
 ///
 /// # Errors
 /// `draw` fails, or the font can't be used.
-pub fn bitmap<E: Display>(
+pub(crate) fn bitmap<E: Display>(
     [width, height]: [u32; 2],
     draw: impl FnOnce(&DrawingArea<BitMapBackend, Shift>) -> Result<(), E>,
 ) -> Result<RgbImage, ChartError> {
@@ -79,7 +79,7 @@ pub fn use_font() -> Result<(), ChartError> {
 ///
 /// # Errors
 /// The font can't be used.
-pub fn write_text(picture: &mut RgbImage, at: [i32; 2], size: u32, text: &str) -> Result<(), ChartError> {
+pub(crate) fn write_text(picture: &mut RgbImage, at: [i32; 2], size: u32, text: &str) -> Result<(), ChartError> {
     use_font()?;
     let dimensions = picture.dimensions();
     let area = BitMapBackend::with_buffer(picture, dimensions).into_drawing_area();
@@ -88,6 +88,6 @@ pub fn write_text(picture: &mut RgbImage, at: [i32; 2], size: u32, text: &str) -
 }
 
 /// The text style for letters of this height, in drawn px.
-pub fn font(size: i32) -> TextStyle<'static> {
+pub(crate) fn font(size: i32) -> TextStyle<'static> {
     (FONT, size).into_font().color(&INK)
 }

@@ -8,11 +8,11 @@ use crate::mesh::Bounds;
 use crate::tessellate::LodView;
 
 /// Vertical field of view, in degrees.
-pub const FIELD_OF_VIEW: f32 = 40.0;
+pub(super) const FIELD_OF_VIEW: f32 = 40.0;
 /// Between the target and the eye, in object units.
 const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 /// Steeper than this, "up" would turn over.
-pub const MAX_ELEVATION: f32 = 89.9;
+pub(super) const MAX_ELEVATION: f32 = 89.9;
 
 /// A camera that looks at `target` from `distance` away.
 #[derive(Clone, Copy, Debug, PartialEq)]

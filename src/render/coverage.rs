@@ -14,15 +14,15 @@ use crate::gpu::{
 use crate::tessellate::CoverageView;
 
 static COVERAGE: WgslFile = wgsl!("coverage");
-pub static PASS_COVERAGE: WgslFile = wgsl!("pass_coverage", COVERAGE, TYPES, WORKGROUP_SCAN);
+pub(super) static PASS_COVERAGE: WgslFile = wgsl!("pass_coverage", COVERAGE, TYPES, WORKGROUP_SCAN);
 
 /// How many triangles each workgroup looks at; `TILE` in `shaders/pass_coverage.wgsl`.
-pub const TILE: u32 = 2048;
+pub(super) const TILE: u32 = 2048;
 
 /// What the passes over one chunk read as `sieve`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Sieve {
+pub(super) struct Sieve {
     pub view: CoverageView,
     pub triangle_count: u32,
     pub material_count: u32,
@@ -32,7 +32,7 @@ pub struct Sieve {
 }
 
 /// The pipelines of these passes, each made when it is first needed.
-pub struct CoveragePipelines {
+pub(super) struct CoveragePipelines {
     marks: ComputePipeline,
     starts: ComputePipeline,
     keep: ComputePipeline,
@@ -40,7 +40,7 @@ pub struct CoveragePipelines {
 
 impl CoveragePipelines {
     /// Compiles nothing yet.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let module = Arc::new(ShaderModule::new(&PASS_COVERAGE));
         Self {
             marks: ComputePipeline::new(&module, "coverage_marks_main"),
@@ -51,7 +51,7 @@ impl CoveragePipelines {
 }
 
 /// Buffers for the triangles that are kept of a chunk.
-pub struct Coverage {
+pub(super) struct Coverage {
     marks: wgpu::Buffer,
     tile_starts: wgpu::Buffer,
     /// Three for each kept triangle, in the order in which the triangles were emitted.
@@ -66,7 +66,7 @@ impl Coverage {
     ///
     /// # Errors
     /// More than the adapter binds.
-    pub fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
         let most = (chunk.indices.size() / size_of::<[u32; 3]>() as u64) as u32;
         let capacity = chunk.chunk.triangle_count.next_power_of_two().min(most);
         let tiles = capacity.div_ceil(TILE) as usize;
@@ -79,11 +79,11 @@ impl Coverage {
         })
     }
 
-    pub fn has_room(&self, chunk: &ChunkBuffers) -> bool {
+    pub(super) fn has_room(&self, chunk: &ChunkBuffers) -> bool {
         chunk.chunk.triangle_count <= self.capacity
     }
 
-    pub fn bytes(&self) -> u64 {
+    pub(super) fn bytes(&self) -> u64 {
         [&self.marks, &self.tile_starts, &self.indices, &self.draw_args].iter().map(|buffer| buffer.size()).sum()
     }
 
@@ -91,7 +91,7 @@ impl Coverage {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn kept(&self, gpu: &Gpu) -> Result<u64, GpuError> {
+    pub(super) fn kept(&self, gpu: &Gpu) -> Result<u64, GpuError> {
         let bytes = read_buffer(gpu, &self.draw_args, 0, self.draw_args.size())?;
         let draws: Vec<DrawArgs> = bytemuck::pod_collect_to_vec(&bytes);
         Ok(draws.iter().map(|draw| u64::from(draw.index_count) / 3).sum())
@@ -101,7 +101,7 @@ impl Coverage {
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
-    pub fn keep(
+    pub(super) fn keep(
         &self,
         recorder: &mut Recorder,
         pipelines: &CoveragePipelines,

@@ -9,7 +9,7 @@ use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// How far what is emitted is from the truth.
-pub struct Deviations {
+pub(super) struct Deviations {
     /// One a chunk: see `deviations` in `shaders/draw_surface.wgsl`.
     pub(super) chunks: Vec<wgpu::Buffer>,
     /// In object units.
@@ -19,7 +19,7 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    pub fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
+    pub(super) fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
         // What is no number can't be told from others on every device.
         let known = |sample: &f32| if sample.is_nan() { -1.0 } else { *sample };
         let buffer = |samples: &Vec<f32>| {
@@ -30,7 +30,7 @@ impl Deviations {
     }
 
     /// What is bound where nothing is known: no samples.
-    pub fn unknown(gpu: &Gpu) -> wgpu::Buffer {
+    pub(super) fn unknown(gpu: &Gpu) -> wgpu::Buffer {
         buffer(gpu, &[0.0])
     }
 }
@@ -45,7 +45,7 @@ fn buffer(gpu: &Gpu, contents: &[f32]) -> wgpu::Buffer {
 
 /// Distances on screen in px. Plasma (Smith and van der Walt 2015, CC0) from 2 to 8 ninths: evenly lighter to the eye, in
 /// hues that neither factors nor sizes have, and without the end that lines couldn't be told from.
-pub const DEVIATION_PX_SCALE: Scale = Scale {
+pub(crate) const DEVIATION_PX_SCALE: Scale = Scale {
     least: 0.1,
     most: 10.0,
     colors: [
@@ -65,7 +65,7 @@ const SPAN: f64 = 100.0;
 
 /// The scale for distances in object units up to `largest`, which is rounded up; nothing below `ulp`, one unit in the last
 /// place, is worth a colour.
-pub fn deviation_scale(largest: f64, ulp: f32) -> Scale {
+pub(crate) fn deviation_scale(largest: f64, ulp: f32) -> Scale {
     const ROUND: [f64; 9] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
     let largest = largest.max(f64::from(ulp) * SPAN).max(f64::from(f32::MIN_POSITIVE) * SPAN * 10.0);
     let decade = 10.0_f64.powf(largest.log10().floor());

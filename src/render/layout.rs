@@ -10,7 +10,7 @@ use crate::settings::{Colors, Overlays};
 /// One picture's view.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Frame {
+pub(crate) struct Frame {
     pub clip_from_object: [[f32; 4]; 4],
     /// Unit directions in object space towards the two lights, which move with the camera.
     pub key_light: [f32; 4],
@@ -37,7 +37,7 @@ pub struct Frame {
 /// A material's constants.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Material {
+pub(crate) struct Material {
     /// Linear RGBA.
     pub base_color: [f32; 4],
 }
@@ -45,7 +45,7 @@ pub struct Material {
 /// What is in front at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Pick {
+pub(crate) struct Pick {
     /// As emitted; zero for an input triangle.
     pub vertices: [Vertex; 3],
     /// [`FOUND_EMITTED`] for an emitted triangle, another number but 0 for an input triangle, 0 for nothing.
@@ -58,11 +58,11 @@ pub struct Pick {
 }
 
 /// An emitted triangle; the same in `shaders/draw_types.wgsl`.
-pub const FOUND_EMITTED: u32 = 1;
+pub(crate) const FOUND_EMITTED: u32 = 1;
 
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and
 /// normals are lines of their own.
-pub fn overlay_bits(overlays: &Overlays) -> u32 {
+pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
     u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
         | u32::from(overlays.colors == Colors::Barycentric) << 2
@@ -77,7 +77,7 @@ pub fn overlay_bits(overlays: &Overlays) -> u32 {
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
 /// Told apart by people with any colour vision (Okabe and Ito 2008), but for the quiet grey of smooth edges.
-pub fn edge_color(kind: EdgeKind) -> [u8; 3] {
+pub(crate) fn edge_color(kind: EdgeKind) -> [u8; 3] {
     match kind {
         EdgeKind::Smooth => [170, 175, 183],
         EdgeKind::Split => [230, 159, 0],
@@ -88,38 +88,38 @@ pub fn edge_color(kind: EdgeKind) -> [u8; 3] {
 }
 
 /// sRGB colour of a crack.
-pub const CRACK_COLOR: [u8; 3] = [255, 60, 25];
+pub(crate) const CRACK_COLOR: [u8; 3] = [255, 60, 25];
 
 /// sRGB colour of a T-junction.
-pub const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
+pub(crate) const T_JUNCTION_COLOR: [u8; 3] = [240, 228, 66];
 
 /// sRGB colour of a fold; `FOLD_COLOR` in `shaders/draw_surface.wgsl` has the same in linear light.
-pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
+pub(crate) const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 
 /// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface.wgsl` has the same
 /// in linear light.
-pub const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
+pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
 /// sRGB colour of what tessellation is wasted on: triangles too small, patches whose factors are too low; `WASTE_COLOR` in
 /// `shaders/draw_surface.wgsl` has the same in linear light. Vermilion (Okabe and Ito 2008).
-pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
+pub(crate) const WASTE_COLOR: [u8; 3] = [213, 94, 0];
 
 /// sRGB colour of the place that is farthest from the truth: none of the scale's, and set off by [`OUTLINE_COLOR`].
-pub const WORST_COLOR: [u8; 3] = [120, 255, 245];
+pub(crate) const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
-pub const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
+pub(crate) const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
 /// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.
-pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
-pub const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
+pub(crate) const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
+pub(crate) const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
 
 /// sRGB colours of the edges of a selected patch, by the factor that cuts them: those of u, v and w as barycentric colours
 /// have them, but paler.
-pub const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
+pub(crate) const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
 
 /// sRGB bytes in linear light, 0 to 1.
-pub fn linear(srgb: [u8; 3]) -> [f32; 3] {
+pub(crate) fn linear(srgb: [u8; 3]) -> [f32; 3] {
     srgb.map(|byte| {
         let x = f32::from(byte) / 255.0;
         if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }

@@ -9,7 +9,7 @@ use crate::gpu::{
     Gpu, GpuError, Lazy, Recorder, ShaderModule, Timing, VERTEX_HALF, WgslFile, bind_group, read_texture,
 };
 
-pub static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
+pub(super) static DRAW_LEAKS: WgslFile = wgsl!("draw_leaks");
 
 /// The count of each pixel, which may be negative. This format holds every whole number up to 2048, and every adapter can blend
 /// it.
@@ -22,7 +22,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// rule. So all triangles are drawn without a depth test; front faces add 1 and back faces subtract 1. A pixel that isn't 0 at
 /// the end sees the inside through a crack, or the outside from within. (If a line of sight passes through one crack in front
 /// and another behind, the two cancel; the pixels around it still count.)
-pub struct LeakCounter {
+pub(crate) struct LeakCounter {
     module: ShaderModule,
     pipeline: Lazy<wgpu::RenderPipeline>,
 }
@@ -35,7 +35,7 @@ impl Default for LeakCounter {
 
 impl LeakCounter {
     /// Compiles nothing yet.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { module: ShaderModule::new(&DRAW_LEAKS), pipeline: Lazy::default() }
     }
 
@@ -49,7 +49,7 @@ impl LeakCounter {
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
-    pub fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
+    pub(crate) fn count(&self, gpu: &Gpu, scene: &mut Scene, size: [u32; 2], clip: Mat4) -> Result<u64, GpuError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let [width, height] = size.map(|side| side.max(1));
         if width > limit || height > limit {

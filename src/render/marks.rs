@@ -8,12 +8,12 @@ use crate::measure::{CrackedEdge, Measured};
 use crate::mesh::{TJunction, Topology};
 
 /// Every side of every cracked edge.
-pub fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
+pub(crate) fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
     crack_lines_in(measured, topology, |_| CRACK_COLOR)
 }
 
 /// Every side of every cracked edge, each edge in the colour (sRGB) that `color` gives it.
-pub fn crack_lines_in(
+pub(crate) fn crack_lines_in(
     measured: &Measured,
     topology: &Topology,
     color: impl Fn(&CrackedEdge) -> [u8; 3],
@@ -30,7 +30,7 @@ pub fn crack_lines_in(
 }
 
 /// The open edges that T-junctions lie on, and a dot on each point.
-pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
+pub(crate) fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
     let at = |point: u32| topology.points[point as usize];
     let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
     let marks = junctions.iter().flat_map(|junction| {
@@ -41,7 +41,7 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
 }
 
 /// The place that is farthest from the truth: a dot on it, and a line to the truth's point.
-pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
+pub(crate) fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
     let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
     let mark =
         |color, wider: f32| [line(emitted, truth, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)];
@@ -49,7 +49,7 @@ pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
 }
 
 /// The outline of a selected patch: lines through the points of the edges that factors 0, 1 and 2 cut.
-pub fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
+pub(crate) fn patch_lines(edges: &[Vec<Vec3>; 3]) -> Vec<LineSegment> {
     let edge = |points: &[Vec3], color, half_width| {
         let ends = points.windows(2).map(move |ends| LineSegment::new(ends[0], ends[1], color));
         ends.map(|line| LineSegment { half_width, ..line }).collect::<Vec<_>>()

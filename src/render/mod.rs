@@ -1,11 +1,11 @@
 //! Pictures: a camera, a scene on the device, and one indirect draw a material into an offscreen texture.
 
-mod camera;
+pub(crate) mod camera;
 mod coverage;
 mod deviation;
 mod frame;
 mod framing;
-pub mod layout;
+pub(crate) mod layout;
 mod leaks;
 mod marks;
 mod materials;
@@ -13,22 +13,22 @@ mod pick;
 mod pipelines;
 mod renderer;
 mod scale;
-mod scene;
+pub(crate) mod scene;
 #[cfg(test)]
 mod shader_tests;
 mod steps;
-mod target;
+pub(crate) mod target;
 
-pub use camera::{Camera, Standpoint};
-pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
-pub use leaks::LeakCounter;
-pub use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
-pub use materials::Materials;
-pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
-pub use renderer::Renderer;
-pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
-pub use scene::{LineSegment, Scene};
-pub use target::{Target, samples};
+pub(crate) use camera::{Camera, Standpoint};
+pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
+pub(crate) use leaks::LeakCounter;
+pub(crate) use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
+pub(crate) use materials::Materials;
+pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
+pub(crate) use renderer::Renderer;
+pub(crate) use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
+pub(crate) use scene::{LineSegment, Scene};
+pub(crate) use target::{Target, samples};
 
 /// The files with the entry points of what draws and picks: one shader module each.
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::gpu::layout::Vertex;
 use crate::gpu::wgsl::{FACTORS, SURFACE, TYPES, WgslFile, wgsl};
 use crate::gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing};
 
-pub static DRAW_PICK: WgslFile = wgsl!("draw_pick", DRAW_TYPES, FACTORS, SURFACE, TYPES);
+pub(super) static DRAW_PICK: WgslFile = wgsl!("draw_pick", DRAW_TYPES, FACTORS, SURFACE, TYPES);
 
 /// Two numbers are drawn, see `pick_fragment`. Every adapter can draw into four of 32 bits.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;

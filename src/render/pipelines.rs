@@ -5,16 +5,16 @@ use super::target::{COLOR_FORMAT, DEPTH_FORMAT, samples};
 use crate::gpu::wgsl::{CONVENTION, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WgslFile, wgsl};
 use crate::gpu::{Gpu, GpuError, Lazy, ShaderModule, VERTEX_HALF};
 
-pub static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
+pub(super) static DRAW_TYPES: WgslFile = wgsl!("draw_types", TYPES);
 static DRAW_LIGHT: WgslFile = wgsl!("draw_light");
-pub static DRAW_PLAIN: WgslFile = wgsl!("draw_plain", DRAW_LIGHT, DRAW_TYPES, OCTAHEDRAL_NORMAL);
-pub static DRAW_SURFACE: WgslFile =
+pub(super) static DRAW_PLAIN: WgslFile = wgsl!("draw_plain", DRAW_LIGHT, DRAW_TYPES, OCTAHEDRAL_NORMAL);
+pub(super) static DRAW_SURFACE: WgslFile =
     wgsl!("draw_surface", CONVENTION, DRAW_LIGHT, DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, SURFACE, TYPES);
-pub static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
+pub(super) static DRAW_LINES: WgslFile = wgsl!("draw_lines", DRAW_TYPES, FACTORS, OCTAHEDRAL_NORMAL, TYPES);
 
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Draw {
+pub(super) enum Draw {
     /// Emitted triangles with the material's colour alone.
     Plain(Faces),
     /// Emitted triangles with the material's colour and texture.
@@ -34,7 +34,7 @@ pub enum Draw {
 
 /// Which faces are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Faces {
+pub(super) enum Faces {
     Both,
     /// Those that face the eye.
     Fronts,
@@ -42,7 +42,7 @@ pub enum Faces {
 
 /// Which part of a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Occluded {
+pub(super) enum Occluded {
     /// All of it, faintly, whatever is in front of it.
     Through,
     /// What nothing is in front of.
@@ -51,7 +51,7 @@ pub enum Occluded {
 
 impl Draw {
     /// Every pipeline that there is.
-    pub const ALL: [Self; 13] = [
+    pub(super) const ALL: [Self; 13] = [
         Self::Plain(Faces::Both),
         Self::Plain(Faces::Fronts),
         Self::Textured(Faces::Both),
@@ -137,7 +137,7 @@ fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferL
 }
 
 /// The pipelines, by [`Draw`], and the layouts of what they are bound to.
-pub struct DrawPipelines {
+pub(super) struct DrawPipelines {
     /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, and the frame once more as a uniform.
     pub scene_layout: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, texture and sampler.
@@ -154,7 +154,7 @@ pub struct DrawPipelines {
 
 impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
-    pub fn new(gpu: &Gpu, material_layout: wgpu::BindGroupLayout) -> Self {
+    pub(super) fn new(gpu: &Gpu, material_layout: wgpu::BindGroupLayout) -> Self {
         Self {
             scene_layout: scene_layout(gpu),
             material_layout,
@@ -171,7 +171,7 @@ impl DrawPipelines {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub fn get(&self, gpu: &Gpu, draw: Draw) -> Result<&wgpu::RenderPipeline, GpuError> {
+    pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<&wgpu::RenderPipeline, GpuError> {
         let module = match draw {
             Draw::Plain(_) | Draw::Textured(_) => &self.plain,
             Draw::Indexed(_) | Draw::Pulled(_) | Draw::Source => &self.surface,

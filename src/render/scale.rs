@@ -14,7 +14,7 @@ pub struct Scale {
 
 /// Tessellation factors, a colour each power of two. The upper six eighths of viridis (Smith and van der Walt 2015, CC0):
 /// evenly lighter to the eye with any colour vision, and without the end that lines couldn't be told from.
-pub const FACTOR_SCALE: Scale = Scale {
+pub(crate) const FACTOR_SCALE: Scale = Scale {
     least: 1.0,
     most: 64.0,
     colors: [
@@ -29,7 +29,7 @@ pub const FACTOR_SCALE: Scale = Scale {
 };
 
 /// Sizes of triangles in px: blue, which nobody confuses with [`super::layout::WASTE_COLOR`], darker the larger.
-pub const SIZE_SCALE: Scale = Scale {
+pub(crate) const SIZE_SCALE: Scale = Scale {
     least: SMALL_PX as f32,
     most: 64.0,
     colors: [

@@ -4,7 +4,7 @@ use super::Scene;
 use crate::settings::{Settings, SplitSide};
 
 /// What one render pass of a picture adds.
-pub enum Step {
+pub(super) enum Step {
     /// The background alone: nothing is emitted.
     Nothing,
     /// The triangles of a half's chunk.
@@ -14,14 +14,14 @@ pub enum Step {
 }
 
 impl Step {
-    pub fn half(&self) -> SplitSide {
+    pub(super) fn half(&self) -> SplitSide {
         match self {
             Self::Nothing => SplitSide::Right,
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
         }
     }
 
-    pub fn chunk(&self) -> Option<usize> {
+    pub(super) fn chunk(&self) -> Option<usize> {
         match self {
             Self::Nothing => None,
             Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
@@ -30,7 +30,7 @@ impl Step {
 }
 
 /// All steps of a picture, in order.
-pub fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
+pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
     let chunks = |half| {
         let drawn = settings.half(half).and(scene.half(half));
         (0..drawn.map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk))
@@ -45,7 +45,7 @@ pub fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
 }
 
 /// The picture left and right of the split: x, y, width, height in px.
-pub fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
+pub(super) fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
     let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
     [[0, 0, at, height], [at, 0, width - at, height]]
 }

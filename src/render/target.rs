@@ -3,8 +3,8 @@
 use crate::gpu::{Gpu, GpuError, read_texture};
 
 /// How a picture's texture is drawn into and resolved: sRGB-encoded 8-bit RGBA.
-pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// Samples a pixel that pictures are drawn with: 4 where the adapter has them, else 1.
 pub fn samples(gpu: &Gpu) -> u32 {

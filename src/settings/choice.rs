@@ -4,7 +4,7 @@ use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Par
 
 /// What a value is called, and what it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Description {
+pub(crate) struct Description {
     /// On the command line and in files: lower case, words joined by hyphens.
     pub name: &'static str,
     /// In the window.
@@ -14,23 +14,23 @@ pub struct Description {
 }
 
 impl Description {
-    pub const fn new(name: &'static str, label: &'static str, text: &'static str) -> Self {
+    pub(crate) const fn new(name: &'static str, label: &'static str, text: &'static str) -> Self {
         Self { name, label, text }
     }
 
     /// Returns how HLSL spells the name of a partitioning, where that differs: `fractional_odd`, `fractional_even`.
-    pub fn hlsl_name(&self) -> Option<String> {
+    pub(crate) fn hlsl_name(&self) -> Option<String> {
         self.name.starts_with("fractional-").then(|| self.name.replace('-', "_"))
     }
 
     /// Whether a text is this name, or HLSL's spelling of it.
-    pub fn is_named(&self, text: &str) -> bool {
+    pub(crate) fn is_named(&self, text: &str) -> bool {
         text == self.name || self.hlsl_name().is_some_and(|name| name == text)
     }
 }
 
 /// A value that is one of several, each with a name.
-pub trait Choice: Copy + PartialEq + 'static {
+pub(crate) trait Choice: Copy + PartialEq + 'static {
     /// All values, in the order in which lists show them.
     const ALL: &'static [Self];
 
@@ -55,7 +55,7 @@ pub trait Choice: Copy + PartialEq + 'static {
 }
 
 /// The descriptions of all values, in the order in which lists show them.
-pub fn descriptions<T: Choice>() -> Vec<Description> {
+pub(crate) fn descriptions<T: Choice>() -> Vec<Description> {
     T::ALL.iter().map(|value| value.description()).collect()
 }
 

@@ -4,10 +4,10 @@
 //! the window's rows are made from these declarations.
 
 mod choice;
-pub mod options;
+pub(crate) mod options;
 mod overlays;
 #[cfg(test)]
-pub mod random;
+pub(crate) mod random;
 mod value;
 
 use glam::{Mat4, Vec2};
@@ -15,9 +15,9 @@ use glam::{Mat4, Vec2};
 use crate::mesh::Mesh;
 use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach};
 
-pub use choice::{Choice, Description, descriptions};
-pub use overlays::{Colors, Control, Overlay, Overlays};
-pub use value::{Access, Declaration, Kind, Range, Value};
+pub(crate) use choice::{Choice, Description, descriptions};
+pub(crate) use overlays::{Colors, Control, Overlay, Overlays};
+pub(crate) use value::{Access, Declaration, Kind, Range, Value};
 
 /// Memory for a tessellation's output, in bytes.
 pub const ARENA_BYTES: u64 = 256 << 20;

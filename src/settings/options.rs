@@ -10,7 +10,7 @@ use super::{
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
 /// What is tessellated how: options of every command that tessellates.
-pub static TESSELLATION: [&Declaration; 16] = [
+pub(crate) static TESSELLATION: [&Declaration; 16] = [
     &SURFACE,
     &ALPHA,
     &NORMALS,
@@ -30,17 +30,17 @@ pub static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// How the picture is drawn: options of commands that draw one.
-pub static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+pub(crate) static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
 
 /// Tessellation factors, as Direct3D 11 has them.
-pub const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
+pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
 /// Tolerances of LOD by error, in px.
 pub const TOLERANCE_RANGE: Range = Range::new(0.01, 100.0, "px").logarithmic();
 /// Distances of LOD by distance, in bounding radii.
-pub const DISTANCE_RANGE: Range = Range::new(0.1, 1000.0, "r");
+pub(crate) const DISTANCE_RANGE: Range = Range::new(0.1, 1000.0, "r");
 
 /// All options.
-pub fn all() -> impl Iterator<Item = &'static Declaration> {
+pub(crate) fn all() -> impl Iterator<Item = &'static Declaration> {
     TESSELLATION.into_iter().chain(PICTURE)
 }
 
@@ -58,7 +58,7 @@ const fn always_has_effect(_: &Settings) -> Option<&'static str> {
     None
 }
 
-pub static SURFACE: Declaration = Declaration {
+pub(crate) static SURFACE: Declaration = Declaration {
     name: "surface",
     label: "Surface",
     placeholder: "SURFACE",
@@ -70,7 +70,7 @@ pub static SURFACE: Declaration = Declaration {
     access: field!(tessellation.surface),
 };
 
-pub static ALPHA: Declaration = Declaration {
+pub(crate) static ALPHA: Declaration = Declaration {
     name: "alpha",
     label: "Phong strength",
     placeholder: "A",
@@ -86,7 +86,7 @@ pub static ALPHA: Declaration = Declaration {
     access: field!(tessellation.alpha),
 };
 
-pub static NORMALS: Declaration = Declaration {
+pub(crate) static NORMALS: Declaration = Declaration {
     name: "normals",
     label: "Shading",
     placeholder: "NORMALS",
@@ -98,7 +98,7 @@ pub static NORMALS: Declaration = Declaration {
     access: field!(tessellation.normals),
 };
 
-pub static EDGES: Declaration = Declaration {
+pub(crate) static EDGES: Declaration = Declaration {
     name: "edges",
     label: "Shared edges",
     placeholder: "EDGES",
@@ -110,7 +110,7 @@ pub static EDGES: Declaration = Declaration {
     access: field!(tessellation.edges),
 };
 
-pub static FACTOR: Declaration = Declaration {
+pub(crate) static FACTOR: Declaration = Declaration {
     name: "factor",
     label: "Factor",
     placeholder: "F",
@@ -125,7 +125,7 @@ pub static FACTOR: Declaration = Declaration {
     access: field!(tessellation.factor),
 };
 
-pub static PARTITIONING: Declaration = Declaration {
+pub(crate) static PARTITIONING: Declaration = Declaration {
     name: "partitioning",
     label: "Partitioning",
     placeholder: "P",
@@ -138,10 +138,10 @@ pub static PARTITIONING: Declaration = Declaration {
 };
 
 /// Why LOD can't be chosen under subtriangulation.
-pub const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another partitioning brings back \
+pub(crate) const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another partitioning brings back \
                                 the LOD that was chosen.";
 
-pub static LOD: Declaration = Declaration {
+pub(crate) static LOD: Declaration = Declaration {
     name: "lod",
     label: "LOD",
     placeholder: "LOD",
@@ -156,7 +156,7 @@ pub static LOD: Declaration = Declaration {
     access: field!(tessellation.lod),
 };
 
-pub static PIXELS: Declaration = Declaration {
+pub(crate) static PIXELS: Declaration = Declaration {
     name: "pixels",
     label: "Segment length",
     placeholder: "P",
@@ -171,7 +171,7 @@ pub static PIXELS: Declaration = Declaration {
     access: field!(tessellation.pixels),
 };
 
-pub static TOLERANCE: Declaration = Declaration {
+pub(crate) static TOLERANCE: Declaration = Declaration {
     name: "tolerance",
     label: "Tolerance",
     placeholder: "PX",
@@ -185,7 +185,7 @@ pub static TOLERANCE: Declaration = Declaration {
     access: field!(tessellation.tolerance),
 };
 
-pub static DISTANCES: Declaration = Declaration {
+pub(crate) static DISTANCES: Declaration = Declaration {
     name: "distances",
     label: "Near, far",
     placeholder: "NEAR,FAR",
@@ -207,7 +207,7 @@ pub static DISTANCES: Declaration = Declaration {
     },
 };
 
-pub static CLIP: Declaration = Declaration {
+pub(crate) static CLIP: Declaration = Declaration {
     name: "clip",
     label: "Clipping",
     placeholder: "CLIP",
@@ -219,7 +219,7 @@ pub static CLIP: Declaration = Declaration {
     access: field!(tessellation.clip),
 };
 
-pub static CULL_BACK_FACES: Declaration = Declaration {
+pub(crate) static CULL_BACK_FACES: Declaration = Declaration {
     name: "cull-back-faces",
     label: "Cull back faces",
     placeholder: "",
@@ -231,7 +231,7 @@ pub static CULL_BACK_FACES: Declaration = Declaration {
     access: field!(tessellation.cull_back_faces),
 };
 
-pub static CONVENTION: Declaration = Declaration {
+pub(crate) static CONVENTION: Declaration = Declaration {
     name: "convention",
     label: "Convention",
     placeholder: "NAME",
@@ -245,7 +245,7 @@ pub static CONVENTION: Declaration = Declaration {
 };
 
 /// It isn't saved: it depends on whether the open mesh has heights.
-pub static DISPLACEMENT: Declaration = Declaration {
+pub(crate) static DISPLACEMENT: Declaration = Declaration {
     name: "displacement",
     label: "Displace",
     placeholder: "DISPLACEMENT",
@@ -261,7 +261,7 @@ fn not_displaced(settings: &Settings) -> Option<&'static str> {
     (settings.tessellation.displacement == Displacement::Off).then_some("The surface isn't displaced.")
 }
 
-pub static HEIGHT_SCALE: Declaration = Declaration {
+pub(crate) static HEIGHT_SCALE: Declaration = Declaration {
     name: "height-scale",
     label: "Scale",
     placeholder: "S",
@@ -273,7 +273,7 @@ pub static HEIGHT_SCALE: Declaration = Declaration {
     access: field!(tessellation.height_scale),
 };
 
-pub static MIDLEVEL: Declaration = Declaration {
+pub(crate) static MIDLEVEL: Declaration = Declaration {
     name: "midlevel",
     label: "Midlevel",
     placeholder: "H",
@@ -285,7 +285,7 @@ pub static MIDLEVEL: Declaration = Declaration {
     access: field!(tessellation.midlevel),
 };
 
-pub static OVERLAY: Declaration = Declaration {
+pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
@@ -298,7 +298,7 @@ pub static OVERLAY: Declaration = Declaration {
     access: field!(overlays),
 };
 
-pub static DEVIATION_IN: Declaration = Declaration {
+pub(crate) static DEVIATION_IN: Declaration = Declaration {
     name: "deviation-in",
     label: "Distances in",
     placeholder: "UNIT",
@@ -312,7 +312,7 @@ pub static DEVIATION_IN: Declaration = Declaration {
     access: field!(deviation_in),
 };
 
-pub static SPLIT: Declaration = Declaration {
+pub(crate) static SPLIT: Declaration = Declaration {
     name: "split",
     label: "Divider",
     placeholder: "FRACTION",
@@ -324,7 +324,7 @@ pub static SPLIT: Declaration = Declaration {
     access: field!(split),
 };
 
-pub static SPLIT_SURFACE: Declaration = Declaration {
+pub(crate) static SPLIT_SURFACE: Declaration = Declaration {
     name: "split-surface",
     label: "Left",
     placeholder: "SURFACE",
@@ -336,7 +336,7 @@ pub static SPLIT_SURFACE: Declaration = Declaration {
     access: field!(split_surface),
 };
 
-pub static BACKGROUND: Declaration = Declaration {
+pub(crate) static BACKGROUND: Declaration = Declaration {
     name: "background",
     label: "Background",
     placeholder: "RRGGBB",

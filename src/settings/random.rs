@@ -6,7 +6,7 @@ use proptest::sample::{select, subsequence};
 use super::{Declaration, Description, Kind, Range, Settings, Value, options};
 
 /// Settings with a random value for every option.
-pub fn settings() -> impl Strategy<Value = Settings> {
+pub(crate) fn settings() -> impl Strategy<Value = Settings> {
     let values: Vec<_> = options::all().map(value).collect();
     values.prop_map(|values| {
         let mut settings = Settings::opening();

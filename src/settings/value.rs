@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Choice, Description, Overlay, Overlays, Settings};
 
 /// An option, declared once for the command line, saved settings and the window.
-pub struct Declaration {
+pub(crate) struct Declaration {
     /// On the command line, after `--`.
     pub name: &'static str,
     /// The row's name in the window.
@@ -26,14 +26,14 @@ pub struct Declaration {
 }
 
 /// Reads and writes a value in settings.
-pub struct Access {
+pub(crate) struct Access {
     pub get: fn(&Settings) -> Value,
     /// False, with settings unchanged, if the value isn't one of the option's.
     pub set: fn(&mut Settings, Value) -> bool,
 }
 
 /// What values an option takes.
-pub enum Kind {
+pub(crate) enum Kind {
     /// One of several named values.
     Choice(fn() -> Vec<Description>),
     /// Any of several named values together.
@@ -61,7 +61,7 @@ pub struct Range {
 
 /// A value of any option.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub(crate) enum Value {
     /// Of an option that may be without a value.
     Unset,
     Name(&'static str),
@@ -73,23 +73,23 @@ pub enum Value {
 }
 
 impl Declaration {
-    pub fn get(&self, settings: &Settings) -> Value {
+    pub(crate) fn get(&self, settings: &Settings) -> Value {
         (self.access.get)(settings)
     }
 
     /// False, with settings unchanged, if the value isn't one of the option's.
-    pub fn set(&self, settings: &mut Settings, value: Value) -> bool {
+    pub(crate) fn set(&self, settings: &mut Settings, value: Value) -> bool {
         let is_taken = if value == Value::Unset { self.unset.is_some() } else { self.kind.takes(&value) };
         is_taken && (self.access.set)(settings, value)
     }
 
     /// Its value where nothing else was set.
-    pub fn default(&self) -> Value {
+    pub(crate) fn default(&self) -> Value {
         self.get(&Settings::default())
     }
 
     /// The numbers that it takes; none if it takes others.
-    pub fn range(&self) -> Option<&Range> {
+    pub(crate) fn range(&self) -> Option<&Range> {
         match &self.kind {
             Kind::Number(range) | Kind::Pair(range) => Some(range),
             _ => None,
@@ -132,7 +132,7 @@ impl fmt::Display for Range {
 
 impl Kind {
     /// The values that have names, in the order in which lists show them; empty for other kinds.
-    pub fn descriptions(&self) -> Vec<Description> {
+    pub(crate) fn descriptions(&self) -> Vec<Description> {
         match self {
             Self::Choice(all) | Self::Several(all) => all(),
             _ => Vec::new(),
@@ -140,7 +140,7 @@ impl Kind {
     }
 
     /// The name of a value as it is written, of a text that may have underscores in place of its hyphens.
-    pub fn named(&self, text: &str) -> Option<&'static str> {
+    pub(crate) fn named(&self, text: &str) -> Option<&'static str> {
         self.descriptions().iter().find(|value| value.is_named(text)).map(|value| value.name)
     }
 
@@ -159,7 +159,7 @@ impl Kind {
     ///
     /// # Errors
     /// What was expected instead.
-    pub fn parse(&self, text: &str) -> Result<Value, String> {
+    pub(crate) fn parse(&self, text: &str) -> Result<Value, String> {
         let number = |text: &str| text.trim().parse::<f32>().ok();
         let value = match self {
             Self::Choice(_) => self.named(text).map(Value::Name),
@@ -214,7 +214,7 @@ impl fmt::Display for Value {
 }
 
 /// A field of settings that holds an option's value.
-pub trait Field: Sized {
+pub(super) trait Field: Sized {
     fn value(&self) -> Value;
     /// None if the value is of another kind.
     fn of(value: Value) -> Option<Self>;

@@ -5,7 +5,7 @@ use crate::mesh::{Mesh, Shape};
 
 /// A mesh that breaks tessellators, and what is measured on it.
 #[derive(Clone, Copy)]
-pub struct Case {
+pub(crate) struct Case {
     pub name: &'static str,
     /// What it is, and what becomes of it: a paragraph.
     pub about: &'static str,
@@ -19,7 +19,7 @@ pub struct Case {
 
 impl Case {
     /// The case, ready to run.
-    pub fn subject(&self) -> Subject {
+    pub(crate) fn subject(&self) -> Subject {
         let Self { name, about, mesh, weld, probe, look } = *self;
         Subject { name: name.to_owned(), about: about.to_owned(), mesh: mesh(), weld, probe, look }
     }
@@ -27,7 +27,7 @@ impl Case {
 
 /// What is measured besides the agreement of edges, which is measured on every case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Probe {
+pub(crate) enum Probe {
     /// Nothing more.
     Edges,
     /// Triangles that the control nets turn over.
@@ -44,7 +44,7 @@ pub enum Probe {
 
 /// Where the picture of a case is taken from, and with what.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub(crate) struct Look {
     /// Degrees.
     pub azimuth: f32,
     pub elevation: f32,
@@ -57,12 +57,12 @@ pub struct Look {
 }
 
 /// From the front, the right and above, as the window does.
-pub const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
+pub(crate) const LOOK: Look = Look { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
 
 const CASE: Case = Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, look: LOOK };
 
 /// Every case, in the order of the documentation.
-pub const CASES: [Case; 34] = [
+pub(crate) const CASES: [Case; 34] = [
     Case {
         name: "split-normals",
         about: "A cube whose faces have normals of their own. Under PN each face follows its own normals, and all twelve \

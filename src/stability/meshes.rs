@@ -2,7 +2,7 @@
 
 mod techniques;
 
-pub use techniques::{dart, height_seams, height_splits, inflection, moving};
+pub(super) use techniques::{dart, height_seams, height_splits, inflection, moving};
 
 use glam::{Vec2, Vec3, vec3};
 
@@ -46,7 +46,7 @@ fn with_normals(shape: Shape, normal: impl Fn(usize, usize, Corner) -> Vec3) -> 
 }
 
 /// Five half-planes around one edge, each of two triangles with normals of its own.
-pub fn fins() -> Mesh {
+pub(super) fn fins() -> Mesh {
     let fin = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 5.0;
         let (out, normal) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.3, angle.cos()));
@@ -57,14 +57,14 @@ pub fn fins() -> Mesh {
 }
 
 /// An icosphere of whose triangles every third is wound the other way.
-pub fn reversed_neighbours() -> Mesh {
+pub(super) fn reversed_neighbours() -> Mesh {
     let turned = |(t, [a, b, c]): (usize, [Corner; 3])| if t % 3 == 0 { [a, c, b] } else { [a, b, c] };
     mesh(triangles(Shape::Icosphere).into_iter().map(|triangle| turned(triangle).map(InputCorner::from)))
 }
 
 /// A torus of whose triangles every second is there twice and every fifth once more the other way round, with triangles
 /// of two corners among them.
-pub fn duplicates() -> Mesh {
+pub(super) fn duplicates() -> Mesh {
     let repeated = |(t, [a, b, c]): (usize, [Corner; 3])| {
         let mut all = vec![[a, b, c]];
         if t % 2 == 0 {
@@ -79,12 +79,12 @@ pub fn duplicates() -> Mesh {
 }
 
 /// A cube drawn out to a needle: triangles a million times longer than wide.
-pub fn slivers() -> Mesh {
+pub(super) fn slivers() -> Mesh {
     scaled(Shape::CubeSplit, vec3(1.0, 1e-6, 1e-6), Vec3::ZERO)
 }
 
 /// A saddle in which every other triangle writes zeros as -0.
-pub fn signed_zeros() -> Mesh {
+pub(super) fn signed_zeros() -> Mesh {
     changed(Shape::Saddle, |t, _, corner| {
         let signed = |v: Vec3| v.map(|x| if x.abs() < 1e-6 { if t % 2 == 0 { -0.0 } else { 0.0 } } else { x });
         Corner { position: signed(corner.position), normal: signed(corner.normal), uv: corner.uv }
@@ -92,7 +92,7 @@ pub fn signed_zeros() -> Mesh {
 }
 
 /// Half a torus and its mirror image, which share the points between them.
-pub fn mirrored() -> Mesh {
+pub(super) fn mirrored() -> Mesh {
     let on_plane = |mut corner: Corner| {
         for x in [&mut corner.position.x, &mut corner.normal.x] {
             *x = if x.abs() < 1e-5 { 0.0 } else { *x };
@@ -112,12 +112,12 @@ pub fn mirrored() -> Mesh {
 }
 
 /// An icosphere with a zero normal on every third corner.
-pub fn zero_normals() -> Mesh {
+pub(super) fn zero_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, k, c| if (t + k) % 3 == 0 { Vec3::ZERO } else { c.normal })
 }
 
 /// An icosphere with normals that hold NaN and infinity.
-pub fn nan_normals() -> Mesh {
+pub(super) fn nan_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, k, c| match (t + k) % 4 {
         0 => Vec3::NAN,
         1 => vec3(f32::INFINITY, 0.0, c.normal.z),
@@ -126,17 +126,17 @@ pub fn nan_normals() -> Mesh {
 }
 
 /// An icosphere with normals of lengths from 1e-30 to 1e30.
-pub fn long_normals() -> Mesh {
+pub(super) fn long_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, k, c| c.normal * [1e-30, 0.5, 1e30, 1.0][(t + k) % 4])
 }
 
 /// An icosphere on which every other triangle has all its normals the other way: opposite across its edges.
-pub fn opposite_normals() -> Mesh {
+pub(super) fn opposite_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, _, c| if t % 2 == 0 { c.normal } else { -c.normal })
 }
 
 /// A cube whose normals run along its edges.
-pub fn edge_normals() -> Mesh {
+pub(super) fn edge_normals() -> Mesh {
     let triangles = triangles(Shape::CubeSplit).into_iter();
     mesh(triangles.map(|(_, c)| {
         [0, 1, 2].map(|k| {
@@ -147,27 +147,27 @@ pub fn edge_normals() -> Mesh {
 }
 
 /// An icosphere whose normals point inwards, against its faces.
-pub fn inward_normals() -> Mesh {
+pub(super) fn inward_normals() -> Mesh {
     with_normals(Shape::Icosphere, |_, _, c| -c.normal)
 }
 
 /// A torus with coordinates of 1e7.
-pub fn huge() -> Mesh {
+pub(super) fn huge() -> Mesh {
     scaled(Shape::Torus, Vec3::splat(1e7), Vec3::ZERO)
 }
 
 /// A torus with coordinates of 1e-7.
-pub fn tiny() -> Mesh {
+pub(super) fn tiny() -> Mesh {
     scaled(Shape::Torus, Vec3::splat(1e-7), Vec3::ZERO)
 }
 
 /// A torus of one unit, thousands of units from the origin.
-pub fn far_away() -> Mesh {
+pub(super) fn far_away() -> Mesh {
     scaled(Shape::Torus, Vec3::ONE, vec3(4000.0, -7000.0, 2500.0))
 }
 
 /// A saddle whose middle line holds numbers too small for many devices.
-pub fn denormals() -> Mesh {
+pub(super) fn denormals() -> Mesh {
     changed(Shape::Saddle, |t, k, corner| {
         let least = f32::from_bits(1 + (3 * t + k) as u32);
         let small = |x: f32| if x.abs() < 1e-6 { least } else { x };
@@ -176,7 +176,7 @@ pub fn denormals() -> Mesh {
 }
 
 /// A torus cut through the middle, its right half moved by a millionth of its size.
-pub fn near_seam() -> Mesh {
+pub(super) fn near_seam() -> Mesh {
     let moved = |corners: [Corner; 3]| {
         let right = corners.iter().map(|c| c.position.x).sum::<f32>() > 0.0;
         let offset = if right { vec3(2e-6, 1e-6, -1e-6) } else { Vec3::ZERO };
@@ -186,7 +186,7 @@ pub fn near_seam() -> Mesh {
 }
 
 /// Two triangles that meet at a ridge, with normals of their own that lean apart.
-pub fn roof() -> Mesh {
+pub(super) fn roof() -> Mesh {
     let ends = [vec3(0.0, 0.3, 1.0), vec3(0.0, 0.3, -1.0)];
     let side = |x: f32, [a, b]: [Vec3; 2]| {
         let at = |p: Vec3| corner(p, (vec3(0.6 * x, 1.0, 0.0) + 0.5 * p).normalize());
@@ -196,11 +196,11 @@ pub fn roof() -> Mesh {
 }
 
 /// How many T-junctions [`t_junction`] has: 3 on a straight edge, 4 beside edges that follow the sheet's curve.
-pub const T_JUNCTIONS: u32 = 7;
+pub(super) const T_JUNCTIONS: u32 = 7;
 
 /// One large quad beside a column of four small ones, beside a column of eight: three points lie on the large quad's
 /// edge, and one beside each of the four. The sheet is curved.
-pub fn t_junction() -> Mesh {
+pub(super) fn t_junction() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.3 * (1.0 - z * z), z), vec3(0.3 * x, 1.0, 0.6 * z).normalize());
     // The small quads' points lie on the straight edge, which the surface then leaves.
     let on_edge = |z: f32| corner(vec3(0.0, 0.0, z), vec3(0.0, 1.0, 0.6 * z).normalize());
@@ -218,7 +218,7 @@ pub fn t_junction() -> Mesh {
 }
 
 /// A flat star, its tips' normals nearly in its plane and turned sideways, its notches' leaning inwards.
-pub fn star() -> Mesh {
+pub(super) fn star() -> Mesh {
     let at = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 10.0;
         let (out, sideways) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.0, angle.cos()));
@@ -230,7 +230,7 @@ pub fn star() -> Mesh {
 }
 
 /// A ground of two large triangles that rises towards its corners.
-pub fn ground() -> Mesh {
+pub(super) fn ground() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.0, z) * 10.0, vec3(-0.2 * x, 1.0, -0.2 * z).normalize());
     let [a, b, c, d] = [at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0), at(-1.0, -1.0)];
     mesh([[a, b, c], [a, c, d]])
@@ -238,7 +238,7 @@ pub fn ground() -> Mesh {
 
 /// Random triangles over few points: edges with many sides, wound either way, duplicates and lines among them; random
 /// normals, bad ones among them. `seed` picks one of 2^32.
-pub fn soup(seed: u32) -> Mesh {
+pub(crate) fn soup(seed: u32) -> Mesh {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995);
     let points: Vec<Vec3> = (0..14).map(|_| random.vector()).collect();
     let triangles: Vec<_> =

@@ -1,7 +1,7 @@
 //! Cases that break tessellators, and what each method makes of them: run, measured, and held against what this program
 //! promises. Stands on [`crate::engine`] as the two faces do, since a case is tessellated and drawn like any mesh.
 
-pub mod cases;
+pub(crate) mod cases;
 mod meshes;
 mod picture;
 mod report;
@@ -9,12 +9,12 @@ mod run;
 mod sweep_chart;
 mod views;
 
-pub use cases::{CASES, Case, LOOK, Look, Probe};
-pub use meshes::soup;
-pub use picture::{PictureError, picture};
-pub use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
-pub use run::{Effort, run};
-pub use views::random as random_camera;
+pub(crate) use cases::{CASES, Case, LOOK, Look, Probe};
+pub(crate) use meshes::soup;
+pub(crate) use picture::{PictureError, picture};
+pub(crate) use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
+pub(crate) use run::{Effort, run};
+pub(crate) use views::random as random_camera;
 
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ use crate::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, T
 
 /// What is run: a case, or any other mesh.
 #[derive(Clone, Debug)]
-pub struct Subject {
+pub(crate) struct Subject {
     pub name: String,
     /// What it is, and what becomes of it; empty where nobody knows.
     pub about: String,
@@ -37,14 +37,14 @@ pub struct Subject {
 
 impl Subject {
     /// A mesh of which no more is known.
-    pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
+    pub(crate) fn new(name: String, mesh: Mesh, weld: f32) -> Self {
         Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, look: LOOK }
     }
 }
 
 /// A way to tessellate that cases are held against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Method {
+pub(crate) enum Method {
     Flat,
     Pn,
     PnAenAsPublished,
@@ -57,7 +57,7 @@ pub enum Method {
 }
 
 impl Method {
-    pub const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Flat,
         Self::Pn,
         Self::PnAenAsPublished,
@@ -70,7 +70,7 @@ impl Method {
     ];
 
     /// The name in tables and files.
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Flat => "flat",
             Self::Pn => "PN",
@@ -85,7 +85,7 @@ impl Method {
     }
 
     /// The surface that it makes.
-    pub const fn surface(self) -> Surface {
+    pub(crate) const fn surface(self) -> Surface {
         match self {
             Self::Flat => Surface::Flat,
             Self::Pn => Surface::Pn,
@@ -99,13 +99,13 @@ impl Method {
     }
 
     /// The settings that mean this method, at one factor.
-    pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
+    pub(crate) fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
         let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
         Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
     }
 
     /// The same for a mesh that can be displaced: without cracks, or as published by dominance alone.
-    pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
+    pub(crate) fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
         let displacement = match self {
             _ if mesh.heights.is_none() => Displacement::Off,
             Self::PnAenAsPublished => Displacement::AsPublished,
@@ -116,7 +116,7 @@ impl Method {
 
     /// The same with adaptive LOD and clipping: the paper's own for what is as published. Under subtriangulation, which is
     /// uniform, clipping at one factor.
-    pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
+    pub(crate) fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
         let (lod, clip) = match self {
             Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
             _ => (Lod::EdgeLength, Clip::Frustum),
@@ -133,7 +133,7 @@ impl Method {
 /// What is measured. All are 0 where all is well, but for [`Self::Segment`], [`Self::Jump`] and
 /// [`Self::Pop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Quantity {
+pub(crate) enum Quantity {
     /// Points of edges whose positions differ in at least one bit.
     Points,
     /// Edges for which LOD gave the sides different factors.
@@ -163,7 +163,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// What a number of it counts.
-    pub const fn unit(self) -> &'static str {
+    pub(crate) const fn unit(self) -> &'static str {
         match self {
             Self::Points => "edge points that differ",
             Self::Factors => "edges whose factors differ",
@@ -181,7 +181,7 @@ impl Quantity {
     }
 
     /// The most that still holds.
-    pub const fn limit(self) -> f64 {
+    pub(crate) const fn limit(self) -> f64 {
         match self {
             // Segments are equal along the curve, not on screen: perspective makes the near ones longer.
             Self::Segment => 4.0,
@@ -194,7 +194,7 @@ impl Quantity {
 
 /// One measurement, the worst of its kind over factors and views.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub(crate) struct Row {
     pub case: String,
     pub method: &'static str,
     /// The adapter's name, or `cpu`.

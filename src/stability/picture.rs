@@ -20,7 +20,7 @@ use crate::tessellate::{LodView, Partitioning};
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
-pub enum PictureError {
+pub(crate) enum PictureError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error(transparent)]
@@ -39,7 +39,7 @@ const TEXT: u32 = 18;
 ///
 /// # Errors
 /// The device fails.
-pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImage, PictureError> {
+pub(crate) fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImage, PictureError> {
     if case.probe == Probe::Sweep {
         return chart(case, sweep_to);
     }

@@ -6,7 +6,7 @@ use super::{Quantity, Row};
 
 /// What one method made of one case: the worst over devices and partitionings of each quantity.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub(crate) struct Line {
     pub case: String,
     pub method: &'static str,
     pub worst: Vec<(Quantity, f64)>,
@@ -15,7 +15,7 @@ pub struct Line {
 
 /// How a method fared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// Everything measured holds.
     Holds,
     /// Something does not that nobody promised: what is published fails there.
@@ -25,7 +25,7 @@ pub enum Verdict {
 }
 
 impl Verdict {
-    pub const fn text(self) -> &'static str {
+    pub(crate) const fn text(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::Fails => "fails",
@@ -43,7 +43,7 @@ impl Verdict {
 }
 
 /// One line for each case and method, in the rows' order.
-pub fn lines(rows: &[Row]) -> Vec<Line> {
+pub(crate) fn lines(rows: &[Row]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
         let known = lines.iter().position(|line| line.case == row.case && line.method == row.method);
@@ -104,13 +104,13 @@ fn number(x: f64) -> String {
 }
 
 /// What the columns mean.
-pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+pub(crate) const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
      sides got different factors; normals: edge points whose normals differ though the source's agree; not finite: \
      vertices; leaks: px through which one looks into a closed mesh. The worst over factors, views, partitionings and \
      devices.";
 
 /// Lines as a table for a terminal.
-pub fn table(lines: &[Line]) -> String {
+pub(crate) fn table(lines: &[Line]) -> String {
     let mut text = format!("{:<20} {:<20}", "case", "method");
     for (_, column) in COLUMNS {
         let _ = write!(text, " {column:>11}");
@@ -132,11 +132,11 @@ pub fn table(lines: &[Line]) -> String {
 }
 
 /// The page's name in its folder.
-pub const PAGE: &str = "stability.md";
+pub(crate) const PAGE: &str = "stability.md";
 
 /// What a page says of one subject, besides its numbers.
 #[derive(Clone, Debug)]
-pub struct Section {
+pub(crate) struct Section {
     pub name: String,
     /// A paragraph, or nothing.
     pub about: String,
@@ -145,7 +145,7 @@ pub struct Section {
 }
 
 /// A page in Markdown: each subject with what it is about, its picture, and what the rows say of it.
-pub fn page(sections: &[Section], rows: &[Row]) -> String {
+pub(crate) fn page(sections: &[Section], rows: &[Row]) -> String {
     let mut text = String::from("# Where tessellation breaks\n\n");
     let mut devices: Vec<_> = rows.iter().map(|row| row.device.as_str()).collect();
     devices.sort_unstable();

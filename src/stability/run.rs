@@ -23,7 +23,7 @@ use crate::tessellate::{
 
 /// How much is tried, and where.
 #[derive(Clone, Debug)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// Uniform factors.
     pub factors: Vec<f32>,
     /// Cameras for adaptive LOD and clipping; the first of one sequence.
@@ -88,7 +88,7 @@ const MOST_AT_A_TIME: usize = 8;
 ///
 /// # Errors
 /// The device fails, or the mesh is larger than it binds.
-pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
+pub(crate) fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
     let mesh = Arc::new(case.mesh.clone());
     // Nobody else holds these handles, so nobody can cancel.
     let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());

@@ -8,16 +8,16 @@ use crate::render::Camera;
 use crate::truth::radical_inverse;
 
 /// Width and height in px of what is measured on screen.
-pub const SIZE: [u32; 2] = [320, 240];
+pub(super) const SIZE: [u32; 2] = [320, 240];
 
 /// The same, as the cameras take it.
-pub fn viewport() -> Vec2 {
+pub(super) fn viewport() -> Vec2 {
     vec2(SIZE[0] as f32, SIZE[1] as f32)
 }
 
 /// Camera `index` of a sequence that goes all around the mesh, near and far, inside too, every eighth time without
 /// perspective: Halton's low-discrepancy sequence, so that the first few already differ much.
-pub fn random(bounds: &Bounds, index: u32) -> Camera {
+pub(crate) fn random(bounds: &Bounds, index: u32) -> Camera {
     let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(base, index as usize + 1) as f32);
     let radius = bounds.radius();
     Camera {
@@ -30,7 +30,7 @@ pub fn random(bounds: &Bounds, index: u32) -> Camera {
 }
 
 /// The camera that a case's picture is taken with.
-pub fn look(bounds: &Bounds, look: &Look, viewport: Vec2) -> Camera {
+pub(super) fn look(bounds: &Bounds, look: &Look, viewport: Vec2) -> Camera {
     let mut camera = Camera::framing(bounds, viewport);
     (camera.azimuth, camera.elevation) = (look.azimuth, look.elevation);
     if look.distance > 0.0 {

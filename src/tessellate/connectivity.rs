@@ -33,7 +33,7 @@ fn skip_places(inner: TransitionPlaces, outer: TransitionPlaces, place: u32, ski
 }
 
 /// Returns triangle `t` of those before the middle of a side.
-pub fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> TransitionStep {
+pub(super) fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> TransitionStep {
     // The first triangle is the one on the edge's first segment, before place 1.
     let first = outer_half.min(1);
     if t < first {
@@ -66,7 +66,7 @@ pub fn transition_before_middle(inner_half: u32, outer_half: u32, t: u32) -> Tra
 ///
 /// Triangles are numbered ring by ring. Each ring's sides are joined with the sides of the ring around it, which have
 /// two segments more. In the centre of an odd patch there is one more triangle.
-pub fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
+pub(super) fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
     let rings = rings_before(n - 2, t / 6);
     let ring = rings + 2;
     let around_start = outer + 3 * rings * (n - 1 - rings);

@@ -53,7 +53,7 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> [u32; 3] {
 /// The table: first the triangles of the sides, then those inside the first ring. The latter are stored as the first
 /// point's number and the differences of the other two from it, plus 512; points of neighbouring rings never differ by
 /// more.
-pub static CONNECTIVITY_TABLE: LazyLock<Vec<u32>> = LazyLock::new(|| {
+pub(crate) static CONNECTIVITY_TABLE: LazyLock<Vec<u32>> = LazyLock::new(|| {
     let flags = |step: TransitionStep| u32::from(step.along_inner) << 16 | u32::from(step.inner_first) << 17;
     let mut words = vec![0; regular_index(MOST_SEGMENTS + 1) as usize];
     for inner_half in 1..PATTERN_HALVES {

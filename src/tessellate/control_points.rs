@@ -17,12 +17,12 @@ pub(crate) const PARALLEL: f32 = 3.046e-6;
 /// Returns the control point near `a` of a PN triangle's edge: the point one third of the way from `a` to `b`,
 /// projected into the tangent plane at `a` (Vlachos et al. 2001, section 3.1: b210 = (2 P1 + P2 - w12 N1) / 3).
 /// `normal` is the unit normal at `a`.
-pub fn edge_control_point(a: Vec3, b: Vec3, normal: Vec3) -> Vec3 {
+pub(crate) fn edge_control_point(a: Vec3, b: Vec3, normal: Vec3) -> Vec3 {
     (a * 2.0 + b - normal * (b - a).dot(normal)) * (1.0 / 3.0)
 }
 
 /// Returns the control point near `a` of a straight edge: the point one third of the way from `a` to `b`.
-pub fn straight_control_point(a: Vec3, b: Vec3) -> Vec3 {
+pub(crate) fn straight_control_point(a: Vec3, b: Vec3) -> Vec3 {
     (a * 2.0 + b) * (1.0 / 3.0)
 }
 
@@ -31,7 +31,7 @@ pub fn straight_control_point(a: Vec3, b: Vec3) -> Vec3 {
 ///
 /// Each end is projected into the tangent plane at the other end. The control point lies `alpha` (0 to 1) of the way
 /// from the middle of the edge to the mean of both projections.
-pub fn phong_control_point(alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
+pub(crate) fn phong_control_point(alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let along = b - a;
     let back = at_a * along.dot(at_a) - at_b * along.dot(at_b);
     (a + b - back * alpha) * 0.5
@@ -45,7 +45,7 @@ pub fn phong_control_point(alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3)
 /// other, so c = (d.h / s.s) s + (d.s / h.h) h. The code divides by the lengths of s and h twice and never by their
 /// squares: a large number divided by so small a square would overflow. Where the normals are nearly parallel and both
 /// lean along the edge, c is many times as long as the edge. This is a property of Nagata's method.
-pub fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
+pub(crate) fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let line = at_a.cross(at_b);
     if line.dot(line) <= PARALLEL {
         return (a + b) * 0.5;
@@ -60,13 +60,13 @@ pub fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
 
 /// Returns the cubic control point near `a` of a quadratic edge whose middle control point is `middle`, by degree
 /// elevation.
-pub fn elevated_control_point(a: Vec3, middle: Vec3) -> Vec3 {
+pub(super) fn elevated_control_point(a: Vec3, middle: Vec3) -> Vec3 {
     (a + middle * 2.0) * (1.0 / 3.0)
 }
 
 /// Returns the control points near `a` and near `b` that one side of an edge proposes. `at_a` and `at_b` are the side's
 /// own unit normals at the ends; `alpha` is the strength of Phong tessellation, which other surfaces ignore.
-pub fn side_control_points(surface: Surface, alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> [Vec3; 2] {
+pub(crate) fn side_control_points(surface: Surface, alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> [Vec3; 2] {
     if surface == Surface::Flat {
         return [straight_control_point(a, b), straight_control_point(b, a)];
     }
@@ -83,7 +83,7 @@ pub fn side_control_points(surface: Surface, alpha: f32, a: Vec3, b: Vec3, at_a:
 
 /// The distinct normals that the sides of an edge have at one of its ends. Only the first two are stored.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct DistinctNormals {
+pub(crate) struct DistinctNormals {
     pub first: Vec3,
     pub second: Vec3,
     /// The number of distinct normals: 0, 1, 2, or 3 for three or more.
@@ -91,7 +91,7 @@ pub struct DistinctNormals {
 }
 
 /// Adds the normal of one more side.
-pub fn add_normal(distinct: DistinctNormals, normal: Vec3) -> DistinctNormals {
+pub(crate) fn add_normal(distinct: DistinctNormals, normal: Vec3) -> DistinctNormals {
     if distinct.count == 0 {
         return DistinctNormals { first: normal, second: normal, count: 1 };
     }
@@ -108,7 +108,7 @@ pub fn add_normal(distinct: DistinctNormals, normal: Vec3) -> DistinctNormals {
 /// straight edge, projected onto the line in which the two tangent planes at `a` intersect (Vlachos et al. 2001,
 /// section 3.4). `mean` is the mean of all sides' proposals; it is returned if the planes are parallel or if there are
 /// not two of them.
-pub fn crease_control_point(a: Vec3, b: Vec3, distinct: DistinctNormals, mean: Vec3) -> Vec3 {
+pub(crate) fn crease_control_point(a: Vec3, b: Vec3, distinct: DistinctNormals, mean: Vec3) -> Vec3 {
     let line = distinct.first.cross(distinct.second);
     let length_squared = line.dot(line);
     if distinct.count != 2 || length_squared <= PARALLEL {
@@ -121,7 +121,7 @@ pub fn crease_control_point(a: Vec3, b: Vec3, distinct: DistinctNormals, mean: V
 
 /// Returns the control point b111 of a net with these corners and six edge control points: E + (E - V) / 2, where E is
 /// the mean of the edge control points and V is the mean of the corners (Vlachos et al. 2001, section 3.1).
-pub fn center_control_point(corners: [Vec3; 3], edges: [Vec3; 6]) -> Vec3 {
+pub(crate) fn center_control_point(corners: [Vec3; 3], edges: [Vec3; 6]) -> Vec3 {
     let e = (edges[0] + edges[1] + edges[2] + edges[3] + edges[4] + edges[5]) * (1.0 / 6.0);
     let v = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0);
     e + (e - v) * 0.5

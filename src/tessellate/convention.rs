@@ -46,7 +46,7 @@ impl Convention {
 }
 
 /// Returns the side (0 to 2) whose factor the hull shader writes as factor `i` (0 to 2).
-pub fn factor_side(convention: Convention, i: u32) -> u32 {
+pub(crate) fn factor_side(convention: Convention, i: u32) -> u32 {
     match convention {
         Convention::D3d11 => (i + 1) % 3,
         Convention::AmdPn => (i + 2) % 3,
@@ -56,7 +56,7 @@ pub fn factor_side(convention: Convention, i: u32) -> u32 {
 }
 
 /// Returns the corner (0 to 2) that the domain shader multiplies by weight `i` (0, 1, 2 for u, v, w).
-pub fn weight_corner(convention: Convention, i: u32) -> u32 {
+pub(crate) fn weight_corner(convention: Convention, i: u32) -> u32 {
     match convention {
         Convention::AmdPn => (i + 1) % 3,
         Convention::EdgeOrder => (i + 2) % 3,
@@ -66,13 +66,13 @@ pub fn weight_corner(convention: Convention, i: u32) -> u32 {
 
 /// Returns the side that the tessellator cuts by factor `i` in the domain shader's order: the side opposite the corner
 /// that weight `i` belongs to.
-pub fn domain_side(convention: Convention, i: u32) -> u32 {
+pub(crate) fn domain_side(convention: Convention, i: u32) -> u32 {
     (weight_corner(convention, i) + 1) % 3
 }
 
 /// Returns the weights of corners 0 and 1 for a domain point that the tessellator gives as U and V. All are 16.16 fixed
 /// point; the weight of corner 2 is the rest of 1.
-pub fn corner_weights(convention: Convention, [u, v]: [u32; 2]) -> [u32; 2] {
+pub(crate) fn corner_weights(convention: Convention, [u, v]: [u32; 2]) -> [u32; 2] {
     let w = super::FIXED_ONE - u - v;
     match convention {
         Convention::AmdPn => [w, u],

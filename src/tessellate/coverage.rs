@@ -7,7 +7,7 @@ use glam::{Mat4, Vec2, Vec3, vec2, vec3};
 /// The picture that triangles are drawn into.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct CoverageView {
+pub(crate) struct CoverageView {
     pub clip_from_object: Mat4,
     /// The rounding error of clip coordinates for each unit of a position's distance from the origin along each axis.
     pub slack: Mat4,
@@ -25,7 +25,7 @@ pub struct CoverageView {
 impl CoverageView {
     /// Builds the view of a picture of `viewport` px. `subpixel_bits` is the adapter's: see
     /// [`crate::gpu::Gpu::subpixel_bits`].
-    pub fn new(
+    pub(crate) fn new(
         clip_from_object: Mat4,
         viewport: Vec2,
         sample_count: u32,
@@ -45,7 +45,7 @@ impl CoverageView {
 
 /// A triangle's corner on screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenCorner {
+pub(crate) struct ScreenCorner {
     /// The position in px from the picture's upper left corner.
     pub at: Vec2,
     /// The largest distance in px between `at` and the rasterised corner, along x and along y. Negative if the corner
@@ -59,7 +59,7 @@ pub struct ScreenCorner {
 pub(crate) const ROW_SAMPLES: [f32; 4] = [0.375, 0.875, 0.125, 0.625];
 
 /// Projects a position in object units to the screen, and bounds the error of the projection.
-pub fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
+pub(crate) fn screen_corner(view: &CoverageView, position: Vec3) -> ScreenCorner {
     let clip = view.clip_from_object * position.extend(1.0);
     let off = view.slack * position.abs().extend(1.0);
     let least_w = clip.w - off.w;
@@ -116,7 +116,7 @@ fn row_sample(view: &CoverageView, row: f32) -> f32 {
 
 /// Returns whether no part of a triangle can be seen. Of triangles larger than 2 px in x or y it only tests whether
 /// they lie outside the picture or are back faces.
-pub fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: ScreenCorner) -> bool {
+pub(crate) fn covers_nothing(view: &CoverageView, a: ScreenCorner, b: ScreenCorner, c: ScreenCorner) -> bool {
     if a.reach.min(b.reach).min(c.reach) < 0.0 {
         return false;
     }

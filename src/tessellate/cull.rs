@@ -22,18 +22,18 @@ pub enum Clip {
 
 /// Returns whether a clip-space position lies outside the white paper's view volume, -w <= x, y, z <= w (`IsClipped` of
 /// McDonald and Kilgard 2010).
-pub fn is_clipped(clip: Vec4) -> bool {
+pub(crate) fn is_clipped(clip: Vec4) -> bool {
     let inside = clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z.abs() <= clip.w;
     !inside
 }
 
 /// Returns whether a position in object units lies outside that view volume.
-pub fn outside_view(view: &LodView, position: Vec3) -> bool {
+pub(super) fn outside_view(view: &LodView, position: Vec3) -> bool {
     is_clipped(view.clip_from_object * position.extend(1.0))
 }
 
 /// Returns whether all ten control points lie outside the view volume: the white paper's test of a patch.
-pub fn patch_is_clipped(view: &LodView, net: &ControlNet) -> bool {
+pub(super) fn patch_is_clipped(view: &LodView, net: &ControlNet) -> bool {
     let outside = |p: &Vec3| outside_view(view, *p);
     net.corners.iter().all(outside) && net.edges.iter().all(outside) && outside(&net.center)
 }
@@ -42,12 +42,12 @@ pub fn patch_is_clipped(view: &LodView, net: &ControlNet) -> bool {
 /// top, far, near (bit 5). Depth is reversed.
 ///
 /// Nothing is divided by w: the planes are linear functions in clip space, so the test holds behind the eye too.
-pub fn planes_outside(clip: Vec4) -> u32 {
+pub(crate) fn planes_outside(clip: Vec4) -> u32 {
     planes_outside_by([0.0; 6], clip)
 }
 
 /// Returns the same bits for the planes that a position lies outside of by more than their margin, in clip-space units.
-pub fn planes_outside_by(margins: [f32; 6], clip: Vec4) -> u32 {
+pub(super) fn planes_outside_by(margins: [f32; 6], clip: Vec4) -> u32 {
     u32::from(clip.x + margins[0] < -clip.w)
         | u32::from(clip.x - margins[1] > clip.w) << 1
         | u32::from(clip.y + margins[2] < -clip.w) << 2
@@ -58,7 +58,7 @@ pub fn planes_outside_by(margins: [f32; 6], clip: Vec4) -> u32 {
 
 /// Returns how far displacement may move a point towards the inside of each plane, in clip-space units and in the order
 /// of the bits of [`planes_outside`].
-pub fn reach_margins(view: &LodView) -> [f32; 6] {
+pub(super) fn reach_margins(view: &LodView) -> [f32; 6] {
     let x = clip_row(view, 0);
     let y = clip_row(view, 1);
     let z = clip_row(view, 2);
@@ -68,7 +68,7 @@ pub fn reach_margins(view: &LodView) -> [f32; 6] {
 }
 
 /// Returns whether all of a patch lies outside one plane of the view volume, however it is displaced.
-pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
+pub(crate) fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
     let margins = reach_margins(view);
     let planes = |p: &Vec3| planes_outside_by(margins, view.clip_from_object * p.extend(1.0));
     let mut shared = planes(&net.center);
@@ -86,7 +86,7 @@ pub fn patch_is_outside(view: &LodView, net: &ControlNet) -> bool {
 ///
 /// The point of that quadratic triangle is the polar form of the patch with corner `i` as one argument. Differences of
 /// the three polar forms are the patch's tangents, up to a factor of 3.
-pub fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
+pub(super) fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
     let [b300, b030, b003] = net.corners;
     let [b210, b120, b021, b012, b102, b201] = net.edges;
     let b111 = net.center;
@@ -99,15 +99,15 @@ pub fn polar_points(net: &ControlNet, i: usize) -> [Vec3; 6] {
 
 /// How far a surface must be from being seen edge-on, about as a sine. The margin is larger than rounding errors, and
 /// large enough that a rasteriser which snaps vertices to 1/256 px sees a back face too.
-pub const FACING_MARGIN: f32 = 1e-3;
+pub(crate) const FACING_MARGIN: f32 = 1e-3;
 
 /// The rounding error of a sum, relative to the sum of the absolute values of its terms.
-pub const FACING_ROUNDING: f32 = 1e-6;
+pub(crate) const FACING_ROUNDING: f32 = 1e-6;
 
 /// The second and third index of each of the [`polar_points`], as two digits to base 5, and its binomial weight. In a
 /// product of two quadratic polynomials indices add up, so that digits go up to 4.
-pub const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
-pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
+pub(crate) const POLAR_INDICES: [usize; 6] = [0, 5, 10, 6, 2, 1];
+pub(crate) const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
 
 /// Returns whether a patch shows its back everywhere. The patch must lie beyond the near plane.
 ///
@@ -116,7 +116,7 @@ pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
 /// a quartic polynomial: a mean of 15 control vectors with weights that aren't negative. The point p lies in the
 /// bounding box of the control points. So the product is negative everywhere if it is negative for each of the 15
 /// vectors and every point of the box.
-pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
+pub(crate) fn faces_away(view: &LodView, net: &ControlNet) -> bool {
     let rows = [clip_row(view, 0), clip_row(view, 1), clip_row(view, 3)];
     let turned = |d: Vec3| Vec3::new(rows[0].dot(d), rows[1].dot(d), rows[2].dot(d));
     let [at_u, at_v, at_w] = [polar_points(net, 0), polar_points(net, 1), polar_points(net, 2)];
@@ -160,15 +160,15 @@ pub fn faces_away(view: &LodView, net: &ControlNet) -> bool {
 }
 
 /// The reasons why a patch emits nothing. `NOT_CULLED`: the view leaves it in, though its own factors may cull it.
-pub const NOT_CULLED: u32 = 0;
+pub(crate) const NOT_CULLED: u32 = 0;
 /// The patch lies outside the view.
-pub const OUT_OF_VIEW: u32 = 1;
+pub(crate) const OUT_OF_VIEW: u32 = 1;
 /// The patch shows only its back.
-pub const FACING_AWAY: u32 = 2;
+pub(crate) const FACING_AWAY: u32 = 2;
 
 /// Returns whether a patch is left out, and why. Patches that show only their backs are left out if `culls_back` is
 /// set.
-pub fn cull_reason(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
+pub(crate) fn cull_reason(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
     let outside = match clip {
         Clip::Off => false,
         Clip::Paper => patch_is_clipped(view, net),

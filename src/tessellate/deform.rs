@@ -7,7 +7,13 @@ use super::normal::unit_or;
 use crate::mesh::rig::JointMatrix;
 
 /// Returns the weighted sum of four matrices. The weights add up to 1.
-pub fn blend(a: &JointMatrix, b: &JointMatrix, c: &JointMatrix, d: &JointMatrix, weights: [f32; 4]) -> JointMatrix {
+pub(super) fn blend(
+    a: &JointMatrix,
+    b: &JointMatrix,
+    c: &JointMatrix,
+    d: &JointMatrix,
+    weights: [f32; 4],
+) -> JointMatrix {
     let mean = |row: fn(&JointMatrix) -> [f32; 4]| {
         let [a, b, c, d] = [a, b, c, d].map(|matrix| glam::Vec4::from(row(matrix)));
         (a * weights[0] + b * weights[1] + c * weights[2] + d * weights[3]).to_array()
@@ -16,7 +22,7 @@ pub fn blend(a: &JointMatrix, b: &JointMatrix, c: &JointMatrix, d: &JointMatrix,
 }
 
 /// Transforms a position.
-pub fn deform_position(matrix: &JointMatrix, position: Vec3) -> Vec3 {
+pub(super) fn deform_position(matrix: &JointMatrix, position: Vec3) -> Vec3 {
     let [x, y, z] = matrix.rows().map(|row| Vec3::from_slice(&row).dot(position) + row[3]);
     vec3(x, y, z)
 }
@@ -24,7 +30,7 @@ pub fn deform_position(matrix: &JointMatrix, position: Vec3) -> Vec3 {
 /// Transforms a unit normal by the cofactor matrix. If the result has no direction, returns `normal` itself.
 ///
 /// The cofactor matrix is the inverse transpose times the determinant. Unlike the inverse it always exists.
-pub fn deform_normal(matrix: &JointMatrix, normal: Vec3) -> Vec3 {
+pub(super) fn deform_normal(matrix: &JointMatrix, normal: Vec3) -> Vec3 {
     let rows = matrix.rows().map(|row| Vec3::from_slice(&row));
     // Scale the matrix, so that no product of two entries overflows or underflows.
     let scale = 1.0 / rows.map(largest_component).into_iter().fold(1e-30, f32::max);

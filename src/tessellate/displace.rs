@@ -58,7 +58,7 @@ fn pixel_coordinate(map: &HeightMap, x: f32, size: u32) -> f32 {
 }
 
 /// Returns the height of a mip level at a texture coordinate, bilinearly interpolated.
-pub fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
+pub(crate) fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     let width = (map.size[0] >> level).max(1);
     let height = (map.size[1] >> level).max(1);
     let x = pixel_coordinate(map, uv.x, width);
@@ -81,7 +81,7 @@ pub fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
 }
 
 /// Returns the height at a texture coordinate, linearly interpolated between the two mip levels around `level`.
-pub fn height_at(map: &HeightMap, level: f32, uv: Vec2) -> f32 {
+pub(crate) fn height_at(map: &HeightMap, level: f32, uv: Vec2) -> f32 {
     let least = level as u32;
     let part = level - least as f32;
     let fine = bilinear_height(map, least, uv);
@@ -92,7 +92,7 @@ pub fn height_at(map: &HeightMap, level: f32, uv: Vec2) -> f32 {
 }
 
 /// Returns the derivatives of the height by both texture coordinates, as central differences over one px of the level.
-pub fn height_slopes(map: &HeightMap, level: f32, uv: Vec2) -> Vec2 {
+pub(crate) fn height_slopes(map: &HeightMap, level: f32, uv: Vec2) -> Vec2 {
     let px = level.exp2() / vec2(map.size[0] as f32, map.size[1] as f32);
     let across = vec2(0.5 * px.x, 0.0);
     let down = vec2(0.0, 0.5 * px.y);
@@ -103,20 +103,20 @@ pub fn height_slopes(map: &HeightMap, level: f32, uv: Vec2) -> Vec2 {
 
 /// Returns the mip level at which one px is as long as a segment of an edge. The edge is `texels` px of level 0 long
 /// and is cut into `segments`.
-pub fn segment_level(map: &HeightMap, texels: f32, segments: f32) -> f32 {
+pub(crate) fn segment_level(map: &HeightMap, texels: f32, segments: f32) -> f32 {
     let level = (texels.max(1e-6) / segments).log2();
     level.clamp(0.0, (map.levels - 1) as f32)
 }
 
 /// Returns the distance between two texture coordinates in px of level 0.
-pub fn texel_length(map: &HeightMap, a: Vec2, b: Vec2) -> f32 {
+pub(crate) fn texel_length(map: &HeightMap, a: Vec2, b: Vec2) -> f32 {
     ((b - a) * vec2(map.size[0] as f32, map.size[1] as f32)).length()
 }
 
 /// Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions`
 /// and w = 1 - u - v. `direction` is that unit vector, and `length` is the length of the sum. Zero if the sum is nearly
 /// zero.
-pub fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> [Vec3; 2] {
+pub(crate) fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> [Vec3; 2] {
     let along_u = directions[0] - directions[2];
     let along_v = directions[1] - directions[2];
     if length <= 1e-6 {
@@ -132,7 +132,7 @@ pub fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> 
 ///
 /// The gradients lie in the triangle's plane, in texture widths and heights for each object unit. Everything is zero if
 /// the triangle is degenerate.
-pub fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
+pub(crate) fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
     let along = corners[1] - corners[0];
     let beside = corners[2] - corners[0];
     let size = along.abs().max(beside.abs()).max_element();
@@ -160,7 +160,7 @@ pub fn uv_gradients(corners: [Vec3; 3], uvs: [Vec2; 3]) -> ([Vec3; 2], f32) {
 /// 2008, the surface gradient). The gradient points uphill in object space; its length is the slope.
 ///
 /// It is the exact normal if the surface is displaced along `normal`.
-pub fn raised_normal(gradient: Vec3, normal: Vec3) -> Vec3 {
+pub(crate) fn raised_normal(gradient: Vec3, normal: Vec3) -> Vec3 {
     unit_or(normal - (gradient - normal * gradient.dot(normal)), normal)
 }
 

@@ -18,7 +18,7 @@ use super::rings::{TransitionStep, ring_point, rings_before};
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
 /// Two thirds in 16.16 fixed point, rounded down as in the specification.
-pub const FIXED_TWO_THIRDS: u32 = 0xaaaa;
+pub(crate) const FIXED_TWO_THIRDS: u32 = 0xaaaa;
 
 /// A row of points, prepared for [`row_location`].
 ///
@@ -26,7 +26,7 @@ pub const FIXED_TWO_THIRDS: u32 = 0xaaaa;
 /// with one segment more in each half. `fraction` is the weight of the finer row, in 16.16 fixed point. Its new point
 /// grows out of point `split` of each half.
 #[derive(Clone, Copy, Debug)]
-pub struct DomainRow {
+pub(crate) struct DomainRow {
     /// Segments in half the row, rounded up.
     half: u32,
     /// 1 if the row has an odd number of segments, else 0.
@@ -60,7 +60,7 @@ fn row_split(whole: u32, odd: u32) -> u32 {
 }
 
 /// Prepares the row of a factor's word.
-pub fn domain_row(word: u32) -> DomainRow {
+pub(crate) fn domain_row(word: u32) -> DomainRow {
     let factor = half_factor(word);
     let whole = factor >> 16;
     let odd = odd_parity(word);
@@ -77,7 +77,7 @@ pub fn domain_row(word: u32) -> DomainRow {
 }
 
 /// Returns where point `p` of a row lies, from 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
-pub fn row_location(row: DomainRow, p: u32) -> u32 {
+pub(crate) fn row_location(row: DomainRow, p: u32) -> u32 {
     if row.odd == 0 && p == row.half {
         return FIXED_HALF;
     }

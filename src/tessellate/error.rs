@@ -20,7 +20,7 @@ use crate::mesh::MAX_LEVELS;
 /// Bounds on the depth and the screen position of a set of control points, from which the size of differences on screen
 /// is bounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenBounds {
+pub(super) struct ScreenBounds {
     /// The least and the greatest depth (w). Depths nearer than the near plane count as the near plane's, since nothing
     /// in front of it is visible.
     pub nearest: f32,
@@ -35,7 +35,7 @@ pub struct ScreenBounds {
 
 /// The part of the tolerance that edges may use up. The rest is for the rows of triangles beside them, which also bend
 /// in other directions.
-pub const EDGE_SHARE: f32 = 0.75;
+pub(crate) const EDGE_SHARE: f32 = 0.75;
 
 /// Returns the bounds of no points, to be widened.
 fn no_bounds() -> ScreenBounds {
@@ -49,7 +49,7 @@ fn no_bounds() -> ScreenBounds {
 }
 
 /// Widens the bounds to include a control point `p` in object units, wherever displacement moves it.
-pub fn widen(view: &LodView, bounds: ScreenBounds, p: Vec3) -> ScreenBounds {
+pub(super) fn widen(view: &LodView, bounds: ScreenBounds, p: Vec3) -> ScreenBounds {
     let clip = view.clip_from_object * p.extend(1.0);
     let depth = clip.w.max(clip.z);
     let place = Vec2::new(clip.x, clip.y) / depth;
@@ -70,12 +70,12 @@ pub fn widen(view: &LodView, bounds: ScreenBounds, p: Vec3) -> ScreenBounds {
 }
 
 /// Returns the bounds of an edge's four control points.
-pub fn edge_bounds(view: &LodView, [a, ab, ba, b]: [Vec3; 4]) -> ScreenBounds {
+pub(super) fn edge_bounds(view: &LodView, [a, ab, ba, b]: [Vec3; 4]) -> ScreenBounds {
     widen(view, widen(view, widen(view, widen(view, no_bounds(), a), ab), ba), b)
 }
 
 /// Returns the bounds of a patch's ten control points.
-pub fn net_bounds(view: &LodView, net: &ControlNet) -> ScreenBounds {
+pub(super) fn net_bounds(view: &LodView, net: &ControlNet) -> ScreenBounds {
     let mut bounds = widen(view, no_bounds(), net.center);
     for k in 0..3 {
         bounds = widen(view, bounds, net.corners[k]);
@@ -87,7 +87,7 @@ pub fn net_bounds(view: &LodView, net: &ControlNet) -> ScreenBounds {
 
 /// Returns the bounds of points that are weighted means: `share` (0 to 1) of a point within `other`, and the rest of a
 /// point within `own`. The bounds `own` must lie within `other`.
-pub fn mixed_bounds(own: ScreenBounds, other: ScreenBounds, share: f32) -> ScreenBounds {
+pub(super) fn mixed_bounds(own: ScreenBounds, other: ScreenBounds, share: f32) -> ScreenBounds {
     if other.is_cut {
         // The true least depth isn't known: `nearest` was clamped to the near plane, and a mean of it would be too far.
         return other;
@@ -106,7 +106,7 @@ pub fn mixed_bounds(own: ScreenBounds, other: ScreenBounds, share: f32) -> Scree
 
 /// Returns a bound on the length on screen, in px, of the difference vector of two points. The vector is in object
 /// units.
-pub fn screen_length(view: &LodView, bounds: ScreenBounds, difference: Vec3) -> f32 {
+pub(super) fn screen_length(view: &LodView, bounds: ScreenBounds, difference: Vec3) -> f32 {
     let across = Vec2::new(clip_row(view, 0).dot(difference), clip_row(view, 1).dot(difference));
     let deep = clip_row(view, 3).dot(difference);
     let a = (across - bounds.least * deep).abs();
@@ -116,7 +116,7 @@ pub fn screen_length(view: &LodView, bounds: ScreenBounds, difference: Vec3) -> 
 }
 
 /// Returns a bound on the length on screen, in px, of any vector whose length is `radius` object units.
-pub fn screen_radius(view: &LodView, bounds: ScreenBounds, radius: f32) -> f32 {
+pub(super) fn screen_radius(view: &LodView, bounds: ScreenBounds, radius: f32) -> f32 {
     let across = Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length());
     let deep = clip_row(view, 3).length();
     let most = bounds.least.abs().max(bounds.greatest.abs());
@@ -133,7 +133,7 @@ pub fn screen_radius(view: &LodView, bounds: ScreenBounds, radius: f32) -> f32 {
 /// the widest gap. Other numbers of segments are uneven in that order. Triangles between such rows reach along the rows
 /// by up to five segments, which costs up to 25 times the error of one segment. Between levels they reach by one
 /// segment.
-pub fn nesting_factor(partitioning: Partitioning, least: f32) -> f32 {
+pub(crate) fn nesting_factor(partitioning: Partitioning, least: f32) -> f32 {
     let odd = partitioning == Partitioning::FractionalOdd;
     if least > if odd { 33.0 } else { 64.0 } {
         return least.max(64.5);
@@ -153,7 +153,7 @@ pub fn nesting_factor(partitioning: Partitioning, least: f32) -> f32 {
 /// The numbers of segments inside whose first ring nests with an edge of 5, 8, 9, 16, 17, 32, 33 or 64 segments (one
 /// row each). Bit n - 1 stands for n segments; the first word has 1 to 32. A test derives the table from the
 /// tessellator.
-pub const NESTING: [[u32; 2]; 8] = [
+pub(crate) const NESTING: [[u32; 2]; 8] = [
     [0xfffff797, 0xffffffff],
     [0xffffe19f, 0xffffffff],
     [0xe4078117, 0xff5c177f],
@@ -168,7 +168,7 @@ pub const NESTING: [[u32; 2]; 8] = [
 ///
 /// Every ring nests with an edge of up to four segments. Beyond the last level the result doesn't matter, so it is
 /// true.
-pub fn nests(factor: f32, segments: u32) -> bool {
+pub(super) fn nests(factor: f32, segments: u32) -> bool {
     if factor <= 4.0 || factor > 64.0 {
         return true;
     }
@@ -184,7 +184,7 @@ pub fn nests(factor: f32, segments: u32) -> bool {
 
 /// Returns the least factor (not rounded, 1 or more) that keeps an edge within `tolerance` px of its cubic curve:
 /// sqrt(3/4 d / tolerance), where d is the larger second difference on screen in px (Wang 1984).
-pub fn edge_error_factor(view: &LodView, tolerance: f32, control_points: [Vec3; 4]) -> f32 {
+pub(crate) fn edge_error_factor(view: &LodView, tolerance: f32, control_points: [Vec3; 4]) -> f32 {
     let bounds = edge_bounds(view, control_points);
     let [a, ab, ba, b] = control_points;
     let near_a = screen_length(view, bounds, a - ab * 2.0 + ba);
@@ -194,9 +194,9 @@ pub fn edge_error_factor(view: &LodView, tolerance: f32, control_points: [Vec3; 
 
 /// The shares of the tolerance where a surface is displaced: for the surface without displacement, for the detail of
 /// the heights that is lost between segments, and for the turning of the direction of displacement.
-pub const SURFACE_SHARE: f32 = 0.5;
-pub const DETAIL_SHARE: f32 = 0.3;
-pub const TURN_SHARE: f32 = 0.2;
+pub(crate) const SURFACE_SHARE: f32 = 0.5;
+pub(crate) const DETAIL_SHARE: f32 = 0.3;
+pub(crate) const TURN_SHARE: f32 = 0.2;
 
 /// Returns the least factor (not rounded, 1 or more) that shows the heights of one image along an edge, which is
 /// `texels` px of level 0 long.
@@ -205,7 +205,7 @@ pub const TURN_SHARE: f32 = 0.2;
 /// has the loss of each level, which becomes object units when multiplied by `scale`. They are also short enough for
 /// the turning of the direction of displacement: `turn` is the distance between the unit directions at the edge's ends.
 /// This is an estimate: between two px an image may rise by more than its levels tell.
-pub fn displacement_factor(
+pub(super) fn displacement_factor(
     view: &LodView,
     bounds: ScreenBounds,
     tolerance: f32,
@@ -228,7 +228,7 @@ pub fn displacement_factor(
 }
 
 /// Returns the control point with these three indices (0 to 2), in any order: (0, 0, 1) is b210.
-pub fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
+pub(super) fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
     if i == j && j == l {
         return net.corners[i];
     }
@@ -246,7 +246,7 @@ pub fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
 ///
 /// *Inward* is the vector of 2/3 of the median towards corner `k`. For each segment the tessellator places a ring that
 /// far inside.
-pub fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
+pub(super) fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
     let pp = control_point(net, i, p, p);
@@ -263,7 +263,7 @@ pub fn second_differences(net: &ControlNet, i: usize, k: usize) -> [Vec3; 3] {
 
 /// Returns bounds on the three [`second_differences`] at any corner, in px on screen, then a bound on those along both
 /// diagonals of a segment.
-pub fn screen_differences(view: &LodView, bounds: ScreenBounds, net: &ControlNet, k: usize) -> [f32; 4] {
+pub(super) fn screen_differences(view: &LodView, bounds: ScreenBounds, net: &ControlNet, k: usize) -> [f32; 4] {
     let mut largest = [0.0; 4];
     for i in 0..3 {
         let [along, mixed, inward] = second_differences(net, i, k);
@@ -282,7 +282,7 @@ pub fn screen_differences(view: &LodView, bounds: ScreenBounds, net: &ControlNet
 /// The error of a quadratic function is half the sum of its second derivatives along the sides, each multiplied by the
 /// weights of the side's ends. Its maximum is 3 times the squared radius of the smallest circle around a triangle whose
 /// squared sides are the second differences.
-pub fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
+pub(super) fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
     let most = a.max(b).max(c);
     let least = a.min(b).min(c);
     let middle = a.min(b).max(a.max(b).min(c));
@@ -299,7 +299,7 @@ pub fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
 /// The triangles reach `reach` along the edge and `height` inward, and their sides across the row lean by `slant` along
 /// the edge, all in parts of the edge and of the inward vector. 1/1000 is added, since domain points are rounded to
 /// 16.16.
-pub fn row_error(on_screen: [f32; 3], reach: f32, slant: f32, height: f32) -> f32 {
+pub(super) fn row_error(on_screen: [f32; 3], reach: f32, slant: f32, height: f32) -> f32 {
     0.751 * (on_screen[0] * reach * reach + 2.0 * on_screen[1] * slant * height + on_screen[2] * height * height)
 }
 
@@ -308,7 +308,7 @@ pub fn row_error(on_screen: [f32; 3], reach: f32, slant: f32, height: f32) -> f3
 ///
 /// The triangles between rings have one side along the edge, one inward and one across. The triangle in the middle has
 /// three sides along edges. 1/1000 is added, since domain points are rounded to 16.16.
-pub fn inner_error(on_screen: [[f32; 4]; 3], segments: f32) -> f32 {
+pub(super) fn inner_error(on_screen: [[f32; 4]; 3], segments: f32) -> f32 {
     let mut worst = triangle_error(on_screen[0][0], on_screen[1][0], on_screen[2][0]);
     for own in on_screen {
         worst = worst.max(triangle_error(own[0], own[2], own[3]));
@@ -319,14 +319,14 @@ pub fn inner_error(on_screen: [[f32; 4]; 3], segments: f32) -> f32 {
 /// What the error of the row of triangles along an edge depends on: the bounds of the edge itself, and the second
 /// differences along it (`along`), and along it and inward (`mixed`), at its two ends and at the opposite corner.
 #[derive(Clone, Copy, Debug)]
-pub struct EdgeRow {
+pub(super) struct EdgeRow {
     pub bounds: ScreenBounds,
     pub along: [Vec3; 3],
     pub mixed: [Vec3; 3],
 }
 
 /// Returns these of the edge opposite corner `k`.
-pub fn edge_row(view: &LodView, net: &ControlNet, k: usize) -> EdgeRow {
+pub(super) fn edge_row(view: &LodView, net: &ControlNet, k: usize) -> EdgeRow {
     let p = (k + 1) % 3;
     let q = (k + 2) % 3;
     let edge = [net.corners[p], control_point(net, p, p, q), control_point(net, p, q, q), net.corners[q]];
@@ -336,7 +336,7 @@ pub fn edge_row(view: &LodView, net: &ControlNet, k: usize) -> EdgeRow {
 
 /// Returns a bound, in px on screen, on weighted means of three differences of which the last has a weight of at most
 /// `share`.
-pub fn edge_row_length(view: &LodView, beside: ScreenBounds, differences: [Vec3; 3], share: f32) -> f32 {
+pub(super) fn edge_row_length(view: &LodView, beside: ScreenBounds, differences: [Vec3; 3], share: f32) -> f32 {
     let [at_p, at_q, at_k] = differences.map(|difference| screen_length(view, beside, difference));
     let own = at_p.max(at_q);
     own + share * (at_k - own).max(0.0)
@@ -347,7 +347,7 @@ pub fn edge_row_length(view: &LodView, beside: ScreenBounds, differences: [Vec3;
 ///
 /// The row is 2/3 of a segment high. In its points the weight of the opposite corner is small, so the differences there
 /// are nearly the edge's own and nearly as large on screen.
-pub fn edge_row_error(
+pub(super) fn edge_row_error(
     view: &LodView,
     row: EdgeRow,
     bounds: ScreenBounds,
@@ -370,7 +370,7 @@ pub fn edge_row_error(
 
 /// Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number,
 /// a power of two, or an odd or even number.
-pub fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
+pub(super) fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
     match partitioning {
         Partitioning::Integer | Partitioning::Subtriangulation => least.ceil(),
         Partitioning::Pow2 => round_pow2(least),
@@ -383,7 +383,7 @@ pub fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
 /// edges U == 0, V == 0 and W == 0. The result is above 64 if no factor does.
 ///
 /// Only numbers of segments are tried that the partitioning has and that nest with the edges.
-pub fn inside_error_factor(
+pub(crate) fn inside_error_factor(
     view: &LodView,
     tolerance: f32,
     partitioning: Partitioning,

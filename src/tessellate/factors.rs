@@ -9,16 +9,16 @@
 use bytemuck::{Pod, Zeroable};
 
 /// 1.0 in 16.16 fixed point.
-pub const FIXED_ONE: u32 = 0x1_0000;
+pub(crate) const FIXED_ONE: u32 = 0x1_0000;
 /// 0.5 in 16.16 fixed point.
-pub const FIXED_HALF: u32 = 0x8000;
+pub(crate) const FIXED_HALF: u32 = 0x8000;
 /// The bit of a factor's word that marks odd parity: a row with an odd number of segments.
-pub const FACTOR_ODD: u32 = 0x8000_0000;
+pub(crate) const FACTOR_ODD: u32 = 0x8000_0000;
 
 /// The bits of a factor's word that hold the factor, in 16.16 fixed point.
-pub const FACTOR_VALUE: u32 = 0x7f_ffff;
+pub(crate) const FACTOR_VALUE: u32 = 0x7f_ffff;
 /// The bit of an inside factor's word that marks a subtriangulated patch: see `subtriangulation.rs`.
-pub const SUBTRIANGULATED: u32 = 0x4000_0000;
+pub(crate) const SUBTRIANGULATED: u32 = 0x4000_0000;
 
 /// Bit patterns of `f32` numbers. Those of positive numbers are in the order of the numbers; those of NaN and of
 /// negative numbers are greater than all of them.
@@ -115,7 +115,7 @@ fn inside_word(partitioning: Partitioning, bits: u32) -> u32 {
 /// The patch is culled if an edge's factor isn't greater than zero. Factors are clamped to what the partitioning allows
 /// and rounded to fixed point. The inside factor never culls: NaN and too small numbers act as the smallest factor.
 /// Under subtriangulation the largest edge factor is used for everything, and the inside factor is ignored.
-pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> PatchFactors {
+pub(crate) fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> PatchFactors {
     let bits = edges.map(f32::to_bits);
     if !(positive_bits(bits[0]) && positive_bits(bits[1]) && positive_bits(bits[2])) {
         return PatchFactors::default();
@@ -141,7 +141,7 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
 
 /// Returns the factor that a shader compiler passes to the tessellator under pow2: clamped to 1 to 64, then rounded up
 /// to a power of two. Factors that cull a patch (NaN, zero, negative numbers) are returned unchanged.
-pub fn round_pow2(factor: f32) -> f32 {
+pub(crate) fn round_pow2(factor: f32) -> f32 {
     let bits = factor.to_bits();
     if !positive_bits(bits) {
         return factor;
@@ -152,53 +152,53 @@ pub fn round_pow2(factor: f32) -> f32 {
 }
 
 /// Returns whether the patch is culled: it has no points and no triangles.
-pub fn patch_is_culled(factors: PatchFactors) -> bool {
+pub(crate) fn patch_is_culled(factors: PatchFactors) -> bool {
     factors.outside[0] == 0
 }
 
 /// Returns whether the patch is cut by uniform subtriangulation instead of Direct3D's tessellator.
-pub fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
+pub(crate) fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
     !patch_is_culled(factors) && factors.inside & SUBTRIANGULATED != 0
 }
 
 /// Returns whether all factors are 1, so that the patch is one triangle.
-pub fn patch_is_minimal(factors: PatchFactors) -> bool {
+pub(crate) fn patch_is_minimal(factors: PatchFactors) -> bool {
     let edges_are_one = factors.outside == [FACTOR_ODD | FIXED_ONE; 3];
     edges_are_one && (factors.inside & FACTOR_VALUE) == FIXED_ONE
 }
 
 /// Returns whether the patch is drawn and all its factors are below 2: without tessellation it would look nearly the
 /// same.
-pub fn patch_is_low(factors: PatchFactors) -> bool {
+pub(crate) fn patch_is_low(factors: PatchFactors) -> bool {
     let low = |word: u32| word & FACTOR_VALUE < 2 * FIXED_ONE;
     !patch_is_culled(factors) && factors.outside.into_iter().all(low) && low(factors.inside)
 }
 
 /// Returns 1 if the word's parity is odd, else 0.
-pub fn odd_parity(word: u32) -> u32 {
+pub(crate) fn odd_parity(word: u32) -> u32 {
     word >> 31
 }
 
 /// Returns the number of segments from an end of a row to its middle, in 16.16 fixed point. The fraction is how far the
 /// newest segment has grown. The middle segment of an odd row counts as a whole one.
-pub fn half_factor(word: u32) -> u32 {
+pub(crate) fn half_factor(word: u32) -> u32 {
     let half = ((word & FACTOR_VALUE) + 1) >> 1;
     let rounds_up = odd_parity(word) == 1 || half == FIXED_HALF;
     if rounds_up { half + FIXED_HALF } else { half }
 }
 
 /// Returns [`half_factor`] rounded up: the segments of half a row, with the middle one of an odd row.
-pub fn half_segments(word: u32) -> u32 {
+pub(crate) fn half_segments(word: u32) -> u32 {
     (half_factor(word) + (FIXED_ONE - 1)) >> 16
 }
 
 /// Returns the number of segments of an edge: one less than its points.
-pub fn segments(word: u32) -> u32 {
+pub(crate) fn segments(word: u32) -> u32 {
     2 * half_segments(word) - odd_parity(word)
 }
 
 /// Returns the number of segments inside: at least 3 if odd, at least 2 if even.
-pub fn inside_segments(word: u32) -> u32 {
+pub(crate) fn inside_segments(word: u32) -> u32 {
     segments(word).max(2 + odd_parity(word))
 }
 

@@ -94,7 +94,7 @@ impl Inputs {
 }
 
 /// Which sides of an edge share its curve under a surface.
-pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
+pub(crate) fn sharing(surface: Surface, edges: Edges) -> Sharing {
     let alone = surface.tears() || surface == Surface::Flat;
     match edges {
         Edges::PerEdge if surface.tears() => Sharing::EqualNormals,

@@ -9,20 +9,20 @@ use super::{ControlNet, Surface};
 use crate::mesh::{Mesh, Topology};
 
 /// The surface that a tessellation approximates, evaluated in f64 at any point.
-pub struct LimitSurface<'a> {
+pub(crate) struct LimitSurface<'a> {
     nets: ControlNets<'a>,
     displacement: Option<MeshDisplacement<'a>>,
 }
 
 impl<'a> LimitSurface<'a> {
     /// Builds the surface of a mesh.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
         let nets = ControlNets::new(mesh, topology, inputs);
         Self { displacement: MeshDisplacement::new(&nets, inputs), nets }
     }
 
     /// Returns a patch's control net, which [`Self::position`] needs.
-    pub fn net(&self, patch: u32) -> ControlNet {
+    pub(crate) fn net(&self, patch: u32) -> ControlNet {
         self.nets.patch(patch)
     }
 
@@ -31,7 +31,7 @@ impl<'a> LimitSurface<'a> {
     ///
     /// Heights are read at the patch's own texture coordinates from mip level 0. So at a seam the sides of an edge may
     /// have different limits.
-    pub fn position(&self, patch: u32, net: &ControlNet, u: f64, v: f64) -> DVec3 {
+    pub(crate) fn position(&self, patch: u32, net: &ControlNet, u: f64, v: f64) -> DVec3 {
         let moved =
             self.displacement.as_ref().map(|displacement| displacement.exact_displacement(patch, [u, v, 1.0 - u - v]));
         self.surface(net, u, v) + moved.unwrap_or_default()

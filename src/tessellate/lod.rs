@@ -55,7 +55,7 @@ impl LodView {
 /// Returns a position on screen, from the middle of the view, in segments of `pixels_per_segment` px.
 ///
 /// Like the white paper, it divides by w, so points behind the eye are mirrored.
-pub fn project_and_scale(view: &LodView, pixels_per_segment: f32, position: Vec3) -> Vec2 {
+pub(crate) fn project_and_scale(view: &LodView, pixels_per_segment: f32, position: Vec3) -> Vec2 {
     let clip = view.clip_from_object * position.extend(1.0);
     glam::vec2(clip.x, clip.y) / clip.w * view.half_viewport / pixels_per_segment
 }
@@ -63,37 +63,37 @@ pub fn project_and_scale(view: &LodView, pixels_per_segment: f32, position: Vec3
 /// Returns `length`, but 1 if it is less than 1 or NaN. The length of an edge through the eye's plane may be NaN.
 ///
 /// NaN is recognised by its bits, since a shader's `max` with NaN may return either argument.
-pub fn max_with_one(length: f32) -> f32 {
+pub(crate) fn max_with_one(length: f32) -> f32 {
     let is_nan = length.to_bits() & 0x7fff_ffff > 0x7f80_0000;
     if is_nan || length < 1.0 { 1.0 } else { length }
 }
 
 /// Returns the white paper's factor of an edge with these four control points (`ComputeEdgeLOD` of McDonald and Kilgard
 /// 2010): the length of its control polygon on screen, in segments. The points must be in the edge's own direction.
-pub fn paper_edge_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
+pub(crate) fn paper_edge_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
     let [a, ab, ba, b] = control_points.map(|p| project_and_scale(view, pixels_per_segment, p));
     max_with_one(a.distance(ab) + ab.distance(ba) + ba.distance(b))
 }
 
 /// Returns whether a clip-space position lies on the near plane or beyond. Depth is reversed: z = w on the near plane.
-pub fn beyond_near(clip: Vec4) -> bool {
+pub(crate) fn beyond_near(clip: Vec4) -> bool {
     clip.z <= clip.w
 }
 
 /// Returns the gradient of a clip-space coordinate (0 to 3 for x, y, z, w) in object space.
-pub fn clip_row(view: &LodView, row: usize) -> Vec3 {
+pub(super) fn clip_row(view: &LodView, row: usize) -> Vec3 {
     view.clip_from_object.row(row).truncate()
 }
 
 /// Returns how many px an object unit across the view covers at depth w = 1.
-pub fn pixels_per_unit(view: &LodView) -> f32 {
+pub(super) fn pixels_per_unit(view: &LodView) -> f32 {
     (clip_row(view, 0).length() * view.half_viewport.x).max(clip_row(view, 1).length() * view.half_viewport.y)
 }
 
 /// Returns the factor of an edge that isn't completely beyond the near plane: the length of its control polygon in
 /// segments, as if it lay across the view at the nearest depth of a sphere around the control points. If the whole
 /// sphere is nearer than the near plane, the factor is 1.
-pub fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]: [Vec3; 4]) -> f32 {
+pub(crate) fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]: [Vec3; 4]) -> f32 {
     let center = (a + b) * 0.5;
     let radius = a.distance(center).max(ab.distance(center)).max(ba.distance(center)) + view.reach;
     let clip = view.clip_from_object * center.extend(1.0);
@@ -108,7 +108,7 @@ pub fn near_edge_factor(view: &LodView, pixels_per_segment: f32, [a, ab, ba, b]:
 }
 
 /// Returns [`paper_edge_factor`] if all four control points lie beyond the near plane, otherwise [`near_edge_factor`].
-pub fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
+pub(crate) fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_points: [Vec3; 4]) -> f32 {
     let beyond = |p: Vec3| beyond_near(view.clip_from_object * p.extend(1.0));
     if control_points.into_iter().all(beyond) {
         return paper_edge_factor(view, pixels_per_segment, control_points);
@@ -118,13 +118,13 @@ pub fn edge_length_factor(view: &LodView, pixels_per_segment: f32, control_point
 
 /// Returns the factor of a point `p` in object units: `factor` up to a distance of `near` bounding radii from the eye,
 /// 1 from `far` bounding radii on, and linear between.
-pub fn point_distance_factor(view: &LodView, factor: f32, near: f32, far: f32, p: Vec3) -> f32 {
+pub(super) fn point_distance_factor(view: &LodView, factor: f32, near: f32, far: f32, p: Vec3) -> f32 {
     let part = (far - p.distance(view.eye) / view.radius) / (far - near);
     1.0 + (factor - 1.0) * part.clamp(0.0, 1.0)
 }
 
 /// Returns the factor of an edge under LOD by distance: the mean of the factors at its ends.
-pub fn distance_factor(view: &LodView, factor: f32, near: f32, far: f32, [a, _, _, b]: [Vec3; 4]) -> f32 {
+pub(crate) fn distance_factor(view: &LodView, factor: f32, near: f32, far: f32, [a, _, _, b]: [Vec3; 4]) -> f32 {
     max_with_one(
         0.5 * (point_distance_factor(view, factor, near, far, a) + point_distance_factor(view, factor, near, far, b)),
     )

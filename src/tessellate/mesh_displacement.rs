@@ -17,24 +17,24 @@ use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, fact
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
 /// Returns the heights that displace a mesh with these inputs, if any.
-pub fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
+pub(crate) fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
     mesh.heights.as_deref().filter(|_| inputs.tessellation.displacement != Displacement::Off)
 }
 
 /// Returns the distance between black and white in object units. It depends on the size of the mesh at rest, so that it
 /// is the same in every pose.
-pub fn height_units(heights: &Heights, inputs: &Inputs) -> f32 {
+pub(crate) fn height_units(heights: &Heights, inputs: &Inputs) -> f32 {
     inputs.tessellation.height_scale * heights.radius
 }
 
 /// Returns the largest distance by which a point is displaced, in object units.
-pub fn displacement_reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
+pub(crate) fn displacement_reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
     displacing_heights(mesh, inputs)
         .map_or(0.0, |heights| height_units(heights, inputs).abs() * heights.reach(inputs.tessellation.midlevel))
 }
 
 /// The heights over a mesh, and what its patches share at edges and points.
-pub struct MeshDisplacement<'a> {
+pub(super) struct MeshDisplacement<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     heights: &'a Heights,

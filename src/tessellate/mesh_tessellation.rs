@@ -63,7 +63,12 @@ fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
 
 /// Tessellates the mesh with the factors that a hull shader wrote for each patch, instead of LOD's. Patches that show
 /// only their backs are drawn, since given factors may crack any edge.
-pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given: &[HullFactors]) -> Tessellated {
+pub(crate) fn tessellate_given(
+    mesh: &Mesh,
+    topology: &Topology,
+    inputs: &Inputs,
+    given: &[HullFactors],
+) -> Tessellated {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs).map(|displacement| {
@@ -75,7 +80,7 @@ pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given
 }
 
 /// Returns the factors that the hull shader writes for each patch under LOD; zeros for patches that are left out.
-pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
+pub(crate) fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
@@ -92,7 +97,7 @@ pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<Hu
 }
 
 /// Returns the numbers of vertices and triangles that [`tessellate`] would emit without clipping and culling.
-pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
+pub(crate) fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
@@ -104,7 +109,7 @@ pub fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
 }
 
 /// Returns the numbers of vertices and triangles that [`tessellate_given`] would emit without clipping.
-pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
+pub(crate) fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
     sums(
         given
             .iter()
@@ -119,7 +124,7 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 }
 
 /// Returns the factors that LOD gives: one for each edge, or with edges as published one for each curve.
-pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
+pub(crate) fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
     nets.edge_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref())

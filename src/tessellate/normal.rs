@@ -22,14 +22,14 @@ pub enum Normals {
 pub(crate) const CANCELLED: f32 = 1e-6;
 
 /// Returns a weighted sum of normals at unit length, or `nearest` (the normal with the greatest weight) if they cancel.
-pub fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {
+pub(super) fn unit_or(sum: Vec3, nearest: Vec3) -> Vec3 {
     let length_squared = sum.dot(sum);
     if length_squared > CANCELLED * CANCELLED { sum * (1.0 / length_squared.sqrt()) } else { nearest }
 }
 
 /// Returns the linearly interpolated unit normal at weights `u` and `v` of a patch, or the normal of the nearest corner
 /// if the normals cancel.
-pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
+pub(crate) fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
     let w = FIXED_ONE - u - v;
     let [a, b, c] = normals;
     let nearest = if u >= v && u >= w {
@@ -44,7 +44,7 @@ pub fn linear_normal(normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
 
 /// Returns the linearly interpolated unit normal at `t` on an edge whose ends have normals `a` and `b`. The arguments
 /// must be in the edge's own direction, as for [`super::edge_position`].
-pub fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
+pub(crate) fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
     let nearest = if 2 * t <= FIXED_ONE { a } else { b };
     unit_or(a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT), nearest)
 }
@@ -52,7 +52,7 @@ pub fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
 /// Returns the control normal in the middle of an edge (h110 of Vlachos et al. 2001, section 3.3): the sum of the
 /// normals at the ends, mirrored in the plane perpendicular to the edge, at unit length. It is `at_a` if the sum
 /// cancels.
-pub fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
+pub(crate) fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let along = b - a;
     // Scale the edge, so that its square neither underflows nor overflows: only its direction matters.
     let size = along.abs().max_element();
@@ -69,7 +69,7 @@ pub fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
 ///
 /// The control normals in the middle of the edges are multiplied by u v, v w and w u, without the factor 2 of a Bézier
 /// triangle, as in the paper.
-pub fn quadratic_normal(corners: [Vec3; 3], normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
+pub(crate) fn quadratic_normal(corners: [Vec3; 3], normals: [Vec3; 3], u: u32, v: u32) -> Vec3 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [a, b, c] = corners;
     let [at_a, at_b, at_c] = normals;
@@ -84,7 +84,7 @@ pub fn quadratic_normal(corners: [Vec3; 3], normals: [Vec3; 3], u: u32, v: u32) 
 
 /// Returns the quadratically interpolated unit normal at `t` on the edge from `a` to `b`. The arguments must be in the
 /// edge's own direction, as for [`super::edge_position`].
-pub fn quadratic_edge_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3, t: u32) -> Vec3 {
+pub(crate) fn quadratic_edge_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3, t: u32) -> Vec3 {
     let (x, y) = ((FIXED_ONE - t) as f32 * UNIT, t as f32 * UNIT);
     let sum = at_a * (x * x) + middle_normal(a, b, at_a, at_b) * (x * y) + at_b * (y * y);
     unit_or(sum, edge_normal(at_a, at_b, t))
@@ -92,7 +92,7 @@ pub fn quadratic_edge_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3, t: u32) -
 
 /// Returns the unit normal of a surface with these tangents along u and v, or `otherwise` if they are parallel or one
 /// is zero.
-pub fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
+pub(super) fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
     let [along_u, along_v] = tangents;
     let size_u = along_u.abs().max_element();
     let size_v = along_v.abs().max_element();
@@ -103,7 +103,7 @@ pub fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
 }
 
 /// Returns the unit normal of the surface itself at weights `u` and `v`, or `otherwise` where it has none.
-pub fn surface_normal(surface: Surface, net: &ControlNet, u: u32, v: u32, otherwise: Vec3) -> Vec3 {
+pub(crate) fn surface_normal(surface: Surface, net: &ControlNet, u: u32, v: u32, otherwise: Vec3) -> Vec3 {
     facing_or(patch_tangents(surface, net, u, v), otherwise)
 }
 

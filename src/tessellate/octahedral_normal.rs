@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, vec2, vec3};
 
 /// Packs a unit normal into 32 bits: octahedral, two signed normalised 16-bit numbers (Cigolle et al. 2014, section 3).
 /// The error is less than 0.004 degrees.
-pub fn pack_normal(normal: Vec3) -> u32 {
+pub(crate) fn pack_normal(normal: Vec3) -> u32 {
     let flat = normal * (1.0 / (normal.x.abs() + normal.y.abs() + normal.z.abs()));
     let folded = (Vec2::ONE - vec2(flat.y.abs(), flat.x.abs())) * vec2(sign_not_zero(flat.x), sign_not_zero(flat.y));
     let [x, y] = if flat.z < 0.0 { folded } else { flat.truncate() }.to_array();

@@ -29,7 +29,7 @@ pub struct PosedMesh {
 }
 
 /// A mesh and its topology.
-pub type Deformed = (Arc<Mesh>, Arc<Topology>);
+pub(crate) type Deformed = (Arc<Mesh>, Arc<Topology>);
 
 impl PosedMesh {
     pub fn new(mesh: Arc<Mesh>, topology: Arc<Topology>, pose: Option<Arc<Pose>>) -> Self {
@@ -62,7 +62,7 @@ impl PosedMesh {
 
 /// Returns a mesh and its topology in a pose, or copies of both if the mesh doesn't move. Connections and the kinds of
 /// edges stay as they are, even if points come to lie on each other. The returned mesh has no rig.
-pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
+pub(crate) fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
     let (mut mesh, mut topology) = (mesh.clone(), topology.clone());
     let Some(rig) = mesh.rig.take() else { return (mesh, topology) };
     for (point, &corner) in topology.points.iter_mut().zip(&topology.point_corners) {
@@ -77,7 +77,7 @@ pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology)
 
 /// Returns the bounds of a mesh at rest and during an animation clip, or at rest only if there is no clip. The clip is
 /// sampled at 17 times. Of meshes with many corners only some are used.
-pub fn bounds_through(mesh: &Mesh, clip: Option<usize>) -> Bounds {
+pub(crate) fn bounds_through(mesh: &Mesh, clip: Option<usize>) -> Bounds {
     let moving = mesh.rig.as_ref().zip(clip).and_then(|(rig, index)| Some((rig, index, rig.clips.get(index)?)));
     let Some((rig, index, clip)) = moving else { return mesh.bounds() };
     let mut positions: Vec<Vec3> = mesh.corners.iter().map(|corner| corner.position).collect();

@@ -7,21 +7,21 @@
 /// The formula holds because each ring has a fixed number of points (or triangles) fewer than the ring around it. The
 /// exact root is an integer, or at least 1/64 below the next one. The code adds half of that, which is hundreds of
 /// times the error that WGSL allows for a square root, so the result is exact on every device.
-pub fn rings_before(m: u32, area: u32) -> u32 {
+pub(super) fn rings_before(m: u32, area: u32) -> u32 {
     let root = ((m * m - 4 * area) as f32).sqrt();
     ((m as f32 - root) * 0.5 + 0.0078125) as u32
 }
 
 /// Returns the number of point `p` of a closed ring that starts at point `start`. Point `length` is the first point
 /// again.
-pub fn ring_point(start: u32, length: u32, p: u32) -> u32 {
+pub(super) fn ring_point(start: u32, length: u32, p: u32) -> u32 {
     start + if p == length { 0 } else { p }
 }
 
 /// One triangle between an edge and the side of the first ring beside it. Its corners are point `inner` of the ring's
 /// side, point `outer` of the edge, and the next point of one of the two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TransitionStep {
+pub(super) struct TransitionStep {
     pub inner: u32,
     pub outer: u32,
     /// Whether the third corner is the next point of the ring's side, and not of the edge.

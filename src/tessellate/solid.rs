@@ -11,7 +11,7 @@ use crate::mesh::{EdgeKind, Mesh, Topology};
 /// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
 /// it, but never a hole.)
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solid {
+pub(crate) struct Solid {
     /// The least and the greatest coordinates, in object units.
     pub extent: [Vec3; 2],
     /// The largest distance of control points from the triangles that they belong to, for each surface, in object
@@ -23,7 +23,7 @@ pub struct Solid {
 
 impl Solid {
     /// Returns the mesh as a solid, or `None` if it isn't one.
-    pub fn find(mesh: &Mesh, topology: &Topology) -> Option<Self> {
+    pub(crate) fn find(mesh: &Mesh, topology: &Topology) -> Option<Self> {
         let single_sided = mesh.materials.iter().all(|material| !material.double_sided);
         if !single_sided || !topology.is_closed_and_oriented() || topology.part_volumes().any(|volume| volume <= 0.0) {
             return None;
@@ -36,7 +36,7 @@ impl Solid {
 
     /// Returns whether no back face can be seen with these inputs: the tessellation has no cracks, and the near plane
     /// doesn't cut the mesh.
-    pub fn hides_backs(&self, inputs: &Inputs) -> bool {
+    pub(crate) fn hides_backs(&self, inputs: &Inputs) -> bool {
         let tears = inputs.tessellation.surface.tears() && self.has_split_normals;
         // A displaced surface may show its back anywhere.
         let whole = inputs.tessellation.displacement == Displacement::Off && !tears;
@@ -69,7 +69,7 @@ fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f3
 }
 
 /// Returns whether a box, given by its least and greatest coordinates, lies completely beyond the near plane.
-pub fn is_beyond_near(clip_from_object: Mat4, [min, max]: [Vec3; 2]) -> bool {
+pub(crate) fn is_beyond_near(clip_from_object: Mat4, [min, max]: [Vec3; 2]) -> bool {
     (0..8).all(|corner| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { min[axis] } else { max[axis] };
         beyond_near(clip_from_object * Vec3::new(pick(0), pick(1), pick(2)).extend(1.0))

@@ -29,7 +29,7 @@ fn subtriangulation_location(n: u32, k: u32) -> u32 {
 }
 
 /// Returns (U, V) of point `i` of a patch of `n` segments on each side; W = 1 - U - V.
-pub fn subtriangulation_point(n: u32, i: u32) -> [u32; 2] {
+pub(super) fn subtriangulation_point(n: u32, i: u32) -> [u32; 2] {
     let ring = subtriangulation_rings(2 * n + 3, 2 * i);
     let length = n - 3 * ring;
     let in_ring = i - ((3 * ring * (2 * n + 3 - 3 * ring)) >> 1);
@@ -58,7 +58,7 @@ fn subtriangulation_row(start: u32, length: u32, side: u32, q: u32) -> u32 {
 }
 
 /// Returns the corners of triangle `t` of a patch of `n` segments on each side, as point numbers, clockwise.
-pub fn subtriangulation_triangle(n: u32, t: u32) -> [u32; 3] {
+pub(super) fn subtriangulation_triangle(n: u32, t: u32) -> [u32; 3] {
     let ring = subtriangulation_rings(2 * n, t);
     let length = n - 3 * ring;
     let start = (3 * ring * (2 * n + 3 - 3 * ring)) >> 1;

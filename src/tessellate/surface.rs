@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 use super::factors::FIXED_ONE;
 
 /// The smallest step of 16.16 fixed point as a float. It is a power of two, so products with it are exact.
-pub const UNIT: f32 = 1.0 / FIXED_ONE as f32;
+pub(crate) const UNIT: f32 = 1.0 / FIXED_ONE as f32;
 
 /// Which surface a patch becomes. Those that end on AEN are the same with adjacent edge normals, as in PN-AEN: an edge's
 /// control points are the mean of what its sides propose.
@@ -56,7 +56,7 @@ impl Surface {
 /// Returns the point at `t` (16.16 fixed point) on the edge from `a` to `b` with control points `ab` (near a) and `ba`
 /// (near b), in object units. The arguments must be in the edge's own direction: then all sides do the same arithmetic
 /// on the same bits, and get the same point.
-pub fn edge_position(surface: Surface, a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: u32) -> Vec3 {
+pub(crate) fn edge_position(surface: Surface, a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: u32) -> Vec3 {
     let y = t as f32 * UNIT;
     let x = (FIXED_ONE - t) as f32 * UNIT;
     if surface == Surface::Flat {
@@ -68,7 +68,7 @@ pub fn edge_position(surface: Surface, a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: 
 /// The ten control points of a patch, in object units: the corners b300, b030 and b003; for each side k the one near
 /// its start and the one near its end (b210 b120, b021 b012, b102 b201); and b111 in the centre.
 #[derive(Clone, Copy, Debug)]
-pub struct ControlNet {
+pub(crate) struct ControlNet {
     pub corners: [Vec3; 3],
     pub edges: [Vec3; 6],
     pub center: Vec3,
@@ -76,7 +76,7 @@ pub struct ControlNet {
 
 /// Returns the point of a patch at weights `u` and `v` (16.16 fixed point; w is the rest of 1), in object units
 /// (Vlachos et al. 2001, equation 1).
-pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec3 {
+pub(crate) fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec3 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
     if surface == Surface::Flat {
@@ -97,7 +97,7 @@ pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec
 
 /// Returns the derivatives of a patch's position by u and by v (w = 1 - u - v) at weights `u` and `v`: its tangents, in
 /// object units.
-pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 2] {
+pub(crate) fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 2] {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
     if surface == Surface::Flat {
@@ -124,20 +124,20 @@ pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Ve
 }
 
 /// Returns the linearly interpolated texture coordinate at weights `u` and `v` of a patch.
-pub fn linear_uv(uvs: [Vec2; 3], u: u32, v: u32) -> Vec2 {
+pub(crate) fn linear_uv(uvs: [Vec2; 3], u: u32, v: u32) -> Vec2 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     uvs[0] * x + uvs[1] * y + uvs[2] * z
 }
 
 /// Returns the linearly interpolated texture coordinate at `t` (16.16 fixed point) on an edge whose ends have `a` and
 /// `b`.
-pub fn edge_uv(a: Vec2, b: Vec2, t: u32) -> Vec2 {
+pub(crate) fn edge_uv(a: Vec2, b: Vec2, t: u32) -> Vec2 {
     a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT)
 }
 
 /// Returns where the domain point (u, v, w) lies on the patch's outline: the side, and the weight of the side's end.
 /// `None` inside the patch.
-pub fn outline_place(u: u32, v: u32) -> Option<(usize, u32)> {
+pub(crate) fn outline_place(u: u32, v: u32) -> Option<(usize, u32)> {
     let w = FIXED_ONE - u - v;
     if w == 0 {
         Some((0, v))

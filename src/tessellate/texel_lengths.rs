@@ -5,7 +5,7 @@ use crate::mesh::{Dominance, Heights, Mesh, Topology};
 
 /// The height maps that an edge's factor depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Maps {
+pub(super) enum Maps {
     /// The maps of all its sides.
     All,
     /// One map: 1 for the first, 0 for none.
@@ -14,7 +14,7 @@ pub enum Maps {
 
 /// The greatest length that an edge has in one of its sides' maps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TexelLength {
+pub(crate) struct TexelLength {
     /// The map: 1 for the first, 0 for none.
     pub map: u32,
     /// The length in px of level 0.
@@ -24,12 +24,17 @@ pub struct TexelLength {
 }
 
 /// Returns the number of a patch's height map: 1 for the first, 0 for none.
-pub fn map_number(heights: &Heights, topology: &Topology, patch: u32) -> u32 {
+pub(crate) fn map_number(heights: &Heights, topology: &Topology, patch: u32) -> u32 {
     heights.of_material.get(topology.material_of(patch)).copied().flatten().map_or(0, |map| map + 1)
 }
 
 /// Returns one length for each edge factor, followed by the further lengths of edges whose sides have different maps.
-pub fn texel_lengths(heights: &Heights, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Vec<TexelLength> {
+pub(crate) fn texel_lengths(
+    heights: &Heights,
+    mesh: &Mesh,
+    topology: &Topology,
+    dominance: &Dominance,
+) -> Vec<TexelLength> {
     let mut texel_lengths = vec![TexelLength::default(); dominance.sides.len()];
     for (index, patch) in (0..).zip(&topology.patches) {
         let number = map_number(heights, topology, index);
@@ -58,7 +63,7 @@ fn own_texel_length(texel_lengths: &mut Vec<TexelLength>, factor: usize, map: u3
 }
 
 /// Returns whether an edge of any patch also has a length in another map than the patch's own.
-pub fn has_mixed_maps(
+pub(crate) fn has_mixed_maps(
     texel_lengths: &[TexelLength],
     heights: &Heights,
     topology: &Topology,

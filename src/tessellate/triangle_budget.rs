@@ -10,7 +10,7 @@ const PRECISION: f32 = 1.02;
 /// dozen times.
 ///
 /// # Errors Returns the first error of `count`.
-pub fn tolerance_within_budget<E>(
+pub(crate) fn tolerance_within_budget<E>(
     tolerances: RangeInclusive<f32>,
     most: u64,
     mut count: impl FnMut(f32) -> Result<u64, E>,

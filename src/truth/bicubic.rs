@@ -67,7 +67,7 @@ fn search_all(pieces: &[Piece], p: DVec3, best: &mut Best) {
 }
 
 impl Patches {
-    pub fn new(patches: Vec<BezierNet>) -> Self {
+    pub(super) fn new(patches: Vec<BezierNet>) -> Self {
         let extent = [DVec3::NEG_ONE, DVec3::ONE].map(|sign| {
             let reach = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| reach(&patches, axis * sign));
             DVec3::from(reach) * sign

@@ -21,7 +21,7 @@ pub struct Exact {
 }
 
 /// Returns the surface that a shape's corners are samples of, for shapes that have [levels](Shape::has_levels).
-pub fn of_shape(shape: Shape) -> Option<Exact> {
+pub(crate) fn of_shape(shape: Shape) -> Option<Exact> {
     let [radius, half] = [RADIUS, HALF_HEIGHT].map(f64::from);
     let (bottom, top) = (DVec2::new(0.0, -half), DVec2::new(0.0, half));
     let out = DVec2::new(radius, 0.0);

@@ -16,10 +16,10 @@ mod triangles;
 
 use glam::DVec3;
 
-pub use exact::{Exact, of_shape};
-pub use reference::Reference;
+pub(crate) use exact::{Exact, of_shape};
+pub(crate) use reference::Reference;
 pub(crate) use spread::radical_inverse;
-pub use triangles::{Closest, Triangles};
+pub(crate) use triangles::{Closest, Triangles};
 
 use crate::files::Limits;
 use crate::load::{LoadError, Source};

@@ -64,7 +64,7 @@ pub(super) struct Profile {
 }
 
 impl Profile {
-    pub fn new(corners: &[DVec2]) -> Self {
+    pub(super) fn new(corners: &[DVec2]) -> Self {
         Self { segments: corners.windows(2).map(|ends| [ends[0], ends[1]]).collect() }
     }
 

@@ -14,7 +14,7 @@ pub(super) struct Spread {
 
 impl Spread {
     /// `density` returns the surface's area per area of the unit square, at a place in a chart.
-    pub fn new(charts: usize, density: impl Fn(usize, f64, f64) -> f64) -> Self {
+    pub(super) fn new(charts: usize, density: impl Fn(usize, f64, f64) -> f64) -> Self {
         let mut area = 0.0;
         let (mut strips, mut cells) = (Vec::new(), Vec::new());
         let middle = |i: usize| (i as f64 + 0.5) / CELLS as f64;
@@ -31,13 +31,13 @@ impl Spread {
     }
 
     /// Returns the area of all charts.
-    pub fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         self.strips.last().copied().unwrap_or(0.0)
     }
 
     /// Maps a point of the unit square to a chart and a place in it, so that equal areas of the square get equal areas
     /// of the surface.
-    pub fn place(&self, x: f64, y: f64) -> (usize, f64, f64) {
+    pub(super) fn place(&self, x: f64, y: f64) -> (usize, f64, f64) {
         let (strip, s) = find(&self.strips, x);
         let (cell, t) = find(&self.cells[strip], y);
         let along = |i: usize, rest: f64| (i as f64 + rest) / CELLS as f64;
@@ -59,7 +59,7 @@ pub(super) fn find(sums: &[f64], part: f64) -> (usize, f64) {
 
 /// Returns the radical inverse of `i`: its digits in `base`, mirrored at the point. The first values of any number are
 /// spread evenly from 0 to 1 (van der Corput 1935; Halton 1960).
-pub fn radical_inverse(base: usize, mut i: usize) -> f64 {
+pub(crate) fn radical_inverse(base: usize, mut i: usize) -> f64 {
     let (mut sum, mut digit) = (0.0, 1.0);
     while i > 0 {
         digit /= base as f64;

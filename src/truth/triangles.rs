@@ -9,7 +9,7 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
 /// Triangles in a bounding volume hierarchy. The crate builds the hierarchy; distances are computed here, in f64.
-pub struct Triangles {
+pub(crate) struct Triangles {
     tree: Bvh2,
     /// The triangles in the order of the hierarchy, scaled.
     corners: Vec<[Vec3; 3]>,
@@ -20,7 +20,7 @@ pub struct Triangles {
 
 /// The nearest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closest {
+pub(crate) struct Closest {
     /// The index of the triangle.
     pub triangle: u32,
     /// The weights of the triangle's corners.
@@ -42,7 +42,7 @@ impl Boundable for Bounded {
 impl Triangles {
     /// Builds the hierarchy from the corners of triangles, which must be finite. Returns `None` if there are no
     /// triangles.
-    pub fn new(triangles: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
+    pub(crate) fn new(triangles: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
         triangles.clone().next()?;
         let largest = triangles.clone().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);
         let scale = if largest > 0.0 { f64::from(largest).log2().floor().exp2().recip() } else { 1.0 };
@@ -54,20 +54,20 @@ impl Triangles {
     }
 
     /// Returns the least and the greatest coordinates.
-    pub fn extent(&self) -> [DVec3; 2] {
+    pub(crate) fn extent(&self) -> [DVec3; 2] {
         let root = self.tree.nodes[0].aabb();
         [root.min, root.max].map(|corner| Vec3::from(corner).as_dvec3() / self.scale)
     }
 
     /// Returns the nearest point, if one is nearer than `within`.
-    pub fn closest(&self, p: DVec3, within: f64) -> Option<Closest> {
+    pub(crate) fn closest(&self, p: DVec3, within: f64) -> Option<Closest> {
         let mut best = None;
         self.search(p, within, 0.0, |closest| best = Some(closest));
         best
     }
 
     /// Returns the nearest points of all triangles that are at most `slack` farther away than the nearest triangle.
-    pub fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
+    pub(crate) fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
         let mut all: Vec<Closest> = Vec::new();
         self.search(p, f64::INFINITY, slack, |closest| all.push(closest));
         let nearest = all.iter().map(|closest| closest.distance).fold(f64::INFINITY, f64::min);

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 /// The clips, by name.
 #[allow(dead_code, reason = "not every test names them all")]
-pub const CLIPS: [&str; 4] = ["Bend", "Swell", "Fly", "All"];
+pub(super) const CLIPS: [&str; 4] = ["Bend", "Swell", "Fly", "All"];
 
 #[derive(Default)]
 struct Writer {
@@ -37,7 +37,7 @@ impl Writer {
 }
 
 /// The whole file, as .glb.
-pub fn moving() -> Vec<u8> {
+pub(super) fn moving() -> Vec<u8> {
     let mut writer = Writer::default();
     let meshes = json!([{ "primitives": [beam(&mut writer)] }, { "primitives": [octahedron(&mut writer)] }]);
     let animations = animations(&mut writer);

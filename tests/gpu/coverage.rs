@@ -13,7 +13,7 @@ use pnaen::tessellate::{CoverageView, Lod, Surface, Tessellation, covers_nothing
 use crate::gpu_tests::{engine, scene};
 
 /// An engine that leaves out what covers nothing, from so many triangles a px on.
-pub fn sifting(from: f32) -> Engine {
+pub(super) fn sifting(from: f32) -> Engine {
     let mut engine = engine().clone();
     let mut renderer = Renderer::new(&engine.gpu);
     renderer.sift_from = from;

@@ -24,7 +24,7 @@ use crate::gpu_tests::engine;
 use crate::gpu_tests::passes::{inputs, on_gpu};
 
 /// Waves that repeat with the image; two crests of either length across it.
-pub fn waves(size: u32) -> HeightMap {
+pub(super) fn waves(size: u32) -> HeightMap {
     let height = |i: u32| {
         let at = [i % size, i / size].map(|x| TAU * (x as f32 + 0.5) / size as f32);
         0.5 + 0.25 * (2.0 * at[0]).sin() * (3.0 * at[1]).cos() + 0.2 * (at[0] + 2.0 * at[1]).cos()
@@ -33,7 +33,7 @@ pub fn waves(size: u32) -> HeightMap {
 }
 
 /// A shape under waves, on the device too.
-pub fn wavy(shape: Shape) -> (Loaded, Scene) {
+pub(super) fn wavy(shape: Shape) -> (Loaded, Scene) {
     under_waves(shape, shape.build())
 }
 

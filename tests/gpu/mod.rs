@@ -32,7 +32,7 @@ use pnaen::render::{Camera, Scene, Target, crack_lines};
 use pnaen::settings::{ARENA_BYTES, Settings};
 
 /// One engine for all tests: compiling its pipelines is what takes long.
-pub fn engine() -> &'static Engine {
+pub(crate) fn engine() -> &'static Engine {
     static ENGINE: OnceLock<Engine> = OnceLock::new();
     ENGINE.get_or_init(|| {
         let engine = Engine::headless().expect("these tests need a graphics adapter: run ./setup.sh");
@@ -43,18 +43,18 @@ pub fn engine() -> &'static Engine {
     })
 }
 
-pub fn loaded(shape: Shape) -> Loaded {
+pub(crate) fn loaded(shape: Shape) -> Loaded {
     load(&Source::Shape(shape), &Preparation::default(), &Progress::default()).expect("shapes always load")
 }
 
-pub fn scene(shape: Shape) -> (Loaded, Scene) {
+pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {
     let loaded = loaded(shape);
     let scene = engine().scene(&loaded, ARENA_BYTES).expect("shapes are small");
     (loaded, scene)
 }
 
 /// Draws what `pnaen render` would.
-pub fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
+pub(crate) fn picture(scene: &mut Scene, settings: &Settings, size: [u32; 2]) -> image::RgbaImage {
     let engine = engine();
     let target = Target::new(&engine.gpu, size).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());

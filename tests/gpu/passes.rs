@@ -25,29 +25,29 @@ const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
 const SURFACES: [Surface; 8] = Surface::ALL;
 
 /// The passes of a mesh that is neither deformed nor displaced.
-pub const RIGID_PASSES: [&str; 7] = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
+pub(super) const RIGID_PASSES: [&str; 7] = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
 
 const NORMALS: [Normals; 3] = [Normals::Linear, Normals::Quadratic, Normals::Surface];
 
-pub fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
+pub(super) fn inputs(loaded: &Loaded, settings: &Settings) -> Inputs {
     let bounds = loaded.mesh.bounds();
     settings.inputs(Camera::framing(&bounds, VIEWPORT).lod_view(VIEWPORT, &bounds))
 }
 
-pub fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
+pub(super) fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
     engine().count(scene, inputs, &mut Timing::Off).expect("counts");
     engine().read_tessellated(scene).expect("a readback")
 }
 
 /// The factors that the GPU gave the edges.
-pub fn edge_factors(scene: &Scene) -> Vec<f32> {
+pub(super) fn edge_factors(scene: &Scene) -> Vec<f32> {
     let buffer = &scene.tessellator.buffers().edge_factors;
     bytemuck::pod_collect_to_vec(&read_buffer(&engine().gpu, buffer, 0, buffer.size()).expect("a readback"))
 }
 
 /// Same domain points and triangles in the same order, positions within 4 ULP of the largest coordinate: what is left
 /// after sums of up to ten products that one side may fuse and the other not.
-pub fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &str) {
+pub(super) fn assert_agree(loaded: &Loaded, gpu: &Tessellated, cpu: &Tessellated, what: &str) {
     // Not assert_eq: nobody reads a hundred thousand triangles.
     assert!(gpu.patch_factors == cpu.patch_factors, "{what}: factors");
     assert!(gpu.triangles == cpu.triangles, "{what}: triangles");
@@ -299,7 +299,7 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
 }
 
 /// A flat sheet of so many quads either way, two triangles each.
-pub fn sheet(columns: u32, rows: u32) -> Loaded {
+pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
     let corner = |i: u32, j: u32| Corner {
         position: glam::vec3(i as f32, 0.0, j as f32),
         normal: glam::Vec3::Y,

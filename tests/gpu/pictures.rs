@@ -22,7 +22,7 @@ use crate::gpu_tests::passes::sheet;
 use crate::gpu_tests::stability::{case, seen};
 use crate::gpu_tests::{engine, picture, scene};
 
-pub const SIZE: [u32; 2] = [200, 160];
+pub(super) const SIZE: [u32; 2] = [200, 160];
 /// Drivers rasterise a little differently: a few px along edges and lines, 0.0002 at most between the software driver and
 /// an NVIDIA H100. A wrong surface, a missing patch or overlay is a hundred times more (see the test below).
 const TOLERANCE: f64 = 0.001;
@@ -32,7 +32,7 @@ fn reference(name: &str) -> PathBuf {
 }
 
 /// Names of pictures that differ from their references, with how much.
-pub fn differing(pictures: Vec<(String, RgbaImage)>) -> Vec<String> {
+pub(super) fn differing(pictures: Vec<(String, RgbaImage)>) -> Vec<String> {
     let update = std::env::var_os("PNAEN_UPDATE_IMAGES").is_some();
     assert!(engine().gpu.is_software() || !update, "references are made on the software driver");
     let mut differing = Vec::new();

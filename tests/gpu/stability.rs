@@ -30,13 +30,13 @@ const ARENA: u64 = 1 << 20;
 const SURFACES: [Surface; 8] = Surface::ALL;
 
 /// A mesh on the device, its points welded within `weld` of its diagonal.
-pub fn scene_of(mesh: Mesh, weld: f32) -> Scene {
+pub(super) fn scene_of(mesh: Mesh, weld: f32) -> Scene {
     let topology = Topology::build_within(&mesh, weld, &Progress::default()).expect("nobody cancels");
     engine().scene_of(Arc::new(mesh), Arc::new(topology), ARENA).expect("a small mesh")
 }
 
 /// A case's mesh on the device, and the camera of its picture.
-pub fn case(name: &str) -> (Scene, Camera) {
+pub(super) fn case(name: &str) -> (Scene, Camera) {
     let case = CASES.iter().find(|case| case.name == name).expect("a case of this name");
     let scene = scene_of((case.mesh)(), case.weld);
     let Look { azimuth, elevation, distance, target, .. } = case.look;
@@ -48,7 +48,7 @@ pub fn case(name: &str) -> (Scene, Camera) {
     (scene, camera)
 }
 
-pub fn measured(scene: &mut Scene, settings: &Settings, camera: &Camera) -> Measured {
+pub(super) fn measured(scene: &mut Scene, settings: &Settings, camera: &Camera) -> Measured {
     let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
     engine().count(scene, &inputs, &mut Timing::Off).expect("counts");
     engine().measure(scene).expect("a readback")
@@ -219,7 +219,7 @@ fn any_camera() -> impl Strategy<Value = Camera> {
 
 /// A mesh, and how it is tessellated and seen.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub(super) struct Trial {
     pub mesh: Mesh,
     pub settings: Settings,
     pub camera: Camera,
@@ -230,7 +230,7 @@ fn is_nagata(settings: &Settings) -> bool {
     matches!(settings.tessellation.surface, Surface::Nagata | Surface::NagataAen)
 }
 
-pub fn any_trial() -> impl Strategy<Value = Trial> {
+pub(super) fn any_trial() -> impl Strategy<Value = Trial> {
     let scale = prop::sample::select(vec![1e-36, 1e-6, 1.0, 1.0, 1e6, 9e36]);
     let lod = prop::sample::select(vec![Lod::Uniform, Lod::Paper, Lod::EdgeLength, Lod::Error, Lod::Distance]);
     let clip = prop::sample::select(vec![Clip::Off, Clip::Paper, Clip::Frustum]);
@@ -362,7 +362,7 @@ fn cameras(scene: &Scene) -> [Camera; 6] {
 }
 
 /// The picture from a camera.
-pub fn seen(scene: &mut Scene, target: &Target, settings: &Settings, camera: &Camera) -> image::RgbaImage {
+pub(super) fn seen(scene: &mut Scene, target: &Target, settings: &Settings, camera: &Camera) -> image::RgbaImage {
     engine().draw(scene, target, camera, settings, &mut Timing::Off).expect("a draw");
     target.read(&engine().gpu).expect("a readback")
 }

@@ -18,7 +18,7 @@ use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Lod, Surface};
 
 use crate::window_tests::driver::PATIENCE;
-use crate::window_tests::{choose, moving, press, settle, uniform, window};
+use crate::window_tests::{choose, moving, press, run_command, settle, uniform, window};
 
 /// A folder of its own for what is written.
 struct Folder(PathBuf);
@@ -323,13 +323,7 @@ fn the_mesh_is_exported_as_it_is_emitted() {
         assert_eq!(written.mesh.triangles.len() as u64, triangles, "{name}");
         let command = folder.path(&format!("command-{name}"));
         let settings = ["--factor", "8", "--partitioning", "fractional-odd"];
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
-            .args(["tessellate", "shape:torus", "-o"])
-            .arg(&command)
-            .args(settings)
-            .output()
-            .expect("the program starts");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        run_command(["tessellate", "shape:torus"].into_iter().chain(settings), &command);
         assert!(
             std::fs::read(&command).expect("a file") == std::fs::read(&path).expect("a file"),
             "{name}: as the command writes it"

@@ -6,10 +6,10 @@ use egui_kittest::Harness;
 use pnaen::app::App;
 
 /// Longer than anything here takes on two slow cores.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Steps until everything is loaded, drawn and measured.
-pub fn settle(harness: &mut Harness<App>) {
+pub(super) fn settle(harness: &mut Harness<App>) {
     let start = Instant::now();
     // What was just pressed takes effect in the next two steps.
     harness.run_steps(3);

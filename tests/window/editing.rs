@@ -12,7 +12,7 @@ use pnaen::load::{HeightSource, Source};
 use pnaen::mesh::Shape;
 use pnaen::tessellate::{Displacement, Lod, Surface, Tessellation};
 
-use crate::window_tests::{choose, click, press, settle, uniform, vase, window};
+use crate::window_tests::{choose, click, press, run_command, settle, uniform, vase, window};
 
 fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
@@ -103,10 +103,14 @@ fn copied(harness: &mut Harness<App>) -> String {
 fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     let folder = std::env::temp_dir().join(format!("pnaen-editing-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a writable temporary folder");
-    let line = command.replacen("pnaen ", concat!("'", env!("CARGO_BIN_EXE_pnaen"), "' "), 1);
-    let output = Command::new("sh").args(["-c", &line]).current_dir(&folder).output().expect("a shell");
-    assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
-    let drawn = image::open(folder.join(format!("{name}.png"))).expect("a picture").to_rgba8();
+    let (line, file) = command.rsplit_once(" -o ").expect("a command that writes a picture");
+    assert_eq!(file, format!("{name}.png"));
+    // The shell splits the line into words.
+    let output = Command::new("sh").args(["-c", &format!("printf '%s\\n' {line}")]).output().expect("a shell");
+    let words = String::from_utf8(output.stdout).expect("UTF-8");
+    let picture = folder.join(file);
+    run_command(words.lines().skip(1), &picture);
+    let drawn = image::open(&picture).expect("a picture").to_rgba8();
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
     std::fs::remove_dir_all(&folder).expect("removed");
     let difference = compare(&drawn, &shown).expect("one size").difference;

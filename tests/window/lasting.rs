@@ -15,16 +15,16 @@ use pnaen::tessellate::{Displacement, Surface};
 use crate::window_tests::{choose, click, press, settle, vase};
 
 /// A folder of this test's own, gone when the test is.
-pub struct Folder(PathBuf);
+pub(super) struct Folder(PathBuf);
 
 impl Folder {
-    pub fn new(name: &str) -> Self {
+    pub(super) fn new(name: &str) -> Self {
         let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&path).expect("a writable temporary folder");
         Self(path)
     }
 
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(super) fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 

@@ -27,7 +27,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 /// Drops files on the window, all at once.
-pub fn drop_files(harness: &mut Harness<App>, paths: &[PathBuf]) {
+pub(super) fn drop_files(harness: &mut Harness<App>, paths: &[PathBuf]) {
     for path in paths {
         harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
     }

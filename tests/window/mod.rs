@@ -17,12 +17,14 @@ mod spending;
 mod techniques;
 mod typing;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use clap::Parser;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
+use pnaen::cli::Cli;
 use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
@@ -67,6 +69,15 @@ fn choose(harness: &mut Harness<App>, list: &str, entry: &str) {
     harness.get_by_role_and_label(Role::ComboBox, list).click();
     settle(harness);
     click(harness, entry);
+}
+
+/// Runs one of the program's commands in this process, which writes `output`.
+fn run_command<'a>(words: impl IntoIterator<Item = &'a str>, output: &'a Path) {
+    let output = output.to_str().expect("a path in UTF-8");
+    let words = ["pnaen"].into_iter().chain(words).chain(["-o", output]);
+    let command = Cli::try_parse_from(words).expect("a command").command.expect("a command");
+    // Errors are on standard error; whoever reads the output sees that there is none.
+    let _ = pnaen::cli::run(command);
 }
 
 fn vase() -> Source {

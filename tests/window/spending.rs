@@ -11,7 +11,7 @@ use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use pnaen::tessellate::Convention;
 
-use crate::window_tests::{PATIENCE, choose, click, press, settle, uniform};
+use crate::window_tests::{PATIENCE, choose, click, press, run_command, settle, uniform};
 
 #[test]
 fn colours_exclude_each_other_and_numbers_have_a_legend() {
@@ -102,11 +102,7 @@ fn frozen_lod_stays_while_the_camera_moves() {
 #[test]
 fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
     let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
-    let made = std::process::Command::new(env!("CARGO_BIN_EXE_pnaen"))
-        .args(["tessellate", "shape:torus", "--factor", "3", "-o"])
-        .arg(&path)
-        .status();
-    assert!(made.is_ok_and(|status| status.success()));
+    run_command(["tessellate", "shape:torus", "--factor", "3"], &path);
     let mut harness = uniform(Some(Source::File(path.clone())));
     let (pictures, before) = (harness.state().pictures(), harness.state().totals());
     // Some 20 million triangles: more than anyone would wait for here.

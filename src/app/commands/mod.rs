@@ -13,7 +13,7 @@ use palette::Palette;
 
 /// Windows of commands that are open.
 #[derive(Default)]
-pub struct Commands {
+pub(super) struct Commands {
     pub shows_keys: bool,
     /// While commands are searched.
     pub palette: Option<Palette>,

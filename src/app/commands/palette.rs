@@ -9,7 +9,7 @@ use crate::commands::{Availability, Command, all};
 const LISTED: usize = 14;
 
 /// The search, while it is open.
-pub struct Palette {
+pub(crate) struct Palette {
     query: String,
     /// Which of the commands found is chosen with Enter.
     at: usize,

@@ -8,7 +8,7 @@ use log::{Level, LevelFilter, Log, Metadata, Record};
 
 /// What came of a dialog.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Asked {
+pub(crate) enum Asked {
     Chosen(PathBuf),
     Cancelled,
     /// It wasn't shown: no portal answers on the session's bus, and zenity isn't there either.
@@ -16,7 +16,7 @@ pub enum Asked {
 }
 
 /// Shows a dialog, and waits for it.
-pub fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
+pub(super) fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
     static LISTENS: Once = Once::new();
     LISTENS.call_once(|| {
         // Another listener would have been there first: then a dialog that isn't shown looks like one that was cancelled.

@@ -2,15 +2,15 @@
 
 mod background;
 mod desktop_dialog;
-pub mod typed_path;
-pub mod windows;
+pub(super) mod typed_path;
+pub(super) mod windows;
 mod writing;
 
 use typed_path::{PendingDialog, TypedPath};
 
 /// Windows and dialogs that are open.
 #[derive(Default)]
-pub struct Dialogs {
+pub(super) struct Dialogs {
     /// The desktop's file dialog, until it is answered.
     pub pending: Option<PendingDialog>,
     /// The path that is being typed, while that window is open.

@@ -13,7 +13,7 @@ use crate::names::shown_path;
 
 /// What a path is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub(crate) enum Purpose {
     Open,
     Heights,
     Truth,
@@ -23,7 +23,7 @@ pub enum Purpose {
 }
 
 /// A path that is being typed.
-pub struct TypedPath {
+pub(crate) struct TypedPath {
     purpose: Purpose,
     path: String,
     /// Why it is to be typed, if something else was asked for.
@@ -33,7 +33,7 @@ pub struct TypedPath {
 }
 
 /// The desktop's file dialog.
-pub struct PendingDialog {
+pub(crate) struct PendingDialog {
     pub purpose: Purpose,
     pub job: BackgroundJob<Asked>,
     /// When it was asked for, on the window's clock in s.
@@ -46,7 +46,7 @@ pub struct PendingDialog {
 const SOON: f64 = 0.5;
 
 impl PendingDialog {
-    pub fn is_new(&self, context: &egui::Context) -> bool {
+    pub(crate) fn is_new(&self, context: &egui::Context) -> bool {
         context.input(|input| input.time) - self.since < SOON
     }
 }
@@ -100,12 +100,12 @@ impl Purpose {
 }
 
 /// The path of a name in the working folder.
-pub fn absolute(name: &str) -> String {
+pub(crate) fn absolute(name: &str) -> String {
     std::path::absolute(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }
 
 /// The name of a file that is made of a mesh of this title: without the title's own ending, and with this one.
-pub fn name_beside(title: &str, ending: &str) -> String {
+pub(crate) fn name_beside(title: &str, ending: &str) -> String {
     let stem = Path::new(title).file_stem().unwrap_or_default().to_string_lossy();
     // A shape's title has a colon, which isn't for file names everywhere.
     stem.replace([':', '@', ' '], "-") + ending

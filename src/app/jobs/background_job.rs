@@ -16,14 +16,14 @@ const MAX_REASON: usize = 200;
 /// Why a job came to no end.
 #[derive(Debug, Error)]
 #[error("stopped unexpectedly ({0})")]
-pub struct Stopped(String);
+pub(crate) struct Stopped(String);
 
 /// A job under way.
-pub struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
+pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Starts a job; the window is repainted when it ends, however it does.
-    pub fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
+    pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
         let (sender, done) = channel();
         let context = context.clone();
         spawn(move || {
@@ -35,7 +35,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
     }
 
     /// What came of it, once it has ended: then it has nothing more to say.
-    pub fn take(&self) -> Option<Result<T, Stopped>> {
+    pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
         match self.0.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
@@ -47,7 +47,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
 impl<T: Send + 'static> BackgroundJob<T> {
     /// The same job, which repaints another window when it ends.
-    pub fn waking(self, context: &egui::Context) -> Self {
+    pub(crate) fn waking(self, context: &egui::Context) -> Self {
         let (sender, done) = channel();
         let context = context.clone();
         spawn(move || {
@@ -64,13 +64,13 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
 impl<T> BackgroundJob<T> {
     /// Waits for it to end.
-    pub fn wait(self) {
+    pub(crate) fn wait(self) {
         let _ = self.0.recv();
     }
 }
 
 /// A thread; none if the system gives no more.
-pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+pub(crate) fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
     std::thread::Builder::new().spawn(job).ok()
 }
 
@@ -78,7 +78,7 @@ pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
 ///
 /// # Errors
 /// It did: why, in its own words.
-pub fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
+pub(crate) fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
     // What it leaves half done is dropped with it: jobs share nothing with the window but what they send.
     catch_unwind(AssertUnwindSafe(job)).map_err(|panic| Stopped(words(panic.as_ref())))
 }

@@ -19,7 +19,7 @@ use crate::truth::Truth;
 
 /// What points of a chart are about, besides the settings that they are of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Of {
+pub(crate) struct Of {
     pub document: u64,
     pub moment: Option<Moment>,
     /// Tells one truth from the next.
@@ -32,7 +32,7 @@ pub struct Of {
 }
 
 /// What a run needs.
-pub struct Job {
+pub(crate) struct Job {
     pub adapter: wgpu::Adapter,
     pub loaded: Loaded,
     pub of: Of,
@@ -44,7 +44,7 @@ pub struct Job {
 }
 
 /// What is known.
-pub struct Charted {
+pub(crate) struct Charted {
     pub of: Of,
     pub subject: Subject,
     /// Settings of more triangles than are measured.
@@ -56,7 +56,7 @@ pub struct Charted {
 }
 
 impl Charted {
-    pub fn new(of: Of, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
+    pub(crate) fn new(of: Of, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
         let (diagonal, truth) = truth.map(|(truth, words)| (truth.diagonal(), words)).unzip();
         let subject = Subject { title, truth, adapter, size: of.size, rows: Vec::new() };
         Self { of, subject, left_out: Vec::new(), diagonal, current: None }
@@ -70,18 +70,18 @@ impl Charted {
     }
 
     /// Whether this setting was tried.
-    pub fn has(&self, setting: &Setting) -> bool {
+    pub(crate) fn has(&self, setting: &Setting) -> bool {
         self.left_out.contains(setting) || self.row(setting).is_some()
     }
 
-    pub fn row(&self, setting: &Setting) -> Option<&Row> {
+    pub(crate) fn row(&self, setting: &Setting) -> Option<&Row> {
         self.subject.rows.iter().find(|row| row.setting == *setting)
     }
 }
 
 /// Runs, one at a time.
 #[derive(Default)]
-pub struct ChartJob {
+pub(crate) struct ChartJob {
     /// Kept while the chart is open, because making its pipelines takes longer than measuring a setting.
     engine: Option<Engine>,
     running: Option<Running>,
@@ -117,12 +117,12 @@ enum Found {
 
 impl ChartJob {
     /// How many settings were tried, and how many there are, while they are.
-    pub fn progress(&self) -> Option<(usize, usize)> {
+    pub(crate) fn progress(&self) -> Option<(usize, usize)> {
         self.running.as_ref().map(|running| (running.done, running.all))
     }
 
     /// Starts a run, whose results go into what is known.
-    pub fn start(&mut self, context: &egui::Context, job: Job) {
+    pub(crate) fn start(&mut self, context: &egui::Context, job: Job) {
         self.stop();
         let (sender, found) = channel();
         let (wanted, held) = (Progress::new(), Arc::new(AtomicBool::new(false)));
@@ -145,18 +145,18 @@ impl ChartJob {
     }
 
     /// Stops what is under way; what is known stays known.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.running = None;
     }
 
     /// Frees the device.
-    pub fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         self.stop();
         self.engine = None;
     }
 
     /// Lets what is under way wait before it tries anything new, or go on.
-    pub fn hold(&self, hold: bool) {
+    pub(crate) fn hold(&self, hold: bool) {
         if let Some(running) = &self.running {
             running.held.store(hold, Ordering::Relaxed);
         }
@@ -166,7 +166,7 @@ impl ChartJob {
     ///
     /// # Errors
     /// The run has failed: why.
-    pub fn take(&mut self) -> Result<(), String> {
+    pub(crate) fn take(&mut self) -> Result<(), String> {
         let Some(running) = &mut self.running else { return Ok(()) };
         let Some(charted) = &mut self.charted else { return Ok(()) };
         loop {

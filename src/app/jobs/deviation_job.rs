@@ -12,7 +12,7 @@ use crate::tessellate::{PosedMesh, Surface};
 
 /// What is known about the distance to the truth.
 #[derive(Default)]
-pub struct DeviationJob {
+pub(crate) struct DeviationJob {
     /// What was last asked for.
     of: Option<Of>,
     /// Before the copying: dropped first, so that its thread doesn't take an end of parts for all of them.
@@ -25,7 +25,7 @@ pub struct DeviationJob {
 
 /// What a result is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Of {
+pub(crate) struct Of {
     pub document: u64,
     pub tessellation: u64,
     /// Tells one truth from the next.
@@ -36,7 +36,7 @@ pub struct Of {
 
 /// A result; the samples themselves are the scene's.
 #[derive(Clone, Copy)]
-pub struct Found {
+pub(crate) struct Found {
     of: Of,
     /// None if nothing was emitted.
     pub worst: Option<WorstPoint>,
@@ -48,7 +48,7 @@ pub struct Found {
 
 impl Found {
     /// Object units; 0 if nothing was emitted.
-    pub fn largest(&self) -> f64 {
+    pub(crate) fn largest(&self) -> f64 {
         self.worst.map_or(0.0, |worst| worst.value)
     }
 }
@@ -67,26 +67,26 @@ impl Drop for Comparing {
 
 impl DeviationJob {
     /// The last result; of something else while that is measured which is wanted by now.
-    pub fn found(&self) -> Option<&Found> {
+    pub(crate) fn found(&self) -> Option<&Found> {
         self.found.as_ref()
     }
 
     /// The result, if it is about this.
-    pub fn found_of(&self, of: Of) -> Option<&Found> {
+    pub(crate) fn found_of(&self, of: Of) -> Option<&Found> {
         self.found.as_ref().filter(|found| found.of == of)
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.comparing.is_some()
     }
 
     /// The part of all triangles that is measured, 0 to 1, while they are.
-    pub fn fraction(&self) -> Option<f32> {
+    pub(crate) fn fraction(&self) -> Option<f32> {
         self.comparing.as_ref().map(|comparing| comparing.wanted.fraction())
     }
 
     /// Stops what is under way; what is known stays known.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         if self.comparing.take().is_some() {
             self.copying = None;
             self.of = None;
@@ -94,12 +94,12 @@ impl DeviationJob {
     }
 
     /// Copies no more of what is under way, which then ends without a result, and isn't tried again by itself.
-    pub fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         self.copying = None;
     }
 
     /// Forgets everything, and stops what is under way.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
@@ -108,7 +108,7 @@ impl DeviationJob {
     ///
     /// # Errors
     /// The device was lost, or measuring this stopped.
-    pub fn go_on(
+    pub(crate) fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,

@@ -17,7 +17,7 @@ use crate::tessellate::Deformed;
 use crate::truth::Truth;
 
 /// What is open.
-pub struct Document {
+pub(crate) struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
     pub edges: EdgeCounts,
@@ -34,17 +34,17 @@ pub struct Document {
 
 impl Document {
     /// The mesh and its topology as they are shown, or as loaded while nobody knows them in the pose shown.
-    pub fn shown(&self) -> Deformed {
+    pub(crate) fn shown(&self) -> Deformed {
         self.posed().unwrap_or_else(|| (self.loaded.mesh.clone(), self.loaded.topology.clone()))
     }
 
     /// The same; none while nobody knows.
-    pub fn posed(&self) -> Option<Deformed> {
+    pub(crate) fn posed(&self) -> Option<Deformed> {
         self.scene.tessellator.posed().deformed_if_quick()
     }
 
     /// Bytes on the device: topology and output, of both halves if there are two surfaces.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let of = |scene: &Scene| {
             let tessellator = &scene.tessellator;
             tessellator.buffers().bytes() + scene.work_bytes() + tessellator.arena_bytes()
@@ -54,7 +54,7 @@ impl Document {
 }
 
 /// Memory for a tessellation's output: steps that a software adapter takes no longer for than a person notices.
-pub fn arena_bytes(engine: &Engine) -> u64 {
+pub(crate) fn arena_bytes(engine: &Engine) -> u64 {
     if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES }
 }
 
@@ -62,12 +62,12 @@ pub fn arena_bytes(engine: &Engine) -> u64 {
 ///
 /// # Errors
 /// The mesh is larger than the adapter binds, the device is out of memory, or it was lost.
-pub fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
+pub(crate) fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
     engine.gpu.attempt(|| engine.scene(loaded, arena_bytes(engine)))?
 }
 
 /// A load under way; dropping it cancels it.
-pub struct Load {
+pub(crate) struct Load {
     pub source: Source,
     /// What the mesh will have become.
     pub preparation: Preparation,
@@ -80,7 +80,7 @@ pub struct Load {
 }
 
 /// What went wrong.
-pub struct NotLoaded {
+pub(crate) struct NotLoaded {
     /// In a sentence.
     pub why: String,
     /// Whether the file isn't there.
@@ -95,7 +95,7 @@ impl NotLoaded {
 
 impl Load {
     /// Loads on a thread of its own, and makes the pipelines there that a picture with these settings needs.
-    pub fn start(
+    pub(crate) fn start(
         engine: &Engine,
         context: &egui::Context,
         source: Source,
@@ -113,7 +113,7 @@ impl Load {
     }
 
     /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
-    pub fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
+    pub(crate) fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
         let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", self.source.title());
         Some(self.job.take()?.unwrap_or_else(|error| Err(Some(NotLoaded::because(stopped(error))))))
     }

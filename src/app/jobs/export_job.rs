@@ -18,7 +18,7 @@ use crate::tessellate::{Inputs, Tessellated};
 const READING: f32 = 0.8;
 
 /// An export under way; dropping it cancels it.
-pub struct ExportJob {
+pub(crate) struct ExportJob {
     pub progress: Progress,
     path: PathBuf,
     /// None only while it changes hands.
@@ -27,7 +27,13 @@ pub struct ExportJob {
 
 impl ExportJob {
     /// Starts to write what these inputs make of the document, in the pose that is shown, as a .glb or .obj file.
-    pub fn start(context: &egui::Context, engine: &Engine, document: &Document, inputs: Inputs, path: PathBuf) -> Self {
+    pub(crate) fn start(
+        context: &egui::Context,
+        engine: &Engine,
+        document: &Document,
+        inputs: Inputs,
+        path: PathBuf,
+    ) -> Self {
         let progress = Progress::new();
         let export = Export {
             engine: engine.clone(),
@@ -42,19 +48,19 @@ impl ExportJob {
     }
 
     /// The file's name.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         shown_path(Path::new(self.path.file_name().unwrap_or_default()))
     }
 
     /// What was written where, or why nothing was, in a sentence; once it has ended.
-    pub fn take(&self) -> Option<Result<String, String>> {
+    pub(crate) fn take(&self) -> Option<Result<String, String>> {
         let stopped = |stopped: Stopped| Err(format!("exporting the mesh {stopped}"));
         let ended = self.job.as_ref()?.take()?.unwrap_or_else(stopped);
         Some(ended.map(|()| format!("{} is written.", shown_path(&self.path))))
     }
 
     /// Goes on, and repaints another window when it ends.
-    pub fn wake(&mut self, context: &egui::Context) {
+    pub(crate) fn wake(&mut self, context: &egui::Context) {
         self.job = self.job.take().map(|job| job.waking(context));
     }
 }

@@ -16,7 +16,7 @@ use crate::view::ScreenView;
 
 /// Why nothing more is learnt of what is shown.
 #[derive(Debug, Error)]
-pub enum Trouble {
+pub(crate) enum Trouble {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error("measuring what is shown {0}; another setting is measured anew")]
@@ -27,7 +27,7 @@ pub enum Trouble {
 
 /// What is known about the shown tessellation.
 #[derive(Default)]
-pub struct MeasureJob {
+pub(crate) struct MeasureJob {
     /// Document and tessellation that were last asked for.
     of: Option<(u64, u64)>,
     /// Where sizes on screen were last asked for.
@@ -78,38 +78,38 @@ pub(in crate::app) struct Part(pub PartKind, pub Readback);
 
 impl MeasureJob {
     /// What is shown, once measured.
-    pub fn found(&self) -> Option<&Measured> {
+    pub(crate) fn found(&self) -> Option<&Measured> {
         self.found.as_ref()
     }
 
     /// The cracks of what is shown, once measured.
-    pub fn cracks(&self) -> Option<&Cracks> {
+    pub(crate) fn cracks(&self) -> Option<&Cracks> {
         self.found.as_ref().map(|found| &found.cracks)
     }
 
     /// Sizes of the triangles shown, once measured; they say where they were seen from.
-    pub fn sizes(&self) -> Option<&Sizes> {
+    pub(crate) fn sizes(&self) -> Option<&Sizes> {
         self.sizes.as_ref()
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.copying.is_some() || self.comparing.is_some()
     }
 
     /// Forgets what was found about anything but this document and tessellation.
-    pub fn keep_only(&mut self, document: u64, tessellation: u64) {
+    pub(crate) fn keep_only(&mut self, document: u64, tessellation: u64) {
         if self.of.is_some_and(|of| of != (document, tessellation)) {
             self.forget();
         }
     }
 
     /// Stops what is under way, and doesn't try it again by itself.
-    pub fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         (self.comparing, self.copying) = (None, None);
     }
 
     /// Forgets everything, and stops what is under way.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
@@ -118,7 +118,7 @@ impl MeasureJob {
     ///
     /// # Errors
     /// The device was lost, or measuring this stopped.
-    pub fn go_on(
+    pub(crate) fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,
@@ -159,7 +159,7 @@ impl MeasureJob {
     }
 
     /// The part of all chunks that has been copied, 0 to 1, while they are.
-    pub fn fraction(&self, chunks: usize) -> Option<f32> {
+    pub(crate) fn fraction(&self, chunks: usize) -> Option<f32> {
         self.copying.as_ref().map(|copying| copying.next_chunk as f32 / chunks.max(1) as f32)
     }
 

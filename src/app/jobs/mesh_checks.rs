@@ -9,7 +9,7 @@ use crate::progress::Progress;
 
 /// Checks under way or done; dropping them stops them.
 #[derive(Default)]
-pub struct Checks {
+pub(crate) struct Checks {
     found: Arc<Found>,
     wanted: Progress,
     /// None once it has ended.
@@ -25,7 +25,7 @@ struct Found {
 
 impl Checks {
     /// Starts them on a thread of their own; each result repaints the window.
-    pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
+    pub(crate) fn start(context: &egui::Context, loaded: &Loaded) -> Self {
         let mut checks = Self::default();
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
         let weld = loaded.preparation.weld;
@@ -45,26 +45,26 @@ impl Checks {
     }
 
     /// Normals that are legal but suspicious, once counted.
-    pub fn normal_faults(&self) -> Option<&NormalFaults> {
+    pub(crate) fn normal_faults(&self) -> Option<&NormalFaults> {
         self.found.normal_faults.get()
     }
 
     /// All T-junctions, once found.
-    pub fn t_junctions(&self) -> Option<&[TJunction]> {
+    pub(crate) fn t_junctions(&self) -> Option<&[TJunction]> {
         self.found.t_junctions.get().map(Vec::as_slice)
     }
 
     /// What each tolerance would join, once tried.
-    pub fn joins(&self) -> Option<&[WeldPreview]> {
+    pub(crate) fn joins(&self) -> Option<&[WeldPreview]> {
         self.found.joins.get().map(Vec::as_slice)
     }
 
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.job.is_some()
     }
 
     /// Whether they have ended, and if before they were done, why; said once.
-    pub fn take_stopped(&mut self) -> Option<Stopped> {
+    pub(crate) fn take_stopped(&mut self) -> Option<Stopped> {
         let ended = self.job.as_ref()?.take()?;
         self.job = None;
         ended.err()

@@ -1,14 +1,14 @@
 //! What runs on threads of its own while the window goes on: loading, checking and measuring.
 
-pub mod background_job;
-pub mod chart_job;
-pub mod deviation_job;
-pub mod document;
-pub mod export_job;
-pub mod loading;
-pub mod measure_job;
-pub mod mesh_checks;
-pub mod truth;
+pub(super) mod background_job;
+pub(super) mod chart_job;
+pub(super) mod deviation_job;
+pub(super) mod document;
+pub(super) mod export_job;
+pub(super) mod loading;
+pub(super) mod measure_job;
+pub(super) mod mesh_checks;
+pub(super) mod truth;
 
 use crate::files::Limits;
 
@@ -21,7 +21,7 @@ use truth::TruthLoad;
 
 /// Jobs that are under way, and what the measuring ones know.
 #[derive(Default)]
-pub struct Jobs {
+pub(super) struct Jobs {
     /// The limits of files that are opened.
     pub limits: Limits,
     pub load: Option<Load>,

@@ -12,7 +12,7 @@ use crate::tessellate::Displacement;
 use crate::truth::Truth;
 
 /// A truth that was chosen for the mesh.
-pub struct Chosen {
+pub(crate) struct Chosen {
     pub source: Source,
     truth: Arc<Truth>,
     /// Tells one from the next; never 0 or 1.
@@ -20,7 +20,7 @@ pub struct Chosen {
 }
 
 /// A truth under way; dropping it cancels it.
-pub struct TruthLoad {
+pub(crate) struct TruthLoad {
     pub source: Source,
     pub progress: Progress,
     /// None only while it changes hands.

@@ -12,7 +12,7 @@ use crate::tessellate::Tessellation;
 
 /// What the chart's panel is about.
 #[derive(Default)]
-pub struct Chart {
+pub(crate) struct Chart {
     pub is_open: bool,
     pub(in crate::app) cost: Cost,
     /// Surfaces and LODs that are tried; shading is the window's.
@@ -29,7 +29,7 @@ const STILL: f64 = 0.4;
 
 impl Chart {
     /// Stops what is under way; what is known stays.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.charting.stop();
     }
 

@@ -8,7 +8,7 @@ use crate::chart::{Axis, Cost, Fill, Look, Method, RADIUS, Row, Setting, Shape, 
 use crate::plot::INK;
 
 /// What is drawn.
-pub struct Diagram<'a> {
+pub(super) struct Diagram<'a> {
     pub charted: &'a Charted,
     pub cost: Cost,
     /// Whether it is of something else than what is shown.
@@ -19,7 +19,7 @@ pub struct Diagram<'a> {
 
 /// A point of it.
 #[derive(Clone, Copy)]
-pub enum Spot<'a> {
+pub(super) enum Spot<'a> {
     Row(&'a Row),
     /// What the window has, measured beside the list.
     Current,
@@ -91,7 +91,7 @@ impl Logs {
 
 impl<'a> Diagram<'a> {
     /// Draws it as large as there is room; what the pointer is on, and whether that was clicked.
-    pub fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
+    pub(super) fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
         let subject = &self.charted.subject;
         let spots = self.spots();
         let x = Logs::around(spots.iter().map(|(_, [cost, _])| *cost), 0.0);
@@ -210,7 +210,7 @@ impl Canvas {
 }
 
 /// Colours of this theme.
-pub struct Inks {
+pub(super) struct Inks {
     /// Between points and whatever is under them.
     rim: Color32,
     front: Color32,
@@ -220,18 +220,18 @@ pub struct Inks {
 }
 
 impl Inks {
-    pub fn new(ui: &egui::Ui, is_stale: bool) -> Self {
+    pub(super) fn new(ui: &egui::Ui, is_stale: bool) -> Self {
         let visuals = ui.visuals();
         let front = Color32::from_gray(if visuals.dark_mode { 62 } else { 222 });
         let stale = is_stale.then(|| Color32::from_gray(if visuals.dark_mode { 112 } else { 165 }));
         Self { rim: visuals.extreme_bg_color, front, text: visuals.strong_text_color(), stale }
     }
 
-    pub fn front(&self) -> Color32 {
+    pub(super) fn front(&self) -> Color32 {
         self.front
     }
 
-    pub fn text(&self) -> Color32 {
+    pub(super) fn text(&self) -> Color32 {
         self.text
     }
 
@@ -244,7 +244,7 @@ impl Inks {
 }
 
 /// A line as methods have them.
-pub fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
+pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
     match dash {
         None => {
             painter.line(points.to_vec(), stroke);
@@ -256,7 +256,7 @@ pub fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Opti
 }
 
 /// A method's point.
-pub fn marker(painter: &egui::Painter, at: Pos2, look: &Look, inks: &Inks) {
+pub(super) fn marker(painter: &egui::Painter, at: Pos2, look: &Look, inks: &Inks) {
     let color = inks.of(look);
     let shape = |radius: f64, color: Color32| {
         if look.shape == Shape::Disc {

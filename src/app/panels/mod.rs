@@ -1,13 +1,13 @@
 //! The panels around the viewport: settings on the left, statistics and details on the right, the chart and the status line
 //! below.
 
-pub mod chart;
+pub(super) mod chart;
 mod chart_diagram;
 mod chart_panel;
 mod crack_list;
 mod crease_band;
 mod deviation;
-pub mod displacement;
+pub(super) mod displacement;
 mod patch_panel;
 mod patch_pattern;
 mod settings_panel;
@@ -19,7 +19,7 @@ use crate::tessellate::Displacement;
 use chart::Chart;
 
 /// What the panels remember from one frame to the next.
-pub struct Panels {
+pub(super) struct Panels {
     pub chart: Chart,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,

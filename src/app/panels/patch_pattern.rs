@@ -18,7 +18,7 @@ const NUMBERED: u32 = 60;
 const REACH: f32 = 8.0;
 
 /// A point's weights in 16.16 fixed point, and as decimals.
-pub fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
+pub(super) fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
     let weights = [u, v, FIXED_ONE - u - v];
     let decimals = weights.map(|weight| format!("{:>9.5}", f64::from(weight) / f64::from(FIXED_ONE)));
     [weights.map(|weight| format!("{weight:>9}")).concat(), decimals.concat()]
@@ -26,7 +26,7 @@ pub fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
 
 /// Draws the pattern, or an empty one until the factors are known. `letters` are written where u, v and w are 1; triangle
 /// `hit` is filled; `empty` is said where there are no points.
-pub fn pattern_plot(
+pub(super) fn pattern_plot(
     ui: &mut Ui,
     factors: Option<PatchFactors>,
     hit: Option<u32>,

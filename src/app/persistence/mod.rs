@@ -19,8 +19,8 @@ use crate::tessellate::Tessellation;
 
 use saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState};
 
-pub use saved_state::{LEAST_SIZE, WindowGeometry};
-pub use state_file::folder;
+pub(super) use saved_state::{LEAST_SIZE, WindowGeometry};
+pub(super) use state_file::folder;
 
 /// Files that are offered to be opened again.
 const RECENT: usize = 10;

@@ -14,9 +14,9 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, Tessellation};
 
 /// Files whose cameras are kept, at most.
-pub const MAX_FILES: usize = 50;
+pub(super) const MAX_FILES: usize = 50;
 /// The smallest and largest side of a window, in points.
-pub const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
+pub(crate) const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
 const LARGEST_SIDE: f32 = 16384.0;
 /// How much larger or smaller than usual the window's text is.
 const ZOOM_RANGE: RangeInclusive<f32> = 0.2..=5.0;
@@ -27,7 +27,7 @@ const THEMES: [(ThemePreference, &str); 3] =
 
 /// All of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SavedState {
+pub(super) struct SavedState {
     /// Without what is bound to a mesh.
     pub settings: Settings,
     pub frame: WindowGeometry,
@@ -47,7 +47,7 @@ pub struct WindowGeometry {
 
 /// A file that was open.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SavedFile {
+pub(super) struct SavedFile {
     /// Absolute.
     pub path: String,
     pub seen: Option<SavedCamera>,
@@ -57,7 +57,7 @@ pub struct SavedFile {
 
 /// Where a mesh was last looked at from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SavedCamera {
+pub(super) struct SavedCamera {
     pub camera: Camera,
     /// Of the mesh's bounds, in object units.
     pub diagonal: f32,
@@ -77,14 +77,14 @@ impl Default for SavedState {
 
 impl SavedCamera {
     /// Its camera, unless the mesh has another size by now.
-    pub fn camera_for(&self, diagonal: f32) -> Option<Camera> {
+    pub(super) fn camera_for(&self, diagonal: f32) -> Option<Camera> {
         SAME_SIZE.contains(&(diagonal / self.diagonal)).then_some(self.camera)
     }
 }
 
 impl SavedState {
     /// None if it isn't what [`Self::written`] made.
-    pub fn read(bytes: &[u8]) -> Option<Self> {
+    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
         let all: Value = serde_json::from_slice(bytes).ok()?;
         all.is_object().then(|| {
             let mut files: Vec<SavedFile> = Vec::new();
@@ -98,14 +98,14 @@ impl SavedState {
     }
 
     /// As text, with a line end.
-    pub fn written(&self) -> String {
+    pub(super) fn written(&self) -> String {
         let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
         let settings = written_settings(&self.settings);
         format!("{:#}\n", json!({ "settings": settings, "window": self.frame.written(), "files": files }))
     }
 
     /// Settings without what is bound to a mesh: heights displace it once it has some.
-    pub fn take_settings(&mut self, settings: &Settings) {
+    pub(super) fn take_settings(&mut self, settings: &Settings) {
         self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
     }
 }

@@ -18,7 +18,7 @@ const SET_ASIDE: &str = "window.damaged.json";
 const MAX_BYTES: u64 = 16 << 20;
 
 /// The person's folder for it; none if there is none, or nothing is to be kept.
-pub fn folder() -> Option<PathBuf> {
+pub(crate) fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {
         Some(folder) => Some(PathBuf::from(folder)).filter(|folder| !folder.as_os_str().is_empty()),
         None => Some(etcetera::choose_base_strategy().ok()?.config_dir().join("pnaen")),
@@ -26,7 +26,7 @@ pub fn folder() -> Option<PathBuf> {
 }
 
 /// What was found in a folder.
-pub struct Found {
+pub(super) struct Found {
     pub kept: SavedState,
     /// The file; none if it is better left alone.
     pub place: Option<PathBuf>,
@@ -35,7 +35,7 @@ pub struct Found {
 }
 
 /// Reads what is kept in a folder; a file that can't be understood is set aside there.
-pub fn read(folder: &Path) -> Found {
+pub(super) fn read(folder: &Path) -> Found {
     let place = folder.join(NAME);
     let shown = place.display();
     let alone = |said| Found { kept: SavedState::default(), place: None, said: Some(said) };
@@ -76,7 +76,7 @@ pub fn read(folder: &Path) -> Found {
 ///
 /// # Errors
 /// What and why, in a sentence.
-pub fn write(place: &Path, kept: &SavedState) -> Result<(), String> {
+pub(super) fn write(place: &Path, kept: &SavedState) -> Result<(), String> {
     let folder = place.parent().map_or(Ok(()), std::fs::create_dir_all);
     let written = folder.and_then(|()| write_whole(place, kept.written().as_bytes()));
     written.map_err(|error| format!("{}: settings could not be kept ({error})", place.display()))

@@ -9,7 +9,7 @@ use crate::settings::SplitSide;
 
 /// What the lines over the mesh are a function of.
 #[derive(Clone, Copy, PartialEq)]
-pub struct Highlight {
+pub(crate) struct Highlight {
     document: u64,
     /// By half.
     measured: [u64; 2],

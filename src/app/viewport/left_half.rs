@@ -18,7 +18,7 @@ const NOTICED: Duration = Duration::from_millis(300);
 
 /// The left half's scene is the document's.
 #[derive(Default)]
-pub struct LeftHalf {
+pub(crate) struct LeftHalf {
     making: Option<Making>,
     /// Counts scenes that were made; tells one from the next.
     pub made: u64,
@@ -34,21 +34,21 @@ struct Making {
 }
 
 impl LeftHalf {
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.making.is_some() || self.measuring.is_busy() || self.deviating.is_busy()
     }
 
-    pub fn is_made(&self) -> bool {
+    pub(crate) fn is_made(&self) -> bool {
         self.making.is_none()
     }
 
     /// Whether it takes so long to make that one wonders.
-    pub fn takes_long(&self) -> bool {
+    pub(crate) fn takes_long(&self) -> bool {
         self.making.as_ref().is_some_and(|making| making.start.elapsed() > NOTICED)
     }
 
     /// Forgets what is known of a scene that is there no more.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.making = None;
         self.measuring.forget();
         self.deviating.forget();

@@ -27,7 +27,7 @@ struct Legend {
 }
 
 /// What is known of the distances to the truth.
-pub struct Distances {
+pub(crate) struct Distances {
     pub unit: DeviationUnit,
     /// None as long as nothing was measured.
     pub scale: Option<Scale>,
@@ -92,7 +92,7 @@ fn deviation_legend(distances: &Distances) -> Legend {
 }
 
 /// The legend of these colours over a picture, if they have one.
-pub fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors, distances: &Distances) {
+pub(crate) fn legend(ui: &mut egui::Ui, picture: Rect, colors: Colors, distances: &Distances) {
     let Some(legend) = legend_of(colors, distances) else { return };
     let before = if legend.waste { BLOCK_WIDTH + 10.0 } else { 0.0 };
     // A narrow view gets a short bar.

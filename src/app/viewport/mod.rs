@@ -2,13 +2,13 @@
 
 mod camera;
 mod highlight;
-pub mod left_half;
-pub mod legend;
-pub mod panel;
+pub(super) mod left_half;
+pub(super) mod legend;
+pub(super) mod panel;
 mod patch_labels;
-pub mod picture;
-pub mod playback;
-pub mod selection;
+pub(super) mod picture;
+pub(super) mod playback;
+pub(super) mod selection;
 
 use crate::engine::Engine;
 use crate::render::Camera;
@@ -21,7 +21,7 @@ use playback::Playback;
 use selection::Selection;
 
 /// What the viewport shows, and from where.
-pub struct Viewport {
+pub(super) struct Viewport {
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
@@ -40,7 +40,7 @@ pub struct Viewport {
 }
 
 impl Viewport {
-    pub fn new(engine: &Engine) -> Self {
+    pub(super) fn new(engine: &Engine) -> Self {
         Self {
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             framed: None,

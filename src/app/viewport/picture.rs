@@ -18,7 +18,7 @@ use crate::view::ScreenView;
 
 /// Everything that the picture is a function of.
 #[derive(Clone, Copy, PartialEq)]
-pub struct Wanted {
+pub(crate) struct Wanted {
     pub document: u64,
     pub moment: Option<Moment>,
     pub lines: u64,
@@ -46,7 +46,7 @@ impl Wanted {
 }
 
 /// A picture under way: one step a submission, so that the window goes on beside it.
-pub struct Drawing {
+pub(crate) struct Drawing {
     wanted: Wanted,
     start: Instant,
     /// Steps that the device has been given, of all.
@@ -55,10 +55,10 @@ pub struct Drawing {
 }
 
 /// Pictures of up to so many steps are finished also if something newer is wanted.
-pub const SHORT: usize = 8;
+pub(crate) const SHORT: usize = 8;
 
 /// The picture and what it cost.
-pub struct Picture {
+pub(crate) struct Picture {
     pub target: Option<(Target, egui::TextureId)>,
     pub drawn: Option<Wanted>,
     /// What the device counts for: it is drawn before anything newer, so that a long drag shows pictures.
@@ -82,7 +82,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    pub fn new(engine: &Engine) -> Self {
+    pub(crate) fn new(engine: &Engine) -> Self {
         // Waiting for every pass would stall the window; without timestamps, whole pictures are timed.
         let timing = match Timing::on(&engine.gpu) {
             Timing::Submissions(_) => Timing::Off,
@@ -104,38 +104,38 @@ impl Picture {
         }
     }
 
-    pub fn pictures(&self) -> u64 {
+    pub(crate) fn pictures(&self) -> u64 {
         self.pictures
     }
 
     /// Whether the picture shown is not the one wanted, or not complete.
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.outdated || self.in_flight.is_some() || self.counting.is_some()
     }
 
     /// Width and height of the viewport, in px.
-    pub fn size(&self) -> Vec2 {
+    pub(crate) fn size(&self) -> Vec2 {
         self.target.as_ref().map_or(vec2(800.0, 600.0), |(target, _)| target.viewport())
     }
 
     /// The view that the LOD of what is shown was computed for.
-    pub fn shown_view(&self) -> Option<LodView> {
+    pub(crate) fn shown_view(&self) -> Option<LodView> {
         self.drawn.as_ref().map(|drawn| drawn.inputs.view)
     }
 
     /// The largest gap of these cracks in px, seen as the last picture was.
-    pub fn gap_px(&self, cracks: &Cracks) -> f64 {
+    pub(crate) fn gap_px(&self, cracks: &Cracks) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| cracks.max_gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
     /// The gap of one edge in px, seen as the last picture was.
-    pub fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
+    pub(crate) fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
     /// A pixel (from the left and the top) of the last picture, and which half's surface is there: the right one's also where
     /// the mesh is as it came.
-    pub fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
+    pub(crate) fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let Wanted { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let pixel = Pixel { clip_from_object, size, at, split: settings.split };
@@ -147,18 +147,18 @@ impl Picture {
     }
 
     /// Where the picture that is shown was seen from.
-    pub fn seen_from(&self) -> Option<ScreenView> {
+    pub(crate) fn seen_from(&self) -> Option<ScreenView> {
         let Wanted { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })
     }
 
     /// Bytes of the textures drawn into.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.target.as_ref().map_or(0, |(target, _)| target.bytes())
     }
 
     /// Looks whether the picture in flight has landed, and takes the times that have come in.
-    pub fn land(&mut self, engine: &Engine) {
+    pub(crate) fn land(&mut self, engine: &Engine) {
         if self.in_flight.as_ref().is_some_and(|done| done.load(Ordering::Acquire)) {
             self.in_flight = None;
             if let Some(drawing) = self.drawing.take_if(|drawing| drawing.given == drawing.steps) {
@@ -177,7 +177,12 @@ impl Picture {
     }
 
     /// A target of the size wanted, registered with egui.
-    pub fn fit(&mut self, app: &egui_wgpu::RenderState, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
+    pub(crate) fn fit(
+        &mut self,
+        app: &egui_wgpu::RenderState,
+        engine: &Engine,
+        size: [u32; 2],
+    ) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
@@ -199,7 +204,7 @@ impl Picture {
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free. The counts come back first; until then, and
     /// until all steps are drawn, the last picture stays.
-    pub fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
+    pub(crate) fn draw(&mut self, engine: &Engine, document: &mut Document, wanted: &Wanted) -> Result<(), GpuError> {
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
         let mut keeps_on = |drawing: &mut Drawing| {
             drawing.wanted == *wanted || (drawing.steps <= SHORT && drawing.wanted.document == document.generation)
@@ -278,17 +283,17 @@ impl Picture {
     }
 
     /// Whether nothing is under way that a new pose would disturb.
-    pub fn is_free(&self) -> bool {
+    pub(crate) fn is_free(&self) -> bool {
         self.drawing.is_none() && self.counting.is_none() && self.in_flight.is_none()
     }
 
     /// Whether a picture is under way that takes more than a few steps.
-    pub fn is_long(&self) -> bool {
+    pub(crate) fn is_long(&self) -> bool {
         self.drawing.as_ref().is_some_and(|drawing| drawing.steps > SHORT)
     }
 
     /// The device refused what was wanted: that isn't drawn again by itself, and what may be half drawn isn't shown.
-    pub fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
+    pub(crate) fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
         (self.drawn, self.drawing, self.counting) = (None, None, None);
         self.cancelled = Some(*wanted);
         for half in SplitSide::BOTH {
@@ -299,7 +304,7 @@ impl Picture {
     }
 
     /// Leaves the picture under way as it is: the last one stays until something else is wanted.
-    pub fn cancel(&mut self) {
+    pub(crate) fn cancel(&mut self) {
         self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);
     }
 }

@@ -14,7 +14,7 @@ const LISTED: usize = 1000;
 
 /// Where the mesh is in its clips.
 #[derive(Clone, Copy, Debug)]
-pub struct Playback {
+pub(crate) struct Playback {
     /// None at rest.
     clip: Option<usize>,
     /// s.
@@ -31,16 +31,16 @@ impl Default for Playback {
 }
 
 impl Playback {
-    pub fn moment(&self) -> Option<Moment> {
+    pub(crate) fn moment(&self) -> Option<Moment> {
         self.clip.map(|clip| Moment { clip, time: self.time })
     }
 
-    pub fn is_playing(&self) -> bool {
+    pub(crate) fn is_playing(&self) -> bool {
         self.playing.is_some()
     }
 
     /// Goes on by the clock of another window.
-    pub fn go_on_in(&mut self, context: &egui::Context) {
+    pub(crate) fn go_on_in(&mut self, context: &egui::Context) {
         let now = context.input(|input| input.time);
         self.playing = self.playing.map(|_| now);
     }

@@ -14,7 +14,7 @@ use crate::tessellate::Convention;
 
 /// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
 #[derive(Default)]
-pub struct Selection {
+pub(crate) struct Selection {
     /// Index into the mesh's triangles.
     triangle: Option<u32>,
     /// With the tessellation that it belongs to.
@@ -27,7 +27,7 @@ pub struct Selection {
 
 /// What the lines over a selected patch are a function of, besides what was measured.
 #[derive(Clone, Copy, PartialEq)]
-pub struct Outlined {
+pub(crate) struct Outlined {
     triangle: Option<u32>,
     /// Number of the emitted triangle in its patch.
     hit: Option<u32>,
@@ -35,12 +35,12 @@ pub struct Outlined {
 
 impl Selection {
     /// Keeps what is looked at, and lets go of what is about one tessellation.
-    pub fn forget_tessellation(&mut self) {
+    pub(crate) fn forget_tessellation(&mut self) {
         *self = Self { triangle: self.triangle, ..Self::default() };
     }
 
     /// Whether a click is still being answered.
-    pub fn is_busy(&self) -> bool {
+    pub(crate) fn is_busy(&self) -> bool {
         self.clicked.is_some() || self.picking.is_some()
     }
 }

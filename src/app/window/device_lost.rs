@@ -19,7 +19,7 @@ const LASTS: Duration = Duration::from_secs(60);
 
 /// When a device was lost last.
 #[derive(Default)]
-pub struct DeviceLosses(Option<Instant>);
+pub(crate) struct DeviceLosses(Option<Instant>);
 
 impl DeviceLosses {
     /// Whether one that is lost now is replaced without asking: the first one is, and any that has drawn a picture and came
@@ -31,7 +31,7 @@ impl DeviceLosses {
 }
 
 /// What follows a window that was closed.
-pub enum Next {
+pub(crate) enum Next {
     Quit,
     /// Another, with the same state.
     Anew,

@@ -13,7 +13,7 @@ use crate::mesh::Moment;
 use crate::tessellate::{Inputs, tessellate, totals};
 
 /// What is said, and what a person does about it.
-pub struct FatalScreen {
+pub(crate) struct FatalScreen {
     /// The device that the words are drawn with, and nothing else.
     pub gpu: Gpu,
     why: String,
@@ -25,15 +25,15 @@ pub struct FatalScreen {
 }
 
 impl FatalScreen {
-    pub fn new(gpu: Gpu, why: String) -> Self {
+    pub(crate) fn new(gpu: Gpu, why: String) -> Self {
         Self { gpu, why, path: None, saving: None, said: None, tries_again: false }
     }
 
-    pub fn why(&self) -> &str {
+    pub(crate) fn why(&self) -> &str {
         &self.why
     }
 
-    pub fn tries_again(&self) -> bool {
+    pub(crate) fn tries_again(&self) -> bool {
         self.tries_again
     }
 }

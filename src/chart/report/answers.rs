@@ -9,15 +9,15 @@ use crate::markdown;
 use crate::numbers::{grouped, short};
 
 /// Errors that are asked for, as parts of the diagonal; in px where there is no truth.
-pub const PARTS: [f64; 4] = [0.01, 0.005, 0.001, 0.0001];
-pub const PX: [f64; 3] = [1.0, 0.5, 0.1];
+pub(super) const PARTS: [f64; 4] = [0.01, 0.005, 0.001, 0.0001];
+pub(super) const PX: [f64; 3] = [1.0, 0.5, 0.1];
 
 /// Methods that take less than this times the ms of the fastest are as fast: so much differs from run to run.
 const AS_FAST: f64 = 1.05;
 
 /// What came of asking for an error.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer<'a> {
+pub(super) enum Answer<'a> {
     /// The mesh has it without tessellation.
     AsItIs(&'a Row),
     /// The cheapest row of each method that does with the least, or about as much; the cheapest of all first.
@@ -27,7 +27,7 @@ pub enum Answer<'a> {
 }
 
 /// Who reaches an error at the least cost; none if nothing was measured.
-pub fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Option<Answer<'a>> {
+pub(super) fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Option<Answer<'a>> {
     let Some(best) = race.cheapest(error, cost, |_| true) else {
         let closest = race.entries.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         return closest.map(|(row, error)| Answer::Nobody(row, *error));
@@ -45,7 +45,7 @@ pub fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Optio
 }
 
 /// On how many meshes each method is among the best, the most first.
-pub fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
+pub(super) fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
     let mut all: Vec<(Method, usize)> = Vec::new();
     let rows = answers.iter().filter_map(|answer| if let Answer::By(rows) = answer { Some(rows) } else { None });
     for row in rows.flatten() {
@@ -59,7 +59,7 @@ pub fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
 }
 
 /// A table for each error that anything reaches: who reaches it on which mesh.
-pub fn tables(parts: &[Part]) -> String {
+pub(super) fn tables(parts: &[Part]) -> String {
     const COLUMNS: [&str; 5] = ["mesh", "fewest triangles by", "triangles", "fastest by", "ms"];
     let mut text = String::new();
     for error in PARTS {

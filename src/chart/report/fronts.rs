@@ -8,7 +8,7 @@ use crate::settings::Choice;
 
 /// Where a method is on the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Standing {
+pub(super) struct Standing {
     pub method: Method,
     /// Meshes that it was tried on.
     pub tried: usize,
@@ -18,11 +18,11 @@ pub struct Standing {
 }
 
 /// By which cost, in the order of a standing's numbers.
-pub const COSTS: [Cost; 2] = [Cost::Triangles, Cost::Ms];
+pub(super) const COSTS: [Cost; 2] = [Cost::Triangles, Cost::Ms];
 
 /// The standing of every method on meshes that have a truth, those on most fronts first. The mesh as it is counts for none:
 /// all methods have it.
-pub fn standings(parts: &[Part]) -> Vec<Standing> {
+pub(super) fn standings(parts: &[Part]) -> Vec<Standing> {
     let mut all: Vec<Standing> = Vec::new();
     for (part, race) in parts.iter().filter_map(|part| Some((part, part.race()?))) {
         for method in part.subject.methods() {
@@ -46,7 +46,7 @@ pub fn standings(parts: &[Part]) -> Vec<Standing> {
 }
 
 /// The standings, as a table.
-pub fn table_of(parts: &[Part]) -> String {
+pub(super) fn table_of(parts: &[Part]) -> String {
     const COLUMNS: [&str; 6] =
         ["method", "meshes", "on the front by triangles", "settings there", "on the front by ms", "settings there"];
     let rows: Vec<_> = standings(parts)
@@ -70,18 +70,18 @@ pub fn table_of(parts: &[Part]) -> String {
 }
 
 /// So many meshes.
-pub fn meshes(count: usize) -> String {
+pub(super) fn meshes(count: usize) -> String {
     format!("{count} {}", if count == 1 { "mesh" } else { "meshes" })
 }
 
 /// What a method is called, where it was tried.
-pub fn name(parts: &[Part], method: Method) -> String {
+pub(super) fn name(parts: &[Part], method: Method) -> String {
     let part = parts.iter().find(|part| part.subject.methods().contains(&method));
     part.map_or_else(|| method.to_string(), |part| part.subject.name(method))
 }
 
 /// Methods by their names; those of a surface that are all of it that was tried by that surface's.
-pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
+pub(super) fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     let tried: Vec<Method> = parts.iter().flat_map(|part| part.subject.methods()).collect();
     let mut names = Vec::new();
     for method in methods {
@@ -98,7 +98,7 @@ pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
 }
 
 /// Who is on most fronts, and who on none.
-pub fn sentences(parts: &[Part]) -> Vec<String> {
+pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
     let standings = standings(parts);
     let mut all = Vec::new();
     for (index, cost) in COSTS.into_iter().enumerate() {

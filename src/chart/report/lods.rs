@@ -5,7 +5,7 @@ use crate::chart::{Cost, LodKind, Race, Row};
 
 /// What LOD by error costs less than another, over surfaces, meshes and errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Saving {
+pub(super) struct Saving {
     /// How many times less.
     pub times: Range,
     /// Pairs that were compared.
@@ -18,7 +18,7 @@ pub struct Saving {
 ///
 /// They are compared at 1, 2 and 5 times powers of ten, for each surface, with the cheapest setting of each. Where a mesh needs
 /// no tessellation nothing is to be saved; and where the coarsest setting does, one that wasn't tried might have been cheaper.
-pub fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
+pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
     let (mut ratios, mut alone) = (Vec::new(), [0, 0]);
     for part in parts {
         for race in part.subject.races() {
@@ -60,7 +60,7 @@ fn cases(part: &Part, race: &Race) -> Vec<(crate::tessellate::Surface, f64)> {
 
 /// Ratios: their geometric mean, the least and the most.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
+pub(super) struct Range {
     pub mean: f64,
     pub least: f64,
     pub most: f64,
@@ -68,7 +68,7 @@ pub struct Range {
 
 impl Range {
     /// None of none.
-    pub fn of(ratios: &[f64]) -> Option<Self> {
+    pub(super) fn of(ratios: &[f64]) -> Option<Self> {
         let least = ratios.iter().copied().reduce(f64::min)?;
         let most = ratios.iter().copied().fold(least, f64::max);
         let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();

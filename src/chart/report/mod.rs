@@ -15,12 +15,12 @@ use answers::tables;
 use section::section;
 
 /// The page's file, and that of its table, in their folder.
-pub const PAGE: &str = "results.md";
-pub const TABLE: &str = "results.csv";
+pub(crate) const PAGE: &str = "results.md";
+pub(crate) const TABLE: &str = "results.csv";
 
 /// What it all ran on, and when.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Occasion {
+pub(crate) struct Occasion {
     pub adapter: String,
     /// The driver and the interface that it was asked through.
     pub driver: String,
@@ -34,7 +34,7 @@ pub struct Occasion {
 
 /// A mesh with what was measured of it, and what wasn't.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub(crate) struct Part {
     pub subject: Subject,
     /// Patches that the mesh has, and edges whose sides have different normals.
     pub patches: u64,
@@ -46,7 +46,7 @@ pub struct Part {
 
 /// How many settings are not in a part, by why.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LeftOut {
+pub(crate) struct LeftOut {
     /// They had more triangles than were allowed, and how many those were.
     pub too_large: usize,
     pub most_triangles: u64,
@@ -58,7 +58,7 @@ pub struct LeftOut {
 
 impl LeftOut {
     /// Whatever is left out, in words; nothing if nothing is.
-    pub fn words(&self) -> Vec<String> {
+    pub(crate) fn words(&self) -> Vec<String> {
         let most = crate::numbers::grouped(self.most_triangles);
         let reasons = [
             (self.too_large, format!("of more than {most} triangles")),
@@ -87,7 +87,7 @@ impl Part {
 }
 
 /// The page, in Markdown.
-pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
+pub(crate) fn page(occasion: &Occasion, parts: &[Part]) -> String {
     let Occasion { adapter, driver, date, command, .. } = occasion;
     let mut text = String::from("# Speed against accuracy\n\n");
     let _ = writeln!(text, "Measured on {} ({}), {date}, by\n\n    {command}\n", plain(adapter), plain(driver));

@@ -21,13 +21,13 @@ const SHAPES: [Shape; 7] =
 const VASE: &str = "assets/vase.glb";
 
 /// What is charted if no mesh was named.
-pub fn usual() -> Vec<Source> {
+pub(super) fn usual() -> Vec<Source> {
     let vase = Path::new(VASE).is_file().then(|| Source::File(VASE.into()));
     SHAPES.into_iter().map(Source::Shape).chain(vase).collect()
 }
 
 /// Names for pictures, one a mesh: letters, digits and hyphens, and no name twice.
-pub fn pictures(meshes: &[Source]) -> Vec<String> {
+pub(super) fn pictures(meshes: &[Source]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for mesh in meshes {
         let stem = match mesh {
@@ -44,7 +44,7 @@ pub fn pictures(meshes: &[Source]) -> Vec<String> {
 }
 
 /// What it runs on, now, and by which command line.
-pub fn occasion(gpu: &Gpu) -> Occasion {
+pub(super) fn occasion(gpu: &Gpu) -> Occasion {
     let info = &gpu.info;
     let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|words| !words.is_empty());
     let driver: Vec<String> = driver.map(str::to_owned).chain([format!("{:?}", info.backend)]).collect();
@@ -68,13 +68,13 @@ fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
 }
 
 /// Makes the folder, so that a command that takes minutes doesn't fail at its end.
-pub fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
+pub(super) fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
     std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     Ok(folder.to_owned())
 }
 
 /// Writes the page and its pictures.
-pub fn write(folder: &Path, occasion: &Occasion, parts: &[Part]) -> Result<(), CliError> {
+pub(super) fn write(folder: &Path, occasion: &Occasion, parts: &[Part]) -> Result<(), CliError> {
     for part in parts {
         write_text(&folder.join(&part.picture), &svg(std::slice::from_ref(&part.subject))?)?;
     }

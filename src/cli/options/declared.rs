@@ -9,7 +9,7 @@ use crate::tessellate::{Displacement, Tessellation};
 
 /// What is tessellated how.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TessellationOptions {
+pub(crate) struct TessellationOptions {
     pub tessellation: Tessellation,
     /// Given on the command line; without it, displacement depends on whether there are heights.
     pub displacement: Option<Displacement>,
@@ -17,7 +17,7 @@ pub struct TessellationOptions {
 
 /// How a picture is drawn: settings with the usual tessellation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct PictureOptions(pub Settings);
+pub(crate) struct PictureOptions(pub Settings);
 
 const WITHOUT_DISPLACEMENT: &str =
     "By default on with --height, else off. Without --height, the materials' images are the height map";
@@ -141,14 +141,14 @@ fn name_of(value: &Value) -> Option<&'static str> {
 }
 
 /// Reads one of several named values.
-pub fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
+pub(crate) fn choice<T: Choice + Send + Sync>() -> impl TypedValueParser<Value = T> {
     let unknown = "no such value";
     PossibleValuesParser::new(descriptions::<T>().into_iter().map(possible))
         .try_map(move |name| T::named(&name).ok_or(unknown))
 }
 
 /// Reads a number of an option's range.
-pub fn number_of(declaration: &'static Declaration) -> impl TypedValueParser<Value = f32> {
+pub(crate) fn number_of(declaration: &'static Declaration) -> impl TypedValueParser<Value = f32> {
     move |text: &str| match declaration.kind.parse(text)? {
         Value::Number(number) => Ok(number),
         _ => Err(String::from("expected a number")),

@@ -6,20 +6,21 @@ use crate::mesh::shapes::Shape;
 use crate::mesh::topology::Topology;
 
 /// The corners of a cube.
-pub const POINTS: [[i8; 3]; 8] =
+pub(crate) const POINTS: [[i8; 3]; 8] =
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]];
 
 /// The sides of the cube, counter-clockwise seen from outside.
-pub const SIDES: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
+pub(crate) const SIDES: [[usize; 4]; 6] =
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [2, 3, 7, 6], [1, 2, 6, 5], [0, 4, 7, 3]];
 
 /// Returns the triangles of the cube.
-pub fn triangles() -> Vec<[usize; 3]> {
+pub(crate) fn triangles() -> Vec<[usize; 3]> {
     SIDES.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
 }
 
 /// Checks that a mesh is the cube and has the topology of the cube that is made in code. Its normals may be from the
 /// file or computed.
-pub fn assert_cube(mesh: &Mesh) {
+pub(crate) fn assert_cube(mesh: &Mesh) {
     let topology = |mesh: &Mesh| Topology::build(mesh, &Progress::new()).unwrap();
     let (expected, found) = (topology(&Shape::CubeSplit.build()), topology(mesh));
     assert_eq!((found.patches.len(), found.points.len(), found.degenerate), (12, 8, 0));

@@ -19,7 +19,7 @@ use crate::mesh::MemoryAccount;
 const MAX_ZEROS: usize = 1 << 24;
 
 /// Reads the accessors of one document.
-pub struct Accessors<'a> {
+pub(crate) struct Accessors<'a> {
     document: &'a Document,
     buffers: &'a [Vec<u8>],
     /// For each buffer view, its decompressed bytes and their stride, if it is compressed.
@@ -33,7 +33,7 @@ pub struct Accessors<'a> {
 type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + 'a>;
 
 /// The values of an accessor. Values that lie in a buffer stay there, and are decoded when they are read.
-pub struct List<'a, T: Clone> {
+pub(crate) struct List<'a, T: Clone> {
     elements: Elements<'a>,
     decode: Decode<'a, T>,
     /// Values that were decoded before: those of a sparse accessor, or without a buffer view, or of compressed data.
@@ -43,20 +43,20 @@ pub struct List<'a, T: Clone> {
 
 impl<'a, T: Copy + 'a> List<'a, T> {
     /// Makes a list of values that were decoded before.
-    pub fn of(values: &'a [T], zero: T) -> Self {
+    pub(crate) fn of(values: &'a [T], zero: T) -> Self {
         let decode: Decode<T> = Box::new(move |_| zero);
         Self { elements: Elements::default(), decode, decoded: Some(Cow::Borrowed(values)), zero }
     }
 
     /// Returns element `i`, or zero beyond the end.
-    pub fn get(&self, i: usize) -> T {
+    pub(crate) fn get(&self, i: usize) -> T {
         match &self.decoded {
             Some(values) => values.get(i).copied().unwrap_or(self.zero),
             None => self.elements.get(i).map_or(self.zero, &self.decode),
         }
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.decoded.as_ref().map_or(self.elements.count, |values| values.len())
     }
 }
@@ -85,7 +85,7 @@ impl<'a> Accessors<'a> {
     ///
     /// # Errors
     /// [`GltfError::Document`] for a view that can't be decompressed.
-    pub fn new(
+    pub(crate) fn new(
         document: &'a Document,
         extensions: &Extensions,
         buffers: &'a [Vec<u8>],
@@ -121,7 +121,7 @@ impl<'a> Accessors<'a> {
     ///
     /// # Errors
     /// [`GltfError::Accessor`] if elements don't have N numbers, or if the data isn't in its buffer.
-    pub fn numbers<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<Vec<[f32; N]>, GltfError> {
+    pub(crate) fn numbers<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<Vec<[f32; N]>, GltfError> {
         let list = self.list::<N>(accessor, role)?;
         if let Some(values) = list.decoded {
             return Ok(values.into_owned());
@@ -139,7 +139,11 @@ impl<'a> Accessors<'a> {
     ///
     /// # Errors
     /// The same as [`numbers`](Self::numbers)'.
-    pub fn list<const N: usize>(&self, accessor: &Accessor, role: &str) -> Result<List<'_, [f32; N]>, GltfError> {
+    pub(crate) fn list<const N: usize>(
+        &self,
+        accessor: &Accessor,
+        role: &str,
+    ) -> Result<List<'_, [f32; N]>, GltfError> {
         let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         if accessor.dimensions().multiplicity() != N {
             return Err(fail(format!(
@@ -162,7 +166,7 @@ impl<'a> Accessors<'a> {
     ///
     /// # Errors
     /// [`GltfError::Accessor`] if the elements are anything else, or if the data isn't in its buffer.
-    pub fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, GltfError> {
+    pub(crate) fn indices(&self, accessor: &Accessor, role: &str) -> Result<List<'_, u32>, GltfError> {
         let fail = |reason| GltfError::Accessor { accessor: accessor.index(), role: role.to_owned(), reason };
         let unsigned = matches!(accessor.data_type(), DataType::U8 | DataType::U16 | DataType::U32);
         if accessor.dimensions() != Dimensions::Scalar || !unsigned {
@@ -175,7 +179,7 @@ impl<'a> Accessors<'a> {
     }
 
     /// Returns the size of all buffers and decompressed data, in bytes.
-    pub fn buffer_bytes(&self) -> u64 {
+    pub(crate) fn buffer_bytes(&self) -> u64 {
         let decompressed =
             self.decompressed.iter().flatten().map(|(decompressed, _)| decompressed.bytes().len() as u64);
         let unpacked = self.unpacked.values().map(DecompressedPrimitive::bytes);
@@ -186,7 +190,7 @@ impl<'a> Accessors<'a> {
     ///
     /// # Errors
     /// A clause that names the view if its buffer is too short.
-    pub fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
+    pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], String> {
         let i = view.index();
         if let Some(Some((decompressed, _))) = self.decompressed.get(i) {
             return Ok(decompressed.bytes());
@@ -212,7 +216,7 @@ impl<'a> Accessors<'a> {
     ///
     /// # Errors
     /// The same as [`Self::numbers`]'.
-    pub fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
+    pub(crate) fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
         let found = match accessor.view() {
             Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
             None => zeros(accessor.count()),
@@ -222,7 +226,7 @@ impl<'a> Accessors<'a> {
     }
 
     /// Returns the view with this index, if there is one.
-    pub fn view(&self, index: usize) -> Option<buffer::View<'a>> {
+    pub(crate) fn view(&self, index: usize) -> Option<buffer::View<'a>> {
         self.document.views().nth(index)
     }
 
@@ -315,7 +319,7 @@ fn unsigned_integer(bytes: &[u8]) -> u32 {
 }
 
 /// Decodes one number by the specification's sections 3.6.2.2 (data types) and 3.11 (normalised integers).
-pub fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
+pub(super) fn component(bytes: &[u8], kind: DataType, normalized: bool) -> f32 {
     let bits = unsigned_integer(bytes);
     let (value, one) = match kind {
         DataType::F32 => return f32::from_bits(bits),

@@ -10,7 +10,7 @@ use crate::mesh::rig::Delta;
 /// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
 const PER_DELTA: u64 = 250;
 
-pub struct AnimatedVertices<'a, 'b, 'c> {
+pub(super) struct AnimatedVertices<'a, 'b, 'c> {
     binder: &'b mut NodeBinder<'c>,
     frame: VertexFrame,
     source: PrimitiveData<'a>,
@@ -25,7 +25,7 @@ pub struct AnimatedVertices<'a, 'b, 'c> {
 }
 
 impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
-    pub fn new(source: PrimitiveData<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
+    pub(super) fn new(source: PrimitiveData<'a>, vertices: &Vertices, binder: &'b mut NodeBinder<'c>) -> Self {
         let (frame, first_weight) = (binder.frame(vertices.is_skinned()), binder.first_weight());
         let mut moving =
             Self { binder, frame, source, first_weight, targets: Vec::new(), deltas: Vec::new(), found: 0 };
@@ -48,7 +48,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
     }
 
     /// Returns the number of the binding of the vertex that was read last.
-    pub fn bind(&mut self, i: usize, vertices: &Vertices, corner: &InputCorner) -> u32 {
+    pub(super) fn bind(&mut self, i: usize, vertices: &Vertices, corner: &InputCorner) -> u32 {
         if let Err(problem) = self.displace(i) {
             self.binder.give_up(problem);
         }

@@ -45,7 +45,7 @@ struct Sampler {
 
 /// Reads the document's clips, whose channels have nodes of the document as targets. Adds a warning for each that is
 /// left out.
-pub fn read(
+pub(super) fn read(
     animations: Vec<Value>,
     document: &Document,
     accessors: &Accessors,

@@ -8,14 +8,14 @@ use crate::mesh::rig::AnimatedNode;
 
 /// The animated node that a node is attached to, and its transform relative to that.
 #[derive(Clone, Copy)]
-pub struct Attachment {
+pub(super) struct Attachment {
     /// An index into the animated nodes; none if no clip moves the node.
     pub node: Option<u32>,
     pub below: DMat4,
 }
 
 /// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
-pub fn carries_shown(document: &Document, placed: &Placed) -> Vec<bool> {
+pub(super) fn carries_shown(document: &Document, placed: &Placed) -> Vec<bool> {
     let mut carries = vec![false; placed.global.len()];
     let mut seen_skins = vec![false; document.skins().len()];
     for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
@@ -37,7 +37,11 @@ pub fn carries_shown(document: &Document, placed: &Placed) -> Vec<bool> {
 }
 
 /// Returns the animated nodes, parents before children, and the attachment of each of the document's nodes.
-pub fn attachments(document: &Document, placed: &Placed, moved: &[bool]) -> (Vec<AnimatedNode>, Vec<Attachment>) {
+pub(super) fn attachments(
+    document: &Document,
+    placed: &Placed,
+    moved: &[bool],
+) -> (Vec<AnimatedNode>, Vec<Attachment>) {
     let nodes: Vec<_> = document.nodes().collect();
     let mut animated = Vec::new();
     let mut attachments: Vec<Attachment> =

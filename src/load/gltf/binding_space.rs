@@ -5,7 +5,7 @@ use glam::{DMat3, DMat4, DVec3, Vec3};
 use crate::mesh::rig::{Binding, Delta, Pose};
 
 /// The transform from a mesh's own space to that of the animated node that it is attached to.
-pub struct BindingSpace {
+pub(super) struct BindingSpace {
     matrix: DMat4,
     linear: DMat3,
     /// The matrix for normals; no entry is larger than 1.
@@ -13,7 +13,7 @@ pub struct BindingSpace {
 }
 
 impl BindingSpace {
-    pub fn new(matrix: DMat4) -> Self {
+    pub(super) fn new(matrix: DMat4) -> Self {
         let linear = DMat3::from_mat4(matrix);
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
         let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
@@ -25,7 +25,7 @@ impl BindingSpace {
 
     /// Transforms a vertex, and its displacements by morph targets. The normal is scaled to unit length if it has a
     /// direction, and its displacements by the same factor.
-    pub fn take(&self, position: Vec3, normal: Vec3, deltas: &mut [Delta]) -> ([f32; 3], [f32; 3]) {
+    pub(super) fn take(&self, position: Vec3, normal: Vec3, deltas: &mut [Delta]) -> ([f32; 3], [f32; 3]) {
         let is_there = self.matrix == DMat4::IDENTITY;
         let turned = if is_there { normal.as_dvec3() } else { self.cofactors * normal.as_dvec3() };
         let length = turned.length();
@@ -49,7 +49,7 @@ fn finite(vector: DVec3) -> [f32; 3] {
 }
 
 /// Returns the normal of a binding that becomes `normal` in a pose: the transpose of its blended matrix times `normal`.
-pub fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
+pub(super) fn untwisted(binding: &Binding, pose: &Pose, normal: Vec3) -> Vec3 {
     let mut sum = DVec3::ZERO;
     for (&joint, &weight) in binding.joints.iter().zip(&binding.weights) {
         for (row, x) in pose.palette[joint as usize].rows().iter().zip(normal.as_dvec3().to_array()) {

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 ///
 /// # Errors
 /// [`GltfError::Buffer`] for a buffer that is missing or too short, and [`GltfError::Cancelled`].
-pub fn load(
+pub(super) fn load(
     document: &Document,
     files: &Files,
     fallback: &[bool],

@@ -1,14 +1,14 @@
 //! The indices and attributes of a primitive after decompression.
 
 /// The data of a decompressed primitive.
-pub struct DecompressedPrimitive {
+pub(crate) struct DecompressedPrimitive {
     /// The indices of vertices, three for each triangle.
     pub indices: Vec<u32>,
     pub attributes: Vec<Attribute>,
 }
 
 /// The values of one attribute.
-pub struct Attribute {
+pub(crate) struct Attribute {
     /// The name in glTF, such as POSITION.
     pub name: String,
     /// `width` numbers for each vertex.
@@ -18,13 +18,13 @@ pub struct Attribute {
 
 impl DecompressedPrimitive {
     /// Returns the values of an attribute with N numbers a vertex; none if it has another width, or wasn't compressed.
-    pub fn values<const N: usize>(&self, name: &str) -> Option<&[[f32; N]]> {
+    pub(crate) fn values<const N: usize>(&self, name: &str) -> Option<&[[f32; N]]> {
         let attribute = self.attributes.iter().find(|attribute| attribute.name == name && attribute.width == N)?;
         Some(attribute.values.as_chunks().0)
     }
 
     /// Returns the size in memory, in bytes.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         let values: usize = self.attributes.iter().map(|attribute| attribute.values.len()).sum();
         4 * (self.indices.len() + values) as u64
     }

@@ -12,7 +12,7 @@ use crate::mesh::MemoryAccount;
 use crate::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
-pub struct Parsed {
+pub(super) struct Parsed {
     pub document: Document,
     pub blob: Option<Vec<u8>>,
     pub extensions: Extensions,
@@ -25,7 +25,7 @@ pub struct Parsed {
 ///
 /// # Errors
 /// [`GltfError::NotGltf`], [`GltfError::Extension`], [`GltfError::Document`], and [`GltfError::Cancelled`].
-pub fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, GltfError> {
+pub(super) fn parse(mut bytes: Vec<u8>, budget: &Budget, progress: &Progress) -> Result<Parsed, GltfError> {
     let mut blob = None;
     let mut value = if glb::is_glb(&bytes) {
         let parts = glb::parts(&bytes)?;
@@ -92,7 +92,10 @@ fn check_version(root: &Map<String, Value>) -> Result<(), GltfError> {
 }
 
 /// Returns the objects in one of the document's lists.
-pub fn objects<'a>(root: &'a mut Map<String, Value>, list: &str) -> impl Iterator<Item = &'a mut Map<String, Value>> {
+pub(super) fn objects<'a>(
+    root: &'a mut Map<String, Value>,
+    list: &str,
+) -> impl Iterator<Item = &'a mut Map<String, Value>> {
     root.get_mut(list).and_then(Value::as_array_mut).into_iter().flatten().filter_map(Value::as_object_mut)
 }
 

@@ -46,7 +46,7 @@ impl From<String> for DecodeError {
 /// # Errors
 /// [`GltfError::Document`] or [`GltfError::Draco`] for the first primitive that can't be decompressed, and
 /// [`GltfError::Cancelled`].
-pub fn unpack(
+pub(super) fn unpack(
     accessors: &Accessors,
     document: &Document,
     placed: &Placed,

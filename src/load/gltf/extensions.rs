@@ -32,7 +32,7 @@ const KNOWN: [&str; 17] = [
 
 /// The data of a document's extensions.
 #[derive(Debug, Default)]
-pub struct Extensions {
+pub(crate) struct Extensions {
     /// One for each of the document's materials.
     pub transforms: Vec<Option<UvTransform>>,
     /// One for each buffer view.
@@ -45,7 +45,7 @@ pub struct Extensions {
 
 /// `KHR_texture_transform` of a material's base colour texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UvTransform {
+pub(crate) struct UvTransform {
     pub offset: Vec2,
     /// In radians.
     pub rotation: f32,
@@ -56,7 +56,7 @@ pub struct UvTransform {
 
 /// `EXT_meshopt_compression` of a buffer view.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MeshoptExtension {
+pub(crate) struct MeshoptExtension {
     pub buffer: usize,
     pub offset: u64,
     pub length: u64,
@@ -69,7 +69,7 @@ pub struct MeshoptExtension {
 
 /// `KHR_draco_mesh_compression` of a primitive that is read from the compressed data.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct DracoExtension {
+pub(crate) struct DracoExtension {
     pub view: usize,
     /// By name, the ids of the attributes that are read.
     pub ids: BTreeMap<String, u32>,
@@ -78,14 +78,14 @@ pub struct DracoExtension {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MeshoptMode {
+pub(crate) enum MeshoptMode {
     Attributes,
     Triangles,
     Indices,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MeshoptFilter {
+pub(crate) enum MeshoptFilter {
     None,
     Octahedral,
     Quaternion,
@@ -95,7 +95,7 @@ pub enum MeshoptFilter {
 /// Checks that all required extensions are known.
 /// # Errors
 /// [`GltfError::Extension`] for the first that isn't.
-pub fn check_required(root: &Map<String, Value>) -> Result<(), GltfError> {
+pub(super) fn check_required(root: &Map<String, Value>) -> Result<(), GltfError> {
     let required = root.get("extensionsRequired").and_then(Value::as_array).into_iter().flatten();
     let names = required.enumerate().filter_map(|(i, name)| Some((i, name.as_str()?)));
     let Some((place, name)) = names.into_iter().find(|(_, name)| !KNOWN.contains(name)) else { return Ok(()) };
@@ -103,7 +103,7 @@ pub fn check_required(root: &Map<String, Value>) -> Result<(), GltfError> {
 }
 
 /// Returns whether a document requires this extension.
-pub fn requires(root: &Map<String, Value>, extension: &str) -> bool {
+pub(super) fn requires(root: &Map<String, Value>, extension: &str) -> bool {
     let required = root.get("extensionsRequired").and_then(Value::as_array);
     required.is_some_and(|names| names.iter().any(|name| name == extension))
 }
@@ -111,7 +111,7 @@ pub fn requires(root: &Map<String, Value>, extension: &str) -> bool {
 impl Extensions {
     /// Reads the extensions of a document that has been [checked](super::schema_check). If the document doesn't require
     /// Draco, primitives that also have uncompressed data are read from that.
-    pub fn of(root: &Map<String, Value>, requires_draco: bool) -> Self {
+    pub(crate) fn of(root: &Map<String, Value>, requires_draco: bool) -> Self {
         let list = |name: &str| root.get(name).and_then(Value::as_array).into_iter().flatten();
         let extension = |value: &'_ Value, name: &str| value.get("extensions")?.get(name).cloned();
         let info = |material: &Value| material.pointer("/pbrMetallicRoughness/baseColorTexture").cloned();
@@ -153,7 +153,7 @@ impl UvTransform {
     }
 
     /// Applies scale, then a counter-clockwise rotation as seen in the image, whose v points down, then the offset.
-    pub fn apply(&self, uv: Vec2) -> Vec2 {
+    pub(crate) fn apply(&self, uv: Vec2) -> Vec2 {
         let (sin, cos) = self.rotation.sin_cos();
         let Vec2 { x, y } = uv * self.scale;
         Vec2::new(x * cos + y * sin, y * cos - x * sin) + self.offset

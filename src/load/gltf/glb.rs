@@ -13,14 +13,14 @@ const CHUNK_HEADER: usize = 8;
 
 /// The ranges of the parts of a `.glb`.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Parts {
+pub(super) struct Parts {
     pub json: Range<usize>,
     /// The first binary chunk.
     pub bin: Option<Range<usize>>,
 }
 
 /// Returns whether these bytes start like a `.glb`.
-pub fn is_glb(bytes: &[u8]) -> bool {
+pub(super) fn is_glb(bytes: &[u8]) -> bool {
     bytes.starts_with(b"glTF")
 }
 
@@ -28,7 +28,7 @@ pub fn is_glb(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`GltfError::NotGltf`], with the lengths in the headers and in the file.
-pub fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
+pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
     let fail = |reason: String| GltfError::NotGltf { reason };
     if bytes.len() < HEADER {
         return Err(fail(format!(

@@ -17,7 +17,7 @@ const PIECE: usize = 1 << 24;
 /// Memory for a member or an element, in bytes.
 const PER_VALUE: u64 = 72;
 /// Memory for an object's first node of members, in bytes.
-pub const PER_OBJECT: u64 = 640;
+pub(super) const PER_OBJECT: u64 = 640;
 /// Memory for what is read from an object, in bytes.
 const PER_READ: u64 = 400;
 
@@ -26,7 +26,7 @@ const PER_READ: u64 = 400;
 /// # Errors
 /// [`GltfError::NotGltf`] for text that isn't JSON or is nested too deep, [`GltfError::Document`] for text that is too
 /// large, and [`GltfError::Cancelled`].
-pub fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, GltfError> {
+pub(super) fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, GltfError> {
     // JSON has no byte order mark, but some editors write one.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let shape = JsonSize::of(text, progress)?;

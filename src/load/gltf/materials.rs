@@ -16,21 +16,21 @@ use crate::mesh::{Material, Texture};
 
 /// A material's index in the builder, and its texture coordinates.
 #[derive(Clone, Copy)]
-pub struct Resolved {
+pub(super) struct Resolved {
     pub index: usize,
     pub uvs: Uvs,
 }
 
 /// Which texture coordinates a material uses, and how they are transformed.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Uvs {
+pub(super) struct Uvs {
     /// The n of TEXCOORD_n.
     pub set: u32,
     pub transform: Option<UvTransform>,
 }
 
 /// The materials that have been used so far.
-pub struct Materials<'a> {
+pub(super) struct Materials<'a> {
     document: &'a Document,
     accessors: &'a Accessors<'a>,
     files: &'a Files<'a>,
@@ -44,7 +44,7 @@ pub struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(
+    pub(super) fn new(
         document: &'a Document,
         accessors: &'a Accessors<'a>,
         files: &'a Files<'a>,
@@ -56,7 +56,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Finds a material, or adds it to the builder. A texture that is missing or broken causes a warning.
-    pub fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
+    pub(super) fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
         if let Some(&resolved) = self.resolved.get(&material.index()) {
             return resolved;
         }

@@ -10,13 +10,13 @@ use crate::load::memory_budget::Budget;
 use crate::mesh::MemoryAccount;
 
 /// The data of a decompressed view, aligned to 4 bytes for its elements.
-pub struct Decompressed {
+pub(super) struct Decompressed {
     words: Vec<u32>,
     length: usize,
 }
 
 impl Decompressed {
-    pub fn bytes(&self) -> &[u8] {
+    pub(super) fn bytes(&self) -> &[u8] {
         &bytemuck::cast_slice(&self.words)[..self.length]
     }
 }
@@ -26,7 +26,7 @@ impl Decompressed {
 /// # Errors
 /// A clause if its sizes don't fit its mode or filter, if it would take too much memory, or if it can't be
 /// decompressed.
-pub fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget) -> Result<Decompressed, String> {
+pub(super) fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget) -> Result<Decompressed, String> {
     check(view)?;
     let length = view.count.saturating_mul(view.stride as u64);
     budget.hold(length)?;

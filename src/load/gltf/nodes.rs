@@ -8,7 +8,7 @@ use super::GltfError;
 use crate::mesh::rig::Placement;
 
 /// The nodes of a document with their places.
-pub struct Placed {
+pub(crate) struct Placed {
     /// The transform from each node's own space to the scene's. In f64, so that chains of nodes don't lose the last
     /// bits of an f32.
     pub global: Vec<DMat4>,
@@ -24,7 +24,7 @@ pub struct Placed {
 ///
 /// # Errors
 /// [`GltfError::Document`] for a node with two parents, and for a node that is its own ancestor.
-pub fn place(document: &Document) -> Result<Placed, GltfError> {
+pub(super) fn place(document: &Document) -> Result<Placed, GltfError> {
     let nodes: Vec<Node> = document.nodes().collect();
     let parents = parents(&nodes)?;
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
@@ -87,7 +87,7 @@ fn walk(nodes: &[Node], roots: &[usize]) -> Vec<usize> {
 }
 
 /// Returns a node's own transform.
-pub fn local(node: &Node) -> DMat4 {
+pub(super) fn local(node: &Node) -> DMat4 {
     match node.transform() {
         Transform::Matrix { matrix } => Mat4::from_cols_array_2d(&matrix).as_dmat4(),
         // Most nodes have no transform: that is worth a shortcut where there are hundreds of thousands.
@@ -101,14 +101,14 @@ pub fn local(node: &Node) -> DMat4 {
 }
 
 /// Returns a node's own transform as translation, rotation and scale; none if the file has a matrix.
-pub fn placement(node: &Node) -> Option<Placement> {
+pub(super) fn placement(node: &Node) -> Option<Placement> {
     let Transform::Decomposed { translation, rotation, scale } = node.transform() else { return None };
     let [translation, scale] = [translation, scale].map(|v| glam::Vec3::from(v).as_dvec3());
     Some(Placement { translation, rotation: glam::Quat::from_array(rotation).as_dquat(), scale })
 }
 
 /// Returns the number of morph targets of a node's mesh: the greatest number of a primitive.
-pub fn target_count(node: &Node) -> usize {
+pub(super) fn target_count(node: &Node) -> usize {
     let primitives = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
     primitives.map(|primitive| primitive.morph_targets().count()).max().unwrap_or(0)
 }

@@ -9,14 +9,14 @@ use super::materials::Resolved;
 use super::rig_builder::NodeBinder;
 use crate::mesh::{MemoryAccount, MemoryRefused};
 
-pub use super::vertices::NodePose;
+pub(super) use super::vertices::NodePose;
 use super::vertices::{PrimitiveData, Vertex, Vertices};
 use super::{Accessors, GltfError, vertices};
 use crate::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 
 /// Reads primitives, and counts what was repaired or left out.
 #[derive(Debug, Default)]
-pub struct PrimitiveReader {
+pub(super) struct PrimitiveReader {
     read: usize,
     points: usize,
     lines: usize,
@@ -33,7 +33,7 @@ pub struct PrimitiveReader {
 }
 
 /// A primitive that is to be read, and where it goes.
-pub struct Job<'a, 'b> {
+pub(super) struct Job<'a, 'b> {
     pub mesh: &'a Mesh<'a>,
     pub primitive: &'a Primitive<'a>,
     pub pose: &'a NodePose<'a>,
@@ -56,7 +56,7 @@ impl Indices<'_> {
 
 impl PrimitiveReader {
     /// Returns whether a primitive consists of points or lines, and counts it if so.
-    pub fn skip(&mut self, primitive: &Primitive) -> bool {
+    pub(super) fn skip(&mut self, primitive: &Primitive) -> bool {
         let count = match primitive.mode() {
             Mode::Points => &mut self.points,
             Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.lines,
@@ -70,7 +70,7 @@ impl PrimitiveReader {
     ///
     /// # Errors
     /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
-    pub fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
+    pub(super) fn read(&mut self, job: Job, binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
         let Job { mesh, primitive, pose, material, accessors, builder } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
@@ -123,7 +123,7 @@ impl PrimitiveReader {
     }
 
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
-    pub fn warnings(&self) -> Vec<String> {
+    pub(super) fn warnings(&self) -> Vec<String> {
         let sentences = [
             (self.without_normals, "primitives without normals, which got ones that are smooth within 60 degrees"),
             (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
@@ -137,7 +137,7 @@ impl PrimitiveReader {
     }
 
     /// Returns what the document holds instead of triangles.
-    pub fn holds(&self, document: &Document) -> String {
+    pub(super) fn holds(&self, document: &Document) -> String {
         match (document.meshes().len(), self.points, self.lines) {
             (0, ..) => "the document has no meshes".to_owned(),
             (_, 0, 0) if self.read == 0 => "no node of its scene has a mesh".to_owned(),
@@ -198,13 +198,13 @@ fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
 }
 
 /// Returns a primitive's place in the document, for messages.
-pub fn name(mesh: &Mesh, primitive: &Primitive) -> String {
+pub(super) fn name(mesh: &Mesh, primitive: &Primitive) -> String {
     let mesh_name = mesh.name().map_or(String::new(), |name| format!(" ({:?})", crate::load::uri::shown(name)));
     format!("/meshes/{}/primitives/{}{mesh_name}", mesh.index(), primitive.index())
 }
 
 /// Returns the greatest number of triangles that so many indices make.
-pub fn most_triangles(mode: Mode, indices: usize) -> usize {
+pub(super) fn most_triangles(mode: Mode, indices: usize) -> usize {
     if mode == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) }
 }
 

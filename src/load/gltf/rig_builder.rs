@@ -15,12 +15,12 @@ use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::{AnimatedNode, Binding, Clip, Delta, Joint, Morph, Property, Reach, Rig};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
-pub const MAX_BOUND: usize = 1 << 24;
+pub(super) const MAX_BOUND: usize = 1 << 24;
 /// The greatest number of elements of morph targets that are read.
 const MAX_DISPLACED: usize = 1 << 28;
 
 /// Collects bindings, node by node, and builds a [`Rig`] of them.
-pub struct RigBuilder {
+pub(super) struct RigBuilder {
     /// The targets of their channels are `nodes` and `morphs`.
     clips: Vec<Clip>,
     nodes: Vec<AnimatedNode>,
@@ -53,7 +53,12 @@ struct BoundVertex {
 impl RigBuilder {
     /// Prepares for some clips, whose targets are nodes of the document. Returns none if no clip moves anything that is
     /// shown. Adds a warning for each clip that doesn't.
-    pub fn new(clips: Vec<Clip>, document: &Document, placed: &Placed, warnings: &mut Vec<String>) -> Option<Self> {
+    pub(super) fn new(
+        clips: Vec<Clip>,
+        document: &Document,
+        placed: &Placed,
+        warnings: &mut Vec<String>,
+    ) -> Option<Self> {
         if clips.is_empty() {
             return None;
         }
@@ -123,7 +128,7 @@ impl RigBuilder {
     }
 
     /// Returns a binder for the vertices of a node's mesh.
-    pub fn node<'a>(&'a mut self, node: usize, skin: Option<&'a skin::Joints>) -> NodeBinder<'a> {
+    pub(super) fn node<'a>(&'a mut self, node: usize, skin: Option<&'a skin::Joints>) -> NodeBinder<'a> {
         for &joint in skin.map_or(&[][..], |skin| &skin.nodes) {
             if let Some(Attachment { node: Some(node), .. }) = self.attachments.get(joint) {
                 self.nodes[*node as usize].is_joint = true;
@@ -139,7 +144,7 @@ impl RigBuilder {
     }
 
     /// Builds the rig of a mesh whose corners have these bindings. If that is impossible, returns a warning.
-    pub fn finish(self, mesh: &Mesh, corners: &[u32]) -> Result<Rig, String> {
+    pub(super) fn finish(self, mesh: &Mesh, corners: &[u32]) -> Result<Rig, String> {
         if let Some(problem) = self.problem {
             return Err(format!("animations are left out: {problem}."));
         }
@@ -204,7 +209,7 @@ impl RigBuilder {
 }
 
 /// Binds the vertices of one node's mesh.
-pub struct NodeBinder<'a> {
+pub(super) struct NodeBinder<'a> {
     node: usize,
     skin: Option<&'a skin::Joints>,
     /// For each joint of the skin, its index in the palette once it is used.
@@ -213,7 +218,7 @@ pub struct NodeBinder<'a> {
 }
 
 /// A vertex before it is deformed.
-pub struct UndeformedVertex<'a> {
+pub(super) struct UndeformedVertex<'a> {
     pub position: Vec3,
     pub normal: Vec3,
     /// The joints of its skin that move it, with their weights; none if they are unusable.
@@ -223,7 +228,7 @@ pub struct UndeformedVertex<'a> {
 }
 
 /// The joint and the space of a primitive's vertices. Skinned vertices have joints of their own.
-pub struct VertexFrame {
+pub(super) struct VertexFrame {
     rigid: Option<u32>,
     space: BindingSpace,
 }
@@ -231,7 +236,7 @@ pub struct VertexFrame {
 impl NodeBinder<'_> {
     /// Returns where the node's weights start if a clip changes them. Its morph targets are then applied in each pose,
     /// and not once at rest.
-    pub fn first_weight(&self) -> Option<u32> {
+    pub(super) fn first_weight(&self) -> Option<u32> {
         let morph = self.binder.node_morphs.get(&self.node)?;
         Some(self.binder.morphs[*morph].first_weight)
     }
@@ -240,7 +245,7 @@ impl NodeBinder<'_> {
     ///
     /// # Errors
     /// A clause if there are too many.
-    pub fn look_at(&mut self, elements: usize) -> Result<(), String> {
+    pub(super) fn look_at(&mut self, elements: usize) -> Result<(), String> {
         self.binder.displaced = self.binder.displaced.saturating_add(elements);
         if self.binder.displaced > MAX_DISPLACED {
             return Err(format!("morph targets have more than {MAX_DISPLACED} elements"));
@@ -249,12 +254,12 @@ impl NodeBinder<'_> {
     }
 
     /// Gives up building a rig. The first reason is reported.
-    pub fn give_up(&mut self, reason: String) {
+    pub(super) fn give_up(&mut self, reason: String) {
         self.binder.give_up(reason);
     }
 
     /// Returns the joint and the space of a primitive's vertices.
-    pub fn frame(&mut self, is_skinned: bool) -> VertexFrame {
+    pub(super) fn frame(&mut self, is_skinned: bool) -> VertexFrame {
         let attachment = self.binder.attachments[self.node];
         if is_skinned {
             return VertexFrame { rigid: None, space: BindingSpace::new(DMat4::IDENTITY) };
@@ -264,7 +269,7 @@ impl NodeBinder<'_> {
     }
 
     /// Returns the number of a vertex's binding. `corner` is the vertex at rest.
-    pub fn bind(&mut self, frame: &VertexFrame, vertex: UndeformedVertex, corner: &InputCorner) -> u32 {
+    pub(super) fn bind(&mut self, frame: &VertexFrame, vertex: UndeformedVertex, corner: &InputCorner) -> u32 {
         if self.binder.problem.is_some() {
             return 0;
         }

@@ -46,7 +46,7 @@ struct SceneSize {
 ///
 /// # Errors
 /// [`GltfError::Accessor`], and [`GltfError::TooLarge`].
-pub fn check(
+pub(crate) fn check(
     document: &Document,
     placed: &Placed,
     accessors: &Accessors,

@@ -4,14 +4,14 @@
 //! Source: glTF 2.0 specification, section 5 (properties reference).
 
 /// A member of an object.
-pub struct Field {
+pub(super) struct Field {
     pub name: &'static str,
     pub kind: MemberKind,
     pub required: bool,
 }
 
 /// The values that a member may have.
-pub enum MemberKind {
+pub(super) enum MemberKind {
     /// An index into one of the document's lists.
     Index(&'static str),
     Indices(&'static str),
@@ -66,13 +66,13 @@ const fn may(name: &'static str, kind: MemberKind) -> Field {
 const COUNT: MemberKind = Whole { least: 0, most: u64::MAX };
 
 /// The extension that compresses buffer views. It also marks buffers.
-pub const MESHOPT: &str = "EXT_meshopt_compression";
+pub(super) const MESHOPT: &str = "EXT_meshopt_compression";
 /// The extension that compresses primitives.
-pub const DRACO: &str = "KHR_draco_mesh_compression";
+pub(super) const DRACO: &str = "KHR_draco_mesh_compression";
 /// The extension that transforms texture coordinates.
-pub const TRANSFORM: &str = "KHR_texture_transform";
+pub(super) const TRANSFORM: &str = "KHR_texture_transform";
 
-pub static DOCUMENT: &[Field] = &[
+pub(super) static DOCUMENT: &[Field] = &[
     needed("asset", Object(&[needed("version", Text)])),
     may("nodes", Objects(NODE)),
     may("meshes", Objects(MESH)),
@@ -187,7 +187,7 @@ static BUFFER: &[Field] = &[
     may("extensions", Object(&[may(MESHOPT, Object(&[may("fallback", Flag)]))])),
 ];
 
-pub fn is_attribute(name: &str) -> bool {
+pub(super) fn is_attribute(name: &str) -> bool {
     let known = ["POSITION", "NORMAL", "JOINTS_0", "WEIGHTS_0"].contains(&name);
     known || name.strip_prefix("TEXCOORD_").is_some_and(|set| set.parse::<u32>().is_ok())
 }

@@ -13,7 +13,7 @@ use super::schema::{Field, MemberKind};
 ///
 /// # Errors
 /// [`GltfError::Document`] for the first member that is wrong.
-pub fn check(document: &mut Map<String, Value>, schema: &'static [Field]) -> Result<(), GltfError> {
+pub(super) fn check(document: &mut Map<String, Value>, schema: &'static [Field]) -> Result<(), GltfError> {
     let count = |field: &Field| Some((field.name, document.get(field.name)?.as_array()?.len() as u64));
     let checker = Checker { counts: schema.iter().filter_map(count).collect() };
     checker.object(document, schema, &JsonPointer(None, Part::Root))

@@ -4,7 +4,7 @@ mod files;
 mod hostile;
 mod mutations;
 mod packed;
-pub use mutations::seeds;
+pub(crate) use mutations::seeds;
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use glam::{Vec2, Vec3};

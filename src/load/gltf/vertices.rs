@@ -14,7 +14,7 @@ use crate::mesh::normals::GivenNormal;
 use crate::mesh::rig::LARGEST_COORDINATE;
 
 /// The pose of a primitive's node.
-pub struct NodePose<'a> {
+pub(super) struct NodePose<'a> {
     /// The transform from the node's own space to the scene's.
     pub global: DMat4,
     /// The matrices of the joints (see [`super::skin`]); empty without a skin.
@@ -24,7 +24,7 @@ pub struct NodePose<'a> {
 }
 
 /// A vertex in the scene's space.
-pub struct Vertex {
+pub(super) struct Vertex {
     pub corner: InputCorner,
     /// Whether its transform mirrors, so that its triangles must be wound the other way.
     pub mirrored: bool,
@@ -34,7 +34,7 @@ pub struct Vertex {
 
 /// Counts of repaired vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct VertexRepairs {
+pub(super) struct VertexRepairs {
     /// Vertices of a primitive without normals.
     pub no_normals: usize,
     /// Vertices with texture coordinates that aren't finite, which became (0, 0).
@@ -45,7 +45,7 @@ pub struct VertexRepairs {
 }
 
 /// The displacements by a morph target at weight 1.
-pub struct MorphTarget<'a> {
+pub(super) struct MorphTarget<'a> {
     pub positions: Option<List<'a, [f32; 3]>>,
     pub normals: Option<List<'a, [f32; 3]>>,
 }
@@ -70,7 +70,7 @@ impl Influences<'_> {
 }
 
 /// Reads a primitive's vertices, and puts them into their rest pose.
-pub struct Vertices<'a> {
+pub(super) struct Vertices<'a> {
     source: PrimitiveData<'a>,
     pose: &'a NodePose<'a>,
     transform: Option<UvTransform>,
@@ -91,7 +91,7 @@ impl<'a> Vertices<'a> {
     ///
     /// # Errors
     /// [`GltfError::Accessor`] and [`GltfError::Primitive`].
-    pub fn new(source: PrimitiveData<'a>, pose: &'a NodePose<'a>, uvs: Uvs) -> Result<Self, GltfError> {
+    pub(super) fn new(source: PrimitiveData<'a>, pose: &'a NodePose<'a>, uvs: Uvs) -> Result<Self, GltfError> {
         let positions = source.primitive.get(&Semantic::Positions).ok_or_else(|| source.problem("has no positions"))?;
         let count = positions.count();
         let weights = pose.weights.iter().copied();
@@ -113,18 +113,18 @@ impl<'a> Vertices<'a> {
         })
     }
 
-    pub fn is_skinned(&self) -> bool {
+    pub(super) fn is_skinned(&self) -> bool {
         self.influences.is_some()
     }
 
     /// Returns the joints that move the vertex that was read last.
-    pub fn joints(&self) -> Option<&[(usize, f64)]> {
+    pub(super) fn joints(&self) -> Option<&[(usize, f64)]> {
         self.joints.as_deref()
     }
 
     /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if
     /// `is_morphed`.
-    pub fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
+    pub(super) fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
         let mut position = Vec3::from(self.positions.get(i));
         let mut normal = self.normals.as_ref().map(|normals| Vec3::from(normals.get(i)));
         let targets = if is_morphed { self.targets.as_slice() } else { &[] };
@@ -144,7 +144,7 @@ impl<'a> Vertices<'a> {
     ///
     /// # Errors
     /// [`GltfError::Primitive`] if its position isn't finite or is too far away.
-    pub fn read(&mut self, i: usize) -> Result<Vertex, GltfError> {
+    pub(super) fn read(&mut self, i: usize) -> Result<Vertex, GltfError> {
         let matrix = self.matrix(i);
         let (position, normal) = self.undeformed(i, true);
         // The normal before morphing, which doesn't preserve unit length.
@@ -205,7 +205,7 @@ fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
 
 /// The source of a primitive's attributes.
 #[derive(Clone, Copy)]
-pub struct PrimitiveData<'a> {
+pub(super) struct PrimitiveData<'a> {
     pub primitive: &'a Primitive<'a>,
     /// The primitive's place in the document, for messages.
     pub name: &'a str,
@@ -215,13 +215,17 @@ pub struct PrimitiveData<'a> {
 }
 
 impl<'a> PrimitiveData<'a> {
-    pub fn problem(&self, reason: impl Into<String>) -> GltfError {
+    pub(super) fn problem(&self, reason: impl Into<String>) -> GltfError {
         GltfError::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
     }
 
     /// # Errors
     /// [`GltfError::Accessor`].
-    pub fn target(&self, target: &::gltf::mesh::MorphTarget, count: usize) -> Result<MorphTarget<'a>, GltfError> {
+    pub(super) fn target(
+        &self,
+        target: &::gltf::mesh::MorphTarget,
+        count: usize,
+    ) -> Result<MorphTarget<'a>, GltfError> {
         let list = |accessor: Option<Accessor>, attribute| {
             accessor.map(|accessor| self.list(&accessor, attribute, count)).transpose()
         };

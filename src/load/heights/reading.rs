@@ -25,7 +25,12 @@ const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
-pub fn read_map(path: &Path, corners: usize, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
+pub(super) fn read_map(
+    path: &Path,
+    corners: usize,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<HeightMap, HeightError> {
     progress.check()?;
     let image = ImageFile { path, corners, budget, progress };
     let unread = |error: io::Error| image.fail(file_reason(&error));
@@ -48,7 +53,12 @@ pub fn read_map(path: &Path, corners: usize, budget: &Budget, progress: &Progres
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
-pub fn map_of_px(size: [u32; 2], color: ColorType, bytes: &[u8], progress: &Progress) -> Result<HeightMap, Cancelled> {
+pub(super) fn map_of_px(
+    size: [u32; 2],
+    color: ColorType,
+    bytes: &[u8],
+    progress: &Progress,
+) -> Result<HeightMap, Cancelled> {
     let line = usize::from(color.bytes_per_pixel()) * size[0] as usize;
     if line == 0 || size[1] == 0 || bytes.len() != line * size[1] as usize {
         return Ok(HeightMap::new([0, 0], Vec::new()));

@@ -12,7 +12,7 @@ use crate::load::{self, obj, ply, stl};
 /// The texts that replace a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
 
-pub fn originals() -> Vec<(Format, Vec<u8>)> {
+pub(super) fn originals() -> Vec<(Format, Vec<u8>)> {
     let mut originals = vec![
         (Obj, obj::tests::cube().into_bytes()),
         (Obj, obj::tests::everything().into_bytes()),

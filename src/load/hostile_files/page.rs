@@ -9,7 +9,7 @@ const START: usize = 32;
 const END: usize = 48;
 
 /// Compares a page with the stored one. Each row has a file, in Markdown, and the answer that it gets.
-pub fn hold(name: &str, title: &str, rows: &[(String, String)]) {
+pub(crate) fn hold(name: &str, title: &str, rows: &[(String, String)]) {
     let rows: Vec<_> = rows.iter().map(|(file, gets)| vec![file.clone(), plain(gets)]).collect();
     let text = format!(
         "# {title}\n\n{} files that the tests make. Each gets the answer beside it, word for word, within a second.\n\n{}",
@@ -27,7 +27,7 @@ pub fn hold(name: &str, title: &str, rows: &[(String, String)]) {
 }
 
 /// Formats a file on one line, in Markdown: all of it, or its start and end.
-pub fn shown(bytes: &[u8]) -> String {
+pub(crate) fn shown(bytes: &[u8]) -> String {
     let line = |bytes: &[u8]| bytes.escape_ascii().to_string().replace('|', "\\|");
     match bytes.len() {
         0 => "nothing".to_owned(),

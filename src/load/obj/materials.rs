@@ -16,7 +16,7 @@ use crate::mesh::{Material, MemoryAccount, Texture};
 const MAX_LIBRARIES: usize = 64;
 
 /// The materials of the faces.
-pub struct Materials<'a> {
+pub(super) struct Materials<'a> {
     files: &'a Files<'a>,
     budget: &'a Budget,
     /// The names of the material files.
@@ -36,7 +36,7 @@ pub struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
+    pub(super) fn new(files: &'a Files<'a>, budget: &'a Budget) -> Self {
         Self {
             files,
             budget,
@@ -54,7 +54,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Reads `mtllib`: the names of one or more files, which may contain spaces.
-    pub fn add_library(&mut self, names: &[u8]) {
+    pub(super) fn add_library(&mut self, names: &[u8]) {
         let mut name = Vec::new();
         for word in words(names) {
             if !name.is_empty() {
@@ -98,7 +98,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Reads `usemtl`: the material of the next faces.
-    pub fn enter(&mut self, name: &[u8]) {
+    pub(super) fn enter(&mut self, name: &[u8]) {
         if self.name != name {
             self.name = name.to_vec();
             self.index = None;
@@ -109,7 +109,7 @@ impl<'a> Materials<'a> {
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
-    pub fn current(&mut self, faces: &mut FaceBuilder) -> Result<usize, ReadError> {
+    pub(super) fn current(&mut self, faces: &mut FaceBuilder) -> Result<usize, ReadError> {
         if let Some(index) = self.index.or_else(|| self.indices.get(&self.name).copied()) {
             self.index = Some(index);
             return Ok(index);
@@ -150,7 +150,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Returns what is missing or broken, one sentence each.
-    pub fn warnings(&mut self) -> Vec<String> {
+    pub(super) fn warnings(&mut self) -> Vec<String> {
         let mut warnings = std::mem::take(&mut self.problems);
         warnings.extend(counted([
             (self.bad_statements, "colours in material files that can't be read, left out"),

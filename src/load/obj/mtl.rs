@@ -7,7 +7,7 @@ use crate::load::text_lines::{Lines, first_word, number, numbers};
 
 /// A material in a material file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MtlMaterial {
+pub(super) struct MtlMaterial {
     pub name: Vec<u8>,
     /// Kd: the diffuse colour, linear.
     pub color: [f32; 3],
@@ -19,7 +19,7 @@ pub struct MtlMaterial {
 ///
 /// # Errors
 /// A clause that says what is wrong with the whole file.
-pub fn read(bytes: &[u8]) -> Result<(Vec<MtlMaterial>, usize), String> {
+pub(super) fn read(bytes: &[u8]) -> Result<(Vec<MtlMaterial>, usize), String> {
     let (mut materials, mut bad) = (Vec::<MtlMaterial>::new(), 0);
     let mut lines = Lines::new(bytes);
     while let Some(line) = lines.next().map_err(|fault| fault.to_string())? {

@@ -5,7 +5,7 @@ use crate::load::text_lines::{Line, Lines, shown};
 
 /// How values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Encoding {
+pub(super) enum Encoding {
     Text,
     LittleEndian,
     BigEndian,
@@ -13,7 +13,7 @@ pub enum Encoding {
 
 /// The type of a number in a binary file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scalar {
+pub(super) enum Scalar {
     I8,
     U8,
     I16,
@@ -40,7 +40,7 @@ impl Scalar {
     }
 
     /// Returns the size in bytes.
-    pub fn size(self) -> usize {
+    pub(super) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -52,19 +52,19 @@ impl Scalar {
 
 /// A single value, or a list of values after their count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PropertyKind {
+pub(super) enum PropertyKind {
     One(Scalar),
     List { count: Scalar, item: Scalar },
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Property<'a> {
+pub(super) struct Property<'a> {
     pub name: &'a [u8],
     pub kind: PropertyKind,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Element<'a> {
+pub(super) struct Element<'a> {
     pub name: &'a [u8],
     pub count: u64,
     pub properties: Vec<Property<'a>>,
@@ -73,7 +73,7 @@ pub struct Element<'a> {
 impl Element<'_> {
     /// Returns the least size of one such element in a binary file, in bytes, with all its lists empty; and whether it
     /// has no lists.
-    pub fn least(&self) -> (u64, bool) {
+    pub(super) fn least(&self) -> (u64, bool) {
         let size = |property: &Property| match property.kind {
             PropertyKind::One(scalar) | PropertyKind::List { count: scalar, .. } => scalar.size() as u64,
         };
@@ -82,7 +82,7 @@ impl Element<'_> {
     }
 }
 
-pub struct Header<'a> {
+pub(super) struct Header<'a> {
     pub encoding: Encoding,
     pub elements: Vec<Element<'a>>,
     /// The lines after the header.
@@ -93,7 +93,7 @@ pub struct Header<'a> {
 ///
 /// # Errors
 /// [`ReadError::Broken`].
-pub fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     let is_ply = bytes.get(..4).is_some_and(|start| start.starts_with(b"ply") && start[3].is_ascii_whitespace());
     if !is_ply {
         return Err(FilePosition::Everywhere.error("it isn't a PLY file: its first line isn't \"ply\""));

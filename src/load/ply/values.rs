@@ -6,7 +6,7 @@ use crate::load::text_lines::{Line, Lines, number, shown, words};
 
 /// The position of the next value.
 #[derive(Clone)]
-pub struct Values<'a> {
+pub(super) struct Values<'a> {
     encoding: Encoding,
     /// The lines that haven't been read; of a text file, those after the current element's line.
     lines: Lines<'a>,
@@ -21,14 +21,14 @@ pub struct Values<'a> {
 }
 
 impl<'a> Values<'a> {
-    pub fn new(header: &Header<'a>, size: usize) -> Self {
+    pub(super) fn new(header: &Header<'a>, size: usize) -> Self {
         let lines = header.lines.clone();
         let line = Line { text: &[], number: lines.count() };
         Self { encoding: header.encoding, bytes: lines.rest(), lines, line, left: &[], size }
     }
 
     /// Returns the position of the next value, for messages.
-    pub fn place(&self) -> FilePosition {
+    pub(super) fn place(&self) -> FilePosition {
         match self.encoding {
             Encoding::Text => FilePosition::Line(self.line.number),
             _ => FilePosition::Byte(self.size - self.bytes.len()),
@@ -36,7 +36,7 @@ impl<'a> Values<'a> {
     }
 
     /// Returns how much of the file has been read, 0 to 1.
-    pub fn fraction(&self) -> f32 {
+    pub(super) fn fraction(&self) -> f32 {
         let left = if self.encoding == Encoding::Text { self.lines.rest() } else { self.bytes };
         1.0 - left.len() as f32 / self.size as f32
     }
@@ -45,7 +45,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn check(&self, element: &Element) -> Result<(), ReadError> {
+    pub(super) fn check(&self, element: &Element) -> Result<(), ReadError> {
         let (left, least) = match self.encoding {
             // A digit and a separator, which the last value may lack.
             Encoding::Text => (self.lines.rest().len() + 1, 2 * element.properties.len() as u64),
@@ -69,7 +69,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn skip(
+    pub(super) fn skip(
         &mut self,
         element: &Element,
         mut each: impl FnMut(&Self, u64) -> Result<(), ReadError>,
@@ -99,7 +99,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn skip_one(&mut self, kind: PropertyKind) -> Result<(), ReadError> {
+    pub(super) fn skip_one(&mut self, kind: PropertyKind) -> Result<(), ReadError> {
         match kind {
             PropertyKind::One(scalar) => self.next(scalar).map(drop),
             PropertyKind::List { count, item } if self.encoding == Encoding::Text => {
@@ -118,7 +118,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`] at the end of the file.
-    pub fn begin(&mut self, element: &Element, i: u64) -> Result<(), ReadError> {
+    pub(super) fn begin(&mut self, element: &Element, i: u64) -> Result<(), ReadError> {
         if self.encoding != Encoding::Text {
             return Ok(());
         }
@@ -136,7 +136,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn end(&self, element: &Element) -> Result<(), ReadError> {
+    pub(super) fn end(&self, element: &Element) -> Result<(), ReadError> {
         if self.left.is_empty() {
             return Ok(());
         }
@@ -149,7 +149,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn next(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
+    pub(super) fn next(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
         match self.encoding {
             Encoding::Text => self.word(),
             Encoding::LittleEndian => Ok(match scalar {
@@ -179,7 +179,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub fn count(&mut self, count: Scalar, item: Scalar) -> Result<usize, ReadError> {
+    pub(super) fn count(&mut self, count: Scalar, item: Scalar) -> Result<usize, ReadError> {
         let place = self.place();
         let said = self.next(count)?;
         if said < 0.0 || said.fract() != 0.0 || !said.is_finite() {
@@ -218,7 +218,7 @@ impl<'a> Values<'a> {
     }
 
     /// Returns how many bytes follow the last element.
-    pub fn left_over(&self) -> usize {
+    pub(super) fn left_over(&self) -> usize {
         match self.encoding {
             Encoding::Text => self.lines.rest().trim_ascii().len(),
             _ => self.bytes.len(),
@@ -227,6 +227,6 @@ impl<'a> Values<'a> {
 }
 
 /// Formats a number for a message.
-pub fn plain(x: f64) -> String {
+pub(super) fn plain(x: f64) -> String {
     if x == 0.0 || (1e-3..1e15).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }

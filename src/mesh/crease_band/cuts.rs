@@ -16,7 +16,7 @@ const LEAST_SINE: f64 = 0.5;
 
 /// A point on an edge, and the normal that all its sides have there.
 #[derive(Clone, Copy, Debug)]
-pub struct Cut {
+pub(super) struct Cut {
     /// The distance from the end near it, as a part of the edge's length.
     pub part: f32,
     pub position: Vec3,
@@ -25,13 +25,13 @@ pub struct Cut {
 
 /// The cuts of an edge near its ends, in its own direction.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct EdgeCuts {
+pub(super) struct EdgeCuts {
     pub is_creased: bool,
     pub ends: [Option<Cut>; 2],
 }
 
 /// The cuts of all edges.
-pub struct Cuts {
+pub(super) struct Cuts {
     /// One for each of the topology's edges.
     pub edges: Vec<EdgeCuts>,
     /// The number of edges that are too short for the width.
@@ -39,7 +39,7 @@ pub struct Cuts {
 }
 
 /// Converts a width relative to the bounding diagonal into object units.
-pub fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f64 {
+pub(super) fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f64 {
     let largest = topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
     let least = LEAST_ULP * f64::from(largest) * f64::from(f32::EPSILON);
     mesh.bounds().part(width.into()).max(least)
@@ -47,7 +47,7 @@ pub fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f64 {
 
 impl Cuts {
     /// Cuts all edges. `width` is in object units.
-    pub fn of(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
+    pub(super) fn of(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
         let is_creased = |edge: &Edge| {
             let sides = topology.edge_sides(edge);
             let at = |side: &Side, end: usize| normal(mesh, topology, side, end);
@@ -77,7 +77,7 @@ impl Cuts {
     }
 
     /// Returns the number of edges with split normals.
-    pub fn creases(&self) -> u32 {
+    pub(super) fn creases(&self) -> u32 {
         self.edges.iter().filter(|edge| edge.is_creased).count() as u32
     }
 

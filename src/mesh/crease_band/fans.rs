@@ -11,7 +11,7 @@ const CANCELLED: f64 = 1e-6;
 
 /// All fans of a mesh. Parts of a mesh that meet in a point without a common edge have a fan each, since nothing can
 /// tear between them.
-pub struct Fans {
+pub(super) struct Fans {
     /// The fan of each corner k of each patch, at 3 * patch + k.
     fan_of: Vec<u32>,
     /// For each fan, the normal that its corners will share; none if they have the same normal already.
@@ -19,7 +19,7 @@ pub struct Fans {
 }
 
 impl Fans {
-    pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
+    pub(super) fn of(mesh: &Mesh, topology: &Topology) -> Self {
         let count = 3 * topology.patches.len();
         let mut parts = UnionFind::new(count);
         for edge in &topology.edges {
@@ -44,17 +44,17 @@ impl Fans {
     }
 
     /// Returns whether there is a fan whose corners have different normals.
-    pub fn any_split(&self) -> bool {
+    pub(super) fn any_split(&self) -> bool {
         self.normals.iter().any(Option::is_some)
     }
 
     /// Returns the normal that corner `k` of a patch shares with its fan; none if the fan's normals don't differ.
-    pub fn normal(&self, patch: u32, k: usize) -> Option<Vec3> {
+    pub(super) fn normal(&self, patch: u32, k: usize) -> Option<Vec3> {
         self.normals[self.fan_of[slot(patch, k) as usize] as usize]
     }
 
     /// Returns the same as [`normal`](Self::normal) for an end of a side: 0 or 1, in its edge's own direction.
-    pub fn normal_at(&self, side: &Side, end: usize) -> Option<Vec3> {
+    pub(super) fn normal_at(&self, side: &Side, end: usize) -> Option<Vec3> {
         self.normal(side.patch(), corner_at(side, end))
     }
 }
@@ -64,14 +64,14 @@ fn slot(patch: u32, k: usize) -> u32 {
 }
 
 /// Returns which of its patch's corners a side has at an end of its edge, 0 to 2.
-pub fn corner_at(side: &Side, end: usize) -> usize {
+pub(super) fn corner_at(side: &Side, end: usize) -> usize {
     let k = side.index();
     if (end == 0) != side.reversed() { k } else { (k + 1) % 3 }
 }
 
 /// Returns the normalised mean of the distinct normals, or one of them where they cancel. How many corners have the
 /// same normal doesn't matter, so the result doesn't depend on how faces are triangulated.
-pub fn shared(normals: impl Iterator<Item = Vec3>) -> Vec3 {
+pub(super) fn shared(normals: impl Iterator<Item = Vec3>) -> Vec3 {
     let mut keys: Vec<_> = normals.map(key).collect();
     keys.sort_unstable();
     keys.dedup();
@@ -92,7 +92,7 @@ fn mean(keys: impl Iterator<Item = [u32; 3]> + Clone) -> Vec3 {
 }
 
 /// Returns a weighted sum of unit normals, normalised; or the first normal where they cancel.
-pub fn blend(normals: impl IntoIterator<Item = (f64, Vec3)>) -> Vec3 {
+pub(super) fn blend(normals: impl IntoIterator<Item = (f64, Vec3)>) -> Vec3 {
     let mut first = None;
     let mut sum = DVec3::ZERO;
     for (weight, normal) in normals {

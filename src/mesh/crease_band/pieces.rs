@@ -17,7 +17,7 @@ const LARGEST_PART: f64 = 0.5;
 const TWIN_STEP: f64 = 0.125;
 
 /// Cuts patches into pieces.
-pub struct Cutter<'a> {
+pub(super) struct Cutter<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     fans: &'a Fans,
@@ -59,12 +59,12 @@ struct CutPatch {
 
 impl<'a> Cutter<'a> {
     /// Prepares to cut patches. `width` is in object units.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, fans: &'a Fans, cuts: &'a Cuts, width: f64) -> Self {
+    pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, fans: &'a Fans, cuts: &'a Cuts, width: f64) -> Self {
         Self { mesh, topology, fans, cuts, width, twins: twins(topology), narrowed: 0 }
     }
 
     /// Calls `add` with each piece of a patch: first what the cuts leave of it, then the strips along creased sides.
-    pub fn pieces(&mut self, patch: u32, add: &mut dyn FnMut([Corner; 3])) {
+    pub(super) fn pieces(&mut self, patch: u32, add: &mut dyn FnMut([Corner; 3])) {
         let whole = self.whole(patch);
         let part = self.inside_part(patch, &whole);
         let insets = [0, 1, 2].map(|k| whole.inset(k, part));

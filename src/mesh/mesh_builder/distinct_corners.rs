@@ -6,7 +6,7 @@ use crate::mesh::interner::Interner;
 
 /// Corners that differ in some bit or in their binding, in the order of their first appearance.
 #[derive(Default)]
-pub struct DistinctCorners {
+pub(super) struct DistinctCorners {
     pub corners: Vec<Corner>,
     /// The binding of each corner; empty while all are 0.
     pub bindings: Vec<u32>,
@@ -15,7 +15,7 @@ pub struct DistinctCorners {
 
 impl DistinctCorners {
     /// Returns the number of a corner. A new corner gets the next number.
-    pub fn id(&mut self, corner: Corner, binding: u32) -> u32 {
+    pub(super) fn id(&mut self, corner: Corner, binding: u32) -> u32 {
         let (corners, bindings) = (&self.corners, &self.bindings);
         let (id, is_new) = self.ids.number(key(&corner, binding), |id| key_of(corners, bindings, id));
         if is_new {
@@ -29,7 +29,7 @@ impl DistinctCorners {
     }
 
     /// Returns how many more corners there is room for.
-    pub fn room(&self) -> usize {
+    pub(super) fn room(&self) -> usize {
         self.ids.room().min(self.corners.capacity() - self.corners.len())
     }
 
@@ -37,7 +37,7 @@ impl DistinctCorners {
     ///
     /// # Errors
     /// [`MemoryRefused`].
-    pub fn make_room(&mut self, more: usize, budget: &dyn MemoryAccount) -> Result<(), MemoryRefused> {
+    pub(super) fn make_room(&mut self, more: usize, budget: &dyn MemoryAccount) -> Result<(), MemoryRefused> {
         let (count, capacity) = (self.corners.len(), self.corners.capacity());
         if capacity - count < more {
             budget.exchange(capacity as u64 * 32, (count + more) as u64 * 32)?;
@@ -52,7 +52,7 @@ impl DistinctCorners {
     }
 
     /// Frees the table that finds equal corners: no more corners will be added.
-    pub fn close(&mut self, budget: &dyn MemoryAccount) {
+    pub(super) fn close(&mut self, budget: &dyn MemoryAccount) {
         budget.release(self.ids.bytes());
         self.ids = Interner::default();
     }

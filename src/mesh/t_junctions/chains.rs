@@ -53,7 +53,7 @@ struct Step {
 }
 
 impl<'a> ChainSearch<'a> {
-    pub fn new(topology: &'a Topology) -> Self {
+    pub(super) fn new(topology: &'a Topology) -> Self {
         let mut starts = vec![0; topology.points.len() + 1];
         let mut open = 0;
         for (_, edge) in open_edges(topology) {
@@ -74,7 +74,7 @@ impl<'a> ChainSearch<'a> {
     }
 
     /// Adds the points inside the first chain that is found beside an edge, if there is one.
-    pub fn find(&mut self, number: u32, edge: &Edge, points: &mut Vec<u32>) {
+    pub(super) fn find(&mut self, number: u32, edge: &Edge, points: &mut Vec<u32>) {
         let Some(coarse) = CoarseEdge::of(self.topology, edge) else { return };
         if self.walk(number, &coarse) && self.is_no_leaf() {
             points.extend(self.path.iter().skip(1).map(|step| step.point));

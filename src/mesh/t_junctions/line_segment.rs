@@ -12,27 +12,27 @@ pub(super) struct LineSegment {
 }
 
 impl LineSegment {
-    pub fn of(topology: &Topology, edge: &Edge) -> Self {
+    pub(super) fn of(topology: &Topology, edge: &Edge) -> Self {
         Self { ends: topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3()) }
     }
 
-    pub fn way(&self) -> DVec3 {
+    pub(super) fn way(&self) -> DVec3 {
         self.ends[1] - self.ends[0]
     }
 
-    pub fn length(&self) -> f64 {
+    pub(super) fn length(&self) -> f64 {
         self.way().length()
     }
 
     /// Returns where along the segment a position lies, 0 at its start and 1 at its end, and its distance from the
     /// line.
-    pub fn project(&self, place: DVec3) -> (f64, f64) {
+    pub(super) fn project(&self, place: DVec3) -> (f64, f64) {
         let t = (place - self.ends[0]).dot(self.way()) / self.way().length_squared();
         (t, place.distance(self.ends[0] + t * self.way()))
     }
 
     /// Returns the vector from the line to a position, at right angles to the line.
-    pub fn across(&self, place: DVec3) -> DVec3 {
+    pub(super) fn across(&self, place: DVec3) -> DVec3 {
         let (t, _) = self.project(place);
         place - (self.ends[0] + t * self.way())
     }

@@ -26,7 +26,7 @@ pub(super) struct PointsOnEdges<'a> {
 }
 
 impl<'a> PointsOnEdges<'a> {
-    pub fn new(topology: &'a Topology) -> Self {
+    pub(super) fn new(topology: &'a Topology) -> Self {
         let bounds = Bounds::of(topology.points.iter().copied());
         let tolerance = bounds.part(NEAR);
         let shortest = shortest(topology);
@@ -35,7 +35,7 @@ impl<'a> PointsOnEdges<'a> {
     }
 
     /// Adds the points that lie on an edge.
-    pub fn find(&self, edge: &Edge, points: &mut Vec<u32>) {
+    pub(super) fn find(&self, edge: &Edge, points: &mut Vec<u32>) {
         let line = LineSegment::of(self.topology, edge);
         self.tree.near_segment(line.ends, self.tolerance, |place, point| {
             if self.is_inside(edge, &line, point, place) {
@@ -45,7 +45,7 @@ impl<'a> PointsOnEdges<'a> {
     }
 
     /// Returns whether a point lies on an edge, nearly meets neither end, and is no corner of the edge's triangle.
-    pub fn is_inside(&self, edge: &Edge, line: &LineSegment, point: u32, place: DVec3) -> bool {
+    pub(super) fn is_inside(&self, edge: &Edge, line: &LineSegment, point: u32, place: DVec3) -> bool {
         let (t, distance) = line.project(place);
         let ends = self.topology.edge_points(edge).into_iter().zip(line.ends);
         t > 0.0

@@ -13,7 +13,7 @@ use crate::mesh::{Corner, HeightMap, Heights, Mesh, Rig, Shape};
 
 /// A level sheet whose normals all lean one way, each a little more or less than the next: along every edge that runs that
 /// way, both ends' tangents rise, and their planes are nearly parallel.
-pub fn inflection() -> Mesh {
+pub(crate) fn inflection() -> Mesh {
     let at = |x: i32, z: i32| {
         let lean = vec3(0.6 + 0.02 * (x * x - z) as f32, 1.0, 0.01 * (x * z) as f32);
         corner(vec3(x as f32, 0.0, z as f32) * 0.5, lean.normalize())
@@ -27,7 +27,7 @@ pub fn inflection() -> Mesh {
 
 /// A crease that ends within the sheet: along the first of two edges that follow one another the sides' normals differ at
 /// both ends, along the second at one, and beyond it nowhere.
-pub fn dart() -> Mesh {
+pub(crate) fn dart() -> Mesh {
     let normal = |x: f32, z: f32| vec3(0.3 * x, 1.0, 0.3 * z).normalize();
     let at = |x: i32, z: i32, side: f32| {
         let (x, z) = (x as f32, z as f32);
@@ -57,7 +57,7 @@ fn displaced(mut mesh: Mesh) -> Mesh {
 }
 
 /// A torus under waves, every other quarter of which has its texture elsewhere: seams with nothing in common.
-pub fn height_seams() -> Mesh {
+pub(crate) fn height_seams() -> Mesh {
     let quarter = |c: &Corner| (c.uv.x * 4.0 - 0.01).floor() as i32;
     let triangles = triangles(Shape::Torus).into_iter().map(|(_, corners)| {
         let shift =
@@ -68,13 +68,13 @@ pub fn height_seams() -> Mesh {
 }
 
 /// A cube with split normals under waves.
-pub fn height_splits() -> Mesh {
+pub(crate) fn height_splits() -> Mesh {
     displaced(Shape::CubeSplit.build())
 }
 
 /// A cylinder that bends about its middle and swells, a clip of two seconds: two joints, whose shares change along it, and
 /// a morph target that a joint then moves. Its caps' normals are split from its side's, and its side has a seam.
-pub fn moving() -> Mesh {
+pub(crate) fn moving() -> Mesh {
     let mut mesh = Shape::Cylinder.build();
     let bounds = mesh.bounds();
     let mut rig = Rig { joints: Vec::new(), ..Rig::default() };

@@ -8,13 +8,13 @@ const HALF: u32 = 32768;
 
 /// A patch's points and triangles, in order.
 #[derive(Debug, Default, PartialEq)]
-pub struct Patch {
+pub(super) struct Patch {
     pub points: Vec<[u32; 2]>,
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// Tessellates a patch.
-pub fn patch(factors: PatchFactors) -> Patch {
+pub(super) fn patch(factors: PatchFactors) -> Patch {
     if factors == PatchFactors::default() {
         return Patch::default();
     }
@@ -42,7 +42,7 @@ fn half_rounded_up(word: u32) -> u32 {
 }
 
 /// Where a row's points lie.
-pub fn row(word: u32, inside: bool) -> Vec<u32> {
+pub(super) fn row(word: u32, inside: bool) -> Vec<u32> {
     let odd = is_odd(word);
     let h = half_rounded_up(word);
     let (n, fewest) = if odd { (2 * h, 4) } else { (2 * h + 1, 3) };

@@ -28,7 +28,7 @@ const PER_VALUE: u64 = 9;
 const FIXED: u64 = 8 << 20;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Header {
+pub(super) struct Header {
     triangles: u64,
     /// None if the number is known only after the triangles are decoded.
     vertices: Option<u64>,
@@ -39,7 +39,7 @@ pub struct Header {
 impl Header {
     /// # Errors
     /// A clause if the data isn't a mesh, or has another version.
-    pub fn read(bytes: &[u8]) -> Result<Self, String> {
+    pub(super) fn read(bytes: &[u8]) -> Result<Self, String> {
         let cut = |_: DracoError| format!("has data that ends within its header, after {} bytes", bytes.len());
         let mut buffer = DecoderBuffer::new(bytes);
         let mut start = [0; 9];
@@ -74,7 +74,7 @@ impl Header {
     ///
     /// # Errors
     /// A clause with both numbers.
-    pub fn check(&self, vertices: u64, indices: u64) -> Result<(), String> {
+    pub(super) fn check(&self, vertices: u64, indices: u64) -> Result<(), String> {
         let triangles = self.triangles;
         if triangles.checked_mul(3) != Some(indices) {
             return Err(format!("holds {triangles} triangles, but the accessor of its indices has {indices} indices"));
@@ -86,7 +86,7 @@ impl Header {
     }
 
     /// Returns the greatest amount of memory, in bytes, that decoding takes if the result has `values` bytes of values.
-    pub fn memory(&self, bytes: &[u8], values: u64) -> u64 {
+    pub(super) fn memory(&self, bytes: &[u8], values: u64) -> u64 {
         let tables = (bytes.len() as u64 * SYMBOLS_A_BYTE * PER_SYMBOL).max(symbols(bytes) * PER_WHOLE_SYMBOL);
         let seams = if self.seamed > 0 { SEAMS + self.seamed * PER_SEAMED } else { 0 };
         let triangles = self.triangles.saturating_mul(PER_TRIANGLE + seams);

@@ -49,7 +49,7 @@ fn triangles() -> Vec<u32> {
 }
 
 /// A grid with quantised positions, octahedral normals and indices, all compressed.
-pub fn grid() -> Draft {
+pub(super) fn grid() -> Draft {
     let (corners, triangles) = (corners(), triangles());
     let mut draft = Draft::new();
     let encoded = encoder::encode_vertex_buffer(&corners).unwrap();

@@ -15,7 +15,7 @@ const SIDE: u16 = 8;
 /// The order of the vertices in the compressed data.
 #[derive(Clone, Copy, Debug, PartialEq)]
 /// The order before compression.
-pub enum Order {
+pub(super) enum Order {
     Kept,
     /// The order in which the encoder visits them, from edge to edge.
     Walked,
@@ -23,7 +23,7 @@ pub enum Order {
 
 /// Vertices and triangles to compress.
 #[derive(Default)]
-pub struct Stream {
+pub(super) struct Stream {
     mesh: DracoExtension,
     vertices: usize,
     options: EncoderOptions,
@@ -31,7 +31,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    pub fn new(vertices: usize, triangles: &[[u32; 3]], order: Order) -> Self {
+    pub(super) fn new(vertices: usize, triangles: &[[u32; 3]], order: Order) -> Self {
         let (mut mesh, mut options) = (DracoExtension::new(), EncoderOptions::new());
         mesh.set_num_points(vertices);
         mesh.try_set_num_faces(triangles.len()).unwrap();
@@ -41,7 +41,7 @@ impl Stream {
     }
 
     /// Adds an attribute of `width` numbers a vertex. Floats keep this number of bits, or all of them.
-    pub fn attribute(&mut self, kind: Kind, width: u8, data: DataType, bytes: &[u8], bits: Option<i32>) {
+    pub(super) fn attribute(&mut self, kind: Kind, width: u8, data: DataType, bytes: &[u8], bits: Option<i32>) {
         let mut attribute = PointAttribute::new();
         attribute.init(kind, width, data, false, self.vertices);
         attribute.buffer_mut().write(0, bytes);
@@ -52,7 +52,7 @@ impl Stream {
         self.ids.push(self.mesh.attribute(id).unique_id());
     }
 
-    pub fn bytes(&self) -> Vec<u8> {
+    pub(super) fn bytes(&self) -> Vec<u8> {
         let (mut encoder, mut bytes) = (MeshEncoder::new(), EncoderBuffer::new());
         encoder.set_mesh(self.mesh.clone());
         encoder.encode(&self.options, &mut bytes).unwrap();
@@ -81,7 +81,7 @@ fn corners() -> Vec<[u16; 3]> {
 }
 
 /// A grid with integer positions, equal normals, and texture coordinates.
-pub fn grid(order: Order) -> Draft {
+pub(super) fn grid(order: Order) -> Draft {
     let (corners, triangles) = (corners(), triangles());
     let mut stream = Stream::new(corners.len(), &triangles, order);
     let whole: Vec<u8> = corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -193,7 +193,7 @@ fn data_from_googles_encoder_is_read() {
 }
 
 /// A triangle that a joint lifts by one, compressed with its joints and weights. Its morph target isn't compressed.
-pub fn skinned() -> Draft {
+pub(super) fn skinned() -> Draft {
     let mut stream = Stream::new(3, &[[0, 1, 2]], Order::Kept);
     stream.attribute(Kind::Position, 3, DataType::Float32, &floats(TRIANGLE.as_flattened()), None);
     // With more bits than the accessor says, as some exporters write them.

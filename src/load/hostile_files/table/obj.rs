@@ -11,7 +11,7 @@ macro_rules! obj {
     };
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     vec![
         case(Obj, "", Refused("Empty | vertices")),
         (Obj, vec![0xff; 1000].into(), Refused("Empty | vertices | 1 | statements")),

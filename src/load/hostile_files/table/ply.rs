@@ -27,7 +27,7 @@ fn binary(vertices: &str, count: u32, rest: &[u8]) -> Cow<'static, [u8]> {
 
 const VERTICES: &str = "element vertex 3\n";
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let indices: Vec<u8> = [0, 1, 2].iter().flat_map(|i: &i32| i.to_be_bytes()).collect();
     vec![
         case(Ply, "", Refused("Broken | PLY | \"ply\"")),

@@ -19,7 +19,7 @@ fn stl(said: u32, triangles: &[[f32; 9]]) -> Vec<u8> {
 const FACET: &str =
     "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let triangle = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let mut infinite = triangle;
     infinite[4] = f32::INFINITY;

@@ -16,7 +16,7 @@ fn no_gltf(name: &'static str, bytes: impl Into<Vec<u8>>, parts: &str) -> Case {
     Case::refused(name, bytes, &format!("NotGltf | {parts}"))
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let glb = triangle().glb();
     let json_end = 20 + u32::from_le_bytes([glb[12], glb[13], glb[14], glb[15]]) as usize;
     let cut = |length: usize| {

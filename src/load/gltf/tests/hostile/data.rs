@@ -58,7 +58,7 @@ fn refused(name: &'static str, draft: &Draft, expected: &str) -> Case {
     Case::draft(name, draft, Gets::Refused(expected.to_owned()))
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let mode = |mode: u32| changed(|draft| draft.root["meshes"][0]["primitives"][0]["mode"] = json!(mode));
     let short_skin = changed(|draft| {
         let binds = draft.floats("MAT4", &glam::Mat4::IDENTITY.to_cols_array());

@@ -16,7 +16,7 @@ fn chain(count: usize) -> Vec<Value> {
     [json!({ "mesh": 0 })].into_iter().chain(next).collect()
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let mut circle = chain(200_000);
     circle[0]["children"] = json!([199_999]);
     let mut wide = vec![json!({ "mesh": 0 }); 20_000];

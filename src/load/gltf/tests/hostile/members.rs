@@ -25,7 +25,7 @@ fn with(name: &'static str, pointer: &str, value: Value, expected: &str) -> Case
     Case::refused(name, draft.document().to_string(), expected)
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let sparse =
         json!({ "count": 1, "indices": { "bufferView": 0, "componentType": 5126 }, "values": { "bufferView": 1 } });
     vec![

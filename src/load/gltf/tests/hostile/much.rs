@@ -29,7 +29,7 @@ fn instances(count: usize, nodes: usize) -> Draft {
     draft
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let mut twins = triangle();
     let primitive = twins.root["meshes"][0]["primitives"][0].clone();
     twins.root["meshes"][0]["primitives"] = json!(vec![primitive; 2000]);

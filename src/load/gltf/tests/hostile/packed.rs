@@ -120,7 +120,7 @@ fn documents() -> Vec<Case> {
     ]
 }
 
-pub fn cases() -> Vec<Case> {
+pub(super) fn cases() -> Vec<Case> {
     let cut = |length: usize| length.to_string();
     let mut cases = documents();
     cases.extend([

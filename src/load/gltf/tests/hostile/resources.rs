@@ -6,10 +6,10 @@ use crate::load::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// A folder that contains a document's folder, and files around it that the document mustn't read.
-pub struct Folder(PathBuf);
+pub(super) struct Folder(PathBuf);
 
 impl Folder {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let root = std::env::temp_dir().join(format!("pnaen-hostile-{}", std::process::id()));
         let folder = Self(root);
         std::fs::create_dir_all(folder.own().join("folder.bin")).expect("a writable temporary folder");
@@ -83,7 +83,7 @@ fn compressed(name: &'static str, change: impl FnOnce(&mut Value), expected: &st
     Case::draft(name, &draft, Gets::Refused(expected.to_owned()))
 }
 
-pub fn cases(folder: &Folder) -> Vec<Case> {
+pub(super) fn cases(folder: &Folder) -> Vec<Case> {
     let mut cases = vec![
         compressed(
             "compressed data that isn't",
