@@ -20,10 +20,10 @@ use pnaen::tessellate::{Partitioning, Tessellation};
 /// Width and height of each picture, in px.
 const SIZE: [u32; 2] = [192, 224];
 /// Moments that are drawn.
-pub(super) const MOMENTS: u32 = 6;
+pub const MOMENTS: u32 = 6;
 
 /// The pictures of the moments, and the number of triangles of each.
-pub(super) fn frames() -> Result<Vec<(RgbaImage, u32)>, Box<dyn Error>> {
+pub fn frames() -> Result<Vec<(RgbaImage, u32)>, Box<dyn Error>> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tube.gltf");
     let tube = load(&file, &Limits::default(), &Progress::new())?.mesh;
     let rig = tube.rig.clone().ok_or("the tube has a rig")?;

@@ -31,7 +31,7 @@ fn torus() -> Result<Mesh, SliceError> {
 }
 
 /// Draws the torus with an LOD under which no triangle is further than `tolerance` px from the curved surface.
-pub(super) fn picture(tolerance: f32, room: Room) -> Result<(RgbaImage, OutputStatus, bool), Box<dyn Error>> {
+pub fn picture(tolerance: f32, room: Room) -> Result<(RgbaImage, OutputStatus, bool), Box<dyn Error>> {
     let canvas = Canvas::new([320, 240])?;
     let context = Context::new(&canvas.device, &canvas.queue)?;
     let mut mesh = TessellatedMesh::new(&context, torus()?, room)?;

@@ -28,7 +28,6 @@
 //! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
 // The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
 #![cfg_attr(not(feature = "app"), allow(dead_code))]
-#![allow(unused_imports)]
 #![warn(unreachable_pub)]
 
 pub mod embed;

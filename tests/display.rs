@@ -8,13 +8,13 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use pnaen::app::{App, run_watched};
-use pnaen::files::Limits;
-use pnaen::gpu::{AdapterChoice, Gpu};
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
-use pnaen::render::Camera;
-use pnaen::settings::Settings;
+use pnaen::internals::Camera;
+use pnaen::internals::Settings;
+use pnaen::internals::Shape;
+use pnaen::internals::Source;
+use pnaen::internals::{AdapterChoice, Gpu};
+use pnaen::internals::{App, run_watched};
+use pnaen::load::Limits;
 
 /// Longer than all of it takes on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(180);

@@ -35,7 +35,7 @@ use viewport::Viewport;
 use window::WindowState;
 
 pub(crate) use persistence::Persistence;
-pub(crate) use window::{WindowError, run, run_watched};
+pub(crate) use window::{WindowError, run};
 
 /// The window's state, grouped as the rooms below are.
 pub struct App {

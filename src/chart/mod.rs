@@ -21,7 +21,9 @@ pub(crate) use legend::looks;
 pub(crate) use look::{Fill, Look, Shape, dash};
 pub(crate) use pen::RADIUS;
 pub(crate) use picture::{bitmap, svg};
-pub(crate) use race::{Race, Win, front, has_converged};
+#[cfg(test)]
+pub(crate) use race::front;
+pub(crate) use race::{Race, Win, has_converged};
 pub(crate) use save::{SaveError, save};
 pub(crate) use setting::{LodKind, Method, Plan, Setting, coarse_first};
 

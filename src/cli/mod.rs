@@ -37,8 +37,10 @@ use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use copied_command::CopiedCommand;
 pub(crate) use options::{LimitOption, SurfaceOptions, WeldOption};
-pub(crate) use picture_comparison::{CompareError, Comparison, compare};
+pub(crate) use picture_comparison::{CompareError, compare};
+#[cfg(test)]
 pub(crate) use render::run_with as render_with;
+#[cfg(test)]
 pub(crate) use tessellate::run_with as tessellate_with;
 pub(crate) use truth::TruthOption;
 

@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+#[cfg(test)]
 pub(crate) use crate::mesh::rig::{Binding, Delta, JointMatrix};
 pub(crate) use crate::tessellate::{PatchFactors, Vertex};
 

@@ -34,13 +34,19 @@ pub(crate) use arena::{VERTEX_HALF, vertices_of};
 pub(crate) use bound_pass::BoundPass;
 pub(crate) use buffer::{empty, uniform_buffer};
 pub(crate) use device::{Gpu, device_descriptor};
-pub(crate) use domain::{DomainParams, DomainPass, DomainPattern};
+#[cfg(test)]
+pub(crate) use domain::DomainParams;
+pub(crate) use domain::{DomainPass, DomainPattern};
 pub use error::GpuError;
 pub(crate) use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
-pub(crate) use pipelines::{ComputePipeline, ComputePipelines, GRID_WIDTH, ShaderModule, WORKGROUP, bind_group, grid};
+#[cfg(test)]
+pub(crate) use pipelines::GRID_WIDTH;
+pub(crate) use pipelines::{ComputePipeline, ComputePipelines, ShaderModule, WORKGROUP, bind_group, grid};
 pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
-pub(crate) use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
+#[cfg(test)]
+pub(crate) use recorder::PASSES;
+pub(crate) use recorder::{DRAWING, PassTime, RecordPasses, Recorder, Timing, take_times};
 pub(crate) use tessellator::{ChunkBuffers, Tessellator};
 pub(crate) use wgsl::WgslFile;
 

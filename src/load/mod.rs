@@ -26,8 +26,9 @@ pub use loaded_mesh::LoadedMesh;
 pub use mesh_file::{LoadError, load};
 pub use read_error::ReadError;
 
-pub(crate) use heights::{HeightError, HeightSource};
+pub(crate) use heights::HeightSource;
 pub(crate) use memory_budget::Budget;
-pub(crate) use mesh_file::{Format, read};
+#[cfg(test)]
+pub(crate) use mesh_file::Format;
 pub(crate) use source::Source;
 pub(crate) use warnings::{crease_band_warnings, untextured_warning};

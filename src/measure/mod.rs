@@ -20,7 +20,7 @@ pub(crate) use asked_factors::AskedFactors;
 pub(crate) use cracks::{CrackedEdge, Cracks};
 pub(crate) use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};
 pub(crate) use indices::{IndexDifference, Meaning, index_differences};
-pub(crate) use outlines::{EdgeSide, OutlinePoint, Outlines, patch_edges};
+pub(crate) use outlines::{EdgeSide, patch_edges};
 pub(crate) use screen_error::{ScreenError, ScreenErrorMeasurement};
 pub(crate) use sizes::{SMALL_PX, Sizes};
 pub(crate) use survey::{Culled, Measured, Survey};

@@ -88,6 +88,7 @@ impl Layout {
 ///
 /// # Panics
 /// If `patch` isn't an index into [`Topology::patches`].
+#[cfg(test)]
 pub(crate) fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
     let [nine @ .., _, _, _] = twelve(topology, patch);
     nine

@@ -39,13 +39,15 @@ pub use rig::{Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
-pub(crate) use build_limits::{BuildError, MAX_TRIANGLES, MemoryAccount, MemoryRefused, Unlimited};
+#[cfg(test)]
+pub(crate) use build_limits::Unlimited;
+pub(crate) use build_limits::{BuildError, MemoryAccount, MemoryRefused};
 pub(crate) use crease_band::{CreaseBand, with_crease_band};
 pub(crate) use curves::{Curve, Curves, Sharing};
 pub(crate) use dominance::Dominance;
 pub(crate) use heights::{MAX_LEVELS, MAX_MAPS};
 pub(crate) use normal_faults::NormalFaults;
-pub(crate) use shapes::{Shape, ShapeError};
+pub(crate) use shapes::Shape;
 pub(crate) use t_junctions::{TJunction, t_junctions};
 pub(crate) use weld_preview::{WeldPreview, weld_previews};
 

@@ -47,6 +47,7 @@ fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32
 /// A tolerance that isn't above 0 gives the same result as [`weld`]. Returns the points, and for each position the
 /// index of its point. Takes expected linear time, since only a limited number of points that far apart fit into one
 /// cell of the spatial hash.
+#[cfg(test)]
 pub(crate) fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
     weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
 }

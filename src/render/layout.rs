@@ -98,6 +98,7 @@ pub(crate) const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 
 /// sRGB colour of a face seen from behind, before it is lit; `BACK_FACE_COLOR` in `shaders/draw_surface.wgsl` has the same
 /// in linear light.
+#[cfg(test)]
 pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
 /// sRGB colour of what tessellation is wasted on: triangles too small, patches whose factors are too low; `WASTE_COLOR` in
@@ -108,6 +109,7 @@ pub(crate) const WASTE_COLOR: [u8; 3] = [213, 94, 0];
 pub(crate) const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
+#[cfg(test)]
 pub(crate) const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
 /// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.

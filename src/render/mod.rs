@@ -23,12 +23,13 @@ pub(crate) use camera::{Camera, Standpoint};
 pub(crate) use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub(crate) use leaks::LeakCounter;
 pub(crate) use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
-pub(crate) use materials::Materials;
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub(crate) use renderer::Renderer;
 pub(crate) use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
 pub(crate) use scene::{LineSegment, Scene};
-pub(crate) use target::{Target, samples};
+pub(crate) use target::Target;
+#[cfg(test)]
+pub(crate) use target::samples;
 
 /// The files with the entry points of what draws and picks: one shader module each.
 #[cfg(test)]

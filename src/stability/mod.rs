@@ -10,10 +10,12 @@ mod sweep_chart;
 mod views;
 
 pub(crate) use cases::{CASES, Case, LOOK, Look, Probe};
+#[cfg(test)]
 pub(crate) use meshes::soup;
 pub(crate) use picture::{PictureError, picture};
-pub(crate) use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
+pub(crate) use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
 pub(crate) use run::{Effort, run};
+#[cfg(test)]
 pub(crate) use views::random as random_camera;
 
 use serde::Serialize;

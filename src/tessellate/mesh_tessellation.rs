@@ -124,6 +124,7 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 }
 
 /// Returns the factors that LOD gives: one for each edge, or with edges as published one for each curve.
+#[cfg(test)]
 pub(crate) fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);

@@ -9,6 +9,10 @@ pub(crate) mod connectivity_table;
 mod control_nets;
 mod control_points;
 mod convention;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, reason = "the passes need the view alone; tests need the rest, which they follow")
+)]
 mod coverage;
 mod cull;
 mod deform;
@@ -46,45 +50,43 @@ pub use octahedral_normal::unpack_normal;
 pub use surface::Surface;
 pub use vertex::Vertex;
 
+#[cfg(test)]
+pub(crate) use control_points::edge_control_point;
 pub(crate) use control_points::{
-    DistinctNormals, add_normal, center_control_point, crease_control_point, edge_control_point, nagata_control_point,
-    phong_control_point, side_control_points, straight_control_point,
+    DistinctNormals, add_normal, center_control_point, crease_control_point, side_control_points,
+    straight_control_point,
 };
 pub(crate) use convention::{corner_weights, domain_side, factor_side, weight_corner};
-pub(crate) use coverage::{CoverageView, ScreenCorner, covers_nothing, screen_corner};
-pub(crate) use cull::{
-    FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, faces_away, is_clipped, patch_is_outside, planes_outside,
-};
-pub(crate) use displace::{
-    bilinear_height, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length,
-    uv_gradients,
-};
-pub(crate) use domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
+pub(crate) use coverage::CoverageView;
+#[cfg(test)]
+pub(crate) use coverage::{covers_nothing, screen_corner};
+pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
+pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
 pub(crate) use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, nesting_factor};
+#[cfg(test)]
+pub(crate) use factors::FACTOR_ODD;
 pub(crate) use factors::{
-    FACTOR_ODD, FACTOR_VALUE, FIXED_ONE, outer_count, patch_is_culled, patch_is_low, point_count, process, round_pow2,
-    segments, triangle_count,
+    FACTOR_VALUE, FIXED_ONE, outer_count, patch_is_culled, patch_is_low, point_count, process, round_pow2, segments,
+    triangle_count,
 };
 pub(crate) use hull_factors::HullFactors;
 pub(crate) use inputs::sharing;
 pub(crate) use limit_surface::LimitSurface;
-pub(crate) use lod::{
-    beyond_near, distance_factor, edge_length_factor, max_with_one, near_edge_factor, paper_edge_factor,
-    project_and_scale,
-};
+pub(crate) use lod::{beyond_near, distance_factor, edge_length_factor, paper_edge_factor};
 pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};
-pub(crate) use mesh_tessellation::{edge_factors, given_totals, hull_factors, tessellate_given, totals};
-pub(crate) use normal::{
-    edge_normal, linear_normal, middle_normal, quadratic_edge_normal, quadratic_normal, surface_normal,
-};
+#[cfg(test)]
+pub(crate) use mesh_tessellation::edge_factors;
+pub(crate) use mesh_tessellation::{given_totals, hull_factors, tessellate_given, totals};
+pub(crate) use normal::{edge_normal, linear_normal, quadratic_edge_normal, quadratic_normal, surface_normal};
 pub(crate) use octahedral_normal::pack_normal;
-pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
+#[cfg(test)]
+pub(crate) use posed_mesh::deform;
+pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through};
 pub(crate) use solid::{Solid, is_beyond_near};
-pub(crate) use surface::{
-    ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position, patch_tangents,
-};
+pub(crate) use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
 pub(crate) use texel_lengths::{TexelLength, has_mixed_maps, map_number, texel_lengths};
 pub(crate) use triangle_budget::tolerance_within_budget;
+#[cfg(test)]
 pub(crate) use vertex::pack_key;
 
 /// The constants of the mathematics that the shaders have too, for the test that compares them.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::{Vec2, Vec3};
-use pnaen::mesh::adjacency::Layout;
+use pnaen::internals::Layout;
 use pnaen::mesh::{Corner, Mesh, Topology};
 use pnaen::progress::Progress;
 

@@ -4,12 +4,13 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use pnaen::files::Limits;
-use pnaen::load::{Format, read};
+use pnaen::internals::{Format, read};
+use pnaen::internals::{HullFactors, domain_plan, domain_point, domain_triangle};
+use pnaen::internals::{outer_count, point_count, triangle_count};
+use pnaen::load::Limits;
 use pnaen::mesh::{Mesh, Topology};
 use pnaen::progress::Progress;
-use pnaen::tessellate::factors::{outer_count, point_count, triangle_count};
-use pnaen::tessellate::{HullFactors, Partitioning, PatchFactors, domain_plan, domain_point, domain_triangle};
+use pnaen::tessellate::{Partitioning, PatchFactors};
 
 /// The greatest number of triangles for which a topology is built; larger meshes take too long for a fuzzer.
 const MOST_TRIANGLES: usize = 1 << 14;

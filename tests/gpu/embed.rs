@@ -13,8 +13,10 @@ use pnaen::tessellate::{Clip, Inputs, LodView, Surface, Tessellated, Tessellatio
 use crate::gpu_tests::engine;
 use crate::gpu_tests::pictures::differing;
 
+#[allow(unreachable_pub, reason = "a crate of its own")]
 #[path = "../../examples/animate.rs"]
 mod animate;
+#[allow(unreachable_pub, reason = "a crate of its own")]
 #[path = "../../examples/embed.rs"]
 mod embed;
 

@@ -16,10 +16,10 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
 use image::RgbaImage;
-use pnaen::app::{App, Persistence};
-use pnaen::files::Limits;
-use pnaen::load::Source;
-use pnaen::mesh::Shape;
+use pnaen::internals::Shape;
+use pnaen::internals::Source;
+use pnaen::internals::{App, Persistence};
+use pnaen::load::Limits;
 
 use driver::settle;
 use figures::Part;

@@ -3,9 +3,10 @@
 
 use std::sync::PoisonError;
 
-use pnaen::engine::{Loaded, Preparation, load};
-use pnaen::files::Limits;
-use pnaen::load::{HeightSource, LoadError, Source};
+use pnaen::internals::{HeightSource, Source};
+use pnaen::internals::{Loaded, Preparation, load_and_prepare as load};
+use pnaen::load::Limits;
+use pnaen::load::LoadError;
 use pnaen::progress::Progress;
 
 use super::counting::peak_of;

@@ -4,9 +4,10 @@ use std::io::Cursor;
 use std::sync::PoisonError;
 
 use image::{DynamicImage, ImageFormat, RgbImage};
-use pnaen::files::Limits;
-use pnaen::load::{Budget, HeightError, HeightSource};
-use pnaen::mesh::{Heights, Shape};
+use pnaen::internals::Shape;
+use pnaen::internals::{Budget, HeightError, HeightSource};
+use pnaen::load::Limits;
+use pnaen::mesh::Heights;
 use pnaen::progress::Progress;
 
 use super::counting::peak_of;

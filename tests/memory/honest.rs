@@ -2,7 +2,8 @@
 
 use std::sync::PoisonError;
 
-use pnaen::mesh::{Topology, weld_previews};
+use pnaen::internals::weld_previews;
+use pnaen::mesh::Topology;
 use pnaen::progress::Progress;
 
 use super::counting::peak_of;

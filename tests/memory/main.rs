@@ -16,7 +16,7 @@ mod packed;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use pnaen::files::Limits;
+use pnaen::load::Limits;
 use pnaen::load::{LoadError, LoadedMesh, load};
 use pnaen::progress::Progress;
 use serde_json::{Value, json};

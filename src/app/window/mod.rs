@@ -7,7 +7,7 @@ pub(crate) mod run;
 use device_lost::DeviceLosses;
 use fatal_screen::FatalScreen;
 
-pub(crate) use run::{WindowError, run, run_watched};
+pub(crate) use run::{WindowError, run};
 
 /// What became of the devices that the window was drawn with.
 #[derive(Default)]

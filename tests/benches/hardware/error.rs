@@ -1,9 +1,10 @@
 //! Equal error on screen: our LOD by error and our culling against the peer with the white paper's LOD and clipping.
 
-use pnaen::engine::{Engine, Measurements};
-use pnaen::gpu::{GpuError, Timing};
-use pnaen::settings::Settings;
-use pnaen::settings::options::TOLERANCE_RANGE;
+use pnaen::embed::GpuError;
+use pnaen::internals::Settings;
+use pnaen::internals::TOLERANCE_RANGE;
+use pnaen::internals::Timing;
+use pnaen::internals::{Engine, Measurements};
 use pnaen::tessellate::{Clip, Lod, Partitioning, Tessellation};
 
 use super::Scale;

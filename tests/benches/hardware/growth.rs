@@ -1,6 +1,6 @@
 //! How cost grows: twice the patches, twice the factors, twice the output.
 
-use pnaen::engine::Engine;
+use pnaen::internals::Engine;
 use pnaen::tessellate::Partitioning::FractionalOdd;
 
 use super::ours::Subject;

@@ -21,8 +21,8 @@ mod vulkan;
 
 use std::process::ExitCode;
 
-use pnaen::engine::Engine;
-use pnaen::settings::ARENA_BYTES;
+use pnaen::internals::ARENA_BYTES;
+use pnaen::internals::Engine;
 use pnaen::tessellate::Partitioning::{FractionalOdd, Integer};
 
 use copy::Copies;

@@ -3,11 +3,13 @@
 use std::time::{Duration, Instant};
 
 use glam::Vec3;
-use pnaen::engine::Engine;
-use pnaen::gpu::layout::{CurveNet, Patch, Vertex};
-use pnaen::gpu::{DRAWING, GpuError, PassTime, Timing, read_buffer, take_times};
-use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::Settings;
+use pnaen::embed::GpuError;
+use pnaen::internals::Engine;
+use pnaen::internals::Settings;
+use pnaen::internals::{Camera, Scene, Target};
+use pnaen::internals::{CurveNet, PatchLayout as Patch};
+use pnaen::internals::{DRAWING, PassTime, Timing, read_buffer, take_times};
+use pnaen::tessellate::Vertex;
 use pnaen::tessellate::{Clip, Tessellation};
 
 use super::numbers::Spread;
@@ -127,7 +129,7 @@ impl Subject {
         })?;
         engine.gpu.check()?;
         let spread = |passes: &[&str]| Spread::of(runs.iter().map(|run| run.sum(passes)));
-        let passes = pnaen::gpu::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
+        let passes = pnaen::internals::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
         let frame = [&TESSELLATING[..], &DRAWING].concat();
         Ok(OurTimes {
             tessellation: spread(&TESSELLATING),

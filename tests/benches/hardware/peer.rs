@@ -5,8 +5,8 @@ use std::rc::Rc;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use image::RgbaImage;
-use pnaen::gpu::Gpu;
-use pnaen::tessellate::HullFactors;
+use pnaen::internals::Gpu;
+use pnaen::internals::HullFactors;
 
 use super::memory::{Buffer, Owned};
 use super::pipelines::{Bound, FRAME_STAGES, Kind, Layout, tessellating};
@@ -70,7 +70,7 @@ impl Peer {
             | vk::ShaderStageFlags::TESSELLATION_EVALUATION;
         Ok(Self {
             layout: Layout::new(&vulkan, stages)?,
-            target: Target::new(&vulkan, size, pnaen::render::samples(gpu))?,
+            target: Target::new(&vulkan, size, pnaen::internals::samples(gpu))?,
             nowhere: Pass::nowhere(&vulkan)?,
             vulkan,
         })

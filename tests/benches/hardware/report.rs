@@ -1,6 +1,6 @@
 //! What is printed, in Markdown.
 
-use pnaen::engine::Engine;
+use pnaen::internals::Engine;
 
 use super::Scale;
 use super::copy::Copies;
@@ -34,11 +34,11 @@ impl Report {
             "whole submissions on the host's clock, as this adapter has no timestamps that can be trusted"
         };
         let [width, height] = scale.size;
-        let (samples, runs) = (pnaen::render::samples(&engine.gpu), scale.effort.runs);
+        let (samples, runs) = (pnaen::internals::samples(&engine.gpu), scale.effort.runs);
         println!("# Tessellation in compute passes against the driver's tessellation stages\n");
         println!("- adapter: {} ({:?}, {:?})", info.name, info.device_type, info.backend);
         println!("- driver: {} {}", info.driver, info.driver_info);
-        println!("- date: {}", pnaen::numbers::utc(std::time::SystemTime::now()));
+        println!("- date: {}", pnaen::internals::utc(std::time::SystemTime::now()));
         println!("- pictures: {width} x {height} px, {samples} samples a px, cleared and resolved by both");
         println!("- times: ms, medians of {runs} runs after warm-up (least..most), by {clock}");
         println!("{METHOD}");

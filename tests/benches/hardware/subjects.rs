@@ -4,14 +4,15 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
-use pnaen::engine::Engine;
-use pnaen::gpu::GpuError;
-use pnaen::mesh::mesh_builder::MeshBuilder;
+use pnaen::embed::GpuError;
+use pnaen::internals::Engine;
+use pnaen::internals::HullFactors;
+use pnaen::internals::MeshBuilder;
+use pnaen::internals::Settings;
+use pnaen::internals::{Camera, Target};
 use pnaen::mesh::{Corner, Material, Mesh, Topology};
 use pnaen::progress::Progress;
-use pnaen::render::{Camera, Target};
-use pnaen::settings::Settings;
-use pnaen::tessellate::{HullFactors, Lod, Partitioning, Tessellation};
+use pnaen::tessellate::{Lod, Partitioning, Tessellation};
 
 use super::ours::Subject;
 

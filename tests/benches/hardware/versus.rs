@@ -1,8 +1,9 @@
 //! One subject, by our passes and by the peer.
 
-use pnaen::cli::{CompareError, compare};
-use pnaen::engine::Engine;
-use pnaen::gpu::{GpuError, Timing};
+use pnaen::embed::GpuError;
+use pnaen::internals::Engine;
+use pnaen::internals::Timing;
+use pnaen::internals::{CompareError, compare};
 use pnaen::tessellate::Partitioning;
 use thiserror::Error;
 
