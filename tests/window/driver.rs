@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use pnaen::app::App;
+use pnaen::internals::App;
 
 /// Longer than anything here takes on two slow cores.
 pub(super) const PATIENCE: Duration = Duration::from_secs(60);
