@@ -1,4 +1,4 @@
-//! Arguments in, window or command out.
+//! The program: opens the window, or runs a command.
 
 use std::io::Write;
 use std::path::Path;
@@ -27,12 +27,13 @@ fn main() -> ExitCode {
     }
     let said = "There is no display to open a window on";
     // A closed standard output is no failure.
-    let _ = writeln!(std::io::stdout(), "{said} ({reason}); the picture it would have shown is in {PREVIEW}.");
+    let _ =
+        writeln!(std::io::stdout(), "{said} ({reason}); the picture that the window would have shown is in {PREVIEW}.");
     ExitCode::SUCCESS
 }
 
-/// Without a session, Mesa's device selection asks for a Wayland display and complains on standard error; commands need
-/// none, and choose their adapter themselves.
+/// Turns Mesa's device selection off where there is no desktop session: it would look for a Wayland display and complain
+/// on standard error. Commands need no display and choose their adapter themselves.
 fn quiet_driver() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         // SAFETY: nothing else runs yet that could read the environment at the same time.

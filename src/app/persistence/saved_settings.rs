@@ -1,10 +1,10 @@
-//! Settings as JSON: members and values have the names that options declare.
+//! Settings as JSON, whose members and values have the names that options declare.
 
 use serde_json::{Map, Value as Json, json};
 
 use crate::settings::{Declaration, Kind, Settings, Value, options};
 
-/// Every option that is saved.
+/// Returns all settings as a JSON object.
 pub fn written_settings(settings: &Settings) -> Json {
     let mut members = Map::new();
     for option in options::all() {
@@ -29,7 +29,7 @@ fn written(value: Value) -> Json {
     }
 }
 
-/// What is missing, or isn't a value of its option, is as the window opens with it.
+/// Reads settings. Members that are missing or invalid get the values of a first start.
 pub fn read_settings(value: &Json) -> Settings {
     let mut settings = Settings::opening();
     for option in options::all() {
@@ -47,7 +47,7 @@ fn read(option: &Declaration, all: &Json) -> Option<Value> {
     match (&option.kind, &members[..]) {
         (Kind::Choice(_), [name]) => option.kind.named(name.as_str()?).map(Value::Name),
         (Kind::Several(_), [names]) => {
-            // Those that are known: newer versions may have others.
+            // Unknown names are skipped: a newer version may have written them.
             let names = names.as_array()?.iter().filter_map(Json::as_str);
             Some(Value::Names(names.filter_map(|name| option.kind.named(name)).collect()))
         }

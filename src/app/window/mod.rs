@@ -1,4 +1,4 @@
-//! The window itself: opening it, replacing a graphics device that was lost, and the screen that is left when none can be.
+//! Opens the window, replaces a graphics device that was lost, and shows a screen if it can't be replaced.
 
 pub mod device_lost;
 pub mod fatal_screen;
@@ -9,10 +9,10 @@ use fatal_screen::FatalScreen;
 
 pub use run::{WindowError, run, run_watched};
 
-/// What became of the devices that the window was drawn with.
+/// The losses of the devices that the window was drawn with.
 #[derive(Default)]
 pub struct WindowState {
     pub losses: DeviceLosses,
-    /// Shown in place of everything else, once a lost device isn't replaced any more.
+    /// Shown in place of everything else if a lost device isn't replaced.
     pub fatal_screen: Option<FatalScreen>,
 }
