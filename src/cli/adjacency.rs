@@ -140,7 +140,7 @@ fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
 }
 
 fn say(line: &str) {
-    // Standard error may be closed; then there is nobody to tell.
+    // Standard error may be closed; then nobody reads it.
     let _ = writeln!(std::io::stderr(), "pnaen: {line}");
 }
 

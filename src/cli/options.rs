@@ -193,7 +193,8 @@ pub struct WeldOption {
     pub weld: f32,
     /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small
     /// triangles that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative
-    /// to the bounding diagonal, 0 to 0.1; 0 makes no band. Never wider than a third of an edge or half the radius of a triangle's incircle
+    /// to the bounding diagonal, 0 to 0.1; 0 makes no band. It is at most a third of an edge, and half the radius of a
+    /// triangle's incircle
     #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = crease_band, allow_hyphen_values = true)]
     pub crease_band: f32,
     #[command(flatten)]

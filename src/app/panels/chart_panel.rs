@@ -74,7 +74,8 @@ impl App {
         let bar = if done == 0 { bar.fill(egui::Color32::TRANSPARENT) } else { bar };
         let most = grouped(self.panels.chart.effort.most_triangles);
         ui.add(bar).on_hover_text(format!(
-            "Settings measured, of all. Measuring waits while a picture is drawn. Settings with more than {most} triangles are left out."
+            "Settings measured, of all. Measuring waits while a picture is drawn. Settings with more than {most} triangles \
+             are left out."
         ));
         ui.separator();
         let cost = &mut self.panels.chart.cost;

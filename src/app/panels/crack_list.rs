@@ -41,7 +41,8 @@ impl App {
                 ui.selectable_label(self.viewport.selected_edge == Some(edge), RichText::new(text).monospace());
             let response = response.on_hover_ui(|ui| {
                 ui.label(format!(
-                    "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames the edge.",
+                    "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames \
+                     the edge.",
                     short(self.viewport.picture.gap_of_edge_px(crack)),
                     short(crack.gap / ulp),
                     crack.different_bits,
@@ -110,7 +111,8 @@ impl App {
         ui.horizontal(|ui| {
             swatch(ui, T_JUNCTION_COLOR);
             ui.label("T-junctions").on_hover_text(
-                "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these gaps, because the edge and the point don't know of each other.",
+                "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these gaps, \
+                 because the edge is cut without knowing of the point.",
             );
             number(ui, &grouped(junctions.len() as u64));
         });

@@ -132,7 +132,8 @@ impl SelectedPatch<'_> {
         title(ui, "Factors", "TessFactor[i] belongs to the edge on which weight i (u, v, w) is 0.");
         let header = format!("{:<4}{:<4}{:>8}{:>8}{:>6}", "", "edge", "asked", "used", "cut");
         factor_row(ui, None, &header, true).on_hover_text(
-            "Asked: the factor that LOD gave. Used: the factor after the tessellator clamped and rounded it. Cut: the number of segments.",
+            "Asked: the factor that LOD gave. Used: the factor after the tessellator clamped and rounded it. Cut: the \
+             number of segments.",
         );
         for i in 0..3 {
             let (word, side) = (self.factors.map(|f| f.outside[i as usize]), factor_side(self.convention, i));

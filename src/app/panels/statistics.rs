@@ -128,8 +128,9 @@ impl App {
         let small = self.sizes_shown().map_or_else(unknown, |sizes| part(sizes.small, sizes.in_view));
         let low = self.jobs.measure.found().map_or_else(unknown, |found| part(found.patches_low.into(), patches));
         egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Triangles in view that are smaller than half of a square of 3 px, and their share of all triangles in \
-                         view. After the camera alone has moved, they are counted anew only while triangle sizes are shown.";
+            let hover = "Triangles in view that are smaller than half of a square with sides of 3 px, and their share of all \
+                         triangles in view. After the camera alone has moved, they are counted anew only while triangle \
+                         sizes are shown.";
             marked(ui, "Below 3 px", &small, hover);
             let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
                          tessellation.";

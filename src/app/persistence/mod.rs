@@ -223,7 +223,10 @@ impl App {
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         let answer = window.show(context, |ui| {
             ui.set_max_width(320.0);
-            ui.label("This forgets settings, theme, window size, recent files and their cameras, and can't be undone. The mesh stays open.");
+            ui.label(
+                "This forgets settings, theme, window size, recent files and their cameras, and can't be undone. The \
+                 mesh stays open.",
+            );
             ui.horizontal(|ui| {
                 let forgets = ui.button("Forget them").clicked();
                 ui.button("Cancel").clicked().then_some(false).or(forgets.then_some(true))
