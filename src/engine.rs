@@ -33,7 +33,7 @@ pub struct Loaded {
     /// The mesh as it was read: the same as `mesh` unless that has a crease band.
     pub read: Arc<Mesh>,
     pub mesh: Arc<Mesh>,
-    /// What was left out or repaired, one sentence each.
+    /// Sentences about what was left out or repaired.
     pub warnings: Vec<String>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,

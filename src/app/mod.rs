@@ -29,7 +29,7 @@ use dialogs::Dialogs;
 use history::History;
 use jobs::Jobs;
 use jobs::document::Document;
-use jobs::truth::Chosen;
+use jobs::truth::ChosenTruth;
 use panels::Panels;
 use viewport::Viewport;
 use window::WindowState;
@@ -46,7 +46,7 @@ pub struct App {
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
     /// The reference surface that was chosen for the mesh, if one was.
-    truth: Option<Chosen>,
+    truth: Option<ChosenTruth>,
     viewport: Viewport,
     panels: Panels,
     jobs: Jobs,

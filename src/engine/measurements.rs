@@ -1,4 +1,4 @@
-//! What the engine measures on a scene: one walk over what is emitted feeds every measurement that is asked for.
+//! The engine's measurements of a scene. One walk over the emitted mesh feeds all measurements that are asked for.
 
 use super::Engine;
 use crate::gpu::GpuError;

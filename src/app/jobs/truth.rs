@@ -12,7 +12,7 @@ use crate::tessellate::Displacement;
 use crate::truth::Truth;
 
 /// A reference surface that was chosen for the mesh.
-pub struct Chosen {
+pub struct ChosenTruth {
     pub source: Source,
     truth: Arc<Truth>,
     /// A number of its own for each one, from 2 on: see [`App::yardstick`].
@@ -24,7 +24,7 @@ pub struct TruthLoad {
     pub source: Source,
     pub progress: Progress,
     /// None only for a moment, inside [`Self::wake`].
-    job: Option<BackgroundJob<Result<Chosen, Option<String>>>>,
+    job: Option<BackgroundJob<Result<ChosenTruth, Option<String>>>>,
 }
 
 impl TruthLoad {
@@ -35,7 +35,7 @@ impl TruthLoad {
         let progress = Progress::new();
         let (wanted, own_progress) = (source.clone(), progress.clone());
         let load = move || match Truth::load(&wanted, &limits, &own_progress) {
-            Ok(Some(truth)) => Ok(Chosen { source: wanted, truth: Arc::new(truth), generation }),
+            Ok(Some(truth)) => Ok(ChosenTruth { source: wanted, truth: Arc::new(truth), generation }),
             Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
             Err(LoadError::Cancelled(_)) => Err(None),
             Err(error) => Err(Some(error.to_string())),
