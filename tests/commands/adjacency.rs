@@ -207,7 +207,7 @@ fn errors_in_a_file_are_one_line_with_their_numbers() {
     let other = json("shape:icosahedron", "9").to_string();
     wrong(&text, other.as_bytes(), &["20 patches", "12"]);
     let smooth = json("shape:cube-smooth", "9").to_string();
-    wrong(&text, smooth.as_bytes(), &["its positions differ", "first at index 0", "another mesh"]);
+    wrong(&text, smooth.as_bytes(), &["its positions differ", "first at index 8", "another mesh"]);
     wrong(&text, document.replacen("[[", "[[9,", 2).as_bytes(), &["wrong.json: this is not JSON"]);
 
     let compare = |path: &str| ["adjacency", "shape:cube-split", "--against", path].map(str::to_owned);

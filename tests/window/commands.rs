@@ -336,7 +336,7 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
         );
     }
     write_as(&mut harness, "Export mesh path…", &folder.path("torus.ply"));
-    assert!(harness.query_by_label_contains(".glb or .obj").is_some());
+    assert!(harness.query_by_label_contains("torus.ply: the name must end in").is_some());
 }
 
 #[test]
