@@ -38,21 +38,23 @@ fn ends_in(path: &Path, ending: &str) -> bool {
 
 /// Why a file isn't an index buffer of the mesh.
 #[derive(Debug, PartialEq, Eq, Error)]
-pub(crate) enum Fault {
+pub enum IndicesFault {
     #[error("this is not JSON as the adjacency command writes it ({0})")]
     Json(String),
-    #[error("it has {given} indices a patch, but {computed} are computed: --indices says how many")]
+    #[error("it has {given} indices per patch, but --indices asks for {computed}")]
     Layout { given: usize, computed: usize },
-    #[error("its {bytes} bytes are not the {expected} of {patches} patches of {per_patch} indices, 4 bytes each{hint}")]
+    #[error("it has {bytes} bytes, but {patches} patches of {per_patch} indices, 4 bytes each, take {expected}{hint}")]
     Size { bytes: usize, expected: usize, patches: usize, per_patch: usize, hint: Hint },
     #[error("it has {given} patches, but the mesh has {patches}{hint}")]
     Patches { given: usize, patches: usize, hint: Hint },
-    #[error("{list} differ from the mesh's, first at {at}: it was written for another mesh, or with another --weld")]
+    #[error(
+        "its {list} differ from the mesh's, first at index {at}: it was written for another mesh, or with another --weld"
+    )]
     List { list: &'static str, at: usize },
-    #[error("patch {patch} has {count} indices, and not {per_patch}")]
+    #[error("patch {patch} has {count} indices instead of {per_patch}")]
     Length { patch: usize, count: usize, per_patch: usize },
     #[error(
-        "patch {patch} has index {index}, but the mesh's corners are 0 to {last}: indices are of its distinct corners, \
+        "patch {patch} has index {index}, but the mesh's corners are 0 to {last}; indices count its distinct corners, \
          which the JSON lists"
     )]
     Range { patch: usize, index: u32, last: usize },
@@ -72,7 +74,7 @@ impl fmt::Display for Hint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::None => Ok(()),
-            Self::Layout(layout) => write!(f, " (with --indices {} they would be)", layout.per_patch()),
+            Self::Layout(layout) => write!(f, " (--indices {} would fit)", layout.per_patch()),
             Self::Degenerate => write!(f, " (degenerate triangles have no patch, and must be left out)"),
         }
     }
@@ -82,7 +84,7 @@ impl fmt::Display for Hint {
 #[derive(Debug, Serialize, Deserialize)]
 struct Document {
     indices_per_patch: usize,
-    /// For each corner, which is what indices refer to, the position of its point in object units.
+    /// The position of each corner's point, in object units. Indices refer to corners.
     positions: Option<Vec<[f32; 3]>>,
     normals: Option<Vec<[f32; 3]>>,
     uvs: Option<Vec<[f32; 2]>>,
@@ -111,7 +113,7 @@ impl Document {
     /// Compares the lists with the mesh's.
     ///
     /// # Errors A list differs.
-    fn check_lists(&self, mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<(), Fault> {
+    fn check_lists(&self, mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<(), IndicesFault> {
         let own = Self::new(mesh, topology, layout, &[]);
         same("positions", &self.positions, &own.positions)?;
         same("normals", &self.normals, &own.normals)?;
@@ -121,13 +123,13 @@ impl Document {
     }
 }
 
-fn same<T: PartialEq>(list: &'static str, given: &Option<Vec<T>>, own: &Option<Vec<T>>) -> Result<(), Fault> {
+fn same<T: PartialEq>(list: &'static str, given: &Option<Vec<T>>, own: &Option<Vec<T>>) -> Result<(), IndicesFault> {
     let (Some(given), Some(own)) = (given, own) else { return Ok(()) };
     if given == own {
         return Ok(());
     }
     let at = given.iter().zip(own).take_while(|(given, own)| given == own).count();
-    Err(Fault::List { list, at })
+    Err(IndicesFault::List { list, at })
 }
 
 /// Returns a JSON document of a mesh's indices, with a line end. Numbers are written so that they read back exactly.
@@ -147,13 +149,13 @@ pub(crate) fn to_bin(indices: &[u32]) -> Vec<u8> {
 /// starts with a brace, otherwise bare indices.
 ///
 /// # Errors The file doesn't hold the indices of this mesh's patches in this layout.
-pub(crate) fn read(
+pub fn read(
     path: &Path,
     bytes: &[u8],
     mesh: &Mesh,
     topology: &Topology,
     layout: Layout,
-) -> Result<Vec<u32>, Fault> {
+) -> Result<Vec<u32>, IndicesFault> {
     let indices = match Format::of_file(path, bytes) {
         Format::Json => read_json(bytes, mesh, topology, layout)?,
         Format::Bin => read_bin(bytes, mesh, topology, layout)?,
@@ -161,30 +163,30 @@ pub(crate) fn read(
     let corners = mesh.corners.len();
     if let Some(place) = indices.iter().position(|&index| index as usize >= corners) {
         let (patch, index) = (place / layout.per_patch(), indices[place]);
-        return Err(Fault::Range { patch, index, last: corners.saturating_sub(1) });
+        return Err(IndicesFault::Range { patch, index, last: corners.saturating_sub(1) });
     }
     Ok(indices)
 }
 
-fn read_json(bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<Vec<u32>, Fault> {
-    let document: Document = serde_json::from_slice(bytes).map_err(|error| Fault::Json(error.to_string()))?;
+fn read_json(bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<Vec<u32>, IndicesFault> {
+    let document: Document = serde_json::from_slice(bytes).map_err(|error| IndicesFault::Json(error.to_string()))?;
     let per_patch = layout.per_patch();
     if document.indices_per_patch != per_patch {
-        return Err(Fault::Layout { given: document.indices_per_patch, computed: per_patch });
+        return Err(IndicesFault::Layout { given: document.indices_per_patch, computed: per_patch });
     }
     let (given, patches) = (document.patches.len(), topology.patches.len());
     if given != patches {
         let hint = if given == mesh.triangles.len() { Hint::Degenerate } else { Hint::None };
-        return Err(Fault::Patches { given, patches, hint });
+        return Err(IndicesFault::Patches { given, patches, hint });
     }
     document.check_lists(mesh, topology, layout)?;
     if let Some(patch) = document.patches.iter().position(|patch| patch.len() != per_patch) {
-        return Err(Fault::Length { patch, count: document.patches[patch].len(), per_patch });
+        return Err(IndicesFault::Length { patch, count: document.patches[patch].len(), per_patch });
     }
     Ok(document.patches.concat())
 }
 
-fn read_bin(bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<Vec<u32>, Fault> {
+fn read_bin(bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<Vec<u32>, IndicesFault> {
     let (patches, per_patch) = (topology.patches.len(), layout.per_patch());
     let expected = 4 * per_patch * patches;
     if bytes.len() != expected {
@@ -194,7 +196,7 @@ fn read_bin(bytes: &[u8], mesh: &Mesh, topology: &Topology, layout: Layout) -> R
             None if bytes.len() == 4 * per_patch * mesh.triangles.len() => Hint::Degenerate,
             None => Hint::None,
         };
-        return Err(Fault::Size { bytes: bytes.len(), expected, patches, per_patch, hint });
+        return Err(IndicesFault::Size { bytes: bytes.len(), expected, patches, per_patch, hint });
     }
     let index = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
     Ok(bytes.chunks_exact(4).map(index).collect())
@@ -259,7 +261,7 @@ mod tests {
     }
 
     /// Compares with a file of meshoptimizer's indices. Where the Möbius strip is joined, neighbours run along their edge in
-    /// the same direction, which meshoptimizer takes for a boundary: the differences there are found.
+    /// the same direction, which meshoptimizer takes for a boundary, so the indices differ there.
     #[test]
     fn meshoptimizers_indices_are_equal_where_neighbours_are_wound_alike() {
         for source in Shape::ALL {
@@ -305,7 +307,7 @@ mod tests {
     fn every_fault_has_its_error() {
         let (mesh, topology) = with_degenerate();
         let fault = |bytes: &[u8], layout| read("file".as_ref(), bytes, &mesh, &topology, layout).unwrap_err();
-        let size = |bytes, hint| Fault::Size { bytes, expected: 72, patches: 2, per_patch: 9, hint };
+        let size = |bytes, hint| IndicesFault::Size { bytes, expected: 72, patches: 2, per_patch: 9, hint };
         for (bytes, hint) in [
             (0, Hint::None),
             (71, Hint::None),
@@ -318,19 +320,19 @@ mod tests {
         }
         let mut indices = Layout::Nine.indices(&topology);
         indices[10] = 4;
-        assert_eq!(fault(&to_bin(&indices), Layout::Nine), Fault::Range { patch: 1, index: 4, last: 3 });
+        assert_eq!(fault(&to_bin(&indices), Layout::Nine), IndicesFault::Range { patch: 1, index: 4, last: 3 });
 
         let text = |patches: &str| format!("{{\"indices_per_patch\": 6, \"patches\": [{patches}]}}").into_bytes();
         let two = "[0, 1, 1, 2, 2, 0], [1, 3, 3, 2, 2, 1]";
-        assert_eq!(fault(&text(two), Layout::Nine), Fault::Layout { given: 6, computed: 9 });
+        assert_eq!(fault(&text(two), Layout::Nine), IndicesFault::Layout { given: 6, computed: 9 });
         assert!(read("file".as_ref(), &text(two), &mesh, &topology, Layout::Six).is_ok(), "lists may be left out");
-        let patches = |given, hint| Fault::Patches { given, patches: 2, hint };
+        let patches = |given, hint| IndicesFault::Patches { given, patches: 2, hint };
         assert_eq!(fault(&text("[]"), Layout::Six), patches(1, Hint::None));
         assert_eq!(fault(&text("[], [], []"), Layout::Six), patches(3, Hint::Degenerate));
-        let short = Fault::Length { patch: 1, count: 5, per_patch: 6 };
+        let short = IndicesFault::Length { patch: 1, count: 5, per_patch: 6 };
         assert_eq!(fault(&text("[0, 1, 1, 2, 2, 0], [1, 3, 3, 2, 2]"), Layout::Six), short);
         for text in [&b"{}"[..], b"{\"indices_per_patch\": -6}", b"{\"indices_per_patch\": 6, \"patches\": [[0.5]]}"] {
-            assert!(matches!(fault(text, Layout::Six), Fault::Json(_)));
+            assert!(matches!(fault(text, Layout::Six), IndicesFault::Json(_)));
         }
     }
 
@@ -348,7 +350,7 @@ mod tests {
         ] {
             assert!(json.contains(old), "{old} is not in {json}");
             let read = read("a.json".as_ref(), json.replace(old, new).as_bytes(), &mesh, &topology, Layout::Nine);
-            assert_eq!(read, Err(Fault::List { list, at }));
+            assert_eq!(read, Err(IndicesFault::List { list, at }));
         }
     }
 }

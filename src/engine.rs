@@ -1,5 +1,5 @@
-//! The engine that the window and the commands share: a device with its pipelines, and everything that is done with a scene
-//! without a window.
+//! The engine that the window and the commands share: a device with its pipelines, and what can be done with a scene
+//! without a window: upload it, tessellate it, draw it, read it back and time it.
 
 pub(crate) mod measurements;
 
@@ -27,13 +27,13 @@ pub(crate) use measurements::{MeasurementResults, Measurements};
 #[derive(Clone, Debug)]
 pub struct Loaded {
     pub source: Source,
-    /// The requested preparation, even where the crease band is narrower.
+    /// The preparation that was asked for. The crease band may have become narrower than that.
     pub preparation: Preparation,
     pub crease_band: CreaseBand,
     /// The mesh as it was read: the same as `mesh` unless that has a crease band.
     pub read: Arc<Mesh>,
     pub mesh: Arc<Mesh>,
-    /// What was left out or repaired, one sentence each.
+    /// Sentences about what was left out or repaired.
     pub warnings: Vec<String>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
@@ -43,7 +43,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// The same at a moment of one of its clips, deformed on the CPU; at rest without one.
+    /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
     pub fn posed(&self, moment: Option<Moment>) -> Self {
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
         let pose = moment.zip(mesh.rig.as_ref()).map(|(moment, rig)| Arc::new(rig.pose(moment)));
@@ -67,7 +67,7 @@ pub struct Preparation {
 /// Reads a mesh, prepares it, and builds its topology. Needs no device.
 ///
 /// # Errors
-/// What the file holds can't be shown, there is no such height image, or `progress` was cancelled.
+/// The mesh or the height image can't be read, the mesh is too large, or `progress` was cancelled.
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     // Large images take longer than most meshes.
@@ -114,7 +114,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     })
 }
 
-/// What was to be made of a mesh and wasn't, as an error.
+/// Converts the error of a step after reading; `what` names what that step makes.
 fn unfinished(source: &Source, what: &'static str, error: BuildError) -> LoadError {
     match error {
         BuildError::Cancelled(cancelled) => cancelled.into(),
@@ -122,7 +122,7 @@ fn unfinished(source: &Source, what: &'static str, error: BuildError) -> LoadErr
     }
 }
 
-/// How often something is timed: as many times as fit `within`, but from `least` to `most`.
+/// How many times something is timed: as many as fit into `within`, but at least `least` and at most `most`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Runs {
     pub least: u32,
@@ -131,7 +131,7 @@ pub struct Runs {
 }
 
 impl Default for Runs {
-    /// For one picture, beside which nobody waits for long.
+    /// Enough for one picture, without a long wait.
     fn default() -> Self {
         Self { least: 1, most: 5, within: Duration::from_secs(2) }
     }
@@ -157,26 +157,26 @@ impl Engine {
         Self { gpu, pipelines, renderer, picker, leaks, chunks_read: Arc::default() }
     }
 
-    /// An engine on the machine's best adapter, without a window.
+    /// Makes an engine on the machine's best adapter, without a window.
     ///
     /// # Errors
-    /// No adapter.
+    /// There is no adapter, or it gives no device.
     pub fn headless() -> Result<Self, GpuError> {
         Gpu::headless().map(Self::new)
     }
 
-    /// The same on the adapter that was asked for.
+    /// Makes an engine on the adapter that `choice` names, without a window.
     ///
     /// # Errors
-    /// There is none such, or it gives no device.
+    /// There is no such adapter, or it gives no device.
     pub fn chosen(choice: &AdapterChoice) -> Result<Self, GpuError> {
         Gpu::chosen(choice).map(Self::new)
     }
 
-    /// Uploads a mesh. May run beside a window.
+    /// Uploads a mesh; its output gets an arena of `arena_bytes`. Any thread may call this.
     ///
     /// # Errors
-    /// The mesh is larger than the adapter binds.
+    /// The mesh needs a larger buffer than the adapter can bind.
     pub fn scene(&self, loaded: &Loaded, arena_bytes: u64) -> Result<Scene, GpuError> {
         self.scene_of(loaded.mesh.clone(), loaded.topology.clone(), arena_bytes)
     }
@@ -184,14 +184,14 @@ impl Engine {
     /// As [`Self::scene`], for a mesh that was not loaded.
     ///
     /// # Errors
-    /// The mesh is larger than the adapter binds.
+    /// The mesh needs a larger buffer than the adapter can bind.
     pub fn scene_of(&self, mesh: Arc<Mesh>, topology: Arc<Topology>, arena_bytes: u64) -> Result<Scene, GpuError> {
         Scene::new(&self.gpu, self.renderer.materials(), self.pipelines.clone(), mesh, topology, arena_bytes)
     }
 
-    /// Makes the pipelines that a picture of the scene with these settings needs, as far as they can be told before the scene is
-    /// counted. Beside a window, the thread that makes the scene does this, so that the window doesn't wait for the driver's
-    /// compiler; without a window there is no need to.
+    /// Makes the pipelines that a picture of the scene with these settings needs, as far as they are known before the scene is
+    /// counted. The window's loading thread calls this, so that the window doesn't wait for the driver's compiler. Commands
+    /// needn't call it.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
@@ -200,16 +200,16 @@ impl Engine {
         self.renderer.prepare(scene, settings)
     }
 
-    /// Gives a scene another surface left of its split, with output of its own.
+    /// Adds the left half of a split view to a scene: a second tessellation, with an arena of `arena_bytes`.
     ///
     /// # Errors
-    /// The mesh is larger than the adapter binds.
+    /// The mesh needs a larger buffer than the adapter can bind.
     pub fn split(&self, scene: &mut Scene, arena_bytes: u64) -> Result<(), GpuError> {
         let left = scene.beside(arena_bytes)()?;
         scene.set_left(Some(left))
     }
 
-    /// Runs the passes up to the counts and waits for them.
+    /// Runs the passes that count vertices and triangles, and waits for their results.
     ///
     /// # Errors
     /// The device was lost.
@@ -223,7 +223,7 @@ impl Engine {
         scene.tessellator.read_counts()
     }
 
-    /// Tessellates for `lod_view` and draws from `camera`, waiting for the counts but not for the picture.
+    /// Tessellates for the camera's view and draws it. Waits for the counts, but not for the picture.
     ///
     /// # Errors
     /// The device was lost.
@@ -303,7 +303,7 @@ impl Engine {
         Ok(cast(&read_buffers(&self.gpu, parts)?))
     }
 
-    /// The factors that LOD gave, or a file, before the tessellator clamped and rounded them.
+    /// The factors that LOD or a file gave, before the tessellator clamps and rounds them.
     ///
     /// # Errors
     /// The device was lost.
@@ -332,7 +332,7 @@ impl Engine {
         Ok(out)
     }
 
-    /// Median ms of every pass over complete recomputations, after one to warm up.
+    /// Times complete recomputations, after one to warm up, and returns each pass's median in ms.
     ///
     /// # Errors
     /// The device was lost.
@@ -374,7 +374,7 @@ fn medians(runs: &[Vec<PassTime>]) -> Vec<PassTime> {
     first.iter().map(|time| median(time.pass)).collect()
 }
 
-/// Bytes read back as what they are; copied, since they may not be aligned.
+/// Copies bytes that were read back into values, since the bytes may not be aligned.
 fn cast<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(bytes: &[u8]) -> Vec<T> {
     bytemuck::pod_collect_to_vec(bytes)
 }

@@ -16,12 +16,12 @@ const HEADER: [&str; 5] = ["patch", "e0", "e1", "e2", "inside"];
 pub(crate) struct FactorsError {
     /// The line, counted from 1.
     pub line: usize,
-    pub fault: Fault,
+    pub fault: LineFault,
 }
 
 /// What is wrong with a line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub(crate) enum Fault {
+pub enum LineFault {
     #[error("expected the header patch,e0,e1,e2,inside")]
     Header,
     #[error("expected five values, patch,e0,e1,e2,inside, but the number of values is {0}")]
@@ -65,48 +65,48 @@ pub(crate) fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Res
     let fault = |byte: usize, fault| FactorsError { line: line_at(text, byte), fault };
     match reader.headers() {
         Ok(header) if header == HEADER.as_slice() => {}
-        Ok(header) => return Err(fault(byte(header.position()), Fault::Header)),
-        Err(error) => return Err(fault(byte(error.position()), Fault::Unreadable(error.to_string()))),
+        Ok(header) => return Err(fault(byte(header.position()), LineFault::Header)),
+        Err(error) => return Err(fault(byte(error.position()), LineFault::Unreadable(error.to_string()))),
     }
     let mut lines: Vec<Option<(usize, HullFactors)>> = vec![None; triangles];
     for record in reader.records() {
-        let record = record.map_err(|error| fault(byte(error.position()), Fault::Unreadable(error.to_string())))?;
+        let record = record.map_err(|error| fault(byte(error.position()), LineFault::Unreadable(error.to_string())))?;
         let at = byte(record.position());
         if record.len() == 1 && record[0].is_empty() {
             continue;
         }
         let (patch, factors) = line(&record).map_err(|reason| fault(at, reason))?;
-        let beyond = Fault::Beyond { patch, count: triangles };
+        let beyond = LineFault::Beyond { patch, count: triangles };
         let place = lines.get_mut(patch as usize).ok_or_else(|| fault(at, beyond))?;
         if let Some((first, _)) = place {
             let first = line_at(text, *first);
-            return Err(fault(at, Fault::Again { patch, first }));
+            return Err(fault(at, LineFault::Again { patch, first }));
         }
         *place = Some((at, factors));
     }
     let own = |patch: &crate::mesh::Patch| lines[patch.triangle as usize].as_ref().map(|(_, factors)| *factors);
     let missing: Vec<_> = topology.patches.iter().filter(|patch| own(patch).is_none()).collect();
     if let Some(first) = missing.first() {
-        let fault = Fault::Missing { first: first.triangle, others: missing.len() - 1 };
+        let fault = LineFault::Missing { first: first.triangle, others: missing.len() - 1 };
         return Err(FactorsError { line: text.lines().count(), fault });
     }
     Ok(topology.patches.iter().filter_map(own).collect())
 }
 
 /// Reads the patch and the factors of one line.
-fn line(record: &csv::StringRecord) -> Result<(u32, HullFactors), Fault> {
+fn line(record: &csv::StringRecord) -> Result<(u32, HullFactors), LineFault> {
     if record.len() != HEADER.len() {
-        return Err(Fault::Count(record.len()));
+        return Err(LineFault::Count(record.len()));
     }
     let quoted = |text: &str| text.chars().take(40).collect::<String>();
-    let patch = record[0].parse().map_err(|_| Fault::Index(quoted(&record[0])))?;
+    let patch = record[0].parse().map_err(|_| LineFault::Index(quoted(&record[0])))?;
     let number =
-        |i: usize| record[i].parse().map_err(|_| Fault::Number { column: HEADER[i], text: quoted(&record[i]) });
+        |i: usize| record[i].parse().map_err(|_| LineFault::Number { column: HEADER[i], text: quoted(&record[i]) });
     Ok((patch, HullFactors { edges: [number(1)?, number(2)?, number(3)?], inside: number(4)? }))
 }
 
 /// Returns the number, from 1, of the line with the first text at `byte` or after it. The CSV reader's own line number
-/// is that of the line ends that it skips before a record.
+/// is too low where it skips empty lines before a record.
 fn line_at(text: &str, byte: usize) -> usize {
     let bytes = text.as_bytes();
     let start = byte.min(bytes.len());
@@ -160,17 +160,17 @@ mod tests {
 
     #[test]
     fn errors_have_their_line() {
-        let number = |column, text: &str| Fault::Number { column, text: text.into() };
+        let number = |column, text: &str| LineFault::Number { column, text: text.into() };
         for (rows, line, fault) in [
             ("0,1,2,3,4\n2,5,6,x,8\n", 3, number("e2", "x")),
             ("0,1,2,3,\n2,5,6,7,8\n", 2, number("inside", "")),
             ("\n\n0,1,2,3,4\n \n\n2,5,0x6,7,8\n", 7, number("e1", "0x6")),
-            ("0,1,2,3,4\n-2,5,6,7,8\n", 3, Fault::Index("-2".into())),
-            ("0,1,2,3,4\n2,5,6,7\n", 3, Fault::Count(4)),
-            ("0,1,2,3,4\n3,5,6,7,8\n", 3, Fault::Beyond { patch: 3, count: 3 }),
-            ("2,1,2,3,4\n0,1,2,3,4\n\n2,5,6,7,8\n", 5, Fault::Again { patch: 2, first: 2 }),
-            ("0,1,2,3,4\n\n1,1,1,1,1\n", 4, Fault::Missing { first: 2, others: 0 }),
-            ("", 1, Fault::Missing { first: 0, others: 1 }),
+            ("0,1,2,3,4\n-2,5,6,7,8\n", 3, LineFault::Index("-2".into())),
+            ("0,1,2,3,4\n2,5,6,7\n", 3, LineFault::Count(4)),
+            ("0,1,2,3,4\n3,5,6,7,8\n", 3, LineFault::Beyond { patch: 3, count: 3 }),
+            ("2,1,2,3,4\n0,1,2,3,4\n\n2,5,6,7,8\n", 5, LineFault::Again { patch: 2, first: 2 }),
+            ("0,1,2,3,4\n\n1,1,1,1,1\n", 4, LineFault::Missing { first: 2, others: 0 }),
+            ("", 1, LineFault::Missing { first: 0, others: 1 }),
         ] {
             for end in ["\n", "\r\n"] {
                 let text = format!("patch,e0,e1,e2,inside\n{rows}").replace('\n', end);
@@ -178,9 +178,9 @@ mod tests {
             }
         }
         for (text, line) in [("", 1), ("0,1,2,3,4\n", 1), ("\n\npatch;e0;e1;e2;inside\n", 3), ("patch,e0,e1,e2\n", 1)] {
-            assert_eq!(read(text), Err(FactorsError { line, fault: Fault::Header }), "{text:?}");
+            assert_eq!(read(text), Err(FactorsError { line, fault: LineFault::Header }), "{text:?}");
         }
-        let fault = FactorsError { line: 9, fault: Fault::Missing { first: 7, others: 2 } };
+        let fault = FactorsError { line: 9, fault: LineFault::Missing { first: 7, others: 2 } };
         assert_eq!(fault.to_string(), "line 9: the file ends without a line for patch 7 and 2 more");
     }
 }

@@ -221,7 +221,7 @@ mod tests {
     /// Files in /proc report a length of 0, since the system writes them while they are read.
     #[cfg(target_os = "linux")]
     #[test]
-    fn files_that_turn_out_larger_are_refused_too() {
+    fn files_larger_than_their_reported_length_are_refused() {
         let path = Path::new("/proc/self/status");
         assert_eq!(std::fs::metadata(path).unwrap().len(), 0);
         let read = |file| {

@@ -38,13 +38,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_stand_left_and_numbers_right() {
+    fn words_are_aligned_left_and_numbers_right() {
         let text = table(&["", "n"], &[0], &[vec!["a".into(), "1".into()], vec![String::new(), "22".into()]]);
         assert_eq!(text, "| | n |\n| --- | ---: |\n| a | 1 |\n| | 22 |\n");
     }
 
     #[test]
-    fn words_are_listed_and_signs_are_letters() {
+    fn words_are_joined_with_and_and_special_characters_are_escaped() {
         let words = ["a", "b", "c"].map(str::to_owned);
         assert_eq!([listed(&words[..1]), listed(&words[..2]), listed(&words)], ["a", "a and b", "a, b and c"]);
         assert_eq!(plain("low_poly|2.glb"), "low\\_poly\\|2.glb");

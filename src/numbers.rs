@@ -34,8 +34,8 @@ pub(crate) fn exact(number: f32) -> String {
 }
 
 /// Formats a number that isn't negative with two decimals, for columns of px or ms. Returns "0" for 0 and "< 0.01" for
-/// anything less than that.
-pub(crate) fn hundredths(number: f64) -> String {
+/// any smaller number.
+pub fn hundredths(number: f64) -> String {
     if number == 0.0 {
         "0".into()
     } else if number < 0.01 {
@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_read_well() {
+    fn numbers_are_grouped_and_rounded() {
         assert_eq!([grouped(0), grouped(999), grouped(31600), grouped(1234567)], ["0", "999", "31,600", "1,234,567"]);
         assert_eq!([short(0.0), short(0.0123456), short(1.5), short(1234.5)], ["0", "0.0123", "1.50", "1234"]);
         assert_eq!([short(1.25e-7), short(123456.0)], ["1.25e-7", "1.23e5"]);

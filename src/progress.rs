@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_of_a_part_is_in_its_place_and_shares_the_rest() {
+    fn a_nested_part_maps_to_its_interval_and_shares_stage_and_cancellation() {
         let whole = Progress::new();
         let part = whole.part(0.5, 1.0).part(0.0, 0.5);
         for (own, of_whole) in [(0.0, 0.5), (0.5, 0.625), (1.0, 0.75)] {

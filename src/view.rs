@@ -1,10 +1,10 @@
-//! From object units to the screen: where a position lands in a viewport, and how small a coordinate's last digit is.
+//! Projects positions to the screen, and gives the size of a ULP.
 
 use glam::{Mat4, Vec2, Vec3, vec2};
 
 use crate::mesh::Topology;
 
-/// A view of a mesh, for whatever depends on sizes on screen.
+/// A view of a mesh: what turns positions in object units into px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenView {
     pub clip_from_object: Mat4,
@@ -12,8 +12,8 @@ pub struct ScreenView {
     pub viewport: Vec2,
 }
 
-/// Where a position lands, in px from the viewport's top left; `None` behind the eye.
-pub(crate) fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
+/// Projects a position to px from the viewport's top left. Returns `None` for a position behind the eye.
+pub fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
     let clip = clip_from_object * position.extend(1.0);
     (clip.w > 0.0).then(|| (vec2(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * viewport)
 }

@@ -167,8 +167,8 @@ fn without_a_dialog() {
     };
     let ended = run_watched(None, Limits::default(), AdapterChoice::Best, watch);
     assert!(ended.is_ok(), "{ended:?}");
-    let why = "This desktop has no file dialog (no portal, no zenity): type the path.";
-    assert_eq!(said.borrow().first(), Some(&("Open path", Some(why))));
+    let said = said.borrow();
+    assert!(matches!(said.first(), Some(("Open path", Some(why))) if why.contains("no file dialog")), "{said:?}");
 }
 
 fn a_window_that_loses_its_device_goes_on_once_and_then_says_so() {

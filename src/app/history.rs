@@ -1,4 +1,4 @@
-//! Settings as they were: undo and redo.
+//! Undo and redo of settings.
 
 use std::collections::VecDeque;
 
@@ -6,20 +6,20 @@ use super::App;
 use crate::settings::Settings;
 use crate::tessellate::Displacement;
 
-/// Steps back, at most.
+/// The greatest number of steps that can be undone.
 const MOST: usize = 200;
 
-/// What settings were before they changed, and after.
+/// The settings before and after the present ones.
 #[derive(Default)]
-pub(super) struct History {
-    /// None before there is a window.
+pub struct History {
+    /// None before the first frame.
     now: Option<Settings>,
     past: VecDeque<Settings>,
     future: Vec<Settings>,
 }
 
 impl History {
-    /// Takes note of settings that have come to rest: what changes while a pointer drags is one step.
+    /// Records settings. It isn't called while the pointer drags, so that a drag is one step.
     fn note(&mut self, settings: &Settings) {
         let before = self.now.replace(*settings);
         let Some(before) = before.filter(|before| before != settings) else { return };
@@ -30,7 +30,7 @@ impl History {
         self.future.clear();
     }
 
-    /// All of them are displaced like this: what the mesh does is no step.
+    /// Sets displacement in all steps, because it follows from the mesh and can't be undone.
     pub(super) fn displace(&mut self, displacement: Displacement) {
         let all = self.now.iter_mut().chain(&mut self.past).chain(&mut self.future);
         all.for_each(|settings| settings.tessellation.displacement = displacement);
@@ -52,7 +52,7 @@ impl History {
 }
 
 impl App {
-    /// At the end of every frame.
+    /// Records the settings at the end of a frame.
     pub(super) fn note_settings(&mut self, context: &egui::Context) {
         if !context.egui_is_using_pointer() {
             self.history.note(&self.settings);
@@ -94,14 +94,14 @@ mod tests {
     }
 
     #[test]
-    fn steps_go_back_and_forward_until_something_else_changes() {
+    fn undo_and_redo_go_through_the_steps_and_a_change_clears_redo() {
         let mut history = History::default();
         [1.0, 2.0, 2.0, 3.0].map(of).iter().for_each(|settings| history.note(settings));
         assert_eq!(history.undo(&of(3.0)), Some(of(2.0)));
         assert_eq!(history.undo(&of(2.0)), Some(of(1.0)));
         assert_eq!(history.undo(&of(1.0)), None);
         assert_eq!(history.redo(&of(1.0)), Some(of(2.0)));
-        // What nobody has noted yet is a step too.
+        // Settings that weren't recorded yet become a step.
         assert_eq!(history.undo(&of(7.0)), Some(of(2.0)));
         assert_eq!(history.redo(&of(2.0)), Some(of(7.0)));
         history.note(&of(8.0));
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn there_is_an_end_to_it() {
+    fn the_number_of_steps_is_limited() {
         let mut history = History::default();
         (0..2 * MOST).for_each(|i| history.note(&of(i as f32)));
         assert_eq!((history.past.len(), history.past[0]), (MOST, of((MOST - 1) as f32)));

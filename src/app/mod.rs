@@ -29,7 +29,7 @@ use dialogs::Dialogs;
 use history::History;
 use jobs::Jobs;
 use jobs::document::Document;
-use jobs::truth::Chosen;
+use jobs::truth::ChosenTruth;
 use panels::Panels;
 use viewport::Viewport;
 use window::WindowState;
@@ -37,7 +37,7 @@ use window::WindowState;
 pub(crate) use persistence::Persistence;
 pub(crate) use window::{WindowError, run};
 
-/// The window's state, grouped as the rooms below are.
+/// The window's state, grouped as this module's submodules are.
 pub struct App {
     engine: Engine,
     render_state: egui_wgpu::RenderState,
@@ -45,8 +45,8 @@ pub struct App {
     history: History,
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
-    /// The truth that was chosen for the mesh, if one was.
-    truth: Option<Chosen>,
+    /// The reference surface that was chosen for the mesh, if one was.
+    truth: Option<ChosenTruth>,
     viewport: Viewport,
     panels: Panels,
     jobs: Jobs,
@@ -96,18 +96,18 @@ impl App {
         self.jobs.measure.cracks()
     }
 
-    /// Sizes of the triangles shown, if they were measured from where one looks.
+    /// Sizes of the triangles shown, if they were measured for the present view.
     pub fn sizes_shown(&self) -> Option<&Sizes> {
         let seen_from = self.viewport.picture.seen_from()?;
         self.jobs.measure.sizes().filter(|sizes| sizes.view == seen_from)
     }
 
-    /// The edge that is looked at.
+    /// The selected edge: an index into the topology's edges.
     pub fn selected_edge(&self) -> Option<u32> {
         self.viewport.selected_edge
     }
 
-    /// What is shown, as loaded.
+    /// The mesh that is open, as it was loaded.
     pub fn loaded(&self) -> Option<&Loaded> {
         self.document.as_ref().map(|document| &document.loaded)
     }
@@ -117,17 +117,17 @@ impl App {
         self.document.as_ref().map(|document| document.scene.tessellator.totals())
     }
 
-    /// What is shown; not what is being loaded.
+    /// The source of the mesh that is open, not of one that is being loaded.
     pub fn source(&self) -> Option<&Source> {
         self.document.as_ref().map(|document| &document.loaded.source)
     }
 
-    /// The device that everything is made and drawn on.
+    /// The engine that everything is made and drawn with.
     pub fn engine(&self) -> &Engine {
         &self.engine
     }
 
-    /// The picture in the middle as it is shown, without what is written over it; none before the first.
+    /// The viewport's picture as it is shown, without the texts over it; none before the first one.
     ///
     /// # Errors
     /// The device was lost.
@@ -147,7 +147,7 @@ impl App {
         loads || measures || self.viewport.picture.is_busy() || self.viewport.selection.is_busy()
     }
 
-    /// Whether the mesh is still being looked through: that doesn't change the picture by itself.
+    /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.
     pub fn is_checking(&self) -> bool {
         self.document.as_ref().is_some_and(|document| document.checks.is_busy())
     }
@@ -155,7 +155,7 @@ impl App {
     fn take_checks(&mut self) {
         let stopped = self.document.as_mut().and_then(|document| document.checks.take_stopped());
         if let Some(stopped) = stopped {
-            self.dialogs.error = Some(format!("looking through the mesh {stopped}: what it found until then is shown"));
+            self.dialogs.error = Some(format!("checking the mesh {stopped}; what it found until then is shown"));
         }
     }
 }
@@ -163,7 +163,7 @@ impl App {
 impl eframe::App for App {
     fn logic(&mut self, context: &egui::Context, _frame: &mut eframe::Frame) {
         if self.is_lost() {
-            // The window can't show anything any more; what follows it can.
+            // This window can't show anything any more; the one that replaces it can.
             return context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         if self.window.fatal_screen.is_some() {
@@ -200,7 +200,7 @@ impl eframe::App for App {
         self.note_settings(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {
-            // egui can't paint what was just made of it.
+            // egui can't paint this frame with a lost device.
             ui.ctx().request_discard("the device was lost");
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
         }
@@ -208,7 +208,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         if let Err(error) = self.keep_for_good() {
-            // There is no window any more to say it in.
+            // There is no window any more to show the error in.
             let _ = std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("pnaen: {error}\n"));
         }
     }

@@ -3,8 +3,8 @@
 use super::widgets::{chooser, fixed};
 use crate::settings::{Declaration, Range, Settings, Value};
 
-/// A row with which an option is changed; greyed out where it has no effect. `key` is the key that changes it too.
-pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
+/// A row that changes an option, greyed out where the option has no effect. `key` names the key that changes it too.
+pub fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
     option_row_with(ui, option, settings, &option_hover(option, key));
 }
 
@@ -14,13 +14,13 @@ pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings:
         (Value::Number(number), Some(range)) => number_row(ui, option, range, number, settings, hover),
         (Value::Name(name), _) => choice_row(ui, option, Some(name), settings, hover),
         (Value::Unset, None) => choice_row(ui, option, None, settings, hover),
-        // Other kinds have rows of their own.
+        // Options of other kinds are shown by code of their own.
         _ => {}
     }
 }
 
-/// What an option sets, the key that changes it too, and its name on the command line.
-pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
+/// The hover text of an option: its text, its key and its name on the command line.
+pub fn option_hover(option: &Declaration, key: &str) -> String {
     let name = format!("--{}", option.name);
     with_note(option.text, &if key.is_empty() { name } else { format!("{key}; {name}") })
 }

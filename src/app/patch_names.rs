@@ -1,4 +1,4 @@
-//! What the corners, weights, edges and factors of a patch are called under a convention.
+//! The names of a patch's corners, weights, edges and factors under a convention.
 
 use crate::tessellate::{Convention, domain_side, factor_side, weight_corner};
 
@@ -11,16 +11,16 @@ pub(super) fn letter(convention: Convention, k: u32) -> char {
     found.map_or(' ', |i| LETTERS[i as usize])
 }
 
-/// A side by the corners that it runs between.
-pub(super) fn ends_text(k: u32) -> String {
+/// The name of a side: the corners that it runs between.
+pub fn ends_text(k: u32) -> String {
     format!("{k}-{}", (k + 1) % 3)
 }
 
-/// What goes wrong with factor `i`, if anything does.
-pub(super) fn mistake(convention: Convention, i: u32) -> Option<String> {
+/// Says what goes wrong with factor `i` under a wrong convention.
+pub fn mistake(convention: Convention, i: u32) -> Option<String> {
     let (of, cuts) = (factor_side(convention, i), domain_side(convention, i));
     (of != cuts)
-        .then(|| format!("TessFactor[{i}] is that of edge {} and cuts edge {}.", ends_text(of), ends_text(cuts)))
+        .then(|| format!("TessFactor[{i}] is computed for edge {} but cuts edge {}.", ends_text(of), ends_text(cuts)))
 }
 
 #[cfg(test)]
@@ -28,13 +28,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mistake_names_both_edges_and_a_convention_makes_none() {
+    fn a_wrong_convention_is_explained_with_both_edges() {
         for right in [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder] {
             assert_eq!([0, 1, 2].map(|i| mistake(right, i)), [None, None, None], "{right:?}");
         }
         assert_eq!(
             mistake(Convention::Rotated, 0).as_deref(),
-            Some("TessFactor[0] is that of edge 0-1 and cuts edge 1-2.")
+            Some("TessFactor[0] is computed for edge 0-1 but cuts edge 1-2.")
         );
         assert_eq!(mistake(Convention::Mirrored, 2), None, "its third factor is right");
     }

@@ -1,8 +1,8 @@
 //! Spacing and colours of the window.
 
-/// Sets the spacing that both themes share, and the colours that egui has too pale.
-pub(super) fn style(context: &egui::Context) {
-    // Its keys are the command table's.
+/// Sets the spacing of both themes, and replaces those of egui's colours that are too pale.
+pub fn style(context: &egui::Context) {
+    // The table of commands has the keys for zoom.
     context.options_mut(|options| options.zoom_with_keyboard = false);
     context.all_styles_mut(|style| {
         style.spacing.item_spacing = egui::vec2(8.0, 6.0);

@@ -1,21 +1,21 @@
-//! Numbers and names as people read them.
+//! Formats numbers and names for the window.
 
 pub(super) use crate::names::shortened;
 pub(super) use crate::numbers::{grouped, short};
 
-/// A number and its share of all.
-pub(super) fn part(number: u64, all: u64) -> String {
+/// Formats a number and its share of all, in percent.
+pub fn part(number: u64, all: u64) -> String {
     let percent = 100.0 * number as f64 / all.max(1) as f64;
     format!("{} ({percent:.1} %)", grouped(number))
 }
 
-/// Bytes in MiB.
-pub(super) fn mebibytes(bytes: u64) -> String {
+/// Formats bytes in MiB.
+pub fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// A factor with so many decimals; some forms of LOD ask for huge ones.
-pub(super) fn factor(number: f64, decimals: usize) -> String {
+/// Formats a factor with this many decimals. Some kinds of LOD ask for huge factors, which are shortened.
+pub fn factor(number: f64, decimals: usize) -> String {
     if number.abs() < 1000.0 { format!("{number:.decimals$}") } else { short(number) }
 }
 
@@ -24,7 +24,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_well() {
+    fn shares_factors_and_bytes_are_formatted() {
         assert_eq!([part(1234, 10000), part(0, 0)], ["1,234 (12.3 %)", "0 (0.0 %)"]);
         assert_eq!([factor(7.3125, 2), factor(64.0, 3), factor(1.5e9, 2)], ["7.31", "64.000", "1.50e9"]);
         assert_eq!(mebibytes(3 << 19), "1.5 MiB");

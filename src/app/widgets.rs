@@ -1,4 +1,4 @@
-//! Pieces that the panels share.
+//! Widgets that the panels share.
 
 use egui::RichText;
 
@@ -19,7 +19,7 @@ pub(super) fn chooser<T: Copy + PartialEq>(
 ) {
     let label = ui.label(name).on_hover_text(hover);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
-    // All of a list is in sight: the longest has nine entries.
+    // High enough for the longest list, which has nine entries.
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).height(260.0).show_ui(ui, |ui| {
         for (choice, text, hover) in choices {
             ui.selectable_value(value, *choice, *text).on_hover_text(*hover);
@@ -29,8 +29,8 @@ pub(super) fn chooser<T: Copy + PartialEq>(
     ui.end_row();
 }
 
-/// The same where there is nothing to choose, and why.
-pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
+/// The same row, disabled; `why` is its hover text.
+pub fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
     let label = ui.label(name).on_hover_text(why);
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown);
     let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
@@ -45,13 +45,13 @@ pub(super) fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
     ui.end_row();
 }
 
-/// Right-aligned, all digits as wide.
-pub(super) fn number(ui: &mut egui::Ui, text: &str) {
+/// A right-aligned number, monospaced.
+pub fn number(ui: &mut egui::Ui, text: &str) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(RichText::new(text).monospace()));
 }
 
-/// A row of text in columns that can't be clicked, in line with those that can; the columns' names are weak.
-pub(super) fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
+/// A row of text in columns that can't be clicked, aligned with rows that can. Headers are weak.
+pub fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
     let text = RichText::new(text).monospace();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -61,21 +61,16 @@ pub(super) fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Res
     .inner
 }
 
-/// Rows that a list shows at once.
+/// How many rows a list shows at once.
 const LIST_ROWS: f32 = 6.0;
 
-/// A list of many rows, of which only those in sight are made. Up, Down, Home and End go from row to row.
-pub(super) fn list(
-    ui: &mut egui::Ui,
-    name: &str,
-    count: usize,
-    mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response,
-) {
+/// A list of many rows. Only the visible ones are made. The keys Up, Down, Home and End go from row to row.
+pub fn list(ui: &mut egui::Ui, name: &str, count: usize, mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response) {
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
     let pitch = height + ui.spacing().item_spacing.y;
     let shown = LIST_ROWS.min(count as f32) * pitch;
     let area = egui::ScrollArea::vertical().id_salt(name).max_height(shown).auto_shrink([false, true]);
-    // What the last frame's key asked for, and how far the list was scrolled then.
+    // The row that the last frame's key asked for, and how far the list was scrolled then.
     let id = ui.scope_id().with(name);
     let asked: Option<(usize, f32)> = ui.data_mut(|data| data.remove_temp(id));
     let area = match asked {
@@ -106,7 +101,7 @@ pub(super) fn list(
     }
 }
 
-/// Where a key goes from row `index` of `count`.
+/// The row that a pressed key goes to from row `index` of `count`.
 fn next_row(ui: &egui::Ui, index: usize, count: usize) -> Option<usize> {
     let pressed = |key| ui.input(|input| input.key_pressed(key));
     let last = count.checked_sub(1)?;
@@ -127,14 +122,14 @@ pub(super) fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
     egui::Color32::from_rgb(r, g, b)
 }
 
-/// A patch of colour, as in a legend.
-pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
+/// A small rectangle of a colour.
+pub fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
     ui.painter().rect_filled(rect, 2.0, rgb(color));
 }
 
-/// A field of the status line, of one width whatever it says.
-pub(super) fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
+/// A field of the status line. Its width doesn't depend on its text.
+pub fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
     let height = ui.spacing().interact_size.y;
     ui.allocate_ui_with_layout(egui::vec2(width, height), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);

@@ -1,4 +1,4 @@
-//! `pnaen adapters`: what there is to compute and draw on.
+//! `pnaen adapters`: lists the graphics adapters.
 
 use std::io::Write;
 
@@ -8,8 +8,8 @@ use crate::gpu::{AdapterChoice, GpuError, adapters, best_adapter, kind};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {}
 
-/// One line an adapter.
-pub(super) fn run(_: &Args) -> Result<(), CliError> {
+/// Prints a line for each adapter.
+pub fn run(_: &Args) -> Result<(), CliError> {
     let all = adapters();
     if all.is_empty() {
         return Err(GpuError::NoAdapter.into());
@@ -25,7 +25,7 @@ pub(super) fn run(_: &Args) -> Result<(), CliError> {
         let timestamps = timestamps && info.device_type != wgpu::DeviceType::Cpu;
         writeln!(
             out,
-            "{} {}: {}, {:?}, {}; buffers of {} MiB, pictures of {} px a side{}",
+            "{} {}: {}, {:?}, {}; buffers up to {} MiB, pictures up to {} px a side{}",
             if is_best { "*" } else { " " },
             info.name,
             kind(info.device_type),
@@ -33,14 +33,14 @@ pub(super) fn run(_: &Args) -> Result<(), CliError> {
             driver.trim(),
             limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) >> 20,
             limits.max_texture_dimension_2d,
-            if timestamps { "; times passes by its own clock" } else { "" },
+            if timestamps { "; timestamps" } else { "" },
         )
         .map_err(CliError::Output)?;
     }
-    writeln!(out, "* is what is taken unless --adapter says otherwise.").map_err(CliError::Output)
+    writeln!(out, "* marks the adapter that is used unless --adapter names another.").map_err(CliError::Output)
 }
 
-/// Where to compute and draw.
+/// The option `--adapter`.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(crate) struct AdapterOption {
     /// Graphics adapter: part of its name as `pnaen adapters` lists it, or `software`; by default the fastest
@@ -49,14 +49,14 @@ pub(crate) struct AdapterOption {
 }
 
 impl AdapterOption {
-    /// Refuses an adapter where nothing runs on one.
+    /// Refuses --adapter where the CPU computes.
     ///
     /// # Errors
-    /// There is one, and `is_cpu` is set.
-    pub(crate) fn check(&self, is_cpu: bool) -> Result<(), CliError> {
+    /// An adapter was named, and `is_cpu` is set.
+    pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
         match is_cpu && self.adapter.is_some() {
             true => Err(CliError::Usage(
-                "--adapter says which graphics adapter computes, and --device cpu that none does: leave one of them out",
+                "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out",
             )),
             false => Ok(()),
         }

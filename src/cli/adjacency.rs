@@ -1,4 +1,4 @@
-//! `pnaen adjacency`: PN-AEN's index buffer, written or held against a file.
+//! `pnaen adjacency`: writes PN-AEN's index buffer, or compares a file with it.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub(crate) struct Args {
     pub file: Source,
     #[command(flatten)]
     pub weld: WeldOption,
-    /// Indices a patch
+    /// Indices per patch
     #[arg(long, value_parser = options::choice::<Layout>(), default_value = Layout::Nine.name())]
     pub indices: Layout,
     /// File to write (- for standard output); may be left out with --against
@@ -28,8 +28,8 @@ pub(crate) struct Args {
     /// What to write; by default bin if the output's name ends in .bin, and otherwise json
     #[arg(long, value_parser = options::choice::<Format>(), requires = "output")]
     pub format: Option<Format>,
-    /// Hold this file against what is computed (- for standard input): JSON as this command writes it, or bare indices as in
-    /// a .bin file. Says on standard error which patches differ and what that means, and fails if there are any
+    /// Compare this file with the computed indices (- for standard input): JSON as this command writes it, or bare indices
+    /// as in a .bin file. Standard error lists which patches differ and what that means; the command fails if any differs
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
 }
@@ -69,12 +69,12 @@ impl Choice for Format {
     }
 }
 
-/// Differences that are said one by one.
+/// How many differences standard error lists.
 const SAID: usize = 10;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.output.is_none() && args.against.is_none() {
-        return Err(CliError::Usage("give -o to write a file, --against to hold one against the mesh, or both"));
+        return Err(CliError::Usage("give -o to write a file, --against to compare one with the mesh, or both"));
     }
     keep_apart([file_of(&args.file), args.against.as_deref()], [args.output.as_deref()])?;
     let given = args.against.as_deref().map(read_bytes).transpose()?;
@@ -84,7 +84,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         write(args, path, &loaded, &computed)?;
     }
     match args.against.as_deref().zip(given) {
-        Some((path, bytes)) => hold_against(args.indices, path, &bytes, &loaded, &computed),
+        Some((path, bytes)) => compare_with(args.indices, path, &bytes, &loaded, &computed),
         None => Ok(()),
     }
 }
@@ -110,11 +110,11 @@ fn write(args: &Args, path: &Path, loaded: &Loaded, computed: &[u32]) -> Result<
     }
 }
 
-/// Says where a file's indices differ from those of the mesh.
+/// Reports on standard error where a file's indices differ from those of the mesh.
 ///
 /// # Errors
-/// They do, or they aren't indices of this mesh.
-fn hold_against(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
+/// They differ, or the file doesn't hold indices of this mesh.
+fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, computed: &[u32]) -> Result<(), CliError> {
     let (mesh, topology) = (&loaded.mesh, &loaded.topology);
     let name = if path.as_os_str() == "-" { "standard input".to_owned() } else { shown_path(path) };
     let given =
@@ -129,7 +129,7 @@ fn hold_against(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
         say(&format!("the first {SAID} of {} differences:", differences.len()));
     }
     for difference in differences.iter().take(SAID) {
-        say(&difference_said(loaded, difference, &given, computed));
+        say(&difference_text(loaded, difference, &given, computed));
     }
     let worst: Vec<_> = differences
         .chunk_by(|a, b| a.patch == b.patch)
@@ -140,11 +140,11 @@ fn hold_against(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
 }
 
 fn say(line: &str) {
-    // Standard error may be closed; then there is nobody to tell.
+    // Standard error may be closed; then nobody reads it.
     let _ = writeln!(std::io::stderr(), "pnaen: {line}");
 }
 
-fn difference_said(loaded: &Loaded, difference: &IndexDifference, given: &[u32], computed: &[u32]) -> String {
+fn difference_text(loaded: &Loaded, difference: &IndexDifference, given: &[u32], computed: &[u32]) -> String {
     let IndexDifference { patch, part, places, meaning } = difference;
     let own = loaded.topology.patches[*patch as usize];
     let corners = |indices: &[u32]| {
@@ -153,7 +153,7 @@ fn difference_said(loaded: &Loaded, difference: &IndexDifference, given: &[u32],
         let is_own = |k: u32| indices == [k, (k + 1) % 3].map(|k| loaded.topology.corners(&own)[k as usize]);
         if matches!(part, Part::Side(k) if is_own(*k)) { format!("{list} (the patch's own)") } else { list }
     };
-    // They count alike up to the first degenerate triangle.
+    // Patches and triangles have the same numbers up to the first degenerate triangle.
     let triangle = if own.triangle == *patch { String::new() } else { format!(" (triangle {})", own.triangle) };
     let part = match part {
         Part::Corners => "corners".to_owned(),
@@ -161,10 +161,10 @@ fn difference_said(loaded: &Loaded, difference: &IndexDifference, given: &[u32],
         Part::Dominant => "dominant corners".to_owned(),
     };
     let (given, computed) = (corners(given), corners(computed));
-    format!("patch {patch}{triangle}, {part}: the file has {given}, computed are {computed}: {}", words(*meaning))
+    format!("patch {patch}{triangle}, {part}: the file has {given} instead of {computed}: {}", words(*meaning))
 }
 
-/// How many there are of each meaning, the least harm first.
+/// Returns the number of patches for each meaning, the least harmful first.
 fn counted(mut meanings: Vec<Meaning>) -> String {
     meanings.sort_unstable();
     let runs = meanings.chunk_by(|a, b| a == b).map(|run| format!("{} ({})", run.len(), words(run[0])));
@@ -173,7 +173,7 @@ fn counted(mut meanings: Vec<Meaning>) -> String {
 
 fn words(meaning: Meaning) -> &'static str {
     match meaning {
-        Meaning::Turned => "the same patch, begun at another corner",
+        Meaning::Turned => "the same patch, starting at another corner",
         Meaning::OtherDominant => "another dominant corner, the same for all patches around it",
         Meaning::SameNormals => "other corners, same points and normals",
         Meaning::OtherNormals => "other corners, same points, other normals",

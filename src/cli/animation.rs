@@ -1,4 +1,4 @@
-//! `--animation` and `--time`: what moves, and where it is.
+//! The options `--animation` and `--time`, which choose a pose.
 
 use std::io::Write;
 
@@ -8,19 +8,19 @@ use super::CliError;
 use crate::engine::Loaded;
 use crate::mesh::Moment;
 
-/// What moves, and where it is.
+/// The options that choose a pose.
 #[derive(Clone, Debug, Default, Args)]
-pub(crate) struct AnimationOption {
-    /// Show the mesh as this animation has it; `pnaen info` lists them
+pub struct AnimationOption {
+    /// Show the mesh in a pose of this animation; `pnaen info` lists the animations
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
-    /// Time in the animation, in s from 0 on; after its end is at its end
+    /// Time in the animation, in s; after its end the pose is that of the end
     #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = seconds, default_value_t = 0.0, allow_hyphen_values = true)]
     pub time: f64,
 }
 
 impl AnimationOption {
-    /// Where the mesh is, if not at rest. A time beyond the end is said on standard error.
+    /// Returns the chosen moment, or none at rest. Warns on standard error about a time beyond the end.
     ///
     /// # Errors
     /// There is no animation of that name.
@@ -35,16 +35,16 @@ impl AnimationOption {
             return Err(CliError::NoAnimation { file, name, has });
         };
         if self.time > duration {
-            // As the file has it: in f32.
+            // Files have times in f32: an f64 would print digits that the file doesn't have.
             let end = duration as f32;
-            let _ = writeln!(std::io::stderr(), "pnaen: {name} ends at {end} s, and is shown as it is then");
+            let _ = writeln!(std::io::stderr(), "pnaen: {name} ends at {end} s; the pose at its end is shown");
         }
         Ok(Some(Moment { clip, time: self.time.min(duration) }))
     }
 }
 
-/// A time that is finite and not before 0.
+/// Parses a time that is finite and not negative.
 fn seconds(text: &str) -> Result<f64, String> {
     let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
-    time.ok_or_else(|| "not a number of seconds from 0 on".to_owned())
+    time.ok_or_else(|| "expected a number of seconds, 0 or more".to_owned())
 }

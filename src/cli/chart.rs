@@ -34,8 +34,8 @@ pub(crate) struct Args {
     /// --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,
-    /// Mesh that what is emitted should have been, such as the high-poly original, where the mesh is no shape with an exact
-    /// surface of its own; with one mesh only
+    /// Reference surface that errors are measured against: a mesh, such as the high-poly original, or a shape. By default
+    /// the exact surface of a shape; other meshes have none. Takes one mesh only
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub truth: Option<Source>,
     #[command(flatten)]
@@ -46,10 +46,10 @@ pub(crate) struct Args {
     /// Normals to shade with
     #[arg(long, value_parser = options::choice::<Normals>(), value_delimiter = ',', value_name = "NORMALS,..", default_values = ["linear"])]
     pub normals: Vec<Normals>,
-    /// Partitionings to try with every LOD; by default fractional-odd, and integer by error. Subtriangulation is uniform only
+    /// Partitionings to try; by default integer under LOD by error, else fractional-odd. Subtriangulation has uniform LOD only
     #[arg(long, value_delimiter = ',', value_name = "P,..", value_parser = options::choice::<Partitioning>())]
     pub partitionings: Vec<Partitioning>,
-    /// Where factors come from: the same everywhere; the white paper's projected length of an edge; or the error on screen
+    /// Kinds of LOD to try: one factor everywhere; the white paper's, by projected lengths of edges; or by error on screen
     #[arg(long, value_parser = options::choice::<LodKind>(), value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error"])]
     pub lods: Vec<LodKind>,
     /// Factors to try under uniform LOD, each 1 to 64
@@ -61,40 +61,40 @@ pub(crate) struct Args {
     /// Tolerances to try under LOD by error, in px, each 0.01 to 100
     #[arg(long, value_delimiter = ',', value_name = "PX,..", default_value = "8,4,2,1,0.5,0.25,0.125", value_parser = options::number_of(&TOLERANCE))]
     pub tolerances: Vec<f32>,
-    /// Try every setting, also those finer than a method takes to come as close as it gets
+    /// Try every setting, even where finer factors no longer reduce a method's error
     #[arg(long)]
     pub all: bool,
-    /// Leave out settings of more triangles than this, and say so
+    /// Leave out settings with more triangles than this; standard error tells how many
     #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: u64,
-    /// Points of the truth that are looked at, and at least as many of what is emitted
+    /// Sample points on the reference surface; at least as many are taken on the emitted triangles
     #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = samples)]
     pub samples: usize,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720")]
     pub size: Size,
-    /// Degrees from the front to the right, degrees upwards, and how far from the middle in bounding radii (by default as
-    /// far as shows all)
+    /// Where the camera is: degrees from the front to the right, degrees upwards, and the distance from the centre in
+    /// bounding radii (by default far enough to show everything)
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
     pub camera: CameraOption,
-    /// Picture to write, an SVG or PNG file, with a part for each mesh
+    /// Picture to write, an SVG or PNG file, with a diagram for each mesh
     #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture(), required_unless_present_any = ["csv", "report"])]
     pub output: Option<PathBuf>,
-    /// Table to write, a line as soon as a setting is done (- for standard output)
+    /// Table to write (- for standard output); each line is written as soon as its setting is done
     #[arg(long, value_name = "OUT.csv")]
     pub csv: Option<PathBuf>,
-    /// Folder for a page that says which method to use when, results.md, a picture of each mesh, and the table, results.csv;
-    /// made if it isn't there
+    /// Folder for results.md, a page that says which method to use when, with a picture for each mesh, and for the table,
+    /// results.csv; made if it isn't there
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterOption,
 }
 
-/// The exit code after Ctrl-C, as shells have it.
-pub(super) const INTERRUPTED: u8 = 130;
+/// The exit code after Ctrl-C: 128 + SIGINT, as shells return it.
+pub const INTERRUPTED: u8 = 130;
 
-/// Reads where to write a picture: its ending says of which kind.
+/// Parses the path of a picture, whose ending gives its format.
 fn picture() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
@@ -110,7 +110,7 @@ fn is_svg(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
 }
 
-/// Reads how many points are looked at.
+/// Parses a number of sample points.
 fn samples(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|number| (100..=10_000_000).contains(number));
     number.ok_or_else(|| "expected a whole number from 100 to 10000000".into())
@@ -118,19 +118,19 @@ fn samples(text: &str) -> Result<usize, String> {
 
 impl Args {
     /// # Errors
-    /// There is nothing to try, or it isn't clear what `--truth` is for.
+    /// No setting is left to try, or `--truth` was given with several meshes.
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
         if self.truth.is_some() && self.files.len() != 1 {
-            return Err(CliError::Usage("--truth is for one mesh: chart the others on their own"));
+            return Err(CliError::Usage("--truth takes one mesh: chart the others on their own"));
         }
         let settings = self.plan().settings();
         if settings.is_empty() {
-            return Err(CliError::Usage("subtriangulation has no LOD but uniform: add it to --lods"));
+            return Err(CliError::Usage("subtriangulation has uniform LOD only: add uniform to --lods"));
         }
         Ok(settings)
     }
 
-    /// The meshes that were named, or what is usual.
+    /// The meshes of the command line, or those of a report by default.
     fn meshes(&self) -> Vec<Source> {
         if self.files.is_empty() { report::usual() } else { self.files.clone() }
     }
@@ -152,7 +152,7 @@ impl Args {
         Effort { accuracy, most_triangles: self.max_triangles, ..Effort::default() }
     }
 
-    /// What a mesh is held against, and what that is in words; a shape's exact surface if nothing was asked for.
+    /// The reference surface of a mesh, and its name: that of `--truth`, or else the exact surface of a shape.
     fn truth_of(&self, mesh: &Source) -> Result<Option<(Truth, String)>, CliError> {
         let asked = self.truth.as_ref();
         let exact = asked.unwrap_or(mesh).shape().and_then(Truth::of_shape);
@@ -220,13 +220,13 @@ struct Session {
     tables: Vec<Table>,
     stop: Arc<AtomicBool>,
     telling: Telling,
-    /// Settings tried, of so many.
+    /// How many settings are done, of `all`.
     done: usize,
     all: usize,
 }
 
 impl Session {
-    /// Tries all settings on a mesh, until somebody interrupts.
+    /// Tries all settings on a mesh, until Ctrl-C is pressed.
     fn subject(&mut self, args: &Args, mesh: &Loading, settings: &[Setting]) -> Result<(Subject, LeftOut), CliError> {
         let Loading { loaded, truth } = mesh;
         let title = loaded.source.title();
@@ -269,7 +269,7 @@ impl Session {
         if too_large > 0 {
             let count = settings.len();
             let said = format!(
-                "{title}: {too_large} of {count} settings are left out, for more than {most_triangles} triangles."
+                "{title}: {too_large} of {count} settings have more than {most_triangles} triangles and are left out."
             );
             super::warn(&[said]);
         }
@@ -279,7 +279,7 @@ impl Session {
     }
 }
 
-/// The picture, and its sentences, unless the table has standard output.
+/// Writes the picture, and prints its sentences unless the table goes to standard output.
 fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
     match &args.output {
         Some(path) if is_svg(path) => write_text(path, &svg(subjects)?)?,
@@ -297,7 +297,7 @@ fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
     write_text("-".as_ref(), &text)
 }
 
-/// A CSV file, every line of which is whole as soon as it is added.
+/// A CSV file that is flushed after each line, so that an interrupted command leaves whole lines.
 struct Table {
     path: PathBuf,
     writer: csv::Writer<Box<dyn Write>>,
@@ -324,11 +324,11 @@ impl Table {
     }
 }
 
-/// What Ctrl-C sets; the second time it ends the program.
+/// Returns a flag that Ctrl-C sets. A second Ctrl-C ends the program.
 fn stop_on_interrupt() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let set = stop.clone();
-    // Where there is no handler to be had, Ctrl-C ends the program at once as it does anywhere; the table's lines stay.
+    // Without a handler, Ctrl-C ends the program at once, and the lines of the table stay.
     let _ = ctrlc::set_handler(move || {
         if set.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(INTERRUPTED));

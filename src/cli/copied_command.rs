@@ -16,14 +16,14 @@ pub(crate) struct CopiedCommand<'a> {
     pub preparation: &'a Preparation,
     pub settings: &'a Settings,
     pub camera: &'a Camera,
-    /// The bounding radius of what is drawn, in object units: the camera's distance is written in it.
+    /// The bounding radius of what is drawn, in object units. The command has the camera's distance in bounding radii.
     pub radius: f32,
     /// The view's width and height, in px.
     pub size: [u32; 2],
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
     pub truth: Option<&'a Source>,
-    /// Of the mesh, from 0.
+    /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
 }
 
@@ -34,7 +34,7 @@ impl CopiedCommand<'_> {
             Source::File(path) => path.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned()),
             Source::Shape(shape) | Source::FineShape(shape, _) => shape.to_string(),
         };
-        // Not the name alone: a texture may have that.
+        // A texture beside the mesh may have the mesh's name.
         let picture = Source::File(format!("{name}-view.png").into());
         let mut line = Line(format!("pnaen render {} -o {}", word(&named(self.source)), word(&named(&picture))));
         self.mesh(&mut line);
@@ -43,7 +43,7 @@ impl CopiedCommand<'_> {
         line.0
     }
 
-    /// What is read, and what becomes of it before it is tessellated.
+    /// Writes the options for loading and preparing the mesh.
     fn mesh(&self, line: &mut Line) {
         let Preparation { weld, crease_band, heights, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
@@ -58,7 +58,7 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// Every option that has an effect and another value than without it.
+    /// Writes every setting that has an effect and isn't at its default.
     fn settings(&self, line: &mut Line) {
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
@@ -76,7 +76,7 @@ impl CopiedCommand<'_> {
         }
     }
 
-    /// What it is compared with, and from where it is seen.
+    /// Writes the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
         if let (Some(truth), None) = (self.truth, self.animation) {
             line.option("--truth", named(truth));
@@ -94,13 +94,13 @@ impl CopiedCommand<'_> {
     }
 }
 
-/// A command in the making.
+/// A command line that options are appended to.
 struct Line(String);
 
 impl Line {
     fn option(&mut self, name: &str, value: impl Display) {
         let value = value.to_string();
-        // What begins with a dash would be taken for an option.
+        // A value that begins with a dash would be taken for an option.
         let _ = match value.starts_with('-') {
             true => write!(self.0, " {}", word(&format!("{name}={value}"))),
             false => write!(self.0, " {name} {}", word(&value)),
@@ -120,14 +120,14 @@ impl Line {
     }
 }
 
-/// A source as an argument: a file whose name begins with a dash, or as a shape's does, is found in its folder.
+/// Formats a source as an argument. A file that would be taken for an option, a shape or `material` gets `./` in front.
 fn named(source: &Source) -> String {
     let text = source.to_string();
     let is_misread = text.starts_with('-') || text == "material" || text.starts_with("shape:");
     if is_misread && matches!(source, Source::File(_)) { format!("./{text}") } else { text }
 }
 
-/// A text as one word of a shell's: of cmd.exe on Windows, elsewhere of POSIX (Shell Command Language, section 2.2.2).
+/// Quotes a text as one word for the shell: cmd.exe on Windows, elsewhere POSIX (Shell Command Language, section 2.2.2).
 fn word(text: &(impl Display + ?Sized)) -> String {
     let text = text.to_string();
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_=+,.:/@%".contains(c) || (cfg!(windows) && c == '\\');
@@ -151,7 +151,7 @@ mod tests {
     use crate::settings::{Colors, random};
     use crate::tessellate::{Lod, Surface};
 
-    /// What a shell makes of a line.
+    /// Splits a line into words as a shell does.
     fn words(line: &str) -> Vec<String> {
         let script = format!("for word in {line}; do printf '%s\\n' \"$word\"; done");
         let output = std::process::Command::new("sh").args(["-c", &script]).output().expect("a shell");
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_as_usual_is_left_out() {
+    fn options_with_default_values_are_left_out() {
         let (source, preparation) = (Source::File("my models/it's.glb".into()), Preparation::default());
         let camera = Camera { azimuth: -30.0, distance: 5.0, ..camera() };
         let line = shown(&source, &preparation, &Settings::default(), &camera).line();
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_else_is_written() {
+    fn options_with_other_values_are_written() {
         let (source, truth) = (Source::File("-x.glb".into()), Source::File("shape:y".into()));
         let limits = Limits { memory: 1 << 31, ..Limits::default() };
         let heights = Some(HeightSource::File("material".into()));
@@ -232,14 +232,14 @@ mod tests {
             (args.surface.animation.animation.as_deref(), args.surface.animation.time),
             (Some("-run, fast"), 0.1)
         );
-        assert_eq!(args.truth.truth, None, "an animation has none");
+        assert_eq!(args.truth.truth, None, "an animation has no reference surface");
     }
 
     proptest! {
         #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
         #[test]
-        fn commands_are_read_as_what_was_shown(settings in random::settings(), has_heights in any::<bool>()) {
+        fn parsing_a_command_gives_back_its_settings(settings in random::settings(), has_heights in any::<bool>()) {
             let heights = has_heights.then_some(HeightSource::Materials);
             let displacement = if has_heights { Displacement::AsPublished } else { Displacement::Off };
             let settings = settings.with(Tessellation { displacement, ..settings.tessellation });
@@ -249,7 +249,7 @@ mod tests {
             let PictureOptions(picture) = args.picture;
             prop_assert!(args.surface.check_with(picture.split_surface).is_ok());
             prop_assert_eq!(args.surface.preparation(), preparation);
-            // What LOD doesn't look at, and what moves no heights, may have any value.
+            // Numbers without effect may have any value: those of other LODs, and those of displacement without heights.
             let used = |settings: &Settings| {
                 let own = settings.tessellation;
                 let lod = own.used_lod();

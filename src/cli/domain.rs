@@ -1,4 +1,4 @@
-//! `pnaen domain`: the bare tessellator.
+//! `pnaen domain`: prints the tessellator's domain points and triangles.
 
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use crate::tessellate::{
 };
 
 #[derive(Debug, clap::Args)]
-pub(crate) struct Args {
-    /// How factors become segments; subtriangulation takes four equal ones
+pub struct Args {
+    /// How factors become segments; subtriangulation takes four equal factors
     #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]
     pub partitioning: Partitioning,
-    /// Factors of the edges where u, v and w are 0, and inside; also nan, inf, 0 and negatives
+    /// Factors of the edges where u, v and w are 0, and the inside factor; nan, inf, 0 and negative numbers are allowed
     #[arg(
         long,
         value_name = "E0,E1,E2,INSIDE",
@@ -26,7 +26,7 @@ pub(crate) struct Args {
         conflicts_with = "input"
     )]
     pub factors: Option<FactorSet>,
-    /// File with a set of factors a line, separated by spaces (- for standard input)
+    /// File with a set of four factors per line, separated by spaces (- for standard input)
     #[arg(long, value_name = "FILE")]
     pub input: Option<PathBuf>,
     /// Where to compute; the CPU needs no graphics driver
@@ -39,7 +39,7 @@ pub(crate) struct Args {
 /// Three edge factors and the inside factor.
 pub(super) type FactorSet = [f32; 4];
 
-/// Sets that go to the GPU together.
+/// How many sets the GPU computes at once.
 const BATCH: usize = 256;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
@@ -70,9 +70,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Why a set is refused.
-const NOT_EQUAL: &str = "subtriangulation has one number of segments for all: expected four equal factors";
+const NOT_EQUAL: &str = "subtriangulation cuts all edges into the same number of segments: expected four equal factors";
 
-/// Whether a partitioning takes a set: subtriangulation has one number of segments for all edges.
+/// Whether a partitioning takes a set: subtriangulation needs four equal factors.
 fn is_taken(partitioning: Partitioning, [e0, e1, e2, inside]: FactorSet) -> bool {
     partitioning != Partitioning::Subtriangulation || HullFactors { edges: [e0, e1, e2], inside }.is_uniform()
 }
@@ -105,7 +105,7 @@ fn factor_set<'a>(numbers: impl Iterator<Item = &'a str>) -> Option<FactorSet> {
     numbers?.try_into().ok()
 }
 
-/// The sets of a file, one a line, that a partitioning takes; empty lines are passed over.
+/// Reads sets of factors from a file, one per line. Empty lines are skipped.
 fn read_sets(path: &Path, partitioning: Partitioning) -> Result<Vec<FactorSet>, CliError> {
     let text = read_text(path)?;
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());

@@ -1,4 +1,4 @@
-//! `pnaen factors`: what the hull shader writes for every patch.
+//! `pnaen factors`: writes the hull shader's factors of every patch.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `--factors`: a file's factors in place of LOD's, and what is said of them.
+//! The option `--factors`: factors from a file in place of LOD's, and a report on where they disagree.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
 pub(crate) struct FactorsOption {
     /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
     /// patch,e0,e1,e2,inside and a line for each triangle, as the factors command or another engine writes it. Standard error
-    /// tells on which edges the factors of the two sides differ, and under which convention they don't
+    /// lists edges whose two sides have different factors, and names the convention under which no edge has
     #[arg(
         long = "factors",
         value_name = "CSV",
@@ -26,24 +26,24 @@ pub(crate) struct FactorsOption {
     pub given: Option<PathBuf>,
 }
 
-/// A file's factors, held against the mesh.
-pub(crate) struct Given {
+/// Factors from a file, checked against the mesh.
+pub struct Given {
     /// One for each patch.
     pub factors: Vec<HullFactors>,
     pub stats: FactorsFile,
 }
 
-/// Edges that are said on standard error.
+/// How many edges standard error lists.
 const SAID: usize = 10;
-/// Edges that stats list.
+/// How many edges the stats list.
 const LISTED: usize = 10_000;
 
 impl FactorsOption {
-    /// Reads the file, if there is one, and says what it found.
+    /// Reads the file, if one was named, and reports on standard error where its factors disagree.
     ///
     /// # Errors
-    /// The file can't be read, or isn't one of this mesh, or has factors that the partitioning doesn't take.
-    pub(crate) fn read(
+    /// The file can't be read, isn't for this mesh, or has factors that the partitioning doesn't take.
+    pub fn read(
         &self,
         mesh: &Mesh,
         topology: &Topology,
@@ -72,13 +72,13 @@ impl FactorsOption {
     }
 }
 
-/// What was found, for people.
+/// Returns the report, as lines for standard error.
 fn said(topology: &Topology, agreement: &Agreement, convention: Convention) -> Vec<String> {
     let (different, compared) = (agreement.edges.len(), agreement.edges_compared);
     let mut lines = vec![format!("{different} of {compared} edges have different factors on their sides")];
     if agreement.patches_culled > 0 {
         lines.push(format!(
-            "{} of {} patches are left out, as a factor of theirs is not greater than 0",
+            "{} of {} patches are left out, because one of their factors is not greater than 0",
             agreement.patches_culled,
             topology.patches.len()
         ));
@@ -86,12 +86,12 @@ fn said(topology: &Topology, agreement: &Agreement, convention: Convention) -> V
     if different > SAID {
         lines.push(format!("the {SAID} edges that differ the most:"));
     }
-    lines.extend(agreement.edges.iter().take(SAID).map(|edge| edge_said(topology, edge)));
-    lines.extend(order_said(agreement, convention));
+    lines.extend(agreement.edges.iter().take(SAID).map(|edge| edge_text(topology, edge)));
+    lines.extend(order_text(agreement, convention));
     lines
 }
 
-fn edge_said(topology: &Topology, edge: &Disagreement) -> String {
+fn edge_text(topology: &Topology, edge: &Disagreement) -> String {
     let [a, b] = end_points(topology, edge.edge);
     let [(one, least), (other, greatest)] = edge.extremes();
     let point = |[x, y, z]: [f32; 3]| format!("({x} {y} {z})");
@@ -103,18 +103,18 @@ fn end_points(topology: &Topology, edge: u32) -> [[f32; 3]; 2] {
     topology.edge_points(&topology.edges[edge as usize]).map(|point| topology.points[point as usize].to_array())
 }
 
-/// Which convention makes the file consistent.
-fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
+/// Says which convention makes the file consistent, if one does.
+fn order_text(agreement: &Agreement, convention: Convention) -> Option<String> {
     let named = |order: &Order| order.convention().filter(|found| found.is_consistent() && *found != convention);
     let names: Vec<_> = agreement.consistent().filter_map(named).map(Choice::name).collect();
     if agreement.edges.is_empty() {
         let others = names.join(" and ");
         return (!names.is_empty())
-            .then(|| format!("as {others} the file is consistent too: it doesn't tell which it is"));
+            .then(|| format!("the file is consistent as {others} too, so it doesn't tell which convention it has"));
     }
     if !names.is_empty() {
         return Some(format!(
-            "as {} the file is consistent: pass --convention {}",
+            "the file is consistent as {}: pass --convention {}",
             names.join(" and as "),
             names.join(" or ")
         ));
@@ -124,7 +124,7 @@ fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
         let like =
             order.convention().map_or(String::new(), |convention| format!(" as {} writes them", convention.name()));
         return Some(format!(
-            "the file is consistent if e0, e1, e2 are for edges {edges}{like}: no order of weights fits that, so exchange \
+            "the file is consistent if e0, e1, e2 are for edges {edges}{like}; no valid convention has that order, so exchange \
              two factors where they are written"
         ));
     }
@@ -138,12 +138,12 @@ fn order_said(agreement: &Agreement, convention: Convention) -> Option<String> {
     ))
 }
 
-/// The convention that takes factors in this order, and puts them there.
+/// The convention that has factors in this order, if it is a consistent one.
 fn named_or_own(order: &Order) -> Option<Convention> {
     order.convention().filter(|convention| convention.is_consistent())
 }
 
-/// What was found, for programs.
+/// The report as JSON.
 #[derive(Debug, Serialize)]
 pub(crate) struct FactorsFile {
     path: String,
@@ -163,7 +163,7 @@ pub(crate) struct FactorsFile {
 struct OrderStats {
     /// Side k runs from corner k to corner k + 1.
     sides: [u32; 3],
-    /// The first convention, or mistake, that writes factors so.
+    /// The first convention, or known mistake, that writes factors in this order.
     written_by: Option<&'static str>,
     edges_different: u64,
 }

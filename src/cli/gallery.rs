@@ -21,17 +21,17 @@ pub(crate) struct Args {
     pub output: PathBuf,
     #[command(flatten)]
     pub weld: WeldOption,
-    /// What the exhibit of displacement is displaced by: an image, or `material`; without it, waves made in code
+    /// Height map of the displacement exhibit: an image, or `material`; by default waves made in code
     #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
     pub height: Option<HeightSource>,
-    /// How far white is above black in that exhibit, in bounding radii, -1 to 1
+    /// How far white lies above black in that exhibit, in bounding radii, -1 to 1
     #[arg(long, value_name = "S", default_value_t = 0.15, value_parser = options::number_of(&HEIGHT_SCALE), allow_hyphen_values = true)]
     pub height_scale: f32,
-    /// The height that stays where it is, 0 to 1
+    /// Height at which that exhibit's displacement moves nothing, 0 to 1
     #[arg(long, value_name = "H", default_value_t = 0.5, value_parser = options::number_of(&MIDLEVEL))]
     pub midlevel: f32,
-    /// Tessellation factor, but for the exhibits of patterns and displacement, 1 to 64; lower where a tile would have more than
-    /// about 2,000,000 triangles
+    /// Tessellation factor, 1 to 64; the exhibits of patterns and displacement have their own. It is lower where a tile would
+    /// have more than about 2,000,000 triangles
     #[arg(long, value_name = "F", default_value_t = 12.0, value_parser = options::number_of(&FACTOR))]
     pub factor: f32,
     /// Degrees from the front to the right, and degrees upwards
@@ -44,7 +44,7 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if args.camera.distance.is_some() {
         return Err(CliError::Usage(
-            "--camera takes AZIMUTH,ELEVATION here: every tile is filled, from its own distance",
+            "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
         ));
     }
     let look = Look {

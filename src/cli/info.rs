@@ -1,4 +1,4 @@
-//! `pnaen info`: what a file holds.
+//! `pnaen info`: prints what a file holds.
 
 use super::mesh_report::Info;
 use super::options::WeldOption;
@@ -15,7 +15,7 @@ pub(crate) struct Args {
     pub file: Source,
     #[command(flatten)]
     pub weld: WeldOption,
-    /// As JSON
+    /// Print JSON
     #[arg(long)]
     pub json: bool,
 }
@@ -26,7 +26,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     write_text("-".as_ref(), &text)
 }
 
-/// Its warnings are among what is said.
+/// Gathers the numbers of a mesh, and the warnings of loading it.
 fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
     let progress = Progress::default();
     let loaded = engine::load(source, &options.preparation(), &progress)?;
@@ -34,6 +34,6 @@ fn info(source: &Source, options: WeldOption) -> Result<Info, LoadError> {
     if loaded.crease_band.width == 0.0 {
         return Ok(info);
     }
-    // A tolerance would weld what was read, and not the mesh with a crease band.
+    // A weld tolerance applies to the mesh as it was read, before it got its crease band.
     Ok(Info { crease_band: loaded.crease_band, joins: weld_previews(&loaded.read, None, &progress)?, ..info })
 }

@@ -13,7 +13,7 @@ use crate::names::{on_one_line, shown};
 use crate::numbers::exact;
 use crate::progress::{Cancelled, Progress};
 
-/// T-junctions that are printed for people.
+/// How many T-junctions the text lists.
 const SHOWN: usize = 10;
 
 /// A mesh in numbers.
@@ -21,7 +21,7 @@ const SHOWN: usize = 10;
 pub(super) struct Info {
     pub name: String,
     pub triangles: u32,
-    /// Within what points were welded, relative to the bounding diagonal; 0 is exactly.
+    /// The weld tolerance, relative to the bounding diagonal; 0 joins only equal positions.
     pub weld: f32,
     /// The crease band; all other numbers are of the mesh that has it.
     pub crease_band: CreaseBand,
@@ -36,7 +36,7 @@ pub(super) struct Info {
     pub joins: Vec<WeldPreview>,
     /// See [`t_junctions()`].
     pub t_junctions: u32,
-    /// Where they are, in their order.
+    /// The positions of all T-junctions.
     pub t_junctions_at: Vec<TJunctionInfo>,
     pub repairs: Repairs,
     pub normal_faults: NormalFaults,
@@ -63,7 +63,7 @@ pub(super) struct AnimationInfo {
     pub name: String,
     /// s.
     pub duration: f64,
-    /// What it moves.
+    /// What it moves, as counts.
     #[serde(flatten)]
     pub moved: AnimatedCounts,
 }
@@ -141,7 +141,7 @@ impl fmt::Display for Info {
             writeln!(f, "material      {}: {} triangles{texture}", shown(&material.name), material.triangles)?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
-            // As the file has it: in f32.
+            // Files have times in f32: an f64 would print digits that the file doesn't have.
             let name = shown(name);
             writeln!(f, "animation     {name}: {} s, moves {moved}", *duration as f32)?;
         }
@@ -179,17 +179,20 @@ impl Info {
         Ok(())
     }
 
-    /// What is odd about it.
+    /// What may be wrong with the mesh.
     fn write_odd(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Repairs { normals_made, normals_replaced, normals_rescaled, denormals } = self.repairs;
         let NormalFaults { against_face, opposite, along_edge } = self.normal_faults;
-        writeln!(f, "weld          (within parts of the bounding diagonal, compared with the exact weld)")?;
+        writeln!(
+            f,
+            "weld          (what each tolerance would join; tolerances are relative to the bounding diagonal)"
+        )?;
         for join in &self.joins {
             writeln!(f, "  {:<14e}{join}", join.tolerance)?;
         }
         writeln!(
             f,
-            "T-junctions   {} (points between open edges' ends, which no tessellation closes)",
+            "T-junctions   {} (points on other triangles' open edges; no tessellation closes these gaps)",
             self.t_junctions
         )?;
         for TJunctionInfo { edge: [from, to], point, .. } in self.t_junctions_at.iter().take(SHOWN) {
@@ -234,7 +237,7 @@ fn animations(rig: &Rig) -> Vec<AnimationInfo> {
     rig.clips.iter().map(animation).collect()
 }
 
-/// Points in use - edges + patches: 2 for whatever is like a sphere, 0 for a torus.
+/// Points in use - edges + patches: 2 for a sphere, 0 for a torus.
 fn euler_characteristic(topology: &Topology) -> i64 {
     let mut used = vec![false; topology.points.len()];
     for edge in &topology.edges {
@@ -271,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn info_of_nothing() {
+    fn info_of_an_empty_mesh() {
         let info = info(&Mesh::default(), 0.0);
         assert_eq!((info.triangles, info.euler_characteristic, info.closed), (0, 0, false));
     }
@@ -287,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn t_junctions_are_told_with_their_positions() {
+    fn t_junctions_are_listed_with_their_positions() {
         let info = info(&comb(), 0.0);
         assert_eq!((info.t_junctions, info.t_junctions_at.len()), (12, 12));
         let json = serde_json::to_value(&info).unwrap();
@@ -302,9 +305,9 @@ mod tests {
     }
 
     #[test]
-    fn what_each_weld_tolerance_would_join_is_told() {
+    fn info_lists_what_each_weld_tolerance_would_join() {
         let mut corners = comb().corners;
-        // Twice the comb, one half a part of 1e-4 to 1e-3 of its diagonal away.
+        // Two combs, at a distance between 1e-4 and 1e-3 of the diagonal.
         corners.extend(corners.clone().iter().map(|c| Corner { position: c.position + 0.01 * Vec3::Z, ..*c }));
         let triangles = (0..26).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect::<Vec<_>>().into();
         let info = info(&Mesh { corners, triangles, ..Mesh::default() }, 0.0);
@@ -317,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tolerance_and_what_it_does_are_told() {
+    fn info_prints_the_weld_tolerance_and_its_effect() {
         let exact = info(&comb(), 0.0).to_string();
         assert!(exact.contains("(welded where exactly equal)"), "{exact}");
         let rough = info(&comb(), 0.1);

@@ -1,4 +1,4 @@
-//! The commands: no window, no display. One file a command; this one reads the command line and says what went wrong.
+//! The commands, which need neither window nor display. Each has a file of its own; this one has the command line and the errors.
 
 mod adapters;
 mod adjacency;
@@ -59,7 +59,7 @@ use crate::progress::Progress;
 pub(crate) struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// What the window opens on: a .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split,
+    /// Mesh that the window opens: a .gltf, .glb, .obj, .stl or .ply file, or a shape made in code such as shape:cube-split,
     /// or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
@@ -79,26 +79,26 @@ pub(crate) enum Command {
     Domain(domain::Args),
     /// Write the factors that the hull shader gives every patch, before the tessellator clamps and rounds them
     Factors(factors::Args),
-    /// Write the index buffer of PN-AEN patches, or hold one against the mesh
+    /// Write the index buffer of PN-AEN patches, or compare one with the mesh
     ///
-    /// Indices count the mesh's distinct corners: one for every position, normal and uv that occur together, which the JSON
-    /// lists. Patches are the triangles in their order, without degenerate ones; the JSON has the triangle of each.
+    /// Indices refer to the mesh's distinct corners, which the JSON lists: one for every position, normal and uv that occur
+    /// together. Patches are the triangles in their order, without degenerate ones; the JSON has the triangle of each.
     Adjacency(adjacency::Args),
-    /// Try what breaks tessellators, and say what holds and what fails
+    /// Run cases that break tessellators, and report which methods pass and which fail
     ///
-    /// What the published methods get wrong is printed as a failure, and is none of this command's: the exit code is 1 only
-    /// if something fails that this program promises.
+    /// Failures of the published methods are printed, but don't make the command fail: the exit code is 1 only if something
+    /// fails that this program promises.
     Stability(stability::Args),
-    /// Draw every technique side by side, and a page that says what each is and whose
+    /// Draw every technique side by side, and write a page that explains each and names its source
     Gallery(gallery::Args),
-    /// Time every method at many settings, hold what it emits against the truth, and chart error against time and triangles
+    /// Time every method at many settings, measure its error, and chart error against time and triangles
     ///
-    /// The truth is a shape's exact surface, or a mesh given with --truth. Without either, errors are px on screen between what
-    /// is emitted and the surface that it stands for, and surfaces are not compared with each other. Ctrl-C ends after the
-    /// setting under way: its rows are in the CSV, the picture is of what was done, and the exit code is 130. A second one ends
-    /// at once.
+    /// Errors are measured against a reference surface: a shape's exact surface, or the mesh of --truth. Without either, errors
+    /// are distances in px on screen between the triangles and the surface that they approximate, and different surfaces are
+    /// not compared with each other. Ctrl-C ends the command after the current setting: the CSV and the picture have what was
+    /// done, and the exit code is 130. A second Ctrl-C ends it at once.
     Chart(chart::Args),
-    /// Say what a file holds, and what of it was left out
+    /// Print what a file holds, and what of it is left out
     Info(info::Args),
     /// List the graphics adapters
     Adapters(adapters::Args),
@@ -117,7 +117,7 @@ pub(crate) enum CliError {
     File { path: String, doing: &'static str, reason: String },
     #[error("{path}: there is no folder {folder} to write it in; make it first")]
     NoFolder { path: String, folder: String },
-    #[error("{path} isn't written over: it is {by} by the same command; choose another name")]
+    #[error("{path} is {by} by the same command, so it isn't overwritten; choose another name")]
     Taken { path: String, by: &'static str },
     #[error("{reference}: {reason}")]
     Reference { reference: String, reason: CompareError },
@@ -126,20 +126,20 @@ pub(crate) enum CliError {
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
     #[error(
-        "{path}: the factors of patch {triangle} are not all equal, and subtriangulation has one number of segments for all: \
-         choose another --partitioning"
+        "{path}: the factors of patch {triangle} are not all equal, as subtriangulation needs them: choose another \
+         --partitioning"
     )]
     Uneven { path: String, triangle: u32 },
     #[error(transparent)]
     Picture(#[from] crate::stability::PictureError),
     #[error(transparent)]
     Gallery(#[from] crate::gallery::GalleryError),
-    #[error("{count} of the table's lines break a promise, the first: {method} on {case}")]
+    #[error("{count} of the table's lines break a promise; the first is {method} on {case}")]
     Promise { count: usize, case: String, method: &'static str },
     #[error("{0}")]
     Usage(&'static str),
     #[error(
-        "there are {least} triangles even at a tolerance of {largest} px, more than {most}: allow more, or use a mesh of \
+        "even at a tolerance of {largest} px there are {least} triangles, more than {most}: allow more, or use a mesh with \
          fewer"
     )]
     Budget { most: u64, least: u64, largest: f32 },
@@ -148,10 +148,10 @@ pub(crate) enum CliError {
     #[error("triangle {triangle} of {file} is degenerate: it has no patch")]
     NoPatch { file: String, triangle: u32 },
     #[error("{path}: {fault}")]
-    Indices { path: String, fault: crate::adjacency_file::Fault },
+    Indices { path: String, fault: crate::adjacency_file::IndicesFault },
     #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
     OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
-    #[error("{file} can't be a truth: it has no triangles; choose the mesh that the other was made from")]
+    #[error("{file} can't be a reference surface: it has no triangles; choose another mesh")]
     NoTruth { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
@@ -163,8 +163,8 @@ pub(crate) enum CliError {
     Output(std::io::Error),
 }
 
-/// Runs a command. A closed pipe is no failure: whoever reads has seen enough.
-pub(crate) fn run(command: Command) -> ExitCode {
+/// Runs a command. A closed pipe is no failure: the reader wants no more.
+pub fn run(command: Command) -> ExitCode {
     let result = match command {
         Command::Render(args) => render::run(&args),
         Command::Tessellate(args) => tessellate::run(&args),
@@ -192,9 +192,9 @@ pub(crate) fn run(command: Command) -> ExitCode {
     }
 }
 
-/// Says what went wrong on standard error; the exit code of a failure.
-pub(crate) fn fail(error: &dyn std::fmt::Display) -> ExitCode {
-    // Standard error may be closed too; then there is nobody to tell.
+/// Prints an error on standard error, and returns the exit code of a failure.
+pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
+    // Standard error may be closed too; then nobody reads it.
     let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
     ExitCode::FAILURE
 }
@@ -210,13 +210,13 @@ pub(crate) fn preview(
     render::run(&render::Args::preview(source, limit, adapter, path))
 }
 
-/// The whole of a text file, or of standard input if the path is `-`.
+/// Reads a whole text file, or standard input if the path is `-`.
 fn read_text(path: &Path) -> Result<String, CliError> {
     String::from_utf8(read_bytes(path)?).map_err(|error| file_error(path, "read", &error))
 }
 
-/// The whole of a file, or of standard input if the path is `-`. A pipe is read to its end; a device isn't, which may have none,
-/// nor is more than of a mesh's file.
+/// Reads a whole file, or standard input if the path is `-`. Refuses devices, which may have no end, and more bytes than a
+/// mesh's file may have by default.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
     let most = Limits::default().file;
     let mut bytes = Vec::new();
@@ -226,7 +226,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, CliError> {
     };
     read.map_err(|error| file_error(path, "read", &file_reason(&error)))?;
     if bytes.len() as u64 > most {
-        return Err(file_error(path, "read", &format!("it has more than the {most} bytes that are read at most")));
+        return Err(file_error(path, "read", &format!("it has more than {most} bytes")));
     }
     Ok(bytes)
 }
@@ -271,7 +271,7 @@ pub(crate) fn write_picture(path: &Path, picture: &image::DynamicImage) -> Resul
     crate::files::write_whole(path, &bytes).map_err(|error| file_error(path, "written", &file_reason(&error)))
 }
 
-/// Serialised on several lines, with a line end.
+/// Serialises a value on several lines, with a line end.
 fn to_json(value: &impl serde::Serialize) -> Result<String, CliError> {
     let text = serde_json::to_string_pretty(value).map_err(|error| CliError::Output(error.into()))?;
     Ok(text + "\n")
@@ -281,21 +281,21 @@ fn file_error(path: &Path, doing: &'static str, reason: &dyn std::fmt::Display) 
     CliError::File { path: shown_path(path), doing, reason: reason.to_string() }
 }
 
-/// Loads a mesh for a command, saying on standard error what was left out or repaired.
+/// Loads a mesh for a command. Standard error tells what was left out or repaired.
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = crate::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.warnings);
     Ok(loaded)
 }
 
-/// The same, where what is to be written is none of the files that the mesh's own names.
+/// Like [`load`], but fails if a file to be written is one that the mesh's file refers to.
 fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Path>]) -> Result<Loaded, CliError> {
     let loaded = load(source, preparation)?;
     keep_apart(loaded.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;
     Ok(loaded)
 }
 
-/// Says on standard error how far a long command is, at most once a second.
+/// Reports the progress of a long command on standard error, at most once a second.
 struct Telling(Instant);
 
 impl Telling {

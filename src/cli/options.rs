@@ -19,8 +19,8 @@ use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
-pub(super) use declared::{PictureOptions, TessellationOptions, choice, number_of};
-pub(super) use values::{CameraOption, Place, Size, model, picture, source, threshold};
+pub use declared::{PictureOptions, TessellationOptions, choice, number_of};
+pub use values::{CameraOption, Position, Size, model, picture, source, threshold};
 
 use values::{bytes, crease_band, weld};
 
@@ -52,7 +52,7 @@ pub(crate) struct SurfaceOptions {
     pub camera: CameraOption,
     /// The point that the camera looks at, in object units (by default the centre of everything that is shown)
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub target: Option<Place>,
+    pub target: Option<Position>,
     /// Orthographic projection, without perspective
     #[arg(long)]
     pub orthographic: bool,
@@ -79,7 +79,7 @@ impl SurfaceOptions {
         self.check_with(None)
     }
 
-    /// The same where another surface may be tessellated with these options too.
+    /// Like [`Self::check`], where `other` is a second surface that is tessellated with these options too.
     ///
     /// # Errors
     /// The same.
@@ -129,17 +129,18 @@ impl SurfaceOptions {
         }
     }
 
-    /// Settings with these options, and nothing over the surface.
-    pub(crate) fn settings(&self) -> Settings {
+    /// Settings with these options and no overlays.
+    pub fn settings(&self) -> Settings {
         self.tessellation().into()
     }
 
-    /// The same with a tolerance at which there are no more triangles than asked for, which it says on standard error;
-    /// `count` gives the number for settings. LOD is by error if there is a budget.
+    /// Returns settings whose tolerance is raised until there are no more triangles than `--max-triangles` allows. Standard
+    /// error tells the raised tolerance. `count` returns the number of triangles for settings. [`Self::check`] has made sure
+    /// that `--max-triangles` comes with LOD by error.
     ///
     /// # Errors
-    /// There are more triangles at any tolerance, or `count` fails.
-    pub(crate) fn within_budget(
+    /// There are too many triangles at any tolerance, or `count` fails.
+    pub fn within_budget(
         &self,
         mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
     ) -> Result<Settings, CliError> {
@@ -161,13 +162,13 @@ impl SurfaceOptions {
         Ok(at(tolerance))
     }
 
-    /// Memory for output on the device.
-    pub(crate) fn arena_bytes(&self) -> u64 {
+    /// Memory for output on the device, in bytes.
+    pub fn arena_bytes(&self) -> u64 {
         self.arena << 20
     }
 
-    /// Looks at everything that is drawn of a mesh with these bounds; its distance is in their radii.
-    pub(crate) fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
+    /// Returns the camera of these options for a mesh with these bounds. Without a distance it shows everything that is drawn.
+    pub fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
         let mut camera = Camera::framing(&bounds.grown(self.settings().reach(mesh)), self.viewport());
         (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
         if let Some(radii) = self.camera.distance {
@@ -192,7 +193,8 @@ pub(crate) struct WeldOption {
     pub weld: f32,
     /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small
     /// triangles that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative
-    /// to the bounding diagonal, 0 to 0.1; 0 makes no band. At most a third of an edge, and half the radius of a triangle's incircle
+    /// to the bounding diagonal, 0 to 0.1; 0 makes no band. It is at most a third of an edge, and half the radius of a
+    /// triangle's incircle
     #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = crease_band, allow_hyphen_values = true)]
     pub crease_band: f32,
     #[command(flatten)]

@@ -1,5 +1,5 @@
-//! What a command writes is apart from what it reads: no file that it was given is replaced, and none is written twice. Where
-//! nothing could be written, that is said before there is anything to write.
+//! Checks a command's paths before it works: it must not replace a file that it reads or write a file twice, and the folders
+//! of its outputs must exist.
 
 use std::path::{Path, PathBuf};
 
@@ -7,9 +7,11 @@ use super::CliError;
 use crate::load::{HeightSource, Source};
 use crate::names::shown_path;
 
+/// Checks that the files to be written are different from each other and from those to be read.
+///
 /// # Errors
-/// A file to be written is read as well, or written already; or there is no folder for it.
-pub(super) fn keep_apart<'a>(
+/// A file to be written is read or written already, or there is no folder for it.
+pub fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
 ) -> Result<(), CliError> {
@@ -36,15 +38,15 @@ pub(super) fn file_of(source: &Source) -> Option<&Path> {
     }
 }
 
-/// The same of heights.
-pub(super) fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
+/// The file of a height map that has one.
+pub fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
     match heights? {
         HeightSource::File(path) => Some(path),
         HeightSource::Materials => None,
     }
 }
 
-/// Where a path leads, also if nothing is there yet; none for what isn't a file, as `-` and devices aren't.
+/// Returns the canonical path of a file, even if it doesn't exist yet. Returns none for `-` and for devices.
 fn place(path: &Path) -> Option<PathBuf> {
     if path.as_os_str() == "-" {
         return None;

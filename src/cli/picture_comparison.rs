@@ -9,7 +9,7 @@ pub struct Comparison {
     /// 0 for the same picture, 1 for nothing in common: one minus the mean of structural similarity (luma) and colour
     /// difference (chroma) over all px.
     pub difference: f64,
-    /// Where they differ, and in what: black where they don't.
+    /// A picture of the differences, black where there are none.
     pub map: RgbImage,
 }
 
@@ -21,14 +21,14 @@ pub enum CompareError {
     Failed(String),
 }
 
-/// How far apart the channels of one px may be, of 255: drivers round the last bits of shading differently, which smooth
-/// shades would count as another structure though nobody sees it.
+/// The difference of a px's channels, of 255, that is ignored. Drivers round the last bits of shading differently; in smooth
+/// shades, structural similarity would count that as another structure, though nobody sees it.
 const ROUNDING: u8 = 1;
 
-/// Compares by colour alone; the pictures have no transparency. Px whose channels are all within 1 of 255 are the same.
+/// Compares two pictures by colour; they have no transparency. Px whose channels all differ by at most 1 of 255 are equal.
 ///
 /// # Errors
-/// Sizes that differ.
+/// The sizes differ.
 pub fn compare(picture: &RgbaImage, reference: &RgbaImage) -> Result<Comparison, CompareError> {
     let ((w, h), (rw, rh)) = (picture.dimensions(), reference.dimensions());
     if (w, h) != (rw, rh) {
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_level_is_rounding_and_two_are_not() {
+    fn a_difference_of_one_level_is_ignored_and_of_two_is_not() {
         let shades =
             |up: u8| RgbaImage::from_fn(64, 48, |x, y| image::Rgba([x as u8 + up * (y as u8 & 1), 80, 90, 255]));
         let difference = |up| compare(&shades(up), &shades(0)).expect("one size").difference;
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_is_itself_and_nothing_else() {
+    fn only_equal_pictures_have_no_difference() {
         let picture = RgbaImage::from_fn(64, 48, |x, y| image::Rgba([x as u8 * 3, y as u8 * 5, 90, 255]));
         let same = compare(&picture, &picture).expect("one size");
         assert!(same.difference < 1e-9, "{}", same.difference);

@@ -1,4 +1,4 @@
-//! A picture held against one that was right.
+//! The option `--reference`: compares the picture with a reference picture.
 
 use std::io::BufReader;
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::{CliError, compare, file_error, write_picture};
 use crate::files::open_file;
 use crate::names::shown_path;
 
-/// Reads the reference before anything is drawn or written.
+/// Reads the reference picture. The command calls this before it draws or writes anything.
 ///
 /// # Errors
 /// It can't be read.
@@ -29,7 +29,7 @@ pub(super) fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
 ///
 /// # Errors
 /// It differs, or is of another size.
-pub(super) fn hold_against(
+pub fn compare_with(
     output: &Path,
     picture: &image::RgbaImage,
     path: &Path,
@@ -44,7 +44,7 @@ pub(super) fn hold_against(
     let mut name = output.file_stem().unwrap_or_default().to_owned();
     name.push("-diff.png");
     let diff = output.with_file_name(name);
-    // Beside a device or a pipe is no place for a picture.
+    // A device or a pipe has no folder for the picture of the difference.
     let see = if output.is_file() {
         write_picture(&diff, &comparison.map.into())?;
         format!(": see {}, where the differences are bright", shown_path(&diff))

@@ -1,10 +1,10 @@
-//! `pnaen render`: the window's picture, without the window.
+//! `pnaen render`: draws the window's picture without the window.
 
 use std::path::{Path, PathBuf};
 
 use super::options::{PictureOptions, TessellationOptions};
 use super::stats::{AnimationStats, LeftStats, Stats};
-use super::truth::{AccuracyStats, DeviationStats, Held};
+use super::truth::{AccuracyStats, DeviationStats, ReferenceSurface};
 use super::{
     AdapterOption, CliError, FactorsOption, LimitOption, SurfaceOptions, TruthOption, WeldOption, file_of,
     file_of_heights, keep_apart, load_apart, options, reference, to_json, write_picture, write_text,
@@ -38,8 +38,8 @@ pub(crate) struct Args {
     pub picture: PictureOptions,
     #[command(flatten)]
     pub truth: TruthOption,
-    /// Outline this triangle (its number in the mesh, from 0); its edges have the colours of factors 0, 1 and 2: red, green,
-    /// blue
+    /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
+    /// and blue
     #[arg(long, value_name = "TRIANGLE")]
     pub select: Option<u32>,
     /// Write statistics and timings as JSON (- for standard output)
@@ -48,10 +48,10 @@ pub(crate) struct Args {
     /// Whether stats include the largest distance on screen between the triangles and the surface, sampled on the CPU
     #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
     pub measure_error: bool,
-    /// Fail if the picture differs from this one by more than the threshold, and write the difference beside it
+    /// Fail if the picture differs from this one by more than the threshold, and write a picture of the difference beside it
     #[arg(long, value_name = "PNG")]
     pub reference: Option<PathBuf>,
-    /// Difference that is still the same picture: 0 is none, 1 is all (1 minus structural similarity)
+    /// Largest difference that passes: 0 for equal pictures, 1 for nothing in common (1 minus structural similarity)
     #[arg(long, value_name = "T", default_value_t = 0.01, value_parser = options::threshold)]
     pub threshold: f64,
     #[command(flatten)]
@@ -59,8 +59,8 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// What the window shows when it opens.
-    pub(crate) fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
+    /// The arguments that draw what the window shows when it opens.
+    pub fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
         let opening = Settings::opening();
         let tessellation = TessellationOptions { tessellation: opening.tessellation, displacement: None };
         let weld = WeldOption { limit, ..WeldOption::default() };
@@ -82,7 +82,7 @@ impl Args {
 }
 
 impl Args {
-    /// What is written replaces nothing that is read.
+    /// Checks that no file to be written is one that is read.
     fn keep_apart(&self) -> Result<(), CliError> {
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
@@ -95,11 +95,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     run_with(args, || Engine::chosen(&args.adapter.choice()))
 }
 
-/// The same with an engine that is made once the arguments are known to be good.
+/// Like [`run`], with an engine that is made once the arguments have been checked.
 ///
 /// # Errors
-/// As the command's.
-pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+/// Those of the command.
+pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let PictureOptions(Settings { overlays, split_surface, .. }) = args.picture;
     args.surface.check_with(split_surface)?;
     args.keep_apart()?;
@@ -107,11 +107,12 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
     let written = [Some(&*args.output), args.stats.as_deref()];
     let loaded = load_apart(&args.file, &args.surface.preparation(), &written)?;
     let given = args.given.read(&loaded.mesh, &loaded.topology, &args.surface.tessellation())?;
-    let held = args.truth.held(&loaded, &args.surface, overlays.colors == Colors::Deviation)?;
+    let reference_surface =
+        args.truth.reference_surface(&loaded, &args.surface, overlays.colors == Colors::Deviation)?;
     let selected = args.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
     let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
     let mut shot = Shot::new(args, loaded, given, engine)?;
-    shot.measure(args, held, selected.is_some())?;
+    shot.measure(args, reference_surface, selected.is_some())?;
     shot.mark(selected)?;
     shot.engine.draw(&mut shot.scene, &shot.target, &shot.camera, &shot.settings, &mut Timing::Off)?;
     let picture = shot.target.read(&shot.engine.gpu)?;
@@ -123,14 +124,14 @@ pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuE
         write_text(path, &to_json(&stats)?)?;
     }
     match args.reference.as_deref().zip(reference) {
-        Some((path, reference)) => reference::hold_against(&args.output, &picture, path, &reference, args.threshold),
+        Some((path, reference)) => reference::compare_with(&args.output, &picture, path, &reference, args.threshold),
         None => Ok(()),
     }
 }
 
-/// What is drawn, tessellated on its device.
+/// Everything that one picture is drawn and measured from.
 struct Shot {
-    /// At rest, and as it is drawn.
+    /// The mesh at rest; `loaded` is the mesh in the pose that is drawn.
     at_rest: Loaded,
     loaded: Loaded,
     moment: Option<Moment>,
@@ -139,14 +140,14 @@ struct Shot {
     target: Target,
     camera: Camera,
     settings: Settings,
-    held: Option<Held>,
+    reference_surface: Option<ReferenceSurface>,
     /// What was measured of each half.
     results: ByHalf<MeasurementResults>,
     /// The colour scale of the deviation overlay.
     scale: Scale,
 }
 
-/// Of each half, if there is one.
+/// A value for each half that the picture has.
 type ByHalf<T> = [Option<T>; 2];
 
 impl Shot {
@@ -181,8 +182,8 @@ impl Shot {
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
         }
         let (loaded, scale) = (at_rest.posed(moment), deviation_scale(0.0, scene.ulp()));
-        let (held, results) = (None, Default::default());
-        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, held, results, scale })
+        let (reference_surface, results) = (None, Default::default());
+        Ok(Self { at_rest, loaded, moment, engine, scene, target, camera, settings, reference_surface, results, scale })
     }
 
     /// What a half is tessellated with, if there is one.
@@ -197,18 +198,23 @@ impl Shot {
     }
 
     /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
-    fn measure(&mut self, args: &Args, held: Option<Held>, is_selected: bool) -> Result<(), CliError> {
-        self.held = held;
+    fn measure(
+        &mut self,
+        args: &Args,
+        reference_surface: Option<ReferenceSurface>,
+        is_selected: bool,
+    ) -> Result<(), CliError> {
+        self.reference_surface = reference_surface;
         let (view, has_stats) = (self.view(), args.stats.is_some());
         let is_shown = self.settings.overlays.colors == Colors::Deviation;
-        let held = self.held.as_ref();
-        // Both halves are held against one thing.
-        let target = held.filter(|_| is_shown).zip(self.inputs(SplitSide::Right));
-        let target = target.map(|(held, inputs)| held.target(&inputs));
+        let reference_surface = self.reference_surface.as_ref();
+        // Both halves are compared with the same surface.
+        let target = reference_surface.filter(|_| is_shown).zip(self.inputs(SplitSide::Right));
+        let target = target.map(|(reference_surface, inputs)| reference_surface.target(&inputs));
         for half in SplitSide::BOTH {
             let inputs = self.inputs(half);
             let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
-            let truth = held.and_then(Held::truth).filter(|_| has_stats);
+            let truth = reference_surface.and_then(ReferenceSurface::truth).filter(|_| has_stats);
             let wanted = Measurements {
                 survey: self.settings.overlays.cracks || is_selected || has_stats,
                 screen_error: (has_stats && args.measure_error).then_some(inputs),
@@ -222,7 +228,7 @@ impl Shot {
         Ok(())
     }
 
-    /// Colours both halves by what was measured, on the scale of the one that is farther off.
+    /// Colours both halves by their deviation, on one scale that covers the larger of the two.
     fn show_deviation(&mut self) {
         let fields = || self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
         let largest = fields().filter_map(DeviationField::worst).map(|worst| worst.value).fold(0.0, f64::max);
@@ -275,26 +281,26 @@ impl Shot {
         Ok(lines)
     }
 
-    /// How far a half is from the truth, if that was measured.
+    /// The distance of a half from the reference surface, if it was measured.
     fn accuracy(&self, half: SplitSide) -> Option<AccuracyStats> {
-        let (name, _) = self.held.as_ref().and_then(Held::truth)?;
+        let (name, _) = self.reference_surface.as_ref().and_then(ReferenceSurface::truth)?;
         let results = self.results(half)?;
         let is_whole = results.survey.as_ref()?.culled.total() == 0;
         results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, accuracy, is_whole))
     }
 
-    /// What the overlay shows of a half, if it is on.
+    /// The deviation that the overlay shows on a half, if the overlay is on.
     fn deviation(&self, half: SplitSide) -> Option<DeviationStats> {
         self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
     }
 
-    /// What is known of the picture; none if nothing was measured.
+    /// The stats of the picture; none if nothing was measured.
     fn stats(&mut self, args: &Args) -> Result<Option<Stats>, CliError> {
         let (view, accuracy) = (self.view(), self.accuracy(SplitSide::Right));
         let Self { engine, scene, target, camera, settings, results, .. } = self;
         let Some(results) = &results[SplitSide::Right as usize] else { return Ok(None) };
         let Some(measured) = &results.survey else { return Ok(None) };
-        // What is left of the split isn't what is timed.
+        // Only the right half is timed.
         let alone = Settings { split_surface: None, ..*settings };
         let passes = engine.time(scene, target, camera, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
@@ -317,7 +323,7 @@ impl Shot {
         Ok(Some(stats))
     }
 
-    /// What is known of another surface left of the split.
+    /// The stats of another surface left of the split.
     fn left_stats(&self) -> Option<LeftStats> {
         let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.settings.half(SplitSide::Left))?;
         let results = self.results(SplitSide::Left)?;

@@ -19,16 +19,16 @@ pub(crate) struct Args {
     /// Meshes to run as well, after the cases chosen with --case; without --case, only these
     #[arg(value_parser = super::options::source())]
     pub files: Vec<Source>,
-    /// Of the files: cases have tolerances of their own
+    /// For the files; cases have tolerances of their own
     #[command(flatten)]
     pub weld: WeldOption,
     /// Run only this case; may be given several times
     #[arg(long = "case", value_name = "NAME", value_parser = PossibleValuesParser::new(CASES.map(|case| case.name)))]
     pub cases: Vec<String>,
-    /// Where to tessellate; both unless one is named
+    /// Where to tessellate; by default on both
     #[arg(long, value_enum)]
     pub device: Option<Device>,
-    /// Views for adaptive LOD and clipping, from all around, near, far and inside
+    /// Number of views for adaptive LOD and clipping: from all around, near, far and inside
     #[arg(long, value_name = "N", default_value_t = Effort::default().cameras, value_parser = clap::value_parser!(u32).range(0..=100_000))]
     pub cameras: u32,
     /// Print every measurement as JSON in place of the table
@@ -48,7 +48,7 @@ impl Args {
         chosen.map(Case::subject)
     }
 
-    /// Cases, and files as cases of their own: all loaded before the first runs.
+    /// The chosen cases, then the files as cases of their own. All are loaded before the first one runs.
     fn subjects(&self) -> Result<Vec<Subject>, CliError> {
         let mut subjects: Vec<_> = self.cases().collect();
         for source in &self.files {
@@ -75,7 +75,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let own = run_case(&subject, engine.as_ref(), &effort)?;
         if !args.json {
             let text = table(&lines(&own));
-            // The heading once.
+            // The heading is printed only once.
             let rest = text.split_once('\n').map_or("", |(_, rest)| rest);
             write_text("-".as_ref(), if rows.is_empty() { &text } else { rest })?;
         }
@@ -100,7 +100,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     judge(&rows)
 }
 
-/// A title, with a number behind it if something goes by that name (or has a picture of that name) already.
+/// Returns the title, with a number added if another subject, or its picture, has that name already.
 fn free_name(title: &str, taken: &[Subject]) -> String {
     let is_free = |name: &String| taken.iter().all(|subject| file_name(&subject.name) != file_name(name));
     let numbered = (2..).map(|number| {
@@ -110,7 +110,7 @@ fn free_name(title: &str, taken: &[Subject]) -> String {
     std::iter::once(title.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
 }
 
-/// A case's name as a picture's, whatever the mesh is called.
+/// Returns the name of a subject's picture, with hyphens for characters that file names may not have.
 fn file_name(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' };
     let stem: String = name.chars().map(plain).collect();
@@ -132,7 +132,7 @@ mod tests {
     use crate::mesh::Mesh;
 
     #[test]
-    fn every_name_and_picture_is_one_of_a_kind() {
+    fn names_and_pictures_are_unique() {
         let mut taken = vec![CASES[0].subject()];
         for name in ["split-normals.glb", "a.glb", "a.glb", "a.gltf", "a", "a"] {
             let name = free_name(name, &taken);

@@ -1,4 +1,4 @@
-//! What `pnaen render --stats` says.
+//! The JSON of `pnaen render --stats`.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub(super) struct Stats {
     edges: EdgeCounts,
     degenerate: u32,
     patches: u64,
-    /// For whatever reason.
+    /// Patches that are left out for any reason.
     patches_culled: u32,
     patches_out_of_view: u32,
     patches_facing_away: u32,
@@ -40,7 +40,7 @@ pub(super) struct Stats {
     vertices_out: u64,
     bytes: Bytes,
     cracks: CrackStats,
-    /// Px through which one looks into the mesh; none if it is open, reaches the near plane, or patches that face away were
+    /// Px through which one can see into the mesh; none if it is open, reaches the near plane, or patches that face away were
     /// left out.
     pub leaks: Option<u64>,
     /// Triangles that face away from the side that their patch faces.
@@ -50,16 +50,16 @@ pub(super) struct Stats {
     /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
     /// nothing is in view.
     pub max_error_px: Option<f64>,
-    /// Edges (as published or from a file, sides), and under LOD by error insides, that asked for more segments than the
-    /// partitioning has.
+    /// Factors that ask for more segments than the partitioning has: those of edges, or of sides if factors are as published
+    /// or from a file; under LOD by error, inside factors as well.
     pub factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     pub factors_file: Option<FactorsFile>,
-    /// Against the truth, if there is one and it was asked for.
+    /// The distance to the reference surface, if there is one.
     pub accuracy: Option<AccuracyStats>,
-    /// Of the overlay, if it is on.
+    /// What the deviation overlay shows, if it is on.
     pub deviation: Option<DeviationStats>,
-    /// Left of the split, if that is another surface; all else is about the one right of it.
+    /// The left half of a split view, if it has another surface; all else here is about the right half.
     pub left: Option<LeftStats>,
     /// None at rest.
     pub animation: Option<AnimationStats>,
@@ -76,13 +76,14 @@ struct SettingsStats {
     edges: &'static str,
     partitioning: &'static str,
     lod: &'static str,
-    /// Under uniform LOD, and the largest by distance.
+    /// The factor of uniform LOD, and the largest factor of LOD by distance.
     factor: f32,
     clip: &'static str,
     convention: &'static str,
     displacement: &'static str,
-    /// In bounding radii, and from 0 to 1; of what is displaced.
+    /// In bounding radii; none without displacement.
     height_scale: Option<f32>,
+    /// From 0 to 1; none without displacement.
     midlevel: Option<f32>,
 }
 
@@ -159,8 +160,8 @@ impl CrackStats {
 }
 
 impl Stats {
-    /// What is known of every picture, seen from `view`.
-    pub(super) fn new(
+    /// The stats that every picture has, seen from `view`. The others are left empty.
+    pub fn new(
         engine: &Engine,
         loaded: &Loaded,
         scene: &Scene,
@@ -211,7 +212,7 @@ impl Stats {
     }
 }
 
-/// The other surface, left of the split.
+/// The stats of another surface left of the split.
 #[derive(Debug, Serialize)]
 pub(super) struct LeftStats {
     surface: &'static str,
@@ -225,8 +226,8 @@ pub(super) struct LeftStats {
 }
 
 impl LeftStats {
-    /// Tessellated with these settings, and seen from `view`.
-    pub(super) fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
+    /// The stats of a scene that is tessellated with these settings and seen from `view`.
+    pub fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         Self {
             surface: settings.tessellation.surface.name(),

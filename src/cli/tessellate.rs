@@ -1,4 +1,4 @@
-//! `pnaen tessellate`: the tessellated mesh as a file.
+//! `pnaen tessellate`: writes the tessellated mesh.
 
 use std::path::PathBuf;
 
@@ -33,7 +33,7 @@ pub(crate) struct Args {
     pub adapter: AdapterOption,
 }
 
-/// Where the mathematics runs.
+/// Where the tessellation is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Device {
     Gpu,
@@ -44,11 +44,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     run_with(args, || Engine::chosen(&args.adapter.choice()))
 }
 
-/// The same with an engine that is made once the arguments are known to be good.
+/// Like [`run`], with an engine that is made once the arguments have been checked.
 ///
 /// # Errors
-/// As the command's.
-pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+/// Those of the command.
+pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
     Exported::check(&args.output, 0, 0)?;

@@ -1,4 +1,4 @@
-//! `--truth`: what a tessellation should have been, and what is said of the distance to it.
+//! The option `--truth`, a reference surface, and the stats of the distance to it.
 
 use std::sync::Arc;
 
@@ -24,55 +24,57 @@ pub(crate) struct TruthOption {
     pub truth: Option<Source>,
 }
 
-/// What a picture is held against.
-pub(crate) enum Held {
-    /// With its name.
+/// The surface that a picture is compared with.
+pub enum ReferenceSurface {
+    /// A given or exact surface, with its name.
     Truth(String, Arc<Truth>),
-    /// What the tessellation converges to.
+    /// The limit surface of the tessellation.
     Limit,
 }
 
 impl TruthOption {
-    /// What to hold the picture against: what was asked for; or for the overlay what there is.
+    /// The surface to compare with: that of `--truth`, or if the overlay is shown the exact surface or the limit surface.
     ///
     /// # Errors
-    /// The truth can't be read, or doesn't move as the mesh does.
-    pub(crate) fn held(
+    /// The mesh of `--truth` can't be read, or the compared mesh is in a pose.
+    pub fn reference_surface(
         &self,
         loaded: &Loaded,
         surface: &SurfaceOptions,
         is_shown: bool,
-    ) -> Result<Option<Held>, CliError> {
+    ) -> Result<Option<ReferenceSurface>, CliError> {
         let moves = surface.animation.animation.is_some();
         if let Some(source) = &self.truth {
             if moves {
-                return Err(CliError::Usage("--truth is at rest, and can't be held against an --animation"));
+                return Err(CliError::Usage(
+                    "--truth can't be combined with --animation: the reference surface doesn't move",
+                ));
             }
             let none = || CliError::NoTruth { file: source.to_string() };
             let truth = Truth::load(source, &surface.weld.limit.limits(), &Progress::new())?.ok_or_else(none)?;
-            return Ok(Some(Held::Truth(source.to_string(), Arc::new(truth))));
+            return Ok(Some(ReferenceSurface::Truth(source.to_string(), Arc::new(truth))));
         }
         if !is_shown {
             return Ok(None);
         }
         let is_plain = !moves && surface.tessellation().displacement == Displacement::Off;
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(Truth::of_shape);
-        let held = exact.map(|truth| Held::Truth(loaded.source.to_string(), Arc::new(truth)));
-        Ok(Some(held.unwrap_or(Held::Limit)))
+        let found = exact.map(|truth| ReferenceSurface::Truth(loaded.source.to_string(), Arc::new(truth)));
+        Ok(Some(found.unwrap_or(ReferenceSurface::Limit)))
     }
 }
 
-impl Held {
-    /// For what was emitted with these inputs.
-    pub(crate) fn target(&self, inputs: &Inputs) -> DeviationTarget {
+impl ReferenceSurface {
+    /// The surface to compare with what was emitted with these inputs.
+    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
         match self {
             Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
             Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
         }
     }
 
-    /// The truth and its name, if it is more than what the tessellation converges to.
-    pub(crate) fn truth(&self) -> Option<(&str, &Truth)> {
+    /// The given or exact surface and its name; none for the limit surface.
+    pub fn truth(&self) -> Option<(&str, &Truth)> {
         match self {
             Self::Truth(name, truth) => Some((name, truth)),
             Self::Limit => None,
@@ -80,23 +82,23 @@ impl Held {
     }
 }
 
-/// How far all that was emitted is from the truth, sampled.
+/// The sampled distance of everything that was emitted from the reference surface.
 #[derive(Debug, Serialize)]
 pub(super) struct AccuracyStats {
     truth: String,
-    /// Of the truth's bounding box, in object units.
+    /// The diagonal of the reference surface's bounding box, in object units.
     diagonal: f64,
-    /// From what was emitted to the truth's nearest points.
+    /// From what was emitted to the nearest points of the reference surface.
     to_truth: DistanceStats,
-    /// From the truth to the nearest of what was emitted; none if patches were left out.
+    /// From the reference surface to the nearest points of what was emitted; none if patches were left out.
     from_truth: Option<DistanceStats>,
-    /// The largest on screen, in px; none if nothing is in view.
+    /// The largest distance on screen, in px; none if nothing is in view.
     max_px: Option<f64>,
-    /// Between shading normals and the truth's, in degrees.
+    /// Between shading normals and those of the reference surface, in degrees.
     normals: AngleStats,
 }
 
-/// In object units, and as parts of the truth's diagonal.
+/// In object units, and as parts of the reference surface's diagonal.
 #[derive(Debug, Serialize)]
 struct DistanceStats {
     max: f64,
@@ -130,12 +132,12 @@ impl AccuracyStats {
     }
 }
 
-/// What the overlay shows, in object units.
+/// What the deviation overlay shows, in object units.
 #[derive(Debug, Serialize)]
 pub(super) struct DeviationStats {
     max: f64,
     rms: f64,
-    /// What the first and the last colour stand for, when distances are in object units; between them it is logarithmic.
+    /// The distances of the first and the last colour, if distances are in object units; the scale is logarithmic.
     scale: [f32; 2],
     /// None if nothing was emitted.
     worst: Option<WorstStats>,

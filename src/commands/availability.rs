@@ -1,4 +1,4 @@
-//! What there is at the moment, on which it depends which commands are possible.
+//! The state of the window that decides which commands are possible.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ pub struct Availability {
     pub has_document: bool,
     /// Whether a picture of the document has been drawn.
     pub has_picture: bool,
-    /// Whether a truth was chosen for the mesh.
+    /// Whether a reference surface was chosen for the mesh.
     pub has_truth: bool,
     pub can_undo: bool,
     pub can_redo: bool,
@@ -66,7 +66,7 @@ impl Availability {
     }
 }
 
-/// The sentence, where a condition doesn't hold.
+/// Returns the sentence if the condition doesn't hold.
 fn unless(holds: bool, why_not: &'static str) -> Option<&'static str> {
     if holds { None } else { Some(why_not) }
 }
@@ -127,8 +127,8 @@ pub(super) fn split(now: &Availability) -> Option<&'static str> {
     unless(now.is_split, "Only a split view has a left half.")
 }
 
-pub(super) fn deviation(now: &Availability) -> Option<&'static str> {
-    unless(now.shows_deviation, "Only deviation colours distances.")
+pub fn deviation(now: &Availability) -> Option<&'static str> {
+    unless(now.shows_deviation, "Only the deviation overlay colours distances.")
 }
 
 pub(super) fn measure_chart(now: &Availability) -> Option<&'static str> {

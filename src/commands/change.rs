@@ -4,7 +4,7 @@ use crate::settings::options::FACTOR_RANGE;
 use crate::settings::{Colors, DeviationUnit, Overlay, Settings};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
-/// A change of the settings, which are a function of nothing else.
+/// A change of settings. Its result depends on the settings alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     FactorUp,
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn adaptive_lod_is_the_one_that_belongs_to_the_edges() {
+    fn adaptive_lod_depends_on_how_edges_are_computed() {
         let settings = Settings::default();
         assert_eq!(changed(settings, Change::AdaptiveLod).tessellation.lod, Lod::Error);
         let published = changed(settings, Change::ToggleEdges);
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_given_again_are_the_materials() {
+    fn giving_a_colouring_again_goes_back_to_the_material() {
         let factors = changed(Settings::default(), Change::Overlay(Overlay::Factors));
         assert_eq!(factors.overlays.colors, Colors::Factors);
         assert_eq!(changed(factors, Change::Overlay(Overlay::Factors)), Settings::default());

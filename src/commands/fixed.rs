@@ -1,4 +1,4 @@
-//! Commands that are always the same.
+//! Commands that don't depend on the window's state.
 
 use egui::{Key, ThemePreference};
 
@@ -18,8 +18,8 @@ pub(super) fn commands() -> Vec<Command> {
     [file(), edit(), view(), camera(), look(), tessellation(), help()].into_iter().flatten().collect()
 }
 
-const TRUTH: &str = "Compares the mesh with what it should have been, such as the high-poly original.";
-const PICTURE: &str = "Writes the picture in the middle, at its size, as a PNG file.";
+const TRUTH: &str = "Opens a mesh, such as the high-poly original, that deviation and charts compare with.";
+const PICTURE: &str = "Writes the viewport's picture, at its size, as a PNG file.";
 const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is emitted for this view.";
 
 fn file() -> Vec<Command> {
@@ -50,7 +50,7 @@ fn file() -> Vec<Command> {
         Command::new(
             Action::File(FileAction::ForgetTruth),
             "No reference surface",
-            "Goes back to the surface that a shape is sampled from, or that the tessellation converges to.",
+            "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
         )
         .menu(File, 2)
         .unless(when::truth),
@@ -65,7 +65,7 @@ fn file() -> Vec<Command> {
         Command::new(
             Action::ForgetEverything,
             "Forget all settings…",
-            "Goes back to how the window first opened: settings, theme, size, recent files and their cameras. The mesh stays.",
+            "Resets settings, theme and window size, and forgets recent files and their cameras. The mesh stays open.",
         )
         .menu(File, 5),
     );
@@ -74,7 +74,7 @@ fn file() -> Vec<Command> {
     commands
 }
 
-/// What writes files.
+/// Commands that write files.
 fn writing() -> [Command; 5] {
     use Menu::File;
     [
@@ -85,7 +85,7 @@ fn writing() -> [Command; 5] {
         Command::new(
             Action::File(FileAction::SavePicturePath),
             "Save picture path…",
-            "Types the path of the PNG file that the picture is saved as.",
+            "Saves the picture as a PNG file at a typed path.",
         )
         .menu(File, 4)
         .unless(when::picture),
@@ -96,7 +96,7 @@ fn writing() -> [Command; 5] {
         Command::new(
             Action::File(FileAction::ExportMeshPath),
             "Export mesh path…",
-            "Types the path of the .glb or .obj file that the tessellated mesh is exported as.",
+            "Exports the tessellated mesh as a .glb or .obj file at a typed path.",
         )
         .menu(File, 4)
         .unless(when::export),
@@ -131,7 +131,7 @@ fn edit() -> Vec<Command> {
         Command::new(
             Action::ResetSettings,
             "Reset settings",
-            "Sets every setting to what the window first opened with; this can be undone.",
+            "Sets every setting to its value of a first start. This can be undone.",
         )
         .menu(Edit, 2),
     ]
@@ -162,14 +162,14 @@ fn view() -> Vec<Command> {
         Command::new(
             Action::Camera(CameraAction::Orthographic),
             "Orthographic",
-            "Switches between perspective and no perspective.",
+            "Switches between perspective and orthographic projection.",
         )
         .keys([plain(Key::Num5)])
         .menu(View, 0),
         Command::new(
             Action::Chart,
             "Chart",
-            "Shows or hides the chart of speed against accuracy, of this mesh in this view.",
+            "Shows or hides the chart of speed against accuracy for this mesh in this view.",
         )
         .keys([plain(Key::G)])
         .menu(View, 1),
@@ -190,7 +190,7 @@ fn view() -> Vec<Command> {
     ]
 }
 
-/// What moves the camera by keys.
+/// Commands that move the camera with keys.
 fn camera() -> Vec<Command> {
     use Direction::{Down, Left, Right, Up};
     let mut commands = Vec::new();
@@ -218,7 +218,7 @@ fn camera() -> Vec<Command> {
     commands
 }
 
-/// What is shown in the picture, and what is selected.
+/// Commands about the picture and the selection.
 fn look() -> Vec<Command> {
     vec![
         Command::new(
@@ -228,14 +228,18 @@ fn look() -> Vec<Command> {
         )
         .keys([plain(Key::S)]),
         Command::new(Action::Background, "Background colour…", "Chooses the colour behind the mesh."),
-        Command::new(Action::PlayOrPause, "Play or pause", "Plays the animation clip, the first one if none is chosen, or pauses it.")
-            .keys([plain(Key::Space)])
-            .unless(when::clips),
-        Command::new(Action::Deselect, "Deselect", "Selects nothing.").unless(when::selection),
+        Command::new(
+            Action::PlayOrPause,
+            "Play or pause",
+            "Plays the animation clip, the first one if none is chosen, or pauses it.",
+        )
+        .keys([plain(Key::Space)])
+        .unless(when::clips),
+        Command::new(Action::Deselect, "Deselect", "Clears the selection.").unless(when::selection),
         Command::new(
             Action::Cancel,
             "Cancel",
-            "Stops a long drawing; or else closes what lies over the window, cancels loading and exporting, and deselects.",
+            "Stops a long drawing; or if there is none, closes messages, cancels loading and exporting, and deselects.",
         )
         .keys([plain(Key::Escape)]),
     ]
@@ -259,7 +263,7 @@ fn tessellation() -> Vec<Command> {
         Command::new(
             Action::Setting(Change::ToggleEdges),
             "Edges as published or shared",
-            "Switches between edges computed once, which is watertight, and computed by each patch, as published.",
+            "Switches between shared edges that are computed once (watertight) and by each patch (as published).",
         )
         .keys([plain(Key::E)]),
         Command::new(
@@ -271,7 +275,7 @@ fn tessellation() -> Vec<Command> {
         Command::new(
             Action::FreezeLodCamera,
             "Freeze LOD camera",
-            "Keeps LOD and clipping as they are for the camera of now, while you look from elsewhere.",
+            "Keeps LOD and clipping as they are for this camera while you look from elsewhere.",
         )
         .keys([plain(Key::Z)])
         .unless(when::picture),
@@ -284,7 +288,7 @@ fn tessellation() -> Vec<Command> {
 fn help() -> Vec<Command> {
     use Menu::Help;
     vec![
-        Command::new(Action::SearchCommands, "Search commands…", "Finds everything that can be done, by its name.")
+        Command::new(Action::SearchCommands, "Search commands…", "Finds any command by its name.")
             .keys([ctrl(Key::P)])
             .menu(Help, 0),
         Command::new(Action::Keys, "Keys…", "Lists every key and what it does.").menu(Help, 0),

@@ -1,4 +1,4 @@
-//! Commands that are made from what declares them: a setting's values, tolerances, clips, files.
+//! Commands that are made from lists: the values of settings, weld tolerances, clips and recent files.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::names::shortened;
 use crate::settings::{Choice, Colors, Control, DeviationUnit, Overlay, Overlays, options};
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
-/// Animation clips that are listed at most.
+/// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;
 /// The width of the crease band that is switched on by a command, as a part of the bounding diagonal.
 const CREASE_BAND: f32 = 0.02;
@@ -25,7 +25,7 @@ pub(super) fn commands(now: &Availability) -> Vec<Command> {
     all
 }
 
-/// A command for each value of a setting, which is called as its option is.
+/// A command for each value of a setting, with the setting's label in its name.
 fn values<T: Choice>(label: &str, change: impl Fn(T) -> Change, why_not: super::WhyNot) -> Vec<Command> {
     let command = |&value: &T| {
         Command::new(Action::Setting(change(value)), format!("{label}: {}", value.label()), value.text())
@@ -73,8 +73,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     })
 }
 
-/// Every meaning of colours, and every overlay. Each but the material's own colours is a switch: given again, it takes back
-/// what it did.
+/// Commands for colours and overlays. All but the one for the material's colours are switches: a second time they switch off.
 fn colors_and_overlays() -> Vec<Command> {
     let (material, colors) = (Colors::Material, "Colours");
     let own = format!("{colors}: {}", material.label());
@@ -90,7 +89,7 @@ fn colors_and_overlays() -> Vec<Command> {
     all
 }
 
-/// What is made of the mesh when it is loaded, which loads it again.
+/// Commands that change the mesh's preparation and load it again.
 fn mesh() -> Vec<Command> {
     let exact = "Joins corners whose positions are exactly equal.";
     let mut all =
@@ -109,7 +108,7 @@ fn mesh() -> Vec<Command> {
             "Leaves creases as the mesh has them.",
         )
         .unless(when::document),
-        Command::new(Action::Prepare(Preparing::NoHeights), "Height map: None", "Displaces the mesh by nothing.")
+        Command::new(Action::Prepare(Preparing::NoHeights), "Height map: None", "Removes the height map.")
             .unless(when::document),
         Command::new(
             Action::Prepare(Preparing::HeightsFromMaterials),

@@ -53,7 +53,7 @@ pub enum Action {
     WhitePaper,
 }
 
-/// What reads or writes files.
+/// An action on files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileAction {
     Open,
@@ -73,7 +73,7 @@ pub enum FileAction {
     Quit,
 }
 
-/// What moves the camera.
+/// An action that moves the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CameraAction {
     Frame,
@@ -86,7 +86,7 @@ pub enum CameraAction {
     ZoomOut,
 }
 
-/// What is made of the mesh when it is loaded.
+/// A change of how the mesh is prepared when it is loaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preparing {
     NoHeights,
@@ -97,7 +97,7 @@ pub enum Preparing {
     CreaseBand(f32),
 }
 
-/// Where the camera turns or moves.
+/// A direction in which the camera turns or moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     Left,
@@ -127,7 +127,7 @@ impl Menu {
         }
     }
 
-    /// The lists that this menu opens, and in which group of its commands they are.
+    /// The submenus of this menu, each with the number of its group.
     pub fn submenus(self) -> &'static [(u8, Submenu)] {
         match self {
             Self::File => &[(0, Submenu::OpenRecent), (3, Submenu::Shapes)],
@@ -167,7 +167,7 @@ type WhyNot = fn(&Availability) -> Option<&'static str>;
 #[derive(Clone, Debug)]
 pub struct Command {
     pub action: Action,
-    /// What it is called in the search; one of several values has the name of what it is a value of before it ("Surface: PN").
+    /// Its name in menus and in the search. A value of a setting has the setting's name in front ("Surface: PN").
     pub name: Cow<'static, str>,
     /// What it does, in a sentence.
     pub text: Cow<'static, str>,
@@ -204,12 +204,12 @@ impl Command {
         (self.why_not)(now)
     }
 
-    /// What a list of such values calls it: the name without what it is a value of.
+    /// The name without the setting's name in front: "PN" for "Surface: PN".
     pub fn value_name(&self) -> &str {
         self.name.split_once(": ").map_or(&self.name, |(_, value)| value)
     }
 
-    /// Whether its keys work also while text is being typed, and while a window asks for something.
+    /// Whether its keys work even while text is being typed or a window asks for something.
     pub fn works_while_typing(&self) -> bool {
         use FileAction::{Open, OpenPath, Quit};
         match &self.action {
@@ -220,7 +220,7 @@ impl Command {
         }
     }
 
-    /// Whether its keys are left to a control that has the focus: they move or press such a control.
+    /// Whether its keys are left to a control that has the focus, which they move or press.
     pub fn yields_to_focus(&self) -> bool {
         use CameraAction::{Orbit, Pan, ZoomIn, ZoomOut};
         match &self.action {
@@ -239,16 +239,16 @@ pub(crate) fn key_name(action: &Action) -> &'static str {
     NAMES.iter().find(|(known, _)| known == action).map_or("", |(_, names)| names)
 }
 
-/// A sentence, and the keys of the action that it tells of.
-pub(crate) fn with_key(sentence: &str, action: &Action) -> String {
+/// Appends the keys of an action, if it has some, to a sentence.
+pub fn with_key(sentence: &str, action: &Action) -> String {
     match key_name(action) {
         "" => sentence.to_owned(),
         keys => format!("{} ({keys}).", sentence.trim_end_matches('.')),
     }
 }
 
-/// Keys as they are called where the platform has no names of its own for them.
-pub(crate) fn key_names(keys: &[KeyboardShortcut]) -> String {
+/// The names of keys as on a PC, on any platform.
+pub fn key_names(keys: &[KeyboardShortcut]) -> String {
     let name = |key: &KeyboardShortcut| key.format(&egui::ModifierNames::NAMES, false);
     keys.iter().map(name).collect::<Vec<_>>().join(", ")
 }
@@ -263,8 +263,8 @@ pub(crate) fn all(now: &Availability) -> Vec<Command> {
 /// The shortcut that closes the window, for a screen that has no other command.
 pub(crate) const QUIT: KeyboardShortcut = ctrl(Key::Q);
 
-/// What the pointer does in the picture: no command, but listed with the keys.
-pub(crate) const GESTURES: [(&str, &str); 4] = [
+/// What the pointer does in the picture. These aren't commands, but they are listed with the keys.
+pub const GESTURES: [(&str, &str); 4] = [
     ("Click", "Selects the triangle, its patch and its nearest edge."),
     ("Left drag", "Orbits."),
     ("Middle drag, Shift+left drag", "Pans."),
@@ -292,7 +292,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_two_commands_have_one_key_or_one_name() {
+    fn keys_names_and_actions_are_unique() {
         let all = all(&Availability::default());
         for (i, command) in all.iter().enumerate() {
             for other in &all[..i] {
@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reason_is_a_sentence_and_is_gone_once_everything_is_there() {
+    fn reasons_are_sentences_and_every_command_is_possible_in_a_full_state() {
         let nothing = Availability::default();
         let everything = Availability::everything();
         for command in all(&everything) {

@@ -1,4 +1,4 @@
-//! What the engine measures on a scene: one walk over what is emitted feeds every measurement that is asked for.
+//! The engine's measurements of a scene. One walk over the emitted mesh feeds all measurements that are asked for.
 
 use super::Engine;
 use crate::gpu::GpuError;
@@ -17,12 +17,12 @@ use crate::view::ScreenView;
 pub struct Measurements<'a> {
     /// Cracks, folds, and what else a [`Survey`] finds.
     pub survey: bool,
-    /// The largest distance on screen between what is emitted and the surface that it approximates, seen from the view of
-    /// these inputs, which must be those that the counts are known for.
+    /// The largest distance on screen between what is emitted and the surface that it approximates. The inputs must be
+    /// those of the counts, and they give the view.
     pub screen_error: Option<&'a Inputs>,
     /// The distance from this surface, all over.
     pub deviation: Option<&'a DeviationTarget>,
-    /// The distance from a truth and back, in px as seen from the view. All of the mesh must be emitted.
+    /// The distances to a reference surface and back, also in px as seen from the view. All of the mesh must be emitted.
     pub accuracy: Option<(&'a Truth, &'a LodView, AccuracyOptions)>,
     /// How large triangles are on screen.
     pub sizes: Option<ScreenView>,
@@ -59,7 +59,7 @@ impl Engine {
         }
         let of_inputs = |inputs| ScreenErrorMeasurement::new(&mesh, &topology, inputs, triangles);
         let mut screen_error = wanted.screen_error.map(of_inputs);
-        // Nobody else knows of this progress, so that nobody cancels it.
+        // No other code has this handle, so it is never cancelled.
         let progress = Progress::new();
         let from = |target| DeviationMeasurement::new(target, &mesh, &topology, triangles, &progress);
         let mut deviation = wanted.deviation.map(from);
@@ -93,9 +93,9 @@ impl Engine {
         Ok(survey.finish())
     }
 
-    /// Pixels through which one looks into what should be closed, seen from `camera`: see [`crate::render::LeakCounter`]. None
-    /// where that says nothing: the mesh is open, or reaches the near plane, or its backs are left out. The counts must be
-    /// known.
+    /// Counts the pixels through which one can see into a closed mesh from `camera`: see [`crate::render::LeakCounter`].
+    /// Returns none where such a count means nothing: the mesh is open or reaches the near plane, or patches that face away
+    /// are left out. The counts must be known.
     ///
     /// # Errors
     /// The device was lost.
@@ -108,7 +108,7 @@ impl Engine {
     ) -> Result<Option<u64>, GpuError> {
         let viewport = glam::vec2(size[0] as f32, size[1] as f32);
         let clip_from_object = camera.clip_from_object(viewport, &scene.bounds);
-        // What clipping left out isn't in what was measured; its corners say whether it lies behind the near plane.
+        // Patches that clipping left out aren't in the measured extent, so their corners are tested as well.
         let corners = scene.tessellator.posed().deformed().0.bounds();
         let whole = [measured.extent[0].min(corners.min), measured.extent[1].max(corners.max)];
         let closed = scene.tessellator.topology().is_closed_and_oriented() && measured.culled.facing_away == 0;

@@ -56,7 +56,7 @@ impl From<Tessellation> for Settings {
     }
 }
 
-/// Of a picture that is split; one that isn't is all right half.
+/// A half of a split picture. A picture that isn't split is all right half.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SplitSide {
     Left,
@@ -91,7 +91,7 @@ impl Choice for DeviationUnit {
 }
 
 impl Settings {
-    /// What the window opens with: no more than the picture needs, and its triangles.
+    /// The settings of a first start: LOD by error, with patches that can't be seen left out, and the wireframe.
     pub fn opening() -> Self {
         Self {
             tessellation: Tessellation {
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn subtriangulation_is_uniform_and_forgets_no_lod() {
+    fn subtriangulation_uses_uniform_lod_and_keeps_the_chosen_one() {
         let view = LodView::new(glam::Mat4::IDENTITY, glam::Vec2::ONE);
         for partitioning in Partitioning::ALL {
             for &lod in Lod::ALL {
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn as_published_takes_lod_and_clipping_along() {
+    fn edges_as_published_switch_lod_and_clipping() {
         let adaptive = Tessellation { lod: Lod::EdgeLength, clip: Clip::Frustum, ..Tessellation::default() };
         let mut settings = Settings::from(adaptive);
         settings.set_edges(Edges::AsPublished);

@@ -9,8 +9,8 @@ use super::{
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
-/// What is tessellated how: options of every command that tessellates.
-pub(crate) static TESSELLATION: [&Declaration; 16] = [
+/// The options of every command that tessellates.
+pub static TESSELLATION: [&Declaration; 16] = [
     &SURFACE,
     &ALPHA,
     &NORMALS,
@@ -29,8 +29,8 @@ pub(crate) static TESSELLATION: [&Declaration; 16] = [
     &MIDLEVEL,
 ];
 
-/// How the picture is drawn: options of commands that draw one.
-pub(crate) static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+/// The options of commands that draw a picture.
+pub static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
 
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();
@@ -277,7 +277,7 @@ pub(crate) static MIDLEVEL: Declaration = Declaration {
     name: "midlevel",
     label: "Midlevel",
     placeholder: "H",
-    text: "The height that isn't moved, from 0 (black) to 1 (white).",
+    text: "The height at which displacement moves nothing, from 0 (black) to 1 (white).",
     kind: Kind::Number(Range::new(0.0, 1.0, "")),
     unset: None,
     saved_as: &["midlevel"],
@@ -316,7 +316,7 @@ pub(crate) static SPLIT: Declaration = Declaration {
     name: "split",
     label: "Divider",
     placeholder: "FRACTION",
-    text: "Splits the picture at this fraction of its width: on the left, the untessellated mesh or another surface.",
+    text: "Splits the picture at this fraction of its width. The left half shows the untessellated mesh or another surface.",
     kind: Kind::Number(Range::new(0.0, 1.0, "")),
     unset: Some(Description::new("none", "None", "The picture isn't split.")),
     saved_as: &["split"],

@@ -16,7 +16,7 @@ pub enum Colors {
     TriangleSize,
     /// Patches whose factors are all below 2.
     LowFactors,
-    /// How far every place is from what it should have been.
+    /// The distance to the reference surface.
     Deviation,
 }
 
@@ -134,8 +134,8 @@ impl Choice for Overlay {
             Self::Deviation => (
                 "deviation",
                 "Deviation",
-                "Colours the surface by its distance to the reference: the exact surface of a shape made in code, a \
-                 reference mesh that was chosen, or else the surface that the tessellation converges to.",
+                "Colours the surface by its distance to the reference surface: the exact surface of a shape made in code, a \
+                 mesh that was chosen, or else the surface that the tessellation converges to.",
             ),
         };
         Description::new(name, label, text)
@@ -158,14 +158,14 @@ impl Choice for Colors {
     }
 }
 
-/// What turns an overlay on: a switch of its own, or the surface's colours, with those that it gives them.
+/// The control of an overlay: a switch, or the surface's colours and the value that the overlay gives them.
 pub enum Control<'a> {
     Switch(&'a mut bool),
     Colors(&'a mut Colors, Colors),
 }
 
 impl Overlays {
-    /// What turns `overlay` on.
+    /// The control that turns `overlay` on.
     pub fn control(&mut self, overlay: Overlay) -> Control<'_> {
         Control::Switch(match overlay {
             Overlay::Barycentric => return Control::Colors(&mut self.colors, Colors::Barycentric),

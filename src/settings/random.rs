@@ -10,7 +10,7 @@ pub(crate) fn settings() -> impl Strategy<Value = Settings> {
     let values: Vec<_> = options::all().map(value).collect();
     values.prop_map(|values| {
         let mut settings = Settings::opening();
-        // What clashes, as two overlays that colour the surface do, isn't taken.
+        // Two overlays that colour the surface clash; such a value is refused and changes nothing.
         options::all().zip(values).for_each(|(option, value)| _ = option.set(&mut settings, value));
         settings
     })

@@ -1,4 +1,4 @@
-//! What the declaration of an option consists of, and the values that options take.
+//! The declaration of an option, and the values of options.
 
 use std::fmt;
 
@@ -61,8 +61,8 @@ pub struct Range {
 
 /// A value of any option.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Value {
-    /// Of an option that may be without a value.
+pub enum Value {
+    /// The option has no value.
     Unset,
     Name(&'static str),
     Names(Vec<&'static str>),
@@ -83,13 +83,13 @@ impl Declaration {
         is_taken && (self.access.set)(settings, value)
     }
 
-    /// Its value where nothing else was set.
-    pub(crate) fn default(&self) -> Value {
+    /// The default value.
+    pub fn default(&self) -> Value {
         self.get(&Settings::default())
     }
 
-    /// The numbers that it takes; none if it takes others.
-    pub(crate) fn range(&self) -> Option<&Range> {
+    /// The range of its numbers; none if its values aren't numbers.
+    pub fn range(&self) -> Option<&Range> {
         match &self.kind {
             Kind::Number(range) | Kind::Pair(range) => Some(range),
             _ => None,
@@ -139,8 +139,8 @@ impl Kind {
         }
     }
 
-    /// The name of a value as it is written, of a text that may have underscores in place of its hyphens.
-    pub(crate) fn named(&self, text: &str) -> Option<&'static str> {
+    /// The name of the value that a text names, which may be in HLSL's spelling.
+    pub fn named(&self, text: &str) -> Option<&'static str> {
         self.descriptions().iter().find(|value| value.is_named(text)).map(|value| value.name)
     }
 
@@ -198,7 +198,7 @@ fn color(text: &str) -> Option<[u8; 3]> {
     Some([r, g, b])
 }
 
-/// As the command line takes it.
+/// Writes the value as the command line takes it.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -278,7 +278,7 @@ impl Field for [u8; 3] {
     }
 }
 
-/// Only one of them colours the surface.
+/// The names of the overlays that are on. Two that colour the surface are refused.
 impl Field for Overlays {
     fn value(&self) -> Value {
         Value::Names(self.on().map(Choice::name).collect())

@@ -1,16 +1,16 @@
-//! `pnaen adapters`, `--adapter`, and what works without any.
+//! `pnaen adapters` and `--adapter`, and the commands that work without an adapter.
 
 use crate::{Folder, command, failure, output, sentence};
 
 #[test]
-fn adapters_are_listed_and_one_of_them_is_taken() {
+fn adapters_are_listed_and_one_can_be_chosen() {
     let text = output(&["adapters"]);
     let taken: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("* ")).collect();
-    assert_eq!(taken.len(), 2, "an adapter, and what the star means: {text}");
+    assert_eq!(taken.len(), 2, "the best adapter, and the line that explains the star: {text}");
     let name = taken[0].split(':').next().expect("a name").to_uppercase();
     let points = output(&["domain", "--partitioning", "integer", "--factors", "2,2,2,2"]);
     let chosen = output(&["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", &name]);
-    assert_eq!(chosen, points, "by its name in capitals");
+    assert_eq!(chosen, points, "its name in capitals chooses the adapter");
     let domain = |adapter| ["domain", "--partitioning", "integer", "--factors", "2,2,2,2", "--adapter", adapter];
     sentence(
         &domain("No \x1b[2Jsuch\nthing"),
@@ -23,12 +23,12 @@ fn adapters_are_listed_and_one_of_them_is_taken() {
 }
 
 #[test]
-fn without_an_adapter_what_needs_none_still_works() {
+fn commands_that_need_no_adapter_work_without_one() {
     let folder = Folder::new("no-adapter");
     let [obj, indices] = ["out.obj", "out.json"].map(|name| folder.path(name));
     let without = |arguments: &[&str]| {
         let mut command = command(arguments);
-        // No driver is there for any loader.
+        // The Vulkan loader finds no driver.
         for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
             command.env(name, "nowhere.json");
         }
@@ -44,31 +44,31 @@ fn without_an_adapter_what_needs_none_still_works() {
         let (code, said) = without(arguments);
         assert_eq!(code, Some(0), "{arguments:?}: {said}");
     }
-    // Direct3D and Metal are there without a driver's file.
+    // Direct3D and Metal need no driver file, so elsewhere an adapter may be found.
     if cfg!(target_os = "linux") {
         for arguments in [&["adapters"][..], &["render", "shape:torus", "-o", &folder.path("out.png")]] {
             let (code, said) = without(arguments);
             assert_eq!(code, Some(1), "{arguments:?}: {said}");
-            assert!(said.contains("no graphics adapter was found: install a Vulkan driver"), "{said}");
+            assert!(said.contains("no graphics adapter was found"), "{said}");
             assert_eq!(said.lines().count(), 1, "{said}");
         }
     }
     assert!(failure(&["adapters", "surplus"], 2).contains("surplus"));
 }
 
-/// The driver itself has no memory left, as far as this process may have any: the software one takes its own from it.
+/// Limits the memory of the process, from which the software driver takes the device's memory.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_driver_that_is_out_of_memory_is_said_in_a_sentence() {
+fn a_driver_that_is_out_of_memory_is_an_error_of_one_line() {
     let folder = Folder::new("out-of-memory");
     let picture = folder.path("out.png");
-    // In KiB; the picture takes two and a half GiB, all else less than one.
+    // The limit is in KiB. The picture takes 2.5 GiB, everything else less than 1 GiB.
     let limited = r#"ulimit -v 2000000; exec "$0" "$@""#;
     let render = |size: &str| {
         let mut command = std::process::Command::new("sh");
         command.args(["-c", limited, env!("CARGO_BIN_EXE_pnaen"), "render", "shape:torus", "-o", &picture]);
         command.args(["--adapter", "software", "--factor", "4", "--size", size]);
-        // Threads take memory, and there are as many as processors.
+        // Fewer threads take less memory.
         let output = command.env("LP_NUM_THREADS", "1").env("MALLOC_ARENA_MAX", "1").output().expect("a shell");
         (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
     };
@@ -76,9 +76,6 @@ fn a_driver_that_is_out_of_memory_is_said_in_a_sentence() {
     std::fs::remove_file(&picture).expect("a picture");
     let (code, said) = render("8000x8000");
     assert_eq!(code, Some(1), "{said}");
-    assert_eq!(
-        said.trim_end(),
-        "pnaen: the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh"
-    );
+    assert!(said.contains("out of memory") && said.contains("smaller picture") && said.lines().count() == 1, "{said}");
     assert!(!std::path::Path::new(&picture).exists(), "nothing is written");
 }

@@ -1,4 +1,4 @@
-//! `--animation` and `--time`, on whatever tessellates.
+//! `--animation` and `--time`, with every command that tessellates.
 
 use serde_json::{Value, json};
 
@@ -12,7 +12,7 @@ fn file(folder: &Folder) -> String {
 }
 
 #[test]
-fn a_picture_of_a_pose_says_so_and_has_no_cracks() {
+fn stats_of_a_pose_name_it_and_count_no_cracks() {
     let folder = Folder::new("animation-render");
     let file = file(&folder);
     let picture = |name: &str, options: &[&str]| {
@@ -46,7 +46,7 @@ fn both_devices_write_the_pose() {
     let rest = extent(&[]);
     let pose = ["--animation", "Bend", "--time", "0.5"];
     let [gpu, cpu] = ["gpu", "cpu"].map(|device| extent(&[&pose[..], &["--device", device]].concat()));
-    // It bends over, to -x.
+    // The clip bends the mesh over, towards -x.
     assert!(rest[0] > -0.9 && gpu[0] < -1.5, "{rest:?} {gpu:?}");
     assert!((gpu[0] - cpu[0]).abs() < 1e-4 && (gpu[1] - cpu[1]).abs() < 1e-4, "{gpu:?} {cpu:?}");
     let factors = |options: &[&str]| {
@@ -57,7 +57,7 @@ fn both_devices_write_the_pose() {
 }
 
 #[test]
-fn after_its_end_a_clip_is_at_its_end() {
+fn a_time_beyond_a_clips_end_is_its_end() {
     let folder = Folder::new("animation-end");
     let file = file(&folder);
     let written = |time: &str| {
@@ -69,12 +69,12 @@ fn after_its_end_a_clip_is_at_its_end() {
     let (end, said) = written("1.5");
     assert!(!said.contains("ends"), "{said}");
     let (after, said) = written("99");
-    assert!(said.contains("pnaen: Swell ends at 1.5 s, and is shown as it is then"), "{said}");
+    assert!(said.contains("pnaen: Swell ends at 1.5 s"), "{said}");
     assert!(end == after);
 }
 
 #[test]
-fn what_is_not_there_is_said() {
+fn an_unknown_animation_is_answered_with_those_there_are() {
     let folder = Folder::new("animation-missing");
     let (file, picture) = (file(&folder), folder.path("out.png"));
     let said = failure(&["render", &file, "-o", &picture, "--animation", "Fly away"], 1);

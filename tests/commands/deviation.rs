@@ -1,10 +1,10 @@
-//! `pnaen render --overlay deviation` and `--truth`: numbers against closed forms, and what can't be a truth.
+//! `pnaen render --overlay deviation` and `--truth`: distances against closed forms, and errors.
 
 use serde_json::Value;
 
 use crate::{Folder, failure, number, output, sentence, stats};
 
-/// What the inscribed sphere of a regular icosahedron leaves of its circumscribed one, of radius 1.
+/// The distance between the inscribed and the circumscribed sphere of a regular icosahedron; the latter has radius 1.
 const GAP: f64 = 0.205_345_527;
 
 fn near(value: f64, expected: f64, tolerance: f64) -> bool {
@@ -29,7 +29,7 @@ fn a_flat_icosahedron_is_a_fifth_of_its_radius_off_the_sphere() {
 }
 
 #[test]
-fn two_surfaces_beside_each_other_have_a_number_each_and_one_scale() {
+fn both_halves_of_a_split_are_measured_and_share_a_scale() {
     let split = ["--split", "0.5", "--split-surface", "flat", "--overlay", "deviation,wireframe,cracks"];
     let drawn = |split: &[&str]| {
         let options = ["shape:icosahedron", "--surface", "pn-aen", "--factor", "32", "--partitioning", "integer"];
@@ -44,13 +44,13 @@ fn two_surfaces_beside_each_other_have_a_number_each_and_one_scale() {
     assert!(near(number(&both, "/left/accuracy/to_truth/max"), GAP, 2e-6), "{both}");
     assert_eq!((&both["left"]["surface"], &both["settings"]["surface"]), (&"flat".into(), &"pn-aen".into()));
     for scale in [&both["deviation"]["scale"], &both["left"]["deviation"]["scale"]] {
-        assert_eq!(*scale, serde_json::json!([0.0025, 0.25]), "that of the one farther off");
+        assert_eq!(*scale, serde_json::json!([0.0025, 0.25]), "the scale of the larger deviation");
     }
     for equal in ["triangles_out", "vertices_out"] {
         assert_eq!(both["left"][equal], both[equal], "the same factors");
     }
     assert_eq!(number(&both, "/left/cracks/edges"), 0.0);
-    // What is right of the split is as it would be alone.
+    // The right half has the same numbers as without a split.
     let alone = drawn(&["--overlay", "deviation"]);
     assert_eq!(alone["left"], Value::Null);
     for same in ["max", "rms", "worst"] {
@@ -60,7 +60,7 @@ fn two_surfaces_beside_each_other_have_a_number_each_and_one_scale() {
 }
 
 #[test]
-fn without_a_truth_both_are_held_against_the_limit_of_the_right_one() {
+fn without_a_reference_surface_both_halves_are_compared_with_the_right_ones_limit() {
     let smooth = ["shape:cube-smooth", "--factor", "8", "--overlay", "deviation", "--split", "0.5"];
     let of = |surfaces: [&str; 2]| {
         let both = stats(&[&smooth[..], &["--split-surface", surfaces[0], "--surface", surfaces[1]]].concat());
@@ -77,14 +77,14 @@ fn another_surface_needs_a_split() {
     let folder = Folder::new("split-surface");
     let out = folder.path("out.png");
     let without = ["render", "shape:torus", "-o", &out, "--split-surface", "flat"];
-    assert!(failure(&without, 2).contains("--split"), "says what it needs");
+    assert!(failure(&without, 2).contains("--split"), "the error names the missing option");
     let strength = ["render", "shape:torus", "-o", &out, "--size", "60x40", "--split", "0.5", "--alpha", "0.5"];
     failure(&strength, 2);
     output(&[&strength[..], &["--split-surface", "phong"]].concat());
 }
 
 #[test]
-fn another_mesh_is_a_truth_and_a_cube_is_held_against_what_it_converges_to() {
+fn deviation_is_measured_against_a_given_mesh_or_the_limit_surface() {
     let folder = Folder::new("truth");
     let high = folder.path("high.glb");
     output(&["tessellate", "shape:cube-smooth", "--surface", "pn", "--factor", "16", "-o", &high]);
@@ -94,14 +94,14 @@ fn another_mesh_is_a_truth_and_a_cube_is_held_against_what_it_converges_to() {
     };
     let (mesh, limit) = (against(&["--truth", &high]), against(&[]));
     assert_eq!(mesh["accuracy"]["truth"], high.as_str());
-    assert_eq!(limit["accuracy"], Value::Null, "it has no truth but itself");
+    assert_eq!(limit["accuracy"], Value::Null, "a limit surface gives no accuracy");
     let [mesh, limit] = [mesh, limit].map(|stats| number(&stats, "/deviation/max"));
-    // The nearest point is no farther than the one at the same place of the patch.
+    // The nearest point of the given mesh is no farther than the limit's point at the same domain point.
     assert!(mesh > 1e-4 && mesh < 1.1 * limit, "{mesh} and {limit}");
 }
 
 #[test]
-fn nothing_is_said_about_a_truth_that_was_not_asked_for_nor_of_what_was_left_out() {
+fn accuracy_is_null_unless_asked_for_and_one_way_only_if_patches_are_left_out() {
     let plain = stats(&["shape:icosphere"]);
     assert_eq!((&plain["accuracy"], &plain["deviation"]), (&Value::Null, &Value::Null));
     let culled = stats(&["shape:icosphere", "--cull-back-faces", "--truth", "shape:icosphere"]);
@@ -111,7 +111,7 @@ fn nothing_is_said_about_a_truth_that_was_not_asked_for_nor_of_what_was_left_out
 }
 
 #[test]
-fn a_truth_that_is_none_is_said_so() {
+fn a_reference_surface_that_cannot_be_read_is_named() {
     let folder = Folder::new("untruth");
     let out = folder.path("out.png");
     let with = |truth: &'static str| {

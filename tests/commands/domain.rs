@@ -1,4 +1,4 @@
-//! `pnaen domain`: the bare tessellator.
+//! `pnaen domain`: the tessellator's points and triangles.
 
 use std::collections::HashSet;
 use std::io::Write;
@@ -17,12 +17,12 @@ fn both_devices_print_the_same_domain() {
         let (gpu, cpu) = (domain("gpu"), domain("cpu"));
         assert!(gpu == cpu, "{partitioning}: the devices differ");
         let numbers: HashSet<&str> = cpu.lines().filter_map(|line| line.split(',').next()).collect();
-        assert_eq!(numbers, HashSet::from(["0", "1", "5", "6", "7"]), "culled sets print nothing, and still count");
+        assert_eq!(numbers, HashSet::from(["0", "1", "5", "6", "7"]), "culled sets print nothing, but are counted");
     }
 }
 
 #[test]
-fn a_domain_is_printed_point_by_point() {
+fn points_and_triangles_are_printed_in_order() {
     let text = output(&["domain", "--partitioning", "integer", "--factors", "1,1,1,2", "--device", "cpu"]);
     let expected = "point,0,0,65536\npoint,1,0,0\npoint,2,65536,0\npoint,3,21845,21845\n\
                     triangle,3,0,1\ntriangle,3,1,2\ntriangle,3,2,0\n";
@@ -31,7 +31,7 @@ fn a_domain_is_printed_point_by_point() {
 }
 
 #[test]
-fn subtriangulation_takes_one_factor_for_all() {
+fn subtriangulation_needs_four_equal_factors() {
     let folder = Folder::new("subtriangulation");
     let sets = folder.path("sets.txt");
     let text = "1 1 1 1\n1.5 1.5 1.5 1.5\n0 1 2 3\nnan nan nan nan\ninf inf inf inf\n";
@@ -68,7 +68,7 @@ fn a_closed_pipe_is_no_failure() {
 }
 
 #[test]
-fn sets_of_factors_come_from_standard_input_too() {
+fn sets_of_factors_can_come_from_standard_input() {
     let mut child = command(&["domain", "--partitioning", "integer", "--input", "-", "--device", "cpu"])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -1,11 +1,11 @@
-//! `pnaen info`: what a mesh is, and what a weld tolerance makes of it.
+//! `pnaen info`: the numbers of a mesh, with a weld tolerance or a crease band and without.
 
 use serde_json::Value;
 
 use crate::{Folder, failure, output, stats, write_seam, write_triangles};
 
 #[test]
-fn info_is_for_people_and_for_programs() {
+fn info_is_printed_as_text_and_as_json() {
     let text = output(&["info", "shape:saddle"]);
     assert!(text.contains("boundary      24") && text.contains("open"), "{text}");
     assert!(text.contains("weld  ") && text.contains("\n  1e-5          joins nothing\n"), "{text}");
@@ -15,7 +15,7 @@ fn info_is_for_people_and_for_programs() {
 }
 
 #[test]
-fn a_rim_is_told_and_in_what_is_written() {
+fn a_crease_band_is_in_info_and_in_adjacency() {
     let band = ["--crease-band", "0.02"];
     let info = |file: &str| output(&[&["info", file, "--json"], &band[..]].concat());
     let json: Value = serde_json::from_str(&info("shape:cube-split")).expect("JSON");
@@ -32,20 +32,20 @@ fn a_rim_is_told_and_in_what_is_written() {
 }
 
 #[test]
-fn what_a_tolerance_would_join_is_told_of_the_mesh_as_it_was_read() {
+fn weld_previews_are_about_the_mesh_without_its_crease_band() {
     let folder = Folder::new("crease-band");
     let path = write_seam(&folder);
     let joins = |options: &[&str]| -> Value {
         let json: Value = serde_json::from_str(&output(&[&["info", &path, "--json"], options].concat())).expect("JSON");
         json["joins"].clone()
     };
-    assert_eq!(joins(&["--rim", "0.01"]), joins(&[]));
+    assert_eq!(joins(&["--crease-band", "0.01"]), joins(&[]));
 }
 
 #[test]
-fn info_tells_what_is_odd_and_what_a_weld_tolerance_changes() {
+fn info_has_t_junctions_and_repairs_and_the_effect_of_a_weld_tolerance() {
     let folder = Folder::new("odd");
-    // One triangle above the edge from 0 to 4 along x, two below that meet at 1 on it and miss its ends by 1e-4.
+    // One triangle above the edge from 0 to 4 along x. Two below it meet at 1 on the edge and miss its ends by 1e-4.
     let gap = 1e-4;
     let triangles = [
         [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]],
@@ -73,7 +73,7 @@ fn info_tells_what_is_odd_and_what_a_weld_tolerance_changes() {
 }
 
 #[test]
-fn a_seam_that_almost_meets_is_closed_within_a_tolerance() {
+fn a_weld_tolerance_closes_a_seam_that_almost_meets() {
     let folder = Folder::new("seam");
     let (path, out) = (write_seam(&folder), folder.path("out.glb"));
     let json = |arguments: &[&str]| -> Value { serde_json::from_str(&output(arguments)).expect("JSON") };
@@ -85,19 +85,19 @@ fn a_seam_that_almost_meets_is_closed_within_a_tolerance() {
         let joins: Vec<_> =
             info["joins"].as_array().expect("a list").iter().map(|join| join["edges"].clone()).collect();
         let expected = [0, 0, 0, 6, 6, 6].map(Value::from);
-        assert_eq!(joins, expected, "against the exact weld, whatever the tolerance: {options:?}");
+        assert_eq!(joins, expected, "compared with the exact weld under any tolerance: {options:?}");
         assert_eq!(drawn["edges"]["boundary"], boundary, "{options:?}");
         assert_eq!(drawn["leaks"], if open { Value::Null } else { 0.into() }, "{options:?}");
         assert_eq!((&drawn["cracks"]["edges"], &drawn["patches"]), (&0.into(), &4.into()), "{options:?}");
-        // Closed to the bit: what is written is opened without a tolerance.
+        // The written mesh is closed to the bit, so it needs no tolerance.
         output(&[&["tessellate", &path, "-o", &out, "--factor", "3", "--device", "cpu"], options].concat());
         assert_eq!(json(&["info", &out, "--json"])["closed"], !open, "{options:?}");
     }
-    assert_eq!(info(&["--weld", "1e-5"])["edges"]["boundary"], 6, "less than the gap");
+    assert_eq!(info(&["--weld", "1e-5"])["edges"]["boundary"], 6, "the tolerance is smaller than the gap");
 }
 
 #[test]
-fn names_that_a_terminal_would_obey_are_shown_as_text() {
+fn control_characters_in_names_are_replaced() {
     let folder = Folder::new("names");
     let path = folder.path("odd\n\x1b[2J.obj");
     let name = format!("\x1b[2Jred{}", "x".repeat(1000));
@@ -111,7 +111,7 @@ fn names_that_a_terminal_would_obey_are_shown_as_text() {
     assert!(material.contains("\u{fffd}[2Jredxxx") && material.contains("x…: 1 triangles"), "{material}");
     assert!(material.chars().count() < 250, "{material}");
     let json: Value = serde_json::from_str(&output(&["info", &path, "--json"])).expect("JSON");
-    assert_eq!(json["materials"][0]["name"].as_str(), Some(name.as_str()), "programs have it whole");
+    assert_eq!(json["materials"][0]["name"].as_str(), Some(name.as_str()), "JSON has the whole name");
     std::fs::write(&path, "f 1 2 3\n").expect("a writable temporary folder");
     for said in [failure(&["info", &path], 1), failure(&["info", "no\x1b[2J\nsuch.glb"], 1)] {
         assert!(!has_odd(&said) && said.lines().count() == 1, "{said:?}");

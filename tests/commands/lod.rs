@@ -1,18 +1,21 @@
-//! LOD and clipping, by their options.
+//! The options of LOD and clipping.
 
 use serde_json::Value;
 
 use crate::{Folder, failure, number, output, read_obj, run, sentence, stats};
 
 #[test]
-fn adaptive_lod_by_edge_length_and_clipping_by_the_frustum_hold_close_to_the_eye() {
+fn lod_by_edge_length_and_frustum_clipping_work_close_to_the_eye() {
     let close = ["shape:torus", "--camera", "30,20,0.6", "--pixels", "48"];
     let [clipped, whole, paper] = [["edge-length", "frustum"], ["edge-length", "off"], ["paper", "off"]]
         .map(|[lod, clip]| stats(&[&close[..], &["--lod", lod, "--clip", clip]].concat()));
     assert!(number(&clipped, "/patches_culled") > 50.0 && number(&clipped, "/patches_culled") < 256.0, "{clipped}");
     assert_eq!((&whole["patches_culled"], &paper["patches_culled"]), (&0.into(), &0.into()));
     assert!(number(&clipped, "/triangles_out") < number(&whole, "/triangles_out"), "{clipped}");
-    assert_ne!(whole["triangles_out"], paper["triangles_out"], "edges reach behind the eye");
+    assert_ne!(
+        whole["triangles_out"], paper["triangles_out"],
+        "some edges reach behind the eye, where only the white paper's LOD fails"
+    );
     for stats in [clipped, whole] {
         assert_eq!((&stats["cracks"]["edges"], &stats["not_finite"]), (&0.into(), &0.into()), "{stats}");
     }
@@ -34,7 +37,7 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 }
 
 #[test]
-fn subtriangulation_is_for_uniform_factors() {
+fn subtriangulation_needs_uniform_factors() {
     let folder = Folder::new("uniform");
     let [picture, mesh, factors] = ["out.png", "out.obj", "out.csv"].map(|name| folder.path(name));
     let pattern = ["shape:torus", "--partitioning", "subtriangulation"];
@@ -42,12 +45,12 @@ fn subtriangulation_is_for_uniform_factors() {
         for (command, out) in [("render", &picture), ("tessellate", &mesh), ("factors", &factors)] {
             let said = failure(&[&[command, "-o", out], &pattern[..], &["--lod", lod]].concat(), 2);
             assert!(said.contains("subtriangulation") && said.contains("--lod uniform"), "{said}");
-            assert!(!std::path::Path::new(out).exists(), "before anything is written");
+            assert!(!std::path::Path::new(out).exists(), "nothing is written");
         }
     }
     let stats = stats(&[&pattern[..], &["--factor", "6.2", "--lod", "uniform"]].concat());
     assert_eq!((number(&stats, "/triangles_out"), number(&stats, "/cracks/different_bits")), (256.0 * 49.0, 0.0));
-    // Its own file of factors gives the same mesh; one that differs is refused.
+    // A file of its own factors gives the same mesh. A file with one other factor is refused.
     output(&[&["factors", "-o", &factors, "--factor", "6.2"], &pattern[..]].concat());
     output(&[&["tessellate", "-o", &mesh, "--factor", "6.2", "--device", "cpu"], &pattern[..]].concat());
     let again = folder.path("again.obj");
@@ -60,7 +63,7 @@ fn subtriangulation_is_for_uniform_factors() {
 }
 
 #[test]
-fn a_budget_of_triangles_raises_the_tolerance_and_says_so() {
+fn a_budget_of_triangles_raises_the_tolerance_and_reports_it() {
     let folder = Folder::new("budget");
     let [picture, mesh] = ["out.png", "out.obj"].map(|name| folder.path(name));
     let by_error = ["shape:torus", "--lod", "error", "--tolerance", "0.1"];
@@ -73,10 +76,10 @@ fn a_budget_of_triangles_raises_the_tolerance_and_says_so() {
     let stats: Value = serde_json::from_slice(&result.stdout).expect("JSON");
     let count = number(&stats, "/triangles_out");
     assert!(count <= 0.5 * all && count > 0.2 * all, "{count} of {all}");
-    // A tolerance that fits already stays, and says nothing.
+    // A tolerance that fits already stays, without a message.
     let result = run(&[&["render", "-o", &picture, "--max-triangles", "9999999"], &by_error[..]].concat());
     assert!(result.status.success() && result.stderr.is_empty());
-    // Both devices have the option; a budget below the mesh itself is a sentence.
+    // The option works on the CPU as well. A budget below the mesh's own triangles is an error.
     output(&[&["tessellate", "-o", &mesh, "--device", "cpu", "--max-triangles", "300"], &by_error[..]].concat());
     assert!(read_obj(&mesh).1.len() <= 300);
     sentence(

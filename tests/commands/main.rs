@@ -1,4 +1,4 @@
-//! The commands as a person or a pipeline meets them: the program itself, its output, its pictures, its exit codes.
+//! Tests of the commands through the program itself: its output, its pictures and its exit codes.
 
 mod adapters;
 mod adjacency;
@@ -27,7 +27,7 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// A folder of this test's own, gone when the test is.
+/// A temporary folder, which is removed at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -66,7 +66,7 @@ fn output(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// What a run that must fail says on standard error.
+/// Standard error of a run that must fail with this exit code.
 fn failure(arguments: &[&str], code: i32) -> String {
     let output = run(arguments);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -75,7 +75,7 @@ fn failure(arguments: &[&str], code: i32) -> String {
     errors
 }
 
-/// A failure in one sentence, with these words in it.
+/// Checks that a run fails with one line on standard error that has all of these words.
 fn sentence(arguments: &[&str], words: &[&str]) {
     let errors = failure(arguments, 1);
     assert_eq!(errors.lines().count(), 1, "{errors}");
@@ -122,7 +122,7 @@ fn write_triangles(folder: &Folder, triangles: &[[[f32; 3]; 3]], normal: [f32; 3
     write_corners(folder, &corners)
 }
 
-/// The same from corners, three a triangle, with their positions and normals.
+/// Like [`write_triangles`], from positions and normals of corners, three per triangle.
 fn write_corners(folder: &Folder, corners: &[([f32; 3], [f32; 3])]) -> String {
     let count = corners.len();
     let positions = corners.iter().flat_map(|&(position, _)| position);
@@ -143,7 +143,7 @@ fn write_corners(folder: &Folder, corners: &[([f32; 3], [f32; 3])]) -> String {
     path
 }
 
-/// A tetrahedron of which one face was moved by a ten-thousandth of the diagonal.
+/// Writes a tetrahedron with one face moved by 1e-4 along each axis.
 fn write_seam(folder: &Folder) -> String {
     let [o, x, y, z] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let moved = [o, z, y].map(|point| point.map(|coordinate: f32| coordinate + 1e-4));

@@ -1,4 +1,4 @@
-//! README, the manual and the other pages: their links lead somewhere, they name the options that the program has, and their
+//! README, the manual and the other pages: their links are valid, the options that they name exist, and their
 //! pictures are what their commands draw.
 
 mod links;

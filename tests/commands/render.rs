@@ -7,13 +7,13 @@ use serde_json::Value;
 use crate::{Folder, number, output, run, sentence, stats, vase, write_corners};
 
 #[test]
-fn stats_say_what_was_done() {
+fn stats_have_counts_cracks_memory_and_times() {
     let stats = stats(&["shape:torus", "--factor", "4", "--partitioning", "integer"]);
     let number = |path: &str| number(&stats, path);
     assert!(stats["adapter"].as_str().is_some_and(|name| !name.is_empty()));
     let counts = ["/triangles_in", "/points", "/corners", "/degenerate", "/patches", "/patches_culled"].map(number);
     assert_eq!(counts, [256.0, 128.0, 153.0, 0.0, 256.0, 0.0]);
-    // 1.5 N^2 triangles and 3 N + 3 R (R + 1) + 1 vertices a patch, R = N / 2 - 1.
+    // 1.5 N^2 triangles and 3 N + 3 R (R + 1) + 1 vertices per patch, with R = N / 2 - 1.
     assert_eq!([number("/triangles_out"), number("/vertices_out")], [256.0 * 24.0, 256.0 * 19.0]);
     let edges = ["smooth", "split", "seam", "boundary", "non_manifold"].map(|kind| number(&format!("/edges/{kind}")));
     assert_eq!(edges, [360.0, 0.0, 24.0, 0.0, 0.0]);
@@ -40,23 +40,23 @@ fn pn_cracks_on_split_normals_and_pn_aen_does_not() {
     assert_eq!((&torn["edges"], &torn["edges_compared"]), (&12.into(), &18.into()));
     assert!(torn["max_gap"].as_f64() > Some(0.01) && torn["max_gap_px"].as_f64() > Some(0.5), "{torn}");
     assert!(torn["max_gap_ulp"].as_f64() > Some(1e4), "{torn}");
-    assert!(pn["leaks"].as_u64() > Some(100), "one looks through the cracks: {pn}");
+    assert!(pn["leaks"].as_u64() > Some(100), "one can see through the cracks: {pn}");
     for whole in [pn_aen, flat] {
         assert_eq!((&whole["cracks"]["different_bits"], &whole["leaks"]), (&0.into(), &0.into()));
     }
 }
 
 #[test]
-fn an_open_mesh_has_no_leaks_to_count() {
+fn leaks_of_an_open_mesh_are_null() {
     let open = stats(&["shape:saddle"]);
     assert_eq!(open.get("leaks"), Some(&Value::Null), "{open}");
-    assert_eq!(number(&open, "/cracks/edges_compared"), 96.0, "all but the borders");
+    assert_eq!(number(&open, "/cracks/edges_compared"), 96.0, "all edges but those of the boundary");
 }
 
 #[test]
 fn stats_count_folds_where_normals_lie_nearly_in_the_plane() {
     let folder = Folder::new("folds");
-    // The last two as at a notch and a point of a star.
+    // The leaning normals are like those at a notch and a point of a star.
     let positions = [[0.0, 0.0, 0.0], [0.28, 0.0, 0.2], [1.0, 0.0, 0.0]];
     let upright = [[0.0, 1.0, 0.0]; 3];
     let leaning = [[0.0, 1.0, 0.0], [-0.77, 0.32, -0.56], [0.84, 0.28, 0.45]];
@@ -69,7 +69,7 @@ fn stats_count_folds_where_normals_lie_nearly_in_the_plane() {
 }
 
 #[test]
-fn edges_differ_as_published_and_not_by_edge() {
+fn shared_edges_crack_as_published_and_not_if_computed_per_edge() {
     let cracks =
         |options: &[&str]| stats(&[&["shape:torus", "--surface", "pn-aen"], options].concat())["cracks"].clone();
     let published = ["--edges", "as-published"];
@@ -84,7 +84,7 @@ fn edges_differ_as_published_and_not_by_edge() {
 }
 
 #[test]
-fn a_file_of_ours_is_drawn_without_cracks() {
+fn the_vase_is_drawn_without_cracks() {
     for lod in ["uniform", "paper"] {
         let stats = stats(&[vase(), "--lod", lod, "--pixels", "6", "--clip", "paper"]);
         assert_eq!((&stats["cracks"]["different_bits"], &stats["patches"]), (&0.into(), &308.into()));
@@ -92,7 +92,7 @@ fn a_file_of_ours_is_drawn_without_cracks() {
 }
 
 #[test]
-fn a_picture_has_the_size_and_background_asked_for() {
+fn a_picture_has_its_size_and_background() {
     let folder = Folder::new("picture");
     let path = folder.path("out.png");
     output(&[
@@ -114,7 +114,7 @@ fn a_picture_has_the_size_and_background_asked_for() {
 }
 
 #[test]
-fn a_picture_is_held_against_its_reference() {
+fn a_picture_is_compared_with_its_reference() {
     let folder = Folder::new("reference");
     let [reference, same, other] = ["reference.png", "same.png", "other.png"].map(|name| folder.path(name));
     let render = |out: &str, more: &[&str]| {
@@ -130,7 +130,7 @@ fn a_picture_is_held_against_its_reference() {
     assert!(said.contains("other.png differs from") && said.contains("other-diff.png"), "{said}");
     let diff = image::open(folder.path("other-diff.png")).expect("a PNG file");
     assert_eq!((diff.width(), diff.height()), (160, 120));
-    assert!(Path::new(&other).exists(), "the picture is written whatever it is held against");
+    assert!(Path::new(&other).exists(), "the picture is written even if it differs");
     sentence(
         &["render", "shape:torus", "--size", "80x60", "-o", &other, "--reference", &reference],
         &["reference.png", "80 x 60", "160 x 120", "--size 160x120"],
@@ -138,7 +138,7 @@ fn a_picture_is_held_against_its_reference() {
     let before = std::fs::read(&reference).expect("a file");
     sentence(
         &["render", "shape:cone", "-o", &reference, "--reference", &reference],
-        &["isn't written over: it is read"],
+        &["reference.png is read by the same command"],
     );
     assert_eq!(std::fs::read(&reference).expect("a file"), before);
 }
@@ -161,7 +161,7 @@ fn stats_count_small_triangles_and_patches_with_low_factors() {
             .map(|path| number(&stats, path))
     };
     let coarse = ["shape:torus", "--factor", "1", "--partitioning", "integer", "--measure-error", "false"];
-    // Framed in 160 x 120 px, the torus's 256 patches are some 5 px large.
+    // In a picture of 160 x 120 px, the torus's 256 patches are about 5 px large.
     let [out, in_view, small, low] = counts(&coarse);
     assert_eq!([out, in_view, low], [256.0; 3]);
     assert!(small < 128.0, "{small} of 256 patches");
@@ -184,7 +184,7 @@ fn a_selected_triangle_is_outlined() {
         output(&[&base[..], options].concat());
         image::open(&path).expect("a PNG file").to_rgba8()
     };
-    // Pink, lime and blue as src/render/layout.rs has them.
+    // Pink, lime and blue: FACTOR_COLORS of src/render/layout.rs.
     let colors: [[i32; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
     let count = |picture: &image::RgbaImage, color: [i32; 3]| {
         let near = |pixel: &image::Rgba<u8>| (0..3).all(|c| (i32::from(pixel.0[c]) - color[c]).abs() <= 4);

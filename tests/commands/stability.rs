@@ -49,16 +49,16 @@ fn stability_measures_every_method_in_every_partitioning() {
         rows.iter().map(|row| ["method", "partitioning", "unit"].map(|key| word(row, key))).collect();
     let expected: HashSet<_> =
         expected.iter().map(|&(method, partitioning, unit)| [method, partitioning, unit]).collect();
-    // Not assert_eq: nobody reads two hundred rows.
+    // Not assert_eq, which would print two hundred rows.
     assert!(found == expected, "{:?}", found.symmetric_difference(&expected).next());
-    assert_eq!(rows.len(), expected.len(), "each once");
+    assert_eq!(rows.len(), expected.len(), "each row occurs once");
     for row in &rows {
         let own: HashSet<_> = row.as_object().expect("an object").keys().map(String::as_str).collect();
         assert_eq!(own, HashSet::from(keys));
         assert_eq!((word(row, "case"), word(row, "device")), ("split-normals", "cpu"));
-        let (measured, holds) = (number(row, "/measured"), row["holds"].as_bool().expect("a truth value"));
+        let (measured, holds) = (number(row, "/measured"), row["holds"].as_bool().expect("a boolean"));
         assert_eq!(holds, measured == 0.0, "{row}");
-        let promised = row["promised"].as_bool().expect("a truth value");
+        let promised = row["promised"].as_bool().expect("a boolean");
         assert!(holds || !promised, "{row}");
         match (word(row, "method"), word(row, "unit")) {
             (method, _) if !tears(method) => assert!(promised, "{row}"),
@@ -66,13 +66,13 @@ fn stability_measures_every_method_in_every_partitioning() {
             _ => {}
         }
     }
-    // A uniform factor is the same from every side: only views can tell.
+    // Uniform factors agree on both sides, so factors can differ only under views with adaptive LOD.
     let factors = |rows: &[Value]| rows.iter().any(|row| word(row, "unit") == units[1] && row["holds"] == false);
     assert!(factors(&rows) && !factors(&stability(&["--case", "split-normals", "--cameras", "0"])));
 }
 
 #[test]
-fn stability_runs_cases_in_one_order_however_they_are_asked_for() {
+fn cases_run_in_a_fixed_order() {
     let run = |names: &[&str]| {
         let options = names.iter().flat_map(|name| ["--case", name]);
         stability(&["--cameras", "0"].into_iter().chain(options).collect::<Vec<_>>())
@@ -83,7 +83,7 @@ fn stability_runs_cases_in_one_order_however_they_are_asked_for() {
 }
 
 #[test]
-fn a_case_that_is_not_there_is_answered_with_those_that_are() {
+fn an_unknown_case_is_answered_with_those_there_are() {
     let said = failure(&["stability", "--case", "teapot", "--device", "cpu", "--json"], 2);
     for name in ["teapot", "split-normals", "smooth-torus", "near-seam", "shared-apex"] {
         assert!(said.contains(name), "{name:?} is not in {said}");
@@ -125,7 +125,7 @@ fn stability_draws_its_cases_and_writes_a_page() {
     assert_eq!(files, ["split-normals.png", "stability.md"]);
 
     let picture = image::open(Path::new(&pages).join("split-normals.png")).expect("a PNG file").to_rgb8();
-    // Nine methods in rows of three, each with cracks in red where there are any.
+    // Nine methods in rows of three, with their cracks in red.
     let (width, height) = (picture.width() / 3, picture.height() / 3);
     let part = |k: u32| image::imageops::crop_imm(&picture, k % 3 * width, k / 3 * height, width, height).to_image();
     let parts: Vec<_> = (0..9).map(part).collect();
@@ -138,7 +138,7 @@ fn stability_draws_its_cases_and_writes_a_page() {
 
     let page = std::fs::read_to_string(Path::new(&pages).join("stability.md")).expect("a page");
     assert!(page.contains("\n## split-normals\n") && page.contains("](split-normals.png)"), "{page}");
-    // After the headings and the rule below them.
+    // The first two lines are the headings and the rule below them.
     let lines = page.lines().filter(|line| line.starts_with("| ")).skip(2);
     let lines: Vec<_> = lines.map(|line| line.trim_matches(['|', ' ']).split(" | ").collect::<Vec<_>>()).collect();
     let verdicts: Vec<_> = lines.iter().map(|cells| (cells[0], cells[cells.len() - 1])).collect();
@@ -152,7 +152,7 @@ fn stability_draws_its_cases_and_writes_a_page() {
 }
 
 #[test]
-fn stability_takes_files_too() {
+fn stability_runs_files() {
     let folder = Folder::new("tent");
     // Two sides of a roof, each with its own normal.
     let [left, right] = [[-0.48, 0.6, 0.64], [0.48, 0.6, 0.64]];
@@ -170,13 +170,13 @@ fn stability_takes_files_too() {
     assert_eq!(cases(&rows), ["triangles.gltf"]);
     for method in METHODS {
         let torn = rows.iter().filter(|row| word(row, "method") == method && row["holds"] == false).count();
-        // Equal normals at both ends make a straight edge of Phong and Nagata.
+        // Equal normals at both ends make an edge of Phong and Nagata straight, so it doesn't tear.
         assert_eq!(torn > 0, tears(method) && method.starts_with("PN"), "{method}");
     }
     assert_eq!(cases(&stability(&[&path, "--case", "t-junction", "--cameras", "0"])), ["t-junction", "triangles.gltf"]);
     sentence(&["stability", "nowhere.glb", "--device", "cpu"], &["nowhere.glb", "can't be read"]);
 
-    // Drawn and written down like a case; one more of that name has a picture of its own.
+    // Files have a picture and a section like a case. The second file of the same name gets names of its own.
     let pages = folder.path("pages");
     output(&["stability", &path, &path, "--cameras", "0", "--device", "gpu", "-o", &pages]);
     let page = std::fs::read_to_string(Path::new(&pages).join("stability.md")).expect("a page");
@@ -186,14 +186,14 @@ fn stability_takes_files_too() {
     }
     assert!(!page.contains("cpu"), "{page}");
 
-    // What can't be loaded is said before anything runs.
+    // A file that can't be loaded fails before anything runs.
     let unmade = folder.path("unmade");
     sentence(&["stability", "--case", "soup", "nowhere.glb", "-o", &unmade], &["nowhere.glb"]);
     assert!(!Path::new(&unmade).exists());
 }
 
 #[test]
-fn stability_looks_into_a_file_that_a_tolerance_closes() {
+fn leaks_are_counted_for_a_file_that_a_weld_tolerance_closes() {
     let folder = Folder::new("looks");
     let path = write_seam(&folder);
     let leaks = |options: &[&str]| {
@@ -205,12 +205,12 @@ fn stability_looks_into_a_file_that_a_tolerance_closes() {
             .map(|row| number(row, "/measured"))
             .collect::<Vec<_>>()
     };
-    assert_eq!(leaks(&[]), [0.0; 0], "open");
+    assert_eq!(leaks(&[]), [0.0; 0], "an open mesh has none");
     assert_eq!(leaks(&["--weld", "1e-3"]), [0.0; 45], "nine methods in five partitionings");
 }
 
 #[test]
-fn with_a_rim_nothing_of_a_file_tears_under_pn() {
+fn with_a_crease_band_pn_does_not_tear_a_file() {
     let differing = |options: &[&str]| {
         let arguments = ["stability", "shape:cube-split", "--json", "--cameras", "0", "--device", "cpu"];
         let text = output(&[&arguments, options].concat());
@@ -220,5 +220,5 @@ fn with_a_rim_nothing_of_a_file_tears_under_pn() {
         all.collect::<Vec<_>>()
     };
     assert!(differing(&[]).iter().all(|points| *points > 0.0));
-    assert_eq!(differing(&["--rim", "0.02"]), [0.0; 5], "in five partitionings");
+    assert_eq!(differing(&["--crease-band", "0.02"]), [0.0; 5], "in five partitionings");
 }

@@ -19,7 +19,7 @@ fn text<'a>(stats: &'a Value, path: &str) -> &'a str {
 }
 
 #[test]
-fn stats_name_what_was_drawn_as_the_options_do() {
+fn stats_have_the_names_of_the_options_values() {
     let surfaces = ["flat", "pn", "pn-aen", "pn-crease", "phong", "phong-aen", "nagata", "nagata-aen"];
     let normals = ["linear", "quadratic", "surface"];
     for (index, surface) in surfaces.into_iter().enumerate() {
@@ -51,7 +51,7 @@ fn an_image_displaces_any_surface_without_cracks() {
 }
 
 #[test]
-fn what_heights_lift_stays_in_the_picture() {
+fn a_displaced_mesh_stays_in_the_picture() {
     let folder = Folder::new("lifted");
     let (white, out) = (folder.path("white.png"), folder.path("out.png"));
     image::GrayImage::from_pixel(2, 2, image::Luma([255])).save(&white).expect("a folder of our own");
@@ -60,7 +60,7 @@ fn what_heights_lift_stays_in_the_picture() {
     let picture = image::open(&out).expect("a picture").to_rgba8();
     let background = picture[(0, 0)];
     let border = (0..64).flat_map(|i| [(i, 0), (i, 63), (0, i), (63, i)]);
-    // The lifted sphere touches it.
+    // The lifted sphere touches the border.
     let covered = border.filter(|&(x, y)| picture[(x, y)] != background).count();
     assert!(covered < 64 && picture[(32, 32)] != background, "{covered} of 256 px");
 }
@@ -86,7 +86,7 @@ fn both_devices_write_the_same_displaced_mesh() {
 }
 
 #[test]
-fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
+fn bad_height_images_are_named_and_wrong_options_are_usage_errors() {
     let folder = Folder::new("no-heights");
     let out = folder.path("out.png");
     let text = folder.path("notes.txt");
@@ -102,12 +102,12 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
         &["--alpha", "-0.1"],
         &["--normals", "flat"],
         &["--displacement", "maybe"],
-        // Of what isn't there.
+        // These options have no effect without Phong or without heights.
         &["--alpha", "0.5"],
         &["--height-scale", "0.1"],
         &["--midlevel", "0.1"],
-        &["--rim", "0.02", "--animation", "Walk"],
-        &["--rim", "-1"],
+        &["--crease-band", "0.02", "--animation", "Walk"],
+        &["--crease-band", "-1"],
     ] {
         failure(&render(wrong), 2);
     }
@@ -115,7 +115,7 @@ fn what_cannot_displace_is_a_sentence_and_wrong_numbers_are_usage() {
 }
 
 #[test]
-fn help_says_of_every_technique_what_it_is_and_whose() {
+fn help_names_the_source_of_every_technique() {
     let help = output(&["render", "--help"]);
     let said = |name: &str, words: &[&str]| {
         let line = help.lines().find(|line| line.trim_start().starts_with(&format!("- {name}:")));

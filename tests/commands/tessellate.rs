@@ -1,4 +1,4 @@
-//! `pnaen tessellate`: meshes written.
+//! `pnaen tessellate`: the meshes that it writes.
 
 use std::collections::HashMap;
 
@@ -24,7 +24,7 @@ fn a_tessellated_mesh_is_closed_to_the_last_bit() {
             }
         }
         let open = edges.values().filter(|&&count| count != 0).count();
-        assert_eq!(open, 0, "{device}: every edge is run once each way, by positions alone");
+        assert_eq!(open, 0, "{device}: every edge is used once in each direction");
     }
 }
 
@@ -43,10 +43,10 @@ fn a_tessellated_mesh_can_be_opened_again() {
 }
 
 #[test]
-fn a_mesh_without_triangles_left_is_written_and_refused_for_what_it_is() {
+fn a_mesh_of_degenerate_triangles_is_written_empty_and_refused_as_input() {
     let folder = Folder::new("empty");
     let [degenerate, out] = ["degenerate.gltf", "out.glb"].map(|name| folder.path(name));
-    // Three corners on one point: a triangle that is left out. The buffer is 36 zero bytes.
+    // A triangle with all corners on one point is left out. The buffer has 36 zero bytes.
     let zeros = "A".repeat(48);
     let text = format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
@@ -63,12 +63,12 @@ fn a_mesh_without_triangles_left_is_written_and_refused_for_what_it_is() {
 }
 
 #[test]
-fn more_than_a_file_holds_is_refused_before_it_is_made() {
+fn a_mesh_too_large_for_its_format_is_refused_before_it_is_tessellated() {
     let folder = Folder::new("huge");
     let [torus, out] = ["torus.glb", "out.glb"].map(|name| folder.path(name));
     output(&["tessellate", "shape:torus", "-o", &torus, "--factor", "20", "--partitioning", "integer"]);
     for device in ["gpu", "cpu"] {
-        // 150 thousand triangles of 6144 each.
+        // About 150 thousand triangles, each of which becomes 6144.
         let arguments = ["tessellate", &torus, "-o", &out, "--factor", "64", "--device", device];
         sentence(
             &[&arguments[..], &["--partitioning", "integer"]].concat(),

@@ -1,11 +1,11 @@
-//! What goes wrong: sentences, exit codes, no display.
+//! Errors and exit codes of all commands, and the program without a display.
 
 use std::path::Path;
 
 use crate::{Folder, command, failure, output, run, sentence};
 
 #[test]
-fn failures_are_one_sentence_and_exit_code_1() {
+fn failures_are_one_line_and_exit_code_1() {
     let folder = Folder::new("failures");
     let [out, text, broken] = ["out.png", "notes.txt", "broken.gltf"].map(|name| folder.path(name));
     std::fs::write(&text, "no mesh").expect("a writable folder");
@@ -16,36 +16,33 @@ fn failures_are_one_sentence_and_exit_code_1() {
     sentence(&["info", &broken], &["broken.gltf", "not a glTF 2.0 document"]);
     sentence(
         &["render", "shape:torus", "-o", &folder.path("no/such/folder/out.png")],
-        &["out.png", "there is no folder", "make it first"],
+        &["out.png", "there is no folder", "no/such/folder"],
     );
     sentence(
         &["render", "shape:torus", "-o", &out, "--reference", "nowhere.png"],
         &["nowhere.png", "could not be read"],
     );
     let said = failure(&["tessellate", "shape:torus", "-o", &folder.path("out.stl")], 2);
-    assert!(said.contains("meshes are written as .glb or .obj files"), "{said}");
-    // Before anything is drawn, measured or emitted.
+    assert!(said.contains(".glb or .obj"), "{said}");
+    // A missing folder is an error before anything is drawn, measured or emitted.
     let nowhere = folder.path("nowhere/out");
     for [command, option, ending] in
         [["render", "-o", ".png"], ["tessellate", "-o", ".obj"], ["chart", "-o", ".svg"], ["chart", "--csv", ".csv"]]
     {
         let output = format!("{nowhere}{ending}");
-        sentence(
-            &[command, "shape:torus", option, &output],
-            &["there is no folder ", "nowhere to write it in; make it first"],
-        );
+        sentence(&[command, "shape:torus", option, &output], &["there is no folder ", "nowhere"]);
     }
-    sentence(&["info", &folder.path("missing.glb")], &["missing.glb can't be read: there is no such file or folder"]);
+    sentence(&["info", &folder.path("missing.glb")], &["missing.glb can't be read", "no such file"]);
     sentence(&["domain", "--partitioning", "integer", "--input", &text], &["notes.txt, line 1", "four numbers"]);
 }
 
 #[test]
-fn a_picture_too_large_for_the_device_is_a_sentence() {
+fn a_picture_too_large_for_the_device_is_an_error_of_one_line() {
     let folder = Folder::new("large");
     let path = folder.path("out.png");
     let output = run(&["render", "shape:torus", "-o", &path, "--size", "16384x16384"]);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    // A device with memory enough may draw it.
+    // A device with enough memory may draw it.
     assert!(output.status.success() || output.status.code() == Some(1), "{errors}");
     assert!(errors.lines().count() <= 1 && !errors.contains("panicked"), "{errors}");
     assert_eq!(output.status.success(), Path::new(&path).exists());
@@ -85,7 +82,7 @@ fn wrong_usage_exits_with_2() {
         &["tessellate", "shape:torus", "-o", "x.glb", "--clip", "frusta"],
         &["frobnicate", "--hard"],
     ] {
-        // What is written by mistake goes into a folder of this test's own.
+        // If a command wrote a file by mistake, it would be in this folder.
         let output = command(arguments).current_dir(&folder.0).output().expect("the program starts");
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
@@ -93,7 +90,7 @@ fn wrong_usage_exits_with_2() {
 }
 
 #[test]
-fn an_adapter_and_no_adapter_exclude_each_other() {
+fn adapter_and_the_cpu_exclude_each_other() {
     for arguments in [
         &["domain", "--partitioning", "integer", "--factors", "2,2,2,2"][..],
         &["tessellate", "shape:torus", "-o", "never.obj"],
@@ -102,13 +99,13 @@ fn an_adapter_and_no_adapter_exclude_each_other() {
     ] {
         let arguments: Vec<_> = arguments.iter().copied().chain(["--adapter", "software", "--device", "cpu"]).collect();
         let said = failure(&arguments, 2);
-        assert!(said.contains("--adapter") && said.contains("--device cpu") && said.contains("leave one of them out"));
+        assert!(said.contains("--adapter") && said.contains("--device cpu"), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
     }
 }
 
 #[test]
-fn without_a_display_the_window_becomes_a_picture() {
+fn without_a_display_the_program_writes_a_picture() {
     let folder = Folder::new("preview");
     let output = command(&[]).current_dir(&folder.0).output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -146,40 +143,37 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
     for list in ["barycentric,factors", "triangle-size,wireframe,low-factors", "deviation,factors"] {
         let errors = failure(&overlays(list), 2);
-        assert!(errors.contains("each of these colours the whole surface"), "{errors}");
-        assert!(!Path::new(&picture).exists(), "before anything is drawn");
+        assert!(errors.contains("--overlay can't be"), "{errors}");
+        assert!(!Path::new(&picture).exists(), "nothing is drawn");
     }
     output(&overlays("triangle-size,wireframe,normals,back-faces"));
 }
 
 #[test]
-fn a_picture_is_not_named_what_it_is_not() {
+fn pictures_must_be_png_files() {
     let folder = Folder::new("named");
     let errors = failure(&["render", "shape:cube-split", "-o", &folder.path("out.jpg")], 2);
-    assert!(errors.contains("PNG") && errors.contains("name it .png"), "{errors}");
+    assert!(errors.contains("PNG") && errors.contains(".jpg"), "{errors}");
 }
 
 #[test]
-fn a_mesh_of_which_nothing_is_left_says_so() {
+fn a_mesh_of_degenerate_triangles_is_drawn_with_a_warning() {
     let folder = Folder::new("nothing-left");
     let path = folder.path("line.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nf 1 2 2\n").expect("a writable temporary folder");
     let run = run(&["render", &path, "-o", &folder.path("out.png")]);
     let said = String::from_utf8_lossy(&run.stderr);
-    assert!(
-        run.status.success() && said.contains("there is nothing to show: every triangle has two corners"),
-        "{said}"
-    );
+    assert!(run.status.success() && said.contains("there is nothing to show"), "{said}");
 }
 
 #[test]
 fn files_beyond_the_limit_are_refused() {
     let vase = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb");
-    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "but at most 10240 are read", "--max-size"]);
-    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "but at most 10240 are read"]);
+    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "10240", "--max-size"]);
+    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "10240"]);
     sentence(
         &["render", "shape:torus", "--truth", vase, "--max-size", "1", "-o", "unwritten.png"],
-        &["vase.glb has ", "but at most 1 are read"],
+        &["vase.glb has ", "at most 1 "],
     );
     output(&["info", vase, "--max-size", "11 KiB"]);
     sentence(
@@ -195,7 +189,7 @@ fn files_beyond_the_limit_are_refused() {
     }
 }
 
-/// A triangle as JSON, with one member put in.
+/// A glTF document of one triangle, with a member added to its accessor.
 fn document(member: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
@@ -206,7 +200,7 @@ fn document(member: &str) -> String {
 }
 
 #[test]
-fn hostile_files_are_one_sentence_and_exit_code_1() {
+fn hostile_files_are_one_line_and_exit_code_1() {
     let folder = Folder::new("hostile");
     let write = |name: &str, bytes: &[u8]| {
         std::fs::write(folder.path(name), bytes).expect("a writable folder");
@@ -214,27 +208,23 @@ fn hostile_files_are_one_sentence_and_exit_code_1() {
     };
     output(&["info", &write("sound.gltf", document("").as_bytes())]);
     let past = write("past.gltf", document(r#","byteOffset":4611686018427387904"#).as_bytes());
-    let expected =
-        ["past.gltf: /accessors/0 (POSITION of /meshes/0/primitives/0) needs ", "/bufferViews/0, which has 36"];
+    let expected = ["past.gltf: /accessors/0 (POSITION of /meshes/0/primitives/0)", "/bufferViews/0", "36"];
     sentence(&["info", &past], &expected);
     let deep = write("deep.gltf", "[".repeat(100_000).as_bytes());
-    sentence(
-        &["render", &deep, "-o", &folder.path("none.png")],
-        &["nested 100000 levels deep, but at most 100 levels are read"],
-    );
+    sentence(&["render", &deep, "-o", &folder.path("none.png")], &["deep.gltf", "100000", "100 levels"]);
     let elsewhere = document("").replace("data:;base64,", "../%2e%2e/");
     sentence(&["info", &write("elsewhere.gltf", elsewhere.as_bytes())], &["/buffers/0", "leads out of a folder"]);
     let unknown = document("").replace(r#""nodes""#, r#""extensionsRequired":["EXT_unknown"],"nodes""#);
-    sentence(&["info", &write("unknown.gltf", unknown.as_bytes())], &["is EXT_unknown", "export the model without it"]);
+    sentence(&["info", &write("unknown.gltf", unknown.as_bytes())], &["unknown.gltf", "EXT_unknown"]);
     let chunk = [&b"glTF"[..], &[2, 0, 0, 0], &[24, 0, 0, 0], &[255; 4], b"JSON", b"{}  "].concat();
-    sentence(&["info", &write("chunk.glb", &chunk)], &["chunk 0 says that it has 4294967295 bytes, but 4 are left"]);
+    sentence(&["info", &write("chunk.glb", &chunk)], &["chunk 0", "4294967295 bytes", "but 4 "]);
 }
 
 #[test]
-fn what_has_no_end_is_not_read_to_its_end() {
+fn devices_are_refused_and_not_read() {
     let folder = Folder::new("endless");
     let picture = folder.path("none.png");
-    let device = "it is a device; name a file, a pipe, or - for standard input";
+    let device = "it is a device";
     sentence(&["render", "shape:torus", "-o", &picture, "--factors", "/dev/zero"], &["/dev/zero", device]);
     sentence(&["adjacency", "shape:torus", "--against", "/dev/zero"], &["/dev/zero", device]);
     sentence(
@@ -244,8 +234,5 @@ fn what_has_no_end_is_not_read_to_its_end() {
     sentence(&["info", "/dev/zero"], &["/dev/zero is not a file"]);
     let text = folder.path("text.png");
     std::fs::write(&text, "no image").expect("a writable folder");
-    sentence(
-        &["render", "shape:torus", "-o", &picture, "--reference", &text],
-        &["it is no image; name a PNG or JPEG one"],
-    );
+    sentence(&["render", "shape:torus", "-o", &picture, "--reference", &text], &["text.png", "it is no image"]);
 }

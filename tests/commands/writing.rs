@@ -1,4 +1,4 @@
-//! What becomes of a file that is written over: all of it or nothing.
+//! Replacing a file: it is replaced as a whole or not at all.
 
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ fn writes(path: &str) -> [&str; 4] {
     ["adjacency", "shape:torus", "-o", path]
 }
 
-/// A file that is there already.
+/// Makes a file with old contents.
 fn old(folder: &Folder, name: &str) -> String {
     let path = folder.path(name);
     std::fs::write(&path, OLD).expect("a writable folder");
@@ -33,7 +33,7 @@ fn permit(path: &str, mode: u32) {
 }
 
 #[test]
-fn a_read_only_file_stays_what_it_is() {
+fn a_read_only_file_is_not_replaced() {
     let folder = Folder::new("read-only");
     let path = old(&folder, "out.json");
     permit(&path, 0o444);
@@ -43,16 +43,16 @@ fn a_read_only_file_stays_what_it_is() {
     output(&writes(&path));
     assert!(!is_old(&path));
     let mode = std::fs::metadata(&path).expect("a file").permissions().mode();
-    assert_eq!(mode & 0o777, 0o640, "who may read it stays so");
+    assert_eq!(mode & 0o777, 0o640, "permissions stay");
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_keeps_what_it_has() {
+fn a_read_only_folder_keeps_its_files() {
     let folder = Folder::new("closed");
     let path = old(&folder, "out.json");
-    sentence(&writes(&format!("{path}/below.json")), &["below.json", "there is no folder", "out.json to write it in"]);
+    sentence(&writes(&format!("{path}/below.json")), &["below.json", "there is no folder", "out.json"]);
     permit(&folder.path(""), 0o555);
-    // Whoever may write anywhere may write here.
+    // The administrator may write even here.
     let may_write = std::fs::write(folder.path("tried"), "").is_ok();
     let done = run(&writes(&path));
     permit(&folder.path(""), 0o755);
@@ -62,7 +62,7 @@ fn a_folder_that_cannot_be_written_keeps_what_it_has() {
 }
 
 #[test]
-fn a_link_stays_one_and_what_it_names_is_written() {
+fn a_link_stays_a_link_and_its_target_is_written() {
     let folder = Folder::new("links");
     std::fs::create_dir(folder.path("there")).expect("a writable folder");
     let target = old(&folder, "there/target.json");
@@ -83,7 +83,7 @@ fn a_link_stays_one_and_what_it_names_is_written() {
     sentence(&writes(&format!("{circle}/below.json")), &["below.json", "there is no folder"]);
 }
 
-/// Runs the program where no file can have more than a few kilobytes, after `before`.
+/// Runs the program with a limit of a few kilobytes on the size of files, after the shell command `before`.
 fn with_little_room(before: &str, path: &str) -> std::process::Output {
     let script = format!("{before} ulimit -f 4; exec \"$0\" \"$@\"");
     let mut shell = Command::new("sh");
@@ -95,7 +95,7 @@ fn with_little_room(before: &str, path: &str) -> std::process::Output {
 fn a_full_disk_leaves_the_old_file_whole_and_nothing_beside_it() {
     let folder = Folder::new("full");
     let path = old(&folder, "out.json");
-    // Without its signal the limit is an error of the write, as a full disk is.
+    // With the signal ignored, the limit is an error of the write, like a full disk.
     let done = with_little_room("trap '' XFSZ;", &path);
     let errors = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(1), "{errors}");
@@ -105,18 +105,18 @@ fn a_full_disk_leaves_the_old_file_whole_and_nothing_beside_it() {
 }
 
 #[test]
-fn a_kill_in_the_middle_of_writing_leaves_the_old_file_whole() {
+fn a_kill_while_writing_leaves_the_old_file_whole() {
     let folder = Folder::new("killed");
     let path = old(&folder, "out.json");
     let done = with_little_room("", &path);
-    assert_eq!(done.status.code(), None, "a signal ends it");
+    assert_eq!(done.status.code(), None, "a signal ends the program");
     assert!(is_old(&path));
     output(&writes(&path));
     assert!(!is_old(&path));
 }
 
 #[test]
-fn what_a_command_reads_it_does_not_write_over() {
+fn a_command_does_not_overwrite_its_input() {
     let folder = Folder::new("apart");
     let path = |name: &str| folder.path(name);
     let (mesh, picture, factors) = (path("in.glb"), path("in.png"), path("in.csv"));
@@ -138,13 +138,13 @@ fn what_a_command_reads_it_does_not_write_over() {
         &["chart", &mesh, "-o", &out, "--csv", &mesh],
     ];
     for arguments in read {
-        sentence(arguments, &["isn't written over: it is read by the same command; choose another name"]);
+        sentence(arguments, &[" is read by the same command"]);
     }
-    sentence(&["render", "shape:torus", "-o", &out, "--stats", &out], &["it is written by the same command"]);
-    sentence(&["chart", "shape:torus", "-o", &out, "--csv", &out], &["it is written by the same command"]);
+    sentence(&["render", "shape:torus", "-o", &out, "--stats", &out], &["out.png is written by the same command"]);
+    sentence(&["chart", "shape:torus", "-o", &out, "--csv", &out], &["out.png is written by the same command"]);
     assert_eq!([&mesh, &picture, &factors].map(|path| std::fs::read(path).expect("a file")), before);
     assert!(!Path::new(&out).exists(), "nothing was written");
-    // Nor what the mesh's own file names.
+    // Files that the mesh's file refers to are inputs as well.
     let (parts, buffer) = (path("parts.gltf"), path("parts.bin"));
     std::fs::write(
         &buffer,
@@ -160,7 +160,7 @@ fn what_a_command_reads_it_does_not_write_over() {
     let before = std::fs::read(&buffer).expect("a file");
     for arguments in [&["factors", &parts, "-o", &buffer][..], &["render", &parts, "-o", &out, "--stats", &buffer]] {
         let said = failure(arguments, 1);
-        assert!(said.contains("parts.bin isn't written over: it is read by the same command"), "{said}");
+        assert!(said.contains("parts.bin is read by the same command"), "{said}");
     }
     assert_eq!(std::fs::read(&buffer).expect("a file"), before);
 }

@@ -1,4 +1,4 @@
-//! Clips: chosen, scrubbed, played and paused.
+//! Animations: choosing a clip, scrubbing, playing and pausing.
 
 use egui::Key;
 use egui::accesskit::Role;
@@ -11,7 +11,7 @@ use pnaen::mesh::{Moment, Shape};
 use crate::window_tests::moving::{CLIPS, moving};
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 
-/// A window on a mesh that moves, and the file, which stays for who loads it again.
+/// A window with an animated mesh, and its file, which the test removes at its end.
 fn moving_window(name: &str) -> (Harness<'static, App>, std::path::PathBuf) {
     let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}.glb", std::process::id()));
     std::fs::write(&path, moving()).expect("a writable temporary folder");
@@ -23,7 +23,7 @@ fn time(harness: &Harness<App>) -> f64 {
 }
 
 #[test]
-fn what_cannot_move_has_no_animation() {
+fn a_mesh_without_clips_has_no_animation_section() {
     let harness = window(Some(Source::Shape(Shape::Torus)));
     assert_eq!(harness.query_all_by_label("Animation").count(), 0);
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Clip").count(), 0);
@@ -34,11 +34,11 @@ fn a_clip_is_chosen_and_scrubbed() {
     let (mut harness, path) = moving_window("scrub");
     harness.get_by_label("Animation");
     assert_eq!(harness.state().moment(), None, "it opens at rest");
-    // Framed in the viewport as it is by now.
+    // Frame again, because the viewport had another size when the mesh was loaded.
     press(&mut harness, Key::F);
     let (rest, pictures) = (*harness.state().camera(), harness.state().pictures());
     choose(&mut harness, "Clip", CLIPS[2]);
-    assert!(harness.state().camera().distance > 1.2 * rest.distance, "all of the clip is in sight, as the mesh was");
+    assert!(harness.state().camera().distance > 1.2 * rest.distance, "the camera frames the whole clip");
     choose(&mut harness, "Clip", CLIPS[3]);
     assert_eq!(harness.state().moment(), Some(Moment { clip: 3, time: 0.0 }));
     assert!(!harness.state().is_playing());
@@ -47,8 +47,8 @@ fn a_clip_is_chosen_and_scrubbed() {
     harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(1.25);
     settle(&mut harness);
     assert_eq!(time(&harness), 1.25);
-    assert!(harness.state().pictures() > pictures, "another pose, another picture");
-    // Measured in the pose.
+    assert!(harness.state().pictures() > pictures, "the new pose is drawn");
+    // Cracks are measured in the pose.
     let cracks = harness.state().cracks().expect("measured");
     assert!(cracks.edge_points > 100 && cracks.different_bits == 0);
     // Nothing is drawn when nothing has changed.
@@ -58,7 +58,7 @@ fn a_clip_is_chosen_and_scrubbed() {
     choose(&mut harness, "Clip", "Rest pose");
     assert_eq!(harness.state().moment(), None);
     assert_eq!(*harness.state().camera(), rest);
-    // A detail that one looks at stays in sight.
+    // A camera that shows a detail isn't moved.
     harness.key_press(egui::Key::PageUp);
     settle(&mut harness);
     let near = *harness.state().camera();
@@ -69,11 +69,11 @@ fn a_clip_is_chosen_and_scrubbed() {
 }
 
 #[test]
-fn space_plays_and_pauses_and_measuring_waits() {
+fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
     let (mut harness, path) = moving_window("play");
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    assert!(harness.state().is_playing(), "the first clip, if none is chosen");
+    assert!(harness.state().is_playing(), "the first clip plays if none is chosen");
     let pictures = harness.state().pictures();
     let mut times = Vec::new();
     let start = std::time::Instant::now();
@@ -83,8 +83,8 @@ fn space_plays_and_pauses_and_measuring_waits() {
         times.push(time(&harness));
     }
     assert!(times.windows(2).all(|pair| pair[0] != pair[1]), "time goes on");
-    assert!(times.iter().all(|time| (0.0..1.0).contains(time)), "round and round: {times:?}");
-    assert!(harness.state().cracks().is_none(), "measured when paused");
+    assert!(times.iter().all(|time| (0.0..1.0).contains(time)), "the clip loops: {times:?}");
+    assert!(harness.state().cracks().is_none(), "nothing is measured while playing");
     harness.get_by_label("cracks when paused");
     harness.get_by_role_and_label(Role::Button, "Pause").click();
     settle(&mut harness);
@@ -93,13 +93,13 @@ fn space_plays_and_pauses_and_measuring_waits() {
     assert_eq!(harness.state().cracks().map(|cracks| cracks.different_bits), Some(0));
     harness.get_by_label("cracks 0");
     harness.run_steps(5);
-    assert_eq!((time(&harness), harness.state().pictures()), (paused, pictures), "still");
+    assert_eq!((time(&harness), harness.state().pictures()), (paused, pictures), "nothing changes while paused");
     harness.get_by_role_and_label(Role::Button, "Play");
     let _ = std::fs::remove_file(path);
 }
 
 #[test]
-fn speed_is_a_factor_of_time() {
+fn speed_multiplies_time() {
     let (mut harness, path) = moving_window("speed");
     choose(&mut harness, "Clip", CLIPS[2]);
     let passed = |harness: &mut Harness<App>| {
@@ -123,7 +123,7 @@ fn speed_is_a_factor_of_time() {
 }
 
 #[test]
-fn what_is_selected_moves_along() {
+fn framing_a_selected_patch_uses_its_pose() {
     let (mut harness, path) = moving_window("selected");
     harness.state_mut().select_triangle(Some(20));
     settle(&mut harness);
@@ -144,14 +144,14 @@ fn what_is_selected_moves_along() {
 }
 
 #[test]
-fn a_mesh_loaded_again_keeps_its_place_and_another_rests() {
+fn a_mesh_loaded_again_keeps_its_pose_and_another_is_at_rest() {
     let (mut harness, path) = moving_window("again");
     choose(&mut harness, "Clip", CLIPS[1]);
     harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
     settle(&mut harness);
     press(&mut harness, Key::R);
     assert_eq!(harness.state().moment(), Some(Moment { clip: 1, time: 0.5 }));
-    // With a crease band the mesh doesn't move, and without one it goes on where it was.
+    // A mesh with a crease band is at rest. Without the band it has its pose again.
     harness.get_by_role_and_label(Role::SpinButton, "Crease band").set_value_accesskit(1.0);
     settle(&mut harness);
     assert_eq!(harness.state().moment(), None);

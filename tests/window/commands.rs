@@ -1,4 +1,4 @@
-//! The table of commands: keys, menus and the search are made from it, and what it says can be done is done.
+//! The table of commands: its keys, menus and search, and what the commands do.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -20,7 +20,7 @@ use pnaen::tessellate::{Edges, Lod, Surface};
 use crate::window_tests::driver::PATIENCE;
 use crate::window_tests::{choose, moving, press, run_command, settle, uniform, window};
 
-/// A folder of its own for what is written.
+/// A temporary folder, which is removed at the end of the test.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -45,7 +45,7 @@ fn commands(harness: &Harness<App>) -> Vec<Command> {
     all(&harness.state().availability())
 }
 
-/// Gives the command of this name.
+/// Performs the command of this name.
 fn give(harness: &mut Harness<App>, name: &str) {
     let commands = commands(harness);
     let command = commands.iter().find(|command| command.name == name).unwrap_or_else(|| panic!("no command {name}"));
@@ -59,8 +59,8 @@ fn press_shortcut(harness: &mut Harness<App>, key: &KeyboardShortcut) {
     harness.run_steps(3);
 }
 
-/// A mesh that moves and has heights, with a selected triangle, uniform LOD and a change to take back: whatever has a key is
-/// possible.
+/// A window in which every command with a key is possible once a triangle is selected: an animated mesh with heights,
+/// uniform LOD and a change that can be undone.
 fn full_window(folder: &Folder) -> Harness<'static, App> {
     let path = folder.path("moving.glb");
     std::fs::write(&path, moving::moving()).expect("a writable temporary folder");
@@ -72,7 +72,7 @@ fn full_window(folder: &Folder) -> Harness<'static, App> {
     harness
 }
 
-/// Waits for the window that takes a path where the desktop has no dialog, so that it can be closed.
+/// Waits for the window in which a path is typed if the desktop has no dialog, so that the test can close it.
 fn wait_for_dialog(harness: &mut Harness<App>) {
     let start = Instant::now();
     while harness.state().path_asked_for().is_none() && start.elapsed().as_secs() < 5 {
@@ -88,7 +88,7 @@ fn every_key_of_the_table_gives_its_command() {
     let mut pressed = 0;
     for command in commands(&harness).iter().filter(|command| !command.keys.is_empty()) {
         for key in &command.keys {
-            // So that what was given last is another one.
+            // Another command first, so that the last action changes.
             let other = if command.action == Action::Cancel { Key::W } else { Key::Escape };
             press_shortcut(&mut harness, &KeyboardShortcut::new(Modifiers::NONE, other));
             harness.state_mut().select_triangle(Some(0));
@@ -115,7 +115,7 @@ fn every_key_of_the_table_gives_its_command() {
 }
 
 #[test]
-fn a_key_does_nothing_where_its_command_is_not_possible() {
+fn a_key_does_nothing_if_its_command_is_not_possible() {
     let mut harness = window(None);
     assert_eq!(harness.state().settings().tessellation.lod, Lod::Error);
     let before = *harness.state().settings();
@@ -129,7 +129,7 @@ fn a_key_does_nothing_where_its_command_is_not_possible() {
     assert_eq!(harness.state().settings().tessellation.factor, before.tessellation.factor + 1.0);
 }
 
-/// Names of everything that can be clicked.
+/// The names of all buttons and boxes.
 fn clickable(harness: &Harness<App>) -> Vec<String> {
     let roles = [Role::Button, Role::CheckBox, Role::RadioButton];
     let nodes = roles.iter().flat_map(|&role| harness.query_all_by_role(role));
@@ -137,7 +137,7 @@ fn clickable(harness: &Harness<App>) -> Vec<String> {
 }
 
 #[test]
-fn menus_have_the_tables_commands_and_nothing_else() {
+fn menus_have_exactly_the_commands_of_the_table() {
     let mut harness = window(None);
     let before = clickable(&harness).len();
     for menu in Menu::ALL {
@@ -152,7 +152,7 @@ fn menus_have_the_tables_commands_and_nothing_else() {
             .collect();
         names.extend(menu.submenus().iter().map(|(_, submenu)| submenu.name().to_owned()));
         for name in &names {
-            // A button's name has its key behind it.
+            // A button's name is followed by its key.
             let is_it = |label: &String| {
                 label.strip_prefix(name.as_str()).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
             };
@@ -165,7 +165,7 @@ fn menus_have_the_tables_commands_and_nothing_else() {
 }
 
 #[test]
-fn the_search_says_what_is_not_possible() {
+fn the_search_shows_why_a_command_is_not_possible() {
     let mut harness = window(None);
     give(&mut harness, "Search commands…");
     harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("factor up");
@@ -175,11 +175,11 @@ fn the_search_says_what_is_not_possible() {
     let place = row.rect().center();
     harness.hover_at(place);
     harness.run_steps(60);
-    assert!(harness.query_by_label_contains("Adaptive LOD computes a factor for every edge.").is_some());
+    assert!(harness.query_by_label_contains("Not now: Adaptive LOD").is_some());
     let factor = harness.state().settings().tessellation.factor;
     press(&mut harness, Key::Enter);
     assert_eq!(harness.state().settings().tessellation.factor, factor);
-    assert!(harness.query_by_label("Search commands").is_some(), "it stays open");
+    assert!(harness.query_by_label("Search commands").is_some(), "the search stays open");
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn values_tolerances_and_resets_are_commands() {
 }
 
 #[test]
-fn clips_are_commands_by_their_names() {
+fn every_clip_is_a_command() {
     let folder = Folder::new("clips");
     let mut harness = full_window(&folder);
     for (i, clip) in moving::CLIPS.iter().enumerate() {
@@ -223,7 +223,7 @@ fn clips_are_commands_by_their_names() {
 }
 
 #[test]
-fn the_background_is_chosen_in_a_window_of_its_own() {
+fn the_background_window_changes_the_colour() {
     let mut harness = window(None);
     give(&mut harness, "Background colour…");
     assert!(harness.query_by_role_and_label(Role::Window, "Background colour").is_some());
@@ -251,7 +251,7 @@ fn the_keys_fit_a_small_screen_and_are_scrolled() {
         let rows: Vec<_> = harness.query_all_by_label(&last.name).map(|node| node.rect()).collect();
         rows.into_iter().find(|row| list.contains(row.center()))
     };
-    assert!(row(&harness).is_none(), "it is below what is in sight");
+    assert!(row(&harness).is_none(), "the last row isn't visible before scrolling");
     harness.hover_at(list.center());
     harness.event(egui::Event::MouseWheel {
         unit: egui::MouseWheelUnit::Point,
@@ -264,11 +264,11 @@ fn the_keys_fit_a_small_screen_and_are_scrolled() {
     assert!(row(&harness).is_some(), "{}", last.name);
 }
 
-/// Gives a command that asks for a path, and types it.
+/// Performs a command that asks for a path, and types the path.
 fn write_as(harness: &mut Harness<App>, command: &str, path: &Path) {
     give(harness, command);
     harness.run_steps(2);
-    // What is typed takes the place of what is proposed.
+    // Typing replaces the proposed path.
     harness.get_by_role(Role::TextInput).type_text(&path.display().to_string());
     harness.run_steps(2);
     harness.key_press(Key::Enter);
@@ -297,19 +297,19 @@ fn the_picture_is_saved_as_it_is_shown() {
     assert!(harness.query_by_label_contains("torus.png is written.").is_some());
     press(&mut harness, Key::Escape);
     assert!(harness.query_by_label_contains("is written.").is_none());
-    // What is there isn't replaced by what was typed.
+    // A typed path never replaces a file.
     press(&mut harness, Key::W);
     write_as(&mut harness, "Save picture path…", &path);
-    assert!(harness.query_by_label_contains("is there already: choose another name").is_some());
+    assert!(harness.query_by_label_contains("torus.png exists already").is_some());
     assert_eq!(image::open(&path).expect("a picture").to_rgba8(), saved);
     press(&mut harness, Key::Escape);
     write_as(&mut harness, "Save picture path…", &folder.path("torus.jpg"));
-    assert!(harness.query_by_label_contains("the name must end in .png").is_some());
+    assert!(harness.query_by_label_contains("torus.jpg: the name must end in .png").is_some());
     assert!(!folder.path("torus.jpg").exists());
 }
 
 #[test]
-fn the_mesh_is_exported_as_it_is_emitted() {
+fn an_exported_mesh_is_the_one_that_the_command_writes() {
     let folder = Folder::new("export");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (_, triangles) = harness.state().totals().expect("a torus");
@@ -326,11 +326,11 @@ fn the_mesh_is_exported_as_it_is_emitted() {
         run_command(["tessellate", "shape:torus"].into_iter().chain(settings), &command);
         assert!(
             std::fs::read(&command).expect("a file") == std::fs::read(&path).expect("a file"),
-            "{name}: as the command writes it"
+            "{name} differs from the command's file"
         );
     }
     write_as(&mut harness, "Export mesh path…", &folder.path("torus.ply"));
-    assert!(harness.query_by_label_contains("the name must end in .glb or .obj").is_some());
+    assert!(harness.query_by_label_contains("torus.ply: the name must end in").is_some());
 }
 
 #[test]
@@ -343,7 +343,7 @@ fn an_export_that_is_cancelled_writes_nothing() {
     assert!(harness.query_by_label_contains("Exporting torus.obj").is_some());
     press(&mut harness, Key::Escape);
     assert!(!harness.state().is_writing());
-    // Long enough for it to have been written.
+    // A second export takes as long as the first one would have taken.
     harness.state_mut().export_mesh(&context, folder.path("second.obj")).expect("an .obj file");
     wait(&mut harness, |app| !app.is_writing());
     assert!(folder.path("second.obj").exists() && !path.exists());

@@ -1,4 +1,4 @@
-//! The deviation overlay, its section, and truths.
+//! The deviation overlay, its section, and reference surfaces.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -14,14 +14,14 @@ use pnaen::tessellate::Surface;
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 
 #[test]
-fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames() {
+fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
     let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
     choose(&mut harness, "Surface", "Flat");
     assert!(harness.query_by_label("Legend: Deviation, units").is_none());
     choose(&mut harness, "Colours", "Deviation");
     assert_eq!(harness.state().settings().overlays.colors, Colors::Deviation);
     assert!(harness.query_by_label("Legend: Deviation, units").is_some());
-    // What the inscribed sphere leaves of the circumscribed one.
+    // The distance between the inscribed and the circumscribed sphere.
     let largest = harness.state().deviation(SplitSide::Right).expect("measured");
     assert!((largest - 0.205_345_5).abs() < 1e-6, "{largest}");
     for text in ["exact icosahedron", "0.205 units"] {
@@ -32,10 +32,10 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
     settle(&mut harness);
     let after = *harness.state().camera();
     assert_ne!(after, before);
-    // The middle of a face, seen from above it.
+    // The worst point is the middle of a face, seen from above the face.
     assert!((after.target.length() - 0.794_654_5).abs() < 1e-5, "{}", after.target);
     assert!(after.axes()[2].distance(after.target.normalize()) < 1e-3);
-    assert_eq!(harness.state().deviation(SplitSide::Right), Some(largest), "the same tessellation");
+    assert_eq!(harness.state().deviation(SplitSide::Right), Some(largest), "the tessellation stays the same");
     choose(&mut harness, "Distances in", "Px");
     assert_eq!(harness.state().settings().deviation_in, DeviationUnit::Px);
     assert!(harness.query_by_label("Legend: Deviation, px").is_some());
@@ -45,7 +45,7 @@ fn deviation_is_measured_and_has_a_legend_and_a_worst_point_that_a_click_frames(
 }
 
 #[test]
-fn another_tessellation_is_measured_anew_and_the_worst_point_stays_the_worst_when_framed() {
+fn framing_the_worst_point_keeps_the_tessellation_and_another_surface_is_measured_anew() {
     let mut harness = window(Some(Source::Shape(Shape::Icosahedron)));
     press(&mut harness, egui::Key::V);
     let adaptive = harness.state().deviation(SplitSide::Right).expect("measured");
@@ -58,36 +58,36 @@ fn another_tessellation_is_measured_anew_and_the_worst_point_stays_the_worst_whe
 }
 
 #[test]
-fn a_truth_is_loaded_beside_the_window_and_the_old_one_stays_where_it_fails() {
+fn a_reference_surface_is_loaded_and_stays_if_the_next_one_fails() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSmooth)));
     press(&mut harness, egui::Key::V);
-    assert!(harness.query_by_label("its own limit").is_some());
+    assert!(harness.query_by_label("limit surface").is_some());
     let limit = harness.state().deviation(SplitSide::Right).expect("measured");
     let context = harness.ctx.clone();
     harness.state_mut().open_truth(&context, Source::Shape(Shape::CubeSplit));
     settle(&mut harness);
-    // The cube that it is made from: rounded, its corners stay and its faces bulge.
+    // The flat cube: the corners of the rounded one stay there, and its faces bulge.
     assert_eq!(harness.state().truth(), Some(&Source::Shape(Shape::CubeSplit)));
     let bulge = harness.state().deviation(SplitSide::Right).expect("measured");
     assert!(bulge > 10.0 * limit && bulge < Vec3::ONE.length().into(), "{bulge} and {limit}");
     harness.state_mut().open_truth(&context, Source::File("nowhere.glb".into()));
     settle(&mut harness);
-    assert!(harness.query_by_label_contains("nowhere.glb").is_some(), "a problem");
-    assert_eq!(harness.state().deviation(SplitSide::Right), Some(bulge), "the old one stays");
+    assert!(harness.query_by_label_contains("nowhere.glb").is_some(), "the error names the file");
+    assert_eq!(harness.state().deviation(SplitSide::Right), Some(bulge), "the reference surface before it stays");
     click(&mut harness, "Close");
     click(&mut harness, "File");
     click(&mut harness, "No reference surface");
     assert_eq!((harness.state().truth(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
 }
 
-/// What the inscribed sphere of an icosahedron leaves of the circumscribed one.
+/// The distance between the inscribed and the circumscribed sphere of an icosahedron, of radius 1.
 const GAP: f64 = 0.205_345_5;
 
 #[test]
-fn two_surfaces_stand_beside_each_other_with_a_number_each() {
+fn both_halves_of_a_split_show_their_surface_and_deviation() {
     let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
     let left = harness.get_by_role_and_label(Role::ComboBox, "Left");
-    assert!(left.accesskit_node().is_disabled(), "nothing is split");
+    assert!(left.accesskit_node().is_disabled(), "the view isn't split");
     press(&mut harness, egui::Key::S);
     let memory = |harness: &Harness<App>| {
         let label = harness.get_by_label_contains("MiB");
@@ -98,7 +98,7 @@ fn two_surfaces_stand_beside_each_other_with_a_number_each() {
     choose(&mut harness, "Left", "Flat");
     assert_eq!(harness.state().settings().split_surface, Some(Surface::Flat));
     assert!(harness.query_by_label("Left: Flat").is_some() && harness.query_by_label("Right: PN-AEN").is_some());
-    assert_ne!(memory(&harness), alone, "memory of its own");
+    assert_ne!(memory(&harness), alone, "the left half takes memory");
     press(&mut harness, egui::Key::V);
     let [flat, curved] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert!((flat - GAP).abs() < 1e-6 && curved < 0.35 * GAP, "{flat} and {curved}");
@@ -106,7 +106,7 @@ fn two_surfaces_stand_beside_each_other_with_a_number_each() {
     assert!(harness.query_by_label_contains("Right: PN-AEN: 0.06").is_some());
     harness.get_by_label_contains("Left Worst point in patch").click();
     settle(&mut harness);
-    // The middle of a flat face, in the middle of its half: a quarter of the view's width left of the target.
+    // The middle of a flat face is in the middle of the left half: a quarter of the view's width left of the target.
     let (camera, area) = (*harness.state().camera(), harness.get_by_role_and_label(Role::Image, "Viewport").rect());
     let quarter = camera.axes()[0] * (camera.units_per_pixel(area.height()) * area.width() / 4.0);
     let worst = (camera.target - quarter).length();
@@ -115,27 +115,27 @@ fn two_surfaces_stand_beside_each_other_with_a_number_each() {
     harness.run_steps(20);
     assert_eq!(harness.state().pictures(), pictures, "nothing is drawn when nothing changed");
     choose(&mut harness, "Surface", "PN");
-    assert_eq!(harness.state().deviation(SplitSide::Left), Some(flat), "the other half stays as it is");
+    assert_eq!(harness.state().deviation(SplitSide::Left), Some(flat), "the left half isn't measured again");
     harness.get_by_role_and_label(Role::ComboBox, "Left").click();
     settle(&mut harness);
-    // The section on the right names it too.
+    // The statistics have a text "PN" as well, so the entry is looked up by its role.
     harness.get_by_role_and_label(Role::Button, "PN").click();
     settle(&mut harness);
     let [left, right] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert_eq!(left, right, "the same surface");
     press(&mut harness, egui::Key::S);
     assert_eq!(harness.state().deviation(SplitSide::Left), None);
-    assert_eq!(memory(&harness), alone, "it is let go");
+    assert_eq!(memory(&harness), alone, "the left half's memory is freed");
     assert!(harness.query_by_label_contains("Left: PN").is_none());
     press(&mut harness, egui::Key::S);
-    assert_eq!(harness.state().deviation(SplitSide::Left), Some(right), "and made again");
+    assert_eq!(harness.state().deviation(SplitSide::Left), Some(right), "the left half is made again");
     choose(&mut harness, "Left", "Untessellated");
     assert!(harness.query_by_label("Left: untessellated").is_some());
 }
 
-/// Pixels of the picture in the colour of cracks, left and right of its middle.
+/// Counts pixels of the picture in the colour of cracks, left and right of its middle.
 fn cracked(harness: &mut Harness<App>) -> [usize; 2] {
-    // What was measured last is marked with the next picture.
+    // The last measurement is marked in the next picture.
     settle(harness);
     let area = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
     let picture = harness.render().expect("a picture of the window");
@@ -158,7 +158,11 @@ fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
     press(&mut harness, egui::Key::C);
     let [left, right] = cracked(&mut harness);
     assert!(left > 100 && right == 0, "{left} and {right} px: PN tears and PN-AEN doesn't");
-    assert_eq!(harness.state().cracks().map(|cracks| cracks.edges.len()), Some(0), "facts are about the right half");
+    assert_eq!(
+        harness.state().cracks().map(|cracks| cracks.edges.len()),
+        Some(0),
+        "statistics are about the right half"
+    );
     press(&mut harness, egui::Key::C);
     assert_eq!(cracked(&mut harness), [0, 0]);
     for (offset, emitted) in [(-60.0, false), (60.0, true)] {
@@ -173,15 +177,15 @@ fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
         assert_eq!(app.hit().is_some(), emitted, "{offset} points from the divider");
     }
     press(&mut harness, egui::Key::V);
-    // No truth is known of this one.
-    assert!(harness.query_by_label("PN-AEN's limit").is_some());
+    // This shape has no exact surface.
+    assert!(harness.query_by_label("limit of PN-AEN").is_some());
     let against = |harness: &Harness<App>| harness.state().deviation(SplitSide::Left).expect("measured");
     let other = against(&harness);
     choose(&mut harness, "Surface", "Flat");
-    assert!(harness.query_by_label("Flat's limit").is_some() && against(&harness) != other, "measured anew");
+    assert!(harness.query_by_label("limit of Flat").is_some() && against(&harness) != other, "measured anew");
     choose(&mut harness, "Surface", "PN-AEN");
     assert_eq!(against(&harness), other);
-    // Another mesh is split the same way.
+    // Another mesh is shown in the same split.
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::Icosahedron));
     settle(&mut harness);

@@ -1,17 +1,17 @@
-//! Driving the window as a person does, step by step.
+//! Runs the window frame by frame.
 
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use pnaen::internals::App;
 
-/// Longer than anything here takes on two slow cores.
-pub(super) const PATIENCE: Duration = Duration::from_secs(60);
+/// How long the tests wait at most: longer than anything here takes on two slow cores.
+pub const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Steps until everything is loaded, drawn and measured.
-pub(super) fn settle(harness: &mut Harness<App>) {
+/// Runs frames until everything is loaded, drawn and measured.
+pub fn settle(harness: &mut Harness<App>) {
     let start = Instant::now();
-    // What was just pressed takes effect in the next two steps.
+    // A key or click takes effect within two frames.
     harness.run_steps(3);
     while harness.state().is_busy() {
         assert!(start.elapsed() < PATIENCE, "the window is still busy");

@@ -20,7 +20,7 @@ fn press_with(harness: &mut Harness<App>, modifiers: Modifiers, key: Key) {
 }
 
 #[test]
-fn settings_go_back_and_forward() {
+fn settings_are_undone_and_redone() {
     let mut harness = window(None);
     let first = *harness.state().settings();
     choose(&mut harness, "Surface", "PN");
@@ -42,14 +42,18 @@ fn settings_go_back_and_forward() {
     harness.get_by_label_contains("Undo").click();
     settle(&mut harness);
     assert_eq!(*harness.state().settings(), first);
-    assert_eq!(harness.state().cracks().map(|cracks| cracks.edges.len()), Some(0), "and it is drawn again");
+    assert_eq!(
+        harness.state().cracks().map(|cracks| cracks.edges.len()),
+        Some(0),
+        "the picture is drawn and measured again"
+    );
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
-    assert_eq!(*harness.state().settings(), first, "there is nothing before");
+    assert_eq!(*harness.state().settings(), first, "there is nothing to undo");
     for _ in 0..3 {
         press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
     }
     assert_eq!(*harness.state().settings(), last);
-    // A mesh is not a setting.
+    // Opening a mesh isn't a step.
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     let before = *harness.state().settings();
     let context = harness.ctx.clone();
@@ -58,7 +62,7 @@ fn settings_go_back_and_forward() {
     assert_eq!((*harness.state().settings(), harness.state().source()), (before, Some(&Source::Shape(Shape::Torus))));
     press(&mut harness, Key::C);
     press_with(&mut harness, Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
-    assert!(harness.state().settings().overlays.cracks, "what was undone is gone once something else has changed");
+    assert!(harness.state().settings().overlays.cracks, "a change clears what could be redone");
 }
 
 #[test]
@@ -79,7 +83,7 @@ fn a_drag_is_one_step() {
     assert_eq!(harness.state().settings().tessellation.factor, before);
 }
 
-/// The command that the menu copies, which is shown.
+/// Copies the command with the menu and returns it. Checks that the window shows it.
 fn copied(harness: &mut Harness<App>) -> String {
     click(harness, "Edit");
     harness.get_by_label_contains("Copy as command").click();
@@ -91,7 +95,7 @@ fn copied(harness: &mut Harness<App>) -> String {
     });
     settle(harness);
     let command = copied.expect("a command");
-    assert!(harness.query_by_label(&command).is_some(), "it is shown");
+    assert!(harness.query_by_label(&command).is_some(), "the command is shown");
     press(harness, Key::Escape);
     assert!(harness.query_by_label(&command).is_none());
     press_with(harness, Modifiers::COMMAND, Key::K);
@@ -99,7 +103,7 @@ fn copied(harness: &mut Harness<App>) -> String {
     command
 }
 
-/// Runs a command in a folder of its own, and holds its picture against the window's.
+/// Runs a command in a folder of its own, and compares its picture with the window's.
 fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     let folder = std::env::temp_dir().join(format!("pnaen-editing-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a writable temporary folder");
@@ -114,7 +118,7 @@ fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
     std::fs::remove_dir_all(&folder).expect("removed");
     let difference = compare(&drawn, &shown).expect("one size").difference;
-    // The camera's distance is written in bounding radii, which rounds its last bit.
+    // The command has the camera's distance in bounding radii, which rounds its last bit.
     assert!(difference < 1e-3, "{command}: {difference}");
 }
 
@@ -136,7 +140,7 @@ fn the_copied_command_draws_what_is_shown() {
 }
 
 #[test]
-fn commands_are_found_by_typing_a_part_of_them() {
+fn commands_are_found_by_a_part_of_their_name() {
     let mut harness = window(None);
     press_with(&mut harness, Modifiers::COMMAND, Key::P);
     harness.get_by_role_and_label(Role::TextInput, "Search commands").type_text("surf aen");
@@ -147,8 +151,8 @@ fn commands_are_found_by_typing_a_part_of_them() {
         press(&mut harness, key);
     }
     assert_eq!(harness.state().settings().tessellation.surface, Surface::PhongAen);
-    assert!(harness.query_by_label("Search commands").is_none(), "it closes");
-    // From the menu, with a click; letters that are keys are letters here.
+    assert!(harness.query_by_label("Search commands").is_none(), "the search closes");
+    // The search also opens from the menu, and letters that are shortcuts elsewhere are typed into it.
     click(&mut harness, "Help");
     harness.get_by_label_contains("Search commands").click();
     settle(&mut harness);
@@ -170,7 +174,7 @@ fn commands_are_found_by_typing_a_part_of_them() {
 }
 
 #[test]
-fn what_isnt_displaced_has_no_displacement() {
+fn displacement_follows_the_height_map_and_is_not_undone() {
     let mut harness = window(None);
     let drawn = |harness: &Harness<App>| harness.state().totals();
     let (settings, before) = (*harness.state().settings(), drawn(&harness));
@@ -183,7 +187,7 @@ fn what_isnt_displaced_has_no_displacement() {
     harness.state_mut().displace(&context, Some(waves));
     settle(&mut harness);
     assert_eq!(harness.state().settings().tessellation.displacement, Displacement::On);
-    // Nobody set that, so it isn't undone: what was set before is.
+    // Displacement came with the heights and isn't a step, so the change before it is undone.
     press_with(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(
         *harness.state().settings(),

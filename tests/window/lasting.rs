@@ -1,4 +1,4 @@
-//! What lasts from one window to the next: settings, recent files and their cameras.
+//! What is saved for the next window: settings, recent files and their cameras.
 
 use std::path::{Path, PathBuf};
 
@@ -14,8 +14,8 @@ use pnaen::tessellate::{Displacement, Surface};
 
 use crate::window_tests::{choose, click, press, settle, vase};
 
-/// A folder of this test's own, gone when the test is.
-pub(super) struct Folder(PathBuf);
+/// A temporary folder, which is removed at the end of the test.
+pub struct Folder(PathBuf);
 
 impl Folder {
     pub(super) fn new(name: &str) -> Self {
@@ -28,12 +28,12 @@ impl Folder {
         self.0.join(name)
     }
 
-    /// What settings are kept in.
+    /// The file that settings are saved in.
     fn file(&self) -> PathBuf {
         self.0.join("kept/window.json")
     }
 
-    /// The vase under another name.
+    /// Copies the vase under another name.
     fn mesh(&self, name: &str) -> Source {
         let Source::File(vase) = vase() else { unreachable!("it is a file") };
         let path = self.0.join(name);
@@ -48,7 +48,7 @@ impl Drop for Folder {
     }
 }
 
-/// A window that keeps what it has in a folder.
+/// A window that saves its state in a folder.
 fn window(folder: &Folder, source: Option<Source>) -> Harness<'static, App> {
     let kept = folder.0.join("kept");
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
@@ -60,7 +60,7 @@ fn window(folder: &Folder, source: Option<Source>) -> Harness<'static, App> {
     harness
 }
 
-/// Closes a window as a person does.
+/// Closes a window.
 fn close(mut harness: Harness<App>) {
     eframe::App::on_exit(harness.state_mut());
 }
@@ -83,7 +83,7 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
     let folder = Folder::new("restart");
     let (first, second) = (folder.mesh("first.glb"), folder.mesh("second.glb"));
     let mut harness = window(&folder, None);
-    assert_eq!(harness.state().settings(), &Settings::opening(), "the first time");
+    assert_eq!(harness.state().settings(), &Settings::opening(), "the settings of a first start");
     choose(&mut harness, "Surface", "Phong AEN");
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
     open(&mut harness, &first);
@@ -98,7 +98,11 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
     close(harness);
 
     let mut harness = window(&folder, None);
-    assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::CubeSplit)), "not the last file");
+    assert_eq!(
+        harness.state().source(),
+        Some(&Source::Shape(Shape::CubeSplit)),
+        "the last file isn't opened by itself"
+    );
     assert_eq!(harness.state().settings(), &settings);
     recent_menu(&mut harness);
     harness.get_by_label_contains("second.glb");
@@ -106,17 +110,21 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
     settle(&mut harness);
     assert_eq!((harness.state().source(), *harness.state().camera()), (Some(&first), looked));
     press(&mut harness, egui::Key::F);
-    assert_ne!(*harness.state().camera(), looked, "framing is at hand");
+    assert_ne!(*harness.state().camera(), looked, "F frames the mesh");
     assert_eq!(harness.state().camera().distance, framed.distance);
     close(harness);
 
     let harness = window(&folder, Some(first.clone()));
     assert_eq!((harness.state().source(), harness.state().settings()), (Some(&first), &settings));
-    assert_eq!(harness.state().camera().azimuth, looked.azimuth, "its own camera, also as an argument");
+    assert_eq!(
+        harness.state().camera().azimuth,
+        looked.azimuth,
+        "a file that is given as an argument has its camera as well"
+    );
 }
 
 #[test]
-fn what_changed_is_written_after_a_while_and_the_picture_stays() {
+fn changes_are_written_after_a_while_without_drawing_again() {
     let folder = Folder::new("written");
     let mut harness = window(&folder, Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "Surface", "Nagata");
@@ -130,11 +138,14 @@ fn what_changed_is_written_after_a_while_and_the_picture_stays() {
     assert_eq!(harness.state().pictures(), pictures);
     let is_file = |name: &std::ffi::OsString| name == "window.json";
     let names: Vec<_> = std::fs::read_dir(folder.0.join("kept")).expect("a folder").flatten().collect();
-    assert!(names.iter().map(|entry| entry.file_name()).all(|name| is_file(&name)), "whole, and nothing beside it");
+    assert!(
+        names.iter().map(|entry| entry.file_name()).all(|name| is_file(&name)),
+        "no other file is left in the folder"
+    );
 }
 
 #[test]
-fn a_recent_file_that_is_gone_says_so_and_leaves_the_list() {
+fn a_missing_recent_file_is_reported_and_leaves_the_list() {
     let folder = Folder::new("gone");
     let (first, second) = (folder.mesh("first.glb"), folder.mesh("second.glb"));
     let mut harness = window(&folder, Some(first));
@@ -143,42 +154,42 @@ fn a_recent_file_that_is_gone_says_so_and_leaves_the_list() {
     recent_menu(&mut harness);
     harness.get_by_label_contains("first.glb").click();
     settle(&mut harness);
-    assert_eq!(harness.state().source(), Some(&second), "what is open stays");
+    assert_eq!(harness.state().source(), Some(&second), "the open mesh stays");
     harness.get_by_label_contains("first.glb can't be read");
-    harness.get_by_label_contains("it isn't listed as recent any more");
+    harness.get_by_label_contains("removed from the recent files");
     click(&mut harness, "Close");
     recent_menu(&mut harness);
     assert!(harness.query_by_label_contains("first.glb").is_none());
-    assert_eq!(harness.get_all_by_label_contains("second.glb").count(), 2, "the title, and the list's entry");
+    assert_eq!(harness.get_all_by_label_contains("second.glb").count(), 2, "the title and the list's entry");
 }
 
-/// What is kept in a folder of files' paths and cameras.
+/// The files and cameras that are saved in a folder.
 fn kept_files(folder: &Folder) -> serde_json::Value {
-    let text = std::fs::read(folder.file()).expect("what is kept");
+    let text = std::fs::read(folder.file()).expect("the saved state");
     serde_json::from_slice::<serde_json::Value>(&text).expect("JSON")["files"].take()
 }
 
 #[test]
-fn a_file_that_was_gone_for_a_while_is_listed_again_with_its_camera() {
+fn a_file_that_was_missing_for_a_while_is_listed_again_with_its_camera() {
     let folder = Folder::new("back");
     let (first, away) = (folder.mesh("first.glb"), folder.path("away.glb"));
     let mut harness = window(&folder, Some(first.clone()));
     std::fs::rename(folder.path("first.glb"), &away).expect("it is there");
     press(&mut harness, egui::Key::R);
-    harness.get_by_label_contains("it isn't listed as recent any more");
+    harness.get_by_label_contains("removed from the recent files");
     std::fs::rename(&away, folder.path("first.glb")).expect("it is there");
     press(&mut harness, egui::Key::R);
     press(&mut harness, egui::Key::Num3);
     let looked = *harness.state().camera();
     recent_menu(&mut harness);
-    assert_eq!(harness.get_all_by_label_contains("first.glb").count(), 2, "the title, and the list's entry");
+    assert_eq!(harness.get_all_by_label_contains("first.glb").count(), 2, "the title and the list's entry");
     close(harness);
     assert_eq!(kept_files(&folder).as_array().map(Vec::len), Some(1));
     assert_eq!(*window(&folder, Some(first)).state().camera(), looked);
 }
 
 #[test]
-fn a_file_that_is_back_in_the_next_window_has_its_camera() {
+fn a_file_that_was_missing_when_the_window_closed_keeps_its_camera() {
     let folder = Folder::new("later");
     let (first, away) = (folder.mesh("first.glb"), folder.path("away.glb"));
     let mut harness = window(&folder, Some(first.clone()));
@@ -189,17 +200,20 @@ fn a_file_that_is_back_in_the_next_window_has_its_camera() {
     close(harness);
     let mut harness = window(&folder, None);
     click(&mut harness, "File");
-    assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled(), "it isn't listed");
+    assert!(
+        harness.get_by_label_contains("Open recent").accesskit_node().is_disabled(),
+        "the missing file isn't listed"
+    );
     close(harness);
     std::fs::rename(&away, folder.path("first.glb")).expect("it is there");
     let mut harness = window(&folder, Some(first));
     assert_eq!(*harness.state().camera(), looked);
     recent_menu(&mut harness);
-    assert_eq!(harness.get_all_by_label_contains("first.glb").count(), 2, "and is");
+    assert_eq!(harness.get_all_by_label_contains("first.glb").count(), 2, "the title and the list's entry");
 }
 
 #[test]
-fn recent_files_are_reached_by_keys() {
+fn a_recent_file_can_be_opened_with_keys() {
     let folder = Folder::new("keys");
     let first = folder.mesh("first.glb");
     let mut harness = window(&folder, Some(first.clone()));
@@ -214,11 +228,14 @@ fn recent_files_are_reached_by_keys() {
 }
 
 #[test]
-fn forgetting_goes_back_to_how_it_first_opened() {
+fn forgetting_goes_back_to_the_state_of_a_first_start() {
     let folder = Folder::new("forget");
     let mut harness = window(&folder, None);
     click(&mut harness, "File");
-    assert!(harness.get_by_label_contains("Open recent").accesskit_node().is_disabled(), "there is none yet");
+    assert!(
+        harness.get_by_label_contains("Open recent").accesskit_node().is_disabled(),
+        "there are no recent files yet"
+    );
     press(&mut harness, egui::Key::Escape);
     let mesh = folder.mesh("first.glb");
     open(&mut harness, &mesh);
@@ -232,13 +249,13 @@ fn forgetting_goes_back_to_how_it_first_opened() {
     click(&mut harness, "File");
     harness.get_by_label_contains("Forget all settings").click();
     settle(&mut harness);
-    assert_eq!(harness.state().settings(), &before, "it asks first");
+    assert_eq!(harness.state().settings(), &before, "the window asks first");
     click(&mut harness, "Forget them");
     assert_eq!((harness.state().settings(), harness.state().source()), (&Settings::opening(), Some(&mesh)));
     assert_eq!(*harness.state().camera(), framed);
     assert_eq!(harness.ctx.options(|options| options.theme_preference), egui::ThemePreference::System);
     close(harness);
-    let text = std::fs::read_to_string(folder.file()).expect("what is kept");
+    let text = std::fs::read_to_string(folder.file()).expect("the saved state");
     assert!(!text.contains("first.glb"), "{text}");
     let mut harness = window(&folder, None);
     assert_eq!(harness.state().settings(), &Settings::opening());
@@ -247,7 +264,7 @@ fn forgetting_goes_back_to_how_it_first_opened() {
 }
 
 #[test]
-fn forgetting_is_reached_by_keys_and_let_be() {
+fn forgetting_can_be_confirmed_or_cancelled_with_keys() {
     let folder = Folder::new("forget-keys");
     let mut harness = window(&folder, None);
     choose(&mut harness, "Surface", "PN");
@@ -256,7 +273,7 @@ fn forgetting_is_reached_by_keys_and_let_be() {
         press(&mut harness, egui::Key::Enter);
         harness.get_by_label_contains("Forget all settings").focus();
         press(&mut harness, egui::Key::Enter);
-        assert_eq!(harness.state().settings().tessellation.surface, Surface::Pn, "it asks first");
+        assert_eq!(harness.state().settings().tessellation.surface, Surface::Pn, "the window asks first");
         harness.get_by_label("Forget them").focus();
         press(&mut harness, if forgets { egui::Key::Enter } else { egui::Key::Escape });
         assert_eq!(harness.state().settings().tessellation.surface == Surface::Pn, !forgets);
@@ -264,13 +281,13 @@ fn forgetting_is_reached_by_keys_and_let_be() {
 }
 
 #[test]
-fn damaged_settings_are_set_aside_and_the_window_opens() {
+fn damaged_settings_are_renamed_and_the_window_opens() {
     let folder = Folder::new("damaged");
     std::fs::create_dir(folder.0.join("kept")).expect("a writable folder");
     std::fs::write(folder.file(), "{\"settings\": {\"surf").expect("a writable folder");
     let mut harness = window(&folder, None);
     assert_eq!(harness.state().settings(), &Settings::opening());
-    harness.get_by_label_contains("window.json is damaged: it is window.damaged.json now");
+    harness.get_by_label_contains("window.json is damaged");
     assert!(folder.file().with_file_name("window.damaged.json").exists());
     click(&mut harness, "Close");
     choose(&mut harness, "Surface", "Flat");
@@ -278,12 +295,12 @@ fn damaged_settings_are_set_aside_and_the_window_opens() {
     assert_eq!(
         window(&folder, None).state().settings().tessellation.surface,
         Surface::Flat,
-        "and keeps settings as before"
+        "settings are saved again"
     );
 }
 
 #[test]
-fn what_is_bound_to_a_mesh_is_not_kept() {
+fn heights_and_selection_are_not_saved() {
     let folder = Folder::new("bound");
     let mut harness = window(&folder, Some(vase()));
     let waves = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/waves.png");

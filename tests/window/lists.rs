@@ -1,4 +1,4 @@
-//! What is found about a mesh and listed: cracks, worst edges, what a weld would join.
+//! The lists about a mesh: cracks, worst edges, and what a weld would join.
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -14,7 +14,7 @@ use pnaen::tessellate::Surface;
 use crate::window_tests::{PATIENCE, choose, press, settle, uniform};
 
 #[test]
-fn choosing_pn_lights_up_the_cracks() {
+fn pn_triangles_crack_and_the_status_line_counts_it() {
     let mut harness = uniform(None);
     choose(&mut harness, "Surface", "PN");
     harness.get_by_role_and_label(Role::CheckBox, "Cracks").click();
@@ -27,13 +27,13 @@ fn choosing_pn_lights_up_the_cracks() {
 }
 
 #[test]
-fn the_worst_edges_are_listed_and_one_click_frames_one() {
+fn the_worst_edges_are_listed_and_a_click_frames_one() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let app = harness.state();
     let cracks = app.cracks().expect("measured").clone();
     let before = *app.camera();
-    // The list shows the widest gap first; its third row is as good as any.
+    // Click the list's third row.
     let edge = cracks.edges[2].edge;
     let row = format!("{edge:<6}split normal");
     harness.get_by_label_contains(&row).click();
@@ -44,7 +44,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
     let [a, b] = topology.edge_points(&topology.edges[edge as usize]).map(|point| topology.points[point as usize]);
     assert_ne!(*app.camera(), before);
     assert!(app.camera().target.distance((a + b) / 2.0) < 1e-6, "the edge is in the middle");
-    // Named, with its two triangles, both sides' factors and points.
+    // The details have the edge's number, kind and triangles, and both sides' factors and points.
     harness.get_by_label(&format!("Edge {edge}"));
     assert!(harness.get_all_by_label("split normal").next().is_some());
     for side in topology.edge_sides(&topology.edges[edge as usize]) {
@@ -60,7 +60,7 @@ fn the_worst_edges_are_listed_and_one_click_frames_one() {
 }
 
 #[test]
-fn keys_go_through_a_list_beyond_the_rows_in_sight() {
+fn keys_go_through_a_list_beyond_the_visible_rows() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     choose(&mut harness, "Surface", "PN");
     let edges: Vec<_> = harness.state().cracks().expect("measured").edges.iter().map(|crack| crack.edge).collect();
@@ -94,7 +94,7 @@ fn escape_closes_a_list_before_it_deselects() {
 }
 
 #[test]
-fn as_published_edges_crack_and_once_an_edge_they_close() {
+fn edges_crack_as_published_and_not_if_computed_once() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     press(&mut harness, egui::Key::E);
     let cracked = harness.state().cracks().expect("measured").different_bits;
@@ -103,7 +103,7 @@ fn as_published_edges_crack_and_once_an_edge_they_close() {
     assert_eq!(harness.state().cracks().expect("measured").different_bits, 0);
 }
 
-/// A file with two triangles whose shared edge is there twice, a part of 1e-4 of the bounding diagonal apart.
+/// Writes two triangles with a slit between them, whose width is less than 1e-4 of the bounding diagonal.
 fn slit() -> PathBuf {
     let path = std::env::temp_dir().join(format!("pnaen-slit-{}.obj", std::process::id()));
     let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.0001 0 0\nv 1 1 0\nv 0.0001 1 0\n";
@@ -112,7 +112,7 @@ fn slit() -> PathBuf {
 }
 
 #[test]
-fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
+fn the_list_of_weld_tolerances_says_what_each_joins() {
     let path = slit();
     let mut harness = uniform(Some(Source::File(path.clone())));
     let start = Instant::now();
@@ -139,7 +139,7 @@ fn a_weld_tolerance_says_what_it_joins_and_then_joins_it() {
 }
 
 #[test]
-fn a_rim_closes_what_pn_tears_and_the_view_stays() {
+fn a_crease_band_closes_the_cracks_of_pn_and_the_view_stays() {
     let mut harness = uniform(None);
     choose(&mut harness, "Surface", "PN");
     press(&mut harness, egui::Key::Num3);
@@ -152,7 +152,7 @@ fn a_rim_closes_what_pn_tears_and_the_view_stays() {
     assert_eq!((band.width, band.creases), (0.02, 12));
     assert_eq!(app.cracks().map(|cracks| cracks.edges.len()), Some(0));
     assert_eq!((*app.camera(), *app.settings()), (camera, settings));
-    // Reloading keeps it.
+    // The crease band stays when the mesh is loaded again.
     press(&mut harness, egui::Key::R);
     assert_eq!(harness.state().loaded().map(|loaded| loaded.crease_band), Some(band));
     harness.get_by_role_and_label(Role::SpinButton, "Crease band").set_value_accesskit(0.0);

@@ -1,4 +1,4 @@
-//! Loading in every order of events: the latest wins, what is open stays until the new mesh is there, and nothing hangs.
+//! Loading: the latest load wins, the open mesh stays until the new one is loaded, and nothing hangs.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -40,7 +40,7 @@ fn vase_at(folder: &Folder, name: &str) -> PathBuf {
     path
 }
 
-/// Takes a second or more to load, without any file.
+/// A shape that takes a second or more to make.
 fn slow() -> Source {
     "shape:icosphere@6".parse().expect("a shape")
 }
@@ -56,14 +56,14 @@ fn says_nothing(harness: &Harness<App>) {
 }
 
 #[test]
-fn another_that_is_opened_while_one_loads_wins() {
+fn a_mesh_opened_while_another_loads_wins() {
     let mut harness = uniform(Some(vase()));
     open(&mut harness, slow());
     harness.get_by_label("Cancel");
     open(&mut harness, Source::Shape(Shape::Torus));
     settle(&mut harness);
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
-    // The first one would have ended by now, and is heard of no more.
+    // The cancelled load would have ended by now.
     std::thread::sleep(Duration::from_millis(500));
     harness.run_steps(5);
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
@@ -71,19 +71,19 @@ fn another_that_is_opened_while_one_loads_wins() {
 }
 
 #[test]
-fn reloading_while_another_loads_goes_back_to_what_is_open() {
+fn reloading_while_another_mesh_loads_keeps_the_open_mesh() {
     let mut harness = uniform(Some(vase()));
     let loaded = harness.state().loaded().cloned().expect("the vase");
     open(&mut harness, slow());
     press(&mut harness, egui::Key::R);
     let app = harness.state();
     assert_eq!(app.source(), Some(&vase()), "the latest wins");
-    assert!(!Arc::ptr_eq(&app.loaded().expect("the vase").mesh, &loaded.mesh), "it is read again");
+    assert!(!Arc::ptr_eq(&app.loaded().expect("the vase").mesh, &loaded.mesh), "the mesh is read again");
     says_nothing(&harness);
 }
 
 #[test]
-fn reloading_again_and_again_ends_with_the_file_as_it_is_by_then() {
+fn repeated_reloading_ends_with_the_last_version_of_the_file() {
     let folder = Folder::new("reload");
     let path = vase_at(&folder, "mesh.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a writable folder");
@@ -112,7 +112,7 @@ fn closing_the_window_while_a_mesh_loads_ends_at_once() {
 }
 
 #[test]
-fn of_files_dropped_together_one_is_opened_and_it_is_said_which() {
+fn one_of_several_dropped_files_is_opened_and_named() {
     let folder = Folder::new("dropped");
     let [image, first, second] = [
         PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png")),
@@ -122,8 +122,12 @@ fn of_files_dropped_together_one_is_opened_and_it_is_said_which() {
     let mut harness = uniform(None);
     drop_files(&mut harness, &[image, first.clone(), second]);
     settle(&mut harness);
-    assert_eq!(harness.state().source(), Some(&Source::File(first)), "the first mesh, not the image before it");
-    harness.get_by_label_contains("Of 3 files that were dropped only a.glb is open");
+    assert_eq!(
+        harness.state().source(),
+        Some(&Source::File(first)),
+        "the first mesh is opened, not the image before it"
+    );
+    harness.get_by_label_contains("3 files were dropped");
     click(&mut harness, "Close");
     says_nothing(&harness);
 }
@@ -141,7 +145,7 @@ fn a_file_dropped_while_another_loads_wins() {
 }
 
 #[test]
-fn what_is_no_file_is_refused_by_its_name_and_nothing_hangs() {
+fn folders_pipes_and_devices_are_refused_by_name() {
     let folder = Folder::new("no-files");
     let mut harness = uniform(Some(vase()));
     let mut refuses = |path: PathBuf, expected: &str| {
@@ -169,7 +173,7 @@ fn what_is_no_file_is_refused_by_its_name_and_nothing_hangs() {
 }
 
 #[test]
-fn a_file_that_is_gone_when_it_is_reloaded_leaves_the_old_mesh() {
+fn reloading_a_missing_file_keeps_the_mesh() {
     let folder = Folder::new("gone-on-reload");
     let path = vase_at(&folder, "a.glb");
     let mut harness = uniform(Some(Source::File(path.clone())));
@@ -186,7 +190,7 @@ fn a_file_that_is_gone_when_it_is_reloaded_leaves_the_old_mesh() {
 }
 
 #[test]
-fn a_file_that_is_cut_short_or_replaced_while_it_is_loaded_is_a_sentence_or_the_new_one() {
+fn a_file_that_changes_while_it_is_loaded_is_refused_or_read_whole() {
     let folder = Folder::new("changes");
     let path = folder.path("a.glb");
     let Source::File(vase) = vase() else { unreachable!("it is a file") };
@@ -200,7 +204,11 @@ fn a_file_that_is_cut_short_or_replaced_while_it_is_loaded_is_a_sentence_or_the_
         let part = if k % 2 == 0 { &whole[..whole.len() * k / 40] } else { &whole[..] };
         std::fs::write(&path, part).expect("a writable folder");
         settle(&mut harness);
-        assert_eq!(harness.state().loaded().map(|loaded| loaded.topology.patches.len()), patches, "never a mix");
+        assert_eq!(
+            harness.state().loaded().map(|loaded| loaded.topology.patches.len()),
+            patches,
+            "never a mix of two versions"
+        );
         assert!(harness.query_by_label_contains("stopped unexpectedly").is_none());
     }
     press(&mut harness, egui::Key::R);
@@ -208,7 +216,7 @@ fn a_file_that_is_cut_short_or_replaced_while_it_is_loaded_is_a_sentence_or_the_
 }
 
 #[test]
-fn a_window_whose_first_file_is_cancelled_stays_open_and_takes_another() {
+fn after_cancelling_the_first_load_another_file_can_be_opened() {
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(|context| {
         App::new(context, Some(slow()), Limits::default()).expect("these tests need a graphics adapter")
     });

@@ -1,4 +1,4 @@
-//! The graphics device is lost: the window goes on with another one, once, and nothing that a person did is lost with it.
+//! A lost graphics device: the window goes on with another one, once, and keeps its state.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,22 +16,22 @@ use pnaen::settings::SplitSide;
 
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 
-const SENTENCE: &str = "The graphics device was lost (it was destroyed). The window goes on with a new one";
+const SENTENCE: &str = "The graphics device was lost (it was destroyed)";
 
-/// As a driver does that was reset; the window has heard of it.
+/// Destroys the device, as a driver's reset does, and waits until the window has noticed.
 fn lose(harness: &mut Harness<App>) {
     harness.state().gpu().device.destroy();
     let start = std::time::Instant::now();
     while !harness.state().is_lost() {
-        assert!(start.elapsed() < crate::window_tests::PATIENCE, "it hasn't heard");
+        assert!(start.elapsed() < crate::PATIENCE, "the window hasn't noticed the loss");
         let _ = harness.state().gpu().device.poll(wgpu::PollType::wait_indefinitely());
         harness.step();
     }
     harness.run_steps(2);
-    assert!(harness.query_by_role(Role::Button).is_none(), "nothing is shown that couldn't be painted");
+    assert!(harness.query_by_role(Role::Button).is_none(), "nothing is shown, since nothing could be painted");
 }
 
-/// The window that follows one whose device was lost, as the program opens it.
+/// Opens the window that follows one whose device was lost.
 fn anew(harness: Harness<'static, App>) -> Harness<'static, App> {
     let before = harness.ctx.clone();
     let app = harness.into_state();
@@ -41,7 +41,7 @@ fn anew(harness: Harness<'static, App>) -> Harness<'static, App> {
         .build_eframe(move |context| app.anew(context, &before).expect("these tests need a graphics adapter"))
 }
 
-/// What is drawn, without the panels around it: those say how long it took.
+/// The viewport's picture without the panels around it, which show times.
 fn viewport(harness: &mut Harness<App>) -> image::RgbaImage {
     harness.remove_cursor();
     harness.set_render_cursor(false);
@@ -67,7 +67,7 @@ fn everything_stays_and_the_picture_is_the_same_to_the_bit() {
     press(&mut harness, egui::Key::Z);
     press(&mut harness, egui::Key::ArrowLeft);
     harness.state_mut().select_triangle(Some(7));
-    // As egui keeps where one has scrolled to, and what is folded.
+    // A value in egui's memory, which also has scroll positions and folded sections.
     harness.ctx.data_mut(|data| data.insert_temp(egui::Id::unique("kept"), 7_i32));
     settle(&mut harness);
     harness.run_steps(20);
@@ -85,19 +85,19 @@ fn everything_stays_and_the_picture_is_the_same_to_the_bit() {
     harness.run_steps(20);
     let app = harness.state();
     assert_eq!((app.settings(), app.camera(), app.selected_triangle()), (&settings, &camera, Some(7)));
-    assert!(is_the_same(&loaded, app.loaded()), "the file isn't read again");
+    assert!(is_the_same(&loaded, app.loaded()), "the mesh isn't loaded again");
     assert_eq!(harness.ctx.data(|data| data.get_temp(egui::Id::unique("kept"))), Some(7_i32));
     assert_eq!((app.totals(), app.cracks().map(|cracks| cracks.edges.len())), (totals, cracks.map(|c| c.edges.len())));
-    assert!(viewport(&mut harness) == picture, "to the last bit");
+    assert!(viewport(&mut harness) == picture, "the pictures differ");
 }
 
 #[test]
-fn what_was_under_way_goes_on_and_nothing_is_said_twice() {
+fn jobs_that_were_under_way_go_on_without_further_messages() {
     let mut harness = window(Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "Colours", "Deviation");
     let wanted: Source = "shape:icosphere@4".parse().expect("a shape");
     let (context, truth) = (harness.ctx.clone(), Source::Shape(Shape::Icosphere));
-    // Measured, copied, made and loaded all at once, and nothing of it finished.
+    // Measuring, copying, making the left half and loading are all under way.
     press(&mut harness, egui::Key::S);
     choose(&mut harness, "Left", "Flat");
     harness.key_press(egui::Key::Num7);
@@ -116,8 +116,8 @@ fn what_was_under_way_goes_on_and_nothing_is_said_twice() {
 }
 
 #[test]
-fn a_clip_goes_on_where_it_was() {
-    let folder = crate::window_tests::lasting::Folder::new("lost-clip");
+fn the_pose_stays() {
+    let folder = crate::lasting::Folder::new("lost-clip");
     let path = folder.path("moving.glb");
     std::fs::write(&path, crate::window_tests::moving::moving()).expect("a writable folder");
     let mut harness = window(Some(Source::File(path)));
@@ -138,8 +138,8 @@ fn a_clip_goes_on_where_it_was() {
 }
 
 #[test]
-fn lost_again_it_offers_to_save_and_tries_again_only_when_told_to() {
-    let folder = crate::window_tests::lasting::Folder::new("lost-again");
+fn after_a_second_loss_the_window_offers_to_save_and_to_try_again() {
+    let folder = crate::lasting::Folder::new("lost-again");
     let path = folder.path("saved.obj");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (totals, loaded) = (harness.state().totals(), harness.state().loaded().cloned().expect("a torus"));
@@ -154,9 +154,9 @@ fn lost_again_it_offers_to_save_and_tries_again_only_when_told_to() {
     save_as(&mut harness, &path);
     harness.get_by_label_contains("is written.");
     let saved = load(&path, &Limits::default(), &Progress::new()).expect("an OBJ file").mesh;
-    assert_eq!(Some(saved.triangles.len() as u64), totals.map(|(_, triangles)| triangles), "computed on the CPU");
+    assert_eq!(Some(saved.triangles.len() as u64), totals.map(|(_, triangles)| triangles), "the CPU emits as many");
     click(&mut harness, "Save mesh");
-    said(&mut harness, "is there already: choose another name");
+    said(&mut harness, "saved.obj exists already");
 
     click(&mut harness, "Try again");
     let mut harness = anew(harness);
@@ -175,7 +175,7 @@ fn save_as(harness: &mut Harness<App>, path: &Path) {
     said(harness, "is written.");
 }
 
-/// Steps until this is said.
+/// Runs frames until this text is shown.
 fn said(harness: &mut Harness<App>, text: &str) {
     let start = std::time::Instant::now();
     while harness.query_by_label_contains(text).is_none() {
@@ -186,10 +186,10 @@ fn said(harness: &mut Harness<App>, text: &str) {
 }
 
 #[test]
-fn a_refused_command_is_a_sentence_and_the_window_goes_on() {
+fn a_refused_command_is_reported_and_the_window_goes_on() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (settings, pictures) = (*harness.state().settings(), harness.state().pictures());
-    // Nothing can be mapped to be read and to be written.
+    // A buffer can't be mapped both for reading and for writing, so the device refuses it.
     let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::MAP_WRITE;
     let descriptor = wgpu::BufferDescriptor { label: None, size: 4, usage, mapped_at_creation: false };
     let _ = harness.state().gpu().device.create_buffer(&descriptor);
@@ -199,11 +199,11 @@ fn a_refused_command_is_a_sentence_and_the_window_goes_on() {
     click(&mut harness, "Close");
     press(&mut harness, egui::Key::Num1);
     assert!(harness.state().pictures() > pictures && !harness.state().is_lost());
-    assert!(harness.query_by_label_contains("refused").is_none(), "said once");
+    assert!(harness.query_by_label_contains("refused").is_none(), "the error is shown only once");
 }
 
 #[test]
-fn lost_twice_before_anything_is_drawn_it_says_so() {
+fn a_second_loss_before_the_first_picture_shows_the_message() {
     let nowhere = Source::File(PathBuf::from("nowhere.glb"));
     let harness = Harness::builder().with_size([1200.0, 960.0]).wgpu();
     let mut harness = harness.build_eframe(move |context| {

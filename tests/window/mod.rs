@@ -1,4 +1,4 @@
-//! The real window, driven by the names that its controls have for a screen reader.
+//! Tests of the window, driven by the names that its controls have for screen readers.
 
 mod animation;
 mod chart;
@@ -41,7 +41,7 @@ fn window(source: Option<Source>) -> Harness<'static, App> {
     harness
 }
 
-/// A window that draws every patch, in fractional segments by one factor: pictures and counts of these tests are of such.
+/// A window that draws every patch with one factor and fractional partitioning, so that counts don't depend on the view.
 fn uniform(source: Option<Source>) -> Harness<'static, App> {
     let mut harness = window(source);
     choose(&mut harness, "Partitioning", "Fractional odd");
@@ -85,7 +85,7 @@ fn vase() -> Source {
 }
 
 #[test]
-fn it_opens_on_a_cube_without_cracks() {
+fn the_window_opens_a_cube_without_cracks() {
     let mut harness = window(None);
     let app = harness.state();
     assert_eq!(app.source(), Some(&Source::Shape(Shape::CubeSplit)));
@@ -122,12 +122,12 @@ fn every_switch_does_what_it_says() {
         ("Folds", |app| app.settings().overlays.folds),
         ("Split view", |app| app.settings().split.is_some()),
     ] {
-        assert!(!is_on(harness.state()), "{label} is on already");
+        assert!(!is_on(harness.state()), "{label} is on before it is clicked");
         let pictures = harness.state().pictures();
         harness.get_by_role_and_label(Role::CheckBox, label).click();
         settle(&mut harness);
         assert!(is_on(harness.state()), "{label}");
-        assert!(harness.state().pictures() > pictures, "{label}: a new picture");
+        assert!(harness.state().pictures() > pictures, "{label} isn't drawn");
     }
     assert!(harness.state().settings().overlays.wireframe);
     press(&mut harness, egui::Key::W);
@@ -155,7 +155,7 @@ fn every_switch_does_what_it_says() {
 }
 
 #[test]
-fn subtriangulation_is_uniform_and_gives_the_lod_back() {
+fn subtriangulation_uses_uniform_lod_and_the_chosen_lod_comes_back() {
     let mut harness = window(None);
     let opening = *harness.state().settings();
     assert_eq!(opening.tessellation.used_lod(), Lod::Error);
@@ -165,13 +165,13 @@ fn subtriangulation_is_uniform_and_gives_the_lod_back() {
         (settings.tessellation.partitioning, settings.tessellation.used_lod()),
         (Partitioning::Subtriangulation, Lod::Uniform)
     );
-    // Half of the cube shows its back; the factor is 8.
+    // Half of the cube's patches face away and are culled; the factor is 8.
     assert_eq!(harness.state().totals(), Some((6 * 45, 6 * 64)));
     let lod = harness.get_by_role_and_label(Role::ComboBox, "LOD");
-    assert!(lod.accesskit_node().is_disabled(), "nothing to choose");
+    assert!(lod.accesskit_node().is_disabled(), "LOD can't be chosen");
     assert_eq!(lod.value().as_deref(), Some("Uniform"));
     press(&mut harness, egui::Key::L);
-    assert_eq!(*harness.state().settings(), settings, "L changes nothing either");
+    assert_eq!(*harness.state().settings(), settings, "the key L changes nothing");
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(4.5);
     settle(&mut harness);
     assert_eq!(harness.state().totals(), Some((6 * 21, 6 * 25)));
@@ -225,7 +225,7 @@ fn the_pointer_orbits_and_zooms() {
 }
 
 #[test]
-fn a_file_is_opened_by_its_path_and_reloaded_with_every_setting() {
+fn a_file_is_opened_by_its_path_and_reloading_keeps_settings_and_camera() {
     let mut harness = uniform(None);
     press(&mut harness, egui::Key::B);
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::L);

@@ -1,4 +1,4 @@
-//! Picking in the window: clicks in the picture, and what the section about the patch says.
+//! Picking in the window: clicks in the picture, and the section about the patch.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -14,7 +14,7 @@ fn cube() -> Harness<'static, App> {
     uniform(Some(Source::Shape(Shape::CubeSplit)))
 }
 
-/// Clicks in the picture, so far from its middle in points.
+/// Clicks in the picture, at this offset from its middle in points.
 fn click_beside_the_middle(harness: &mut Harness<App>, offset: egui::Vec2) {
     let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center() + offset;
     harness.hover_at(place);
@@ -42,13 +42,13 @@ fn neighbours(app: &App) -> Vec<u32> {
 #[test]
 fn a_click_selects_what_is_under_the_pointer() {
     let mut harness = cube();
-    harness.get_by_label("Click a triangle, or give its number.");
+    harness.get_by_label("Click a triangle, or type its number.");
     press(&mut harness, egui::Key::Num1);
     let before = *harness.state().camera();
     let picture = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
     // Seen from the front, the middle lies on the front face, a little above its diagonal.
     click_beside_the_middle(&mut harness, egui::vec2(-8.0, -12.0));
-    assert_eq!(harness.get_by_role_and_label(Role::Image, "Viewport").rect(), picture, "the panel stays as wide");
+    assert_eq!(harness.get_by_role_and_label(Role::Image, "Viewport").rect(), picture, "the panel's width stays");
     let app = harness.state();
     assert_eq!(*app.camera(), before, "a click doesn't orbit");
     let loaded = app.loaded().expect("a mesh");
@@ -58,7 +58,7 @@ fn a_click_selects_what_is_under_the_pointer() {
     let edge = app.selected_edge().expect("its nearest edge") as usize;
     assert_eq!(loaded.topology.edges[edge].kind, EdgeKind::Smooth, "the diagonal is nearest");
     let hit = app.hit().expect("an emitted triangle").number;
-    // The field, its factors, its pattern, its neighbours, its emitted triangle.
+    // The section has the triangle's number, factors, pattern, neighbours and emitted triangle.
     assert_eq!(harness.get_by_role_and_label(Role::SpinButton, "Triangle").value(), Some(triangle.to_string()));
     for row in ["[0] 1-2    8.000   8.000     9", "[1] 2-0    8.000   8.000     9", "[2] 0-1    8.000   8.000     9"] {
         harness.get_by_label(row);
@@ -73,7 +73,7 @@ fn a_click_selects_what_is_under_the_pointer() {
 }
 
 #[test]
-fn escape_and_a_click_beside_the_mesh_let_go() {
+fn escape_and_a_click_beside_the_mesh_deselect() {
     let mut harness = cube();
     click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
     assert!(harness.state().selected_triangle().is_some());
@@ -98,19 +98,19 @@ fn neighbours_lead_from_triangle_to_triangle() {
         neighbour(&mut harness, next);
         assert_eq!(harness.state().selected_triangle(), Some(next));
         assert!(neighbours(harness.state()).contains(&from.expect("one was selected")), "neighbours are mutual");
-        assert!(harness.state().hit().is_none(), "nothing of this one was clicked on");
+        assert!(harness.state().hit().is_none(), "no emitted triangle of this patch was clicked on");
     }
 }
 
 #[test]
-fn settings_keep_the_patch_and_let_go_of_what_is_no_longer_emitted() {
+fn a_change_of_settings_keeps_the_patch_but_not_the_emitted_triangle() {
     let mut harness = cube();
     click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
     let selected = |app: &App| (app.selected_triangle(), app.selected_edge());
     let before = selected(harness.state());
     assert!(before.0.is_some() && before.1.is_some() && harness.state().hit().is_some());
     press(&mut harness, egui::Key::Num3);
-    assert!(harness.state().hit().is_some(), "another view changes nothing that is emitted");
+    assert!(harness.state().hit().is_some(), "another view emits the same triangles");
     press(&mut harness, egui::Key::Plus);
     assert_eq!(selected(harness.state()), before);
     assert!(harness.state().hit().is_none());
@@ -118,7 +118,7 @@ fn settings_keep_the_patch_and_let_go_of_what_is_no_longer_emitted() {
     choose(&mut harness, "Surface", "PN");
     assert_eq!((selected(harness.state()), harness.state().settings().tessellation.surface), (before, Surface::Pn));
     press(&mut harness, egui::Key::R);
-    assert_eq!(selected(harness.state()), (None, None), "loaded again");
+    assert_eq!(selected(harness.state()), (None, None), "loading the mesh again deselects");
 }
 
 #[test]
@@ -134,8 +134,8 @@ fn a_triangle_is_selected_by_its_number_and_framed_by_a_key() {
     typed(&mut harness, "0");
     assert_eq!(harness.state().selected_triangle(), Some(0));
     typed(&mut harness, "99");
-    assert_eq!(harness.state().selected_triangle(), Some(11), "the last one there is");
-    // Away from the field, where keys are text.
+    assert_eq!(harness.state().selected_triangle(), Some(11), "the number is clamped to the last triangle");
+    // Leave the field, where keys are text.
     press(&mut harness, egui::Key::Escape);
     typed(&mut harness, "5");
     let app = harness.state();
@@ -144,7 +144,7 @@ fn a_triangle_is_selected_by_its_number_and_framed_by_a_key() {
     click(&mut harness, "Frame");
     let camera = *harness.state().camera();
     assert!(camera.target.distance((a + b + c) / 3.0) < 1e-6, "it is in the middle");
-    assert!(camera.axes()[2].dot((b - a).cross(c - a).normalize()) > 0.999, "and faces the eye");
+    assert!(camera.axes()[2].dot((b - a).cross(c - a).normalize()) > 0.999, "it faces the eye");
     press(&mut harness, egui::Key::F);
     assert_ne!(*harness.state().camera(), camera);
     harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::F);
@@ -153,7 +153,7 @@ fn a_triangle_is_selected_by_its_number_and_framed_by_a_key() {
 }
 
 #[test]
-fn an_edge_and_a_triangle_are_selected_together_or_not_at_all() {
+fn selecting_an_edge_keeps_the_triangle_only_if_it_has_that_edge() {
     let mut harness = cube();
     click_beside_the_middle(&mut harness, egui::Vec2::ZERO);
     let triangle = harness.state().selected_triangle();
@@ -175,7 +175,7 @@ fn an_edge_and_a_triangle_are_selected_together_or_not_at_all() {
 }
 
 #[test]
-fn left_of_the_split_the_triangle_itself_is_picked() {
+fn left_of_the_split_no_emitted_triangle_is_picked() {
     let mut harness = cube();
     press(&mut harness, egui::Key::S);
     for (offset, emitted) in [(-60.0, false), (60.0, true)] {
@@ -187,10 +187,10 @@ fn left_of_the_split_the_triangle_itself_is_picked() {
 }
 
 #[test]
-fn a_patch_that_is_left_out_says_why() {
+fn the_pattern_says_why_a_patch_is_left_out() {
     let mut harness = cube();
     press(&mut harness, egui::Key::Num1);
-    // The back, seen from the front: selected while it is drawn, and left out then.
+    // A triangle of the cube's back, seen from the front: it is selected while it is drawn, then culled.
     let loaded = harness.state().loaded().expect("a mesh");
     let behind =
         |corners: &[u32; 3]| corners.iter().all(|&corner| loaded.mesh.corners[corner as usize].position.z < 0.0);
@@ -200,6 +200,6 @@ fn a_patch_that_is_left_out_says_why() {
     harness.get_by_role_and_label(Role::Image, "Domain pattern, 75 points, 121 triangles");
     harness.get_by_role_and_label(Role::CheckBox, "Cull back faces").click();
     settle(&mut harness);
-    harness.get_by_role_and_label(Role::Image, "Domain pattern, facing away: nothing is emitted");
+    harness.get_by_role_and_label(Role::Image, "Domain pattern, facing away, so nothing is emitted");
     assert_eq!(harness.state().selected_triangle(), Some(triangle));
 }

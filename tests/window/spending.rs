@@ -1,4 +1,4 @@
-//! Where triangles are spent: LOD, conventions, colours, and pictures of many of them.
+//! LOD, conventions and colours, and pictures of many triangles.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ use pnaen::tessellate::Convention;
 use crate::window_tests::{PATIENCE, choose, click, press, run_command, settle, uniform};
 
 #[test]
-fn colours_exclude_each_other_and_numbers_have_a_legend() {
+fn only_one_colouring_is_shown_and_numbers_have_a_legend() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
     let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
@@ -30,7 +30,7 @@ fn colours_exclude_each_other_and_numbers_have_a_legend() {
         choose(&mut harness, "Colours", entry);
         assert_eq!(harness.state().settings().overlays.colors, colors);
         assert_eq!(shown(&harness), expected, "{entry}");
-        assert!(harness.state().pictures() > pictures, "{entry}: a new picture");
+        assert!(harness.state().pictures() > pictures, "{entry} isn't drawn");
     }
     for (key, colors) in [
         (egui::Key::H, Colors::Factors),
@@ -47,28 +47,28 @@ fn colours_exclude_each_other_and_numbers_have_a_legend() {
 }
 
 #[test]
-fn small_triangles_are_counted_for_the_view_that_is_shown_and_for_no_other() {
+fn small_triangles_are_counted_for_the_present_view_only() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let count = |harness: &Harness<App>| harness.state().sizes_shown().map(|sizes| (sizes.in_view, sizes.small));
     let (_, triangles) = harness.state().totals().expect("counted");
     let (in_view, small) = count(&harness).expect("measured");
-    assert_eq!(in_view, triangles, "all of it is framed");
+    assert_eq!(in_view, triangles, "all triangles are in view");
     assert!(small > 0);
-    // From farther away nothing is tessellated anew, so nothing is measured.
+    // Zooming out changes no uniform tessellation, so nothing is measured.
     press(&mut harness, egui::Key::PageDown);
     assert_eq!(count(&harness), None);
-    // Unless one looks at the sizes.
+    // While sizes are shown, they are measured for every view.
     press(&mut harness, egui::Key::X);
     let (_, smaller) = count(&harness).expect("measured");
     assert!(smaller > small, "{smaller}, and {small} from nearer");
     press(&mut harness, egui::Key::PageDown);
     let (_, smallest) = count(&harness).expect("measured");
     assert!(smallest > smaller, "{smallest}, and {smaller} from nearer");
-    assert!(harness.state().cracks().is_some(), "which the view doesn't change");
+    assert!(harness.state().cracks().is_some(), "cracks don't depend on the view");
 }
 
 #[test]
-fn a_mistaken_convention_cracks_and_shows_both_factors() {
+fn wrong_conventions_crack_under_adaptive_lod() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "LOD", "Edge length");
     let cracked = |harness: &Harness<App>| harness.state().cracks().map(|cracks| cracks.different_factors);
@@ -100,12 +100,12 @@ fn frozen_lod_stays_while_the_camera_moves() {
 }
 
 #[test]
-fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
+fn a_picture_of_many_steps_can_be_cancelled_and_drawn_later() {
     let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
     run_command(["tessellate", "shape:torus", "--factor", "3"], &path);
     let mut harness = uniform(Some(Source::File(path.clone())));
     let (pictures, before) = (harness.state().pictures(), harness.state().totals());
-    // Some 20 million triangles: more than anyone would wait for here.
+    // About 20 million triangles, which take longer than the test waits.
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
     let start = Instant::now();
     while harness.query_by_label_contains("Drawing ").is_none() {
@@ -116,7 +116,7 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
     assert_eq!((harness.state().pictures(), harness.state().settings().tessellation.factor), (pictures, 64.0));
     assert!(!harness.state().is_busy());
     harness.get_by_label("cracks not measured");
-    // To select something is no reason to draw after all.
+    // Selecting something doesn't draw the cancelled picture.
     harness.state_mut().select_triangle(Some(3));
     settle(&mut harness);
     assert_eq!(harness.state().pictures(), pictures);
@@ -129,6 +129,6 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_after_all() {
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(8.0);
     settle(&mut harness);
     assert_eq!(harness.state().totals(), before);
-    assert!(harness.state().pictures() > pictures, "with what was selected meanwhile");
+    assert!(harness.state().pictures() > pictures, "the picture is drawn with the selection");
     let _ = std::fs::remove_file(path);
 }

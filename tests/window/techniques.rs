@@ -1,4 +1,4 @@
-//! Surfaces, shading normals and displacement, chosen by name.
+//! Choosing surfaces, normals and displacement.
 
 use egui::Key;
 use egui::accesskit::Role;
@@ -10,7 +10,7 @@ use pnaen::tessellate::{Displacement, Normals, Surface};
 use crate::window_tests::{choose, press, settle, uniform};
 
 #[test]
-fn every_surface_can_be_chosen_and_those_that_agree_have_no_cracks() {
+fn every_surface_can_be_chosen_and_only_those_that_tear_have_cracks() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     let names = ["Flat", "PN", "PN crease", "Phong", "Phong AEN", "Nagata", "Nagata AEN", "PN-AEN"];
     for name in names {
@@ -23,7 +23,7 @@ fn every_surface_can_be_chosen_and_those_that_agree_have_no_cracks() {
 }
 
 #[test]
-fn only_phong_has_a_strength() {
+fn phong_strength_is_disabled_for_other_surfaces() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
     let is_disabled = |harness: &egui_kittest::Harness<pnaen::app::App>| {
         harness.get_by_role_and_label(Role::Slider, "Phong strength").accesskit_node().is_disabled()
@@ -35,7 +35,7 @@ fn only_phong_has_a_strength() {
     harness.get_by_role_and_label(Role::Slider, "Phong strength").set_value_accesskit(0.25);
     settle(&mut harness);
     assert_eq!(harness.state().settings().tessellation.alpha, 0.25);
-    assert!(harness.state().pictures() > pictures, "another surface, another picture");
+    assert!(harness.state().pictures() > pictures, "the surface is drawn anew");
 }
 
 #[test]
@@ -51,12 +51,16 @@ fn normals_of_the_surface_differ_across_edges_and_are_counted() {
 }
 
 #[test]
-fn an_image_displaces_the_mesh_and_settings_stay() {
+fn an_image_displaces_the_mesh_and_other_settings_stay() {
     let path = std::env::temp_dir().join(format!("pnaen-heights-{}.png", std::process::id()));
     let image = image::GrayImage::from_fn(16, 16, |x, y| image::Luma([(x * 13 + y * 7) as u8]));
     image.save(&path).expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
-    assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(), 0, "nothing to displace by");
+    assert_eq!(
+        harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(),
+        0,
+        "without heights there is no such row"
+    );
     let (camera, factor) = (*harness.state().camera(), harness.state().settings().tessellation.factor);
     let context = harness.ctx.clone();
     harness.state_mut().open_path(&context, path.clone());
@@ -68,7 +72,10 @@ fn an_image_displaces_the_mesh_and_settings_stay() {
     assert_eq!(loaded.preparation.heights, Some(HeightSource::File(path.clone())));
     assert_eq!(app.cracks().map(|cracks| cracks.different_bits), Some(0));
     choose(&mut harness, "Displace", "As published");
-    assert!(harness.state().cracks().expect("measured").different_bits > 0, "split normals burst");
+    assert!(
+        harness.state().cracks().expect("measured").different_bits > 0,
+        "displacement as published cracks at split normals"
+    );
     let pictures = harness.state().pictures();
     harness.get_by_role_and_label(Role::Slider, "Scale").set_value_accesskit(0.2);
     settle(&mut harness);
@@ -76,20 +83,24 @@ fn an_image_displaces_the_mesh_and_settings_stay() {
     press(&mut harness, Key::D);
     assert_eq!(harness.state().settings().tessellation.displacement, Displacement::Off);
     press(&mut harness, Key::D);
-    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::AsPublished, "what it was before");
+    assert_eq!(
+        harness.state().settings().tessellation.displacement,
+        Displacement::AsPublished,
+        "the displacement before it was switched off"
+    );
     choose(&mut harness, "Height map", "None");
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(), 0);
     let _ = std::fs::remove_file(path);
 }
 
 #[test]
-fn heights_that_are_not_there_are_a_sentence_and_change_nothing() {
+fn missing_heights_are_reported_and_change_nothing() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
     choose(&mut harness, "Height map", "Material");
     harness.get_by_label_contains("no material has a base colour image");
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
-    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::Off, "every setting as it was");
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::Off, "settings stay");
     assert_eq!(harness.state().pictures(), pictures, "nothing is drawn anew");
 }
 
@@ -104,7 +115,7 @@ fn a_height_image_can_be_chosen_from_the_file_menu() {
     let above = harness.get_by_label(open).rect();
     assert!(above.bottom() <= own.top() && own.bottom() <= reload.top(), "{above} {own} {reload}");
     entry.hover();
-    // A hover text comes after a while.
+    // Hover texts appear after a delay.
     harness.run_steps(60);
-    harness.get_by_label_contains("Displaces the mesh by the brightness of a PNG or JPEG image");
+    harness.get_by_label_contains("PNG or JPEG image");
 }

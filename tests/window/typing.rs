@@ -1,4 +1,4 @@
-//! Typing: every letter arrives in the field that it is for, and nothing else acts on it.
+//! Typing paths: every letter arrives in the text field, and none acts as a shortcut.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
@@ -26,9 +26,9 @@ fn field(harness: &Harness<App>) -> Option<String> {
 }
 
 #[test]
-fn letters_typed_right_after_the_key_are_the_paths() {
+fn letters_typed_right_after_the_shortcut_go_into_the_field() {
     let open_path = key(Key::L, Modifiers::COMMAND);
-    // All in one frame, as they come when a frame takes long, and one a frame.
+    // All events in one frame, as after a slow frame, and one event per frame.
     for at_once in [true, false] {
         let mut harness = window(None);
         let settings = *harness.state().settings();
@@ -39,13 +39,13 @@ fn letters_typed_right_after_the_key_are_the_paths() {
             events.into_iter().for_each(|event| harness.event(event));
         }
         settle(&mut harness);
-        assert_eq!(harness.state().settings(), &settings, "no letter is a shortcut");
+        assert_eq!(harness.state().settings(), &settings, "no letter acts as a shortcut");
         assert_eq!(field(&harness).as_deref(), Some("elephant"));
     }
 }
 
 #[test]
-fn a_path_can_be_typed_and_entered_before_the_window_is_there() {
+fn a_path_can_be_entered_before_its_window_is_shown() {
     let mut harness = window(None);
     let text = Event::Text("shape:torus".into());
     harness.input_mut().events.extend([key(Key::L, Modifiers::COMMAND), text, key(Key::Enter, Modifiers::NONE)]);
@@ -55,7 +55,7 @@ fn a_path_can_be_typed_and_entered_before_the_window_is_there() {
 }
 
 #[test]
-fn letters_are_the_truths_path_too_and_buttons_are_reached_by_tab() {
+fn the_reference_surfaces_path_can_be_typed_and_tab_reaches_the_buttons() {
     let mut harness = window(None);
     let settings = *harness.state().settings();
     click(&mut harness, "File");
@@ -70,7 +70,7 @@ fn letters_are_the_truths_path_too_and_buttons_are_reached_by_tab() {
     assert!(harness.get_by_role_and_label(Role::Button, "Cancel").accesskit_node().is_focused());
     harness.key_press(Key::W);
     settle(&mut harness);
-    assert_eq!(harness.state().settings(), &settings, "the window over everything has the keys");
+    assert_eq!(harness.state().settings(), &settings, "keys go to the window with the path");
     harness.key_press(Key::Enter);
     settle(&mut harness);
     assert!(harness.query_by_role(Role::TextInput).is_none());

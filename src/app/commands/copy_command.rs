@@ -1,17 +1,17 @@
-//! The command line that draws what the window shows.
+//! Copies the command line that draws what the window shows.
 
 use crate::app::App;
 use crate::cli::CopiedCommand;
 use crate::load::{HeightSource, Source};
 
 impl App {
-    /// Copies the command that draws what is shown, and shows it.
+    /// Copies the command that draws what is shown, and shows that command in a window.
     pub(in crate::app) fn copy_command(&mut self, context: &egui::Context) {
         let Some(document) = &self.document else { return };
         let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
         let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
-        let source = anywhere(&document.loaded.source);
-        let truth = self.truth.as_ref().map(|truth| anywhere(&truth.source));
+        let source = absolute_source(&document.loaded.source);
+        let truth = self.truth.as_ref().map(|truth| absolute_source(&truth.source));
         let mut preparation = document.loaded.preparation.clone();
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
             *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
@@ -40,7 +40,7 @@ impl App {
             ui.label("This command draws the picture without a window:");
             ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap().selectable(true));
             if self.viewport.frozen.is_some() {
-                ui.weak("Its LOD is for this camera, not for the frozen one.");
+                ui.weak("The command computes LOD for this camera, not for the frozen one.");
             }
         });
         if !is_open {
@@ -49,8 +49,8 @@ impl App {
     }
 }
 
-/// A source as it is called in every folder.
-fn anywhere(source: &Source) -> Source {
+/// A source with an absolute path, which is valid in every folder.
+fn absolute_source(source: &Source) -> Source {
     match source {
         Source::File(path) => Source::File(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
         shape => shape.clone(),

@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::commands::{GESTURES, all};
 
-/// Points that the list leaves free above and below it, so that all of its window is in sight.
+/// Points that the list leaves free above and below it, so that its whole window fits on the screen.
 const MARGIN: f32 = 120.0;
 
 impl App {

@@ -1,4 +1,4 @@
-//! The keys, which are those of the table of commands.
+//! Keyboard shortcuts, as the table of commands lists them.
 
 use egui::{Event, Key, KeyboardShortcut};
 
@@ -6,8 +6,8 @@ use crate::app::App;
 use crate::commands::{Action, Command, FileAction, all};
 
 impl App {
-    /// Gives the commands whose keys were pressed. Those that work while text is typed come first: one that asks for something
-    /// takes what was typed after it.
+    /// Performs the commands whose keys were pressed. Commands that work while text is typed come first, because those that
+    /// open a text field take the keys that were pressed after them.
     pub(in crate::app) fn shortcuts(&mut self, context: &egui::Context) {
         let is_press = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
         if !context.input(|input| input.events.iter().any(is_press)) {
@@ -29,9 +29,9 @@ impl App {
         }
     }
 
-    /// Gives a command as often as its keys were pressed.
+    /// Performs a command as often as its keys were pressed.
     fn press(&mut self, context: &egui::Context, command: &Command) {
-        // A list that is open takes its keys itself, also before one of its entries has the focus.
+        // An open list handles its keys itself, even before one of its entries has the focus.
         let is_in_list = command.yields_to_focus() || command.action == Action::Cancel;
         let has_focus = command.yields_to_focus() && context.memory(|memory| memory.focused().is_some());
         if has_focus || (is_in_list && egui::Popup::is_any_open(context)) {
@@ -48,14 +48,14 @@ impl App {
     }
 }
 
-/// Where a shortcut was pressed among what comes in this frame. A press with a modifier is taken out, so that nothing else
-/// acts on it.
+/// Returns the indices of a shortcut's presses among this frame's events. Presses with a modifier are removed, so that
+/// nothing else acts on them.
 fn take_presses(context: &egui::Context, shortcut: &KeyboardShortcut) -> Vec<usize> {
     context.input_mut(|input| {
         let is_it = |event: &Event| is_press_of(event, shortcut);
         let mut places: Vec<usize> = (0..input.events.len()).filter(|&place| is_it(&input.events[place])).collect();
         if shortcut.modifiers.any() {
-            // Each that is taken out moves those behind it forward.
+            // Each removed event moves those behind it forward.
             places.iter_mut().enumerate().for_each(|(taken, place)| *place -= taken);
             input.events.retain(|event| !is_it(event));
         }
@@ -63,7 +63,7 @@ fn take_presses(context: &egui::Context, shortcut: &KeyboardShortcut) -> Vec<usi
     })
 }
 
-/// Shift may be needed to type plus itself, so that it doesn't matter there.
+/// Some keyboards need Shift to type a plus, so Shift is ignored for that key.
 fn is_press_of(event: &Event, shortcut: &KeyboardShortcut) -> bool {
     let Event::Key { key, pressed: true, modifiers, .. } = event else { return false };
     let wanted = shortcut.modifiers;
@@ -91,7 +91,7 @@ mod tests {
         assert!(is_press_of(&press(Key::Z, ctrl), &undo));
         assert!(
             is_press_of(&press(Key::Z, Modifiers::CTRL.plus(Modifiers::COMMAND)), &undo),
-            "as a PC's keyboard says it"
+            "a PC's keyboard reports Ctrl as both"
         );
         for other in [Modifiers::NONE, Modifiers::SHIFT, both, Modifiers::ALT.plus(ctrl)] {
             assert!(!is_press_of(&press(Key::Z, other), &undo), "{other:?}");
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn presses_with_a_modifier_are_taken_out_where_they_were() {
+    fn presses_with_a_modifier_are_removed_and_their_positions_returned() {
         let context = egui::Context::default();
         let open = KeyboardShortcut::new(Modifiers::COMMAND, Key::L);
         let letter = || Event::Text("a".into());

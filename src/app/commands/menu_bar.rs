@@ -23,7 +23,7 @@ impl App {
         });
     }
 
-    /// The commands of a menu, with a line between its groups, and its lists at the ends of theirs.
+    /// The commands of a menu, with a line between groups. Submenus come at the ends of their groups.
     fn menu(&mut self, ui: &mut egui::Ui, menu: Menu) {
         let now = self.availability();
         let commands = all(&now);
@@ -52,7 +52,7 @@ impl App {
         }
     }
 
-    /// A command in a menu; true when it is chosen.
+    /// Shows a command in a menu. Returns true if it is chosen.
     fn menu_entry(&self, ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
         let why_not = command.why_not(now);
         let key = command.keys.first().map(|key| ui.ctx().format_shortcut(key)).unwrap_or_default();
@@ -62,7 +62,7 @@ impl App {
             None if key.is_empty() => ui.button(&*command.name),
             None => ui.add(egui::Button::new(&*command.name).shortcut_text(&key)),
         });
-        // A switch has no room for its key.
+        // A checkbox can't show its key, so the hover text does.
         let text = match (self.is_on(ui.ctx(), &command.action), key.is_empty()) {
             (Some(_), false) => format!("{} ({key})", command.text),
             _ => command.text.to_string(),
@@ -71,7 +71,7 @@ impl App {
         response.clicked()
     }
 
-    /// Whether a command that switches something has it on; none for one that doesn't.
+    /// Whether a command that switches something is on; none for other commands.
     fn is_on(&self, context: &egui::Context, action: &Action) -> Option<bool> {
         match action {
             Action::Camera(CameraAction::Orthographic) => Some(self.viewport.camera.orthographic),
@@ -82,7 +82,7 @@ impl App {
     }
 }
 
-/// A list that a menu opens; the command that is chosen in it.
+/// Shows a submenu. Returns the command that is chosen in it.
 fn submenu_entries<'a>(ui: &mut egui::Ui, submenu: Submenu, commands: &'a [Command]) -> Option<&'a Command> {
     let entries: Vec<_> = commands.iter().filter(|command| command.place == Some(Place::Submenu(submenu))).collect();
     let show = |ui: &mut egui::Ui| {
@@ -99,7 +99,7 @@ fn entry(ui: &mut egui::Ui, command: &Command) -> bool {
     ui.add(button).on_hover_text(&*command.text).clicked()
 }
 
-/// A file by its name, and the folder that it is in.
+/// A button with a file's name and its folder.
 fn recent_button(path: &Path) -> egui::Button<'static> {
     const NAME: usize = 48;
     const FOLDER: usize = 32;

@@ -1,5 +1,5 @@
-//! How a person gives commands: the menus, the keys and the search, all made from the table in [`crate::commands`]; and
-//! what the window does then.
+//! The menus, keys and search that give commands, all made from the table in [`crate::commands`], and what each command
+//! does.
 
 mod copy_command;
 mod key_list;
@@ -11,14 +11,14 @@ mod perform;
 use crate::commands::Action;
 use palette::Palette;
 
-/// Windows of commands that are open.
+/// The open windows that belong to commands.
 #[derive(Default)]
 pub(super) struct Commands {
     pub shows_keys: bool,
-    /// While commands are searched.
+    /// The search for a command, while it is open.
     pub palette: Option<Palette>,
     /// The command line that was copied, while it is shown.
     pub copied: Option<String>,
-    /// What was last performed.
+    /// The action that was performed last.
     pub last: Option<Action>,
 }

@@ -5,20 +5,21 @@ use egui::{Button, Context, Key, TextEdit};
 use crate::app::App;
 use crate::commands::{Availability, Command, all};
 
-/// Commands that are listed at once.
+/// How many commands are listed at once.
 const LISTED: usize = 14;
 
 /// The search, while it is open.
 pub(crate) struct Palette {
     query: String,
-    /// Which of the commands found is chosen with Enter.
+    /// The index, among the commands found, of the one that Enter chooses.
     at: usize,
     commands: Vec<Command>,
-    /// When it was opened: what was possible then.
+    /// What was possible when the search was opened.
     now: Availability,
 }
 
-/// Those whose names have every word of the query, in any case; where words of names begin with its words first.
+/// Returns the commands whose names contain every word of the query, ignoring case. Those where the query's words begin
+/// words of the name come first.
 fn found(commands: &[Command], query: &str) -> Vec<usize> {
     let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();
     let begins = |name: &str, word: &String| {
@@ -38,9 +39,9 @@ fn found(commands: &[Command], query: &str) -> Vec<usize> {
 }
 
 impl Palette {
-    /// The command that was chosen, if one was.
+    /// Shows the search field and the list. Returns the command that is chosen.
     fn rows(&mut self, ui: &mut egui::Ui) -> Option<usize> {
-        // The keys that go through the list aren't for the field.
+        // The keys that move through the list must not reach the text field.
         let [down, up, enter] = [Key::ArrowDown, Key::ArrowUp, Key::Enter]
             .map(|key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key)));
         let label = ui.label("Search commands");
@@ -59,7 +60,7 @@ impl Palette {
             }
         }
         if found.is_empty() {
-            ui.weak("No command has these words.");
+            ui.weak("No command's name has these words.");
         }
         chosen
     }
@@ -68,7 +69,7 @@ impl Palette {
         self.commands[index].why_not(&self.now).is_none()
     }
 
-    /// A command with its key, dim where it isn't possible; true when it is clicked.
+    /// Shows a command with its key, dim if it isn't possible. Returns true if it is clicked.
     fn row(&self, ui: &mut egui::Ui, index: usize, is_selected: bool) -> bool {
         let command = &self.commands[index];
         let why_not = command.why_not(&self.now);
@@ -119,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn every_word_must_be_there_and_beginnings_come_first() {
+    fn every_word_must_match_and_beginnings_of_words_come_first() {
         assert_eq!(names("", usize::MAX).len(), all(&Availability::default()).len());
         assert_eq!(names("FRAC odd", 9), ["Partitioning: Fractional odd"]);
         assert_eq!(names("frame", 9), ["Frame", "Frame patch", "Overlay: Wireframe"]);
@@ -129,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_key_is_found_too() {
+    fn commands_without_a_key_are_found() {
         for (query, name) in [
             ("factor up", "Factor up"),
             ("weld 1e-5", "Weld: 1e-5"),

@@ -1,4 +1,4 @@
-//! What each command does, and what there is that decides whether it is possible.
+//! What each command does, and the state that decides which commands are possible.
 
 use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
@@ -17,7 +17,7 @@ impl App {
         self.commands.last.as_ref()
     }
 
-    /// What there is now, on which it depends which commands are possible.
+    /// The state that decides which commands are possible.
     pub fn availability(&self) -> Availability {
         let lod = self.settings.tessellation.used_lod();
         Availability {
@@ -101,7 +101,7 @@ impl App {
         }
     }
 
-    /// Loads the mesh again with something else made of it, unless that is what it has.
+    /// Loads the mesh again with another preparation, unless it has that preparation already.
     fn prepare_as(&mut self, context: &Context, preparing: Preparing) {
         let before = self.preparation();
         let mut after = before.clone();
@@ -116,7 +116,7 @@ impl App {
         }
     }
 
-    /// Sets what the window first opened with; whether the mesh is displaced is the mesh's.
+    /// Goes back to the settings of a first start. Whether displacement is on depends on the mesh, so it stays.
     fn reset_settings(&mut self) {
         self.settings = Settings::opening().with(Tessellation {
             displacement: self.settings.tessellation.displacement,
@@ -124,8 +124,8 @@ impl App {
         });
     }
 
-    /// Stops or closes what is most in the way: what was just opened, or else a long drawing, or else everything that is
-    /// under way or over the window, and the selection.
+    /// Closes the small windows that a command opened; or if there are none, stops a long drawing; or if there is none,
+    /// stops all jobs, closes all messages and clears the selection.
     fn cancel(&mut self) {
         let asked = std::mem::take(&mut self.dialogs.asks_to_forget);
         let chose = std::mem::take(&mut self.dialogs.chooses_background);

@@ -1,4 +1,4 @@
-//! The desktop's file dialogs. Where there are none, rfd says so nowhere but in its log: this listens there.
+//! The desktop's file dialogs. rfd reports a missing dialog only in its log, so this listens to the log.
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -6,21 +6,21 @@ use std::sync::Once;
 
 use log::{Level, LevelFilter, Log, Metadata, Record};
 
-/// What came of a dialog.
+/// The outcome of a dialog.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     Chosen(PathBuf),
     Cancelled,
-    /// It wasn't shown: no portal answers on the session's bus, and zenity isn't there either.
+    /// No dialog could be shown: no portal answers on the session's bus, and zenity isn't installed.
     NoDialog,
 }
 
-/// Shows a dialog, and waits for it.
-pub(super) fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
+/// Shows a dialog, and waits for its answer.
+pub fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
     static LISTENS: Once = Once::new();
     LISTENS.call_once(|| {
-        // Another listener would have been there first: then a dialog that isn't shown looks like one that was cancelled.
-        if log::set_logger(&Ear).is_ok() {
+        // If another logger is set already, a missing dialog looks like a cancelled one.
+        if log::set_logger(&DialogLog).is_ok() {
             log::set_max_level(LevelFilter::Error);
         }
     });
@@ -33,13 +33,13 @@ pub(super) fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
 }
 
 thread_local! {
-    /// Whether rfd said on this thread that its last resort, zenity, isn't there.
+    /// Whether rfd has logged on this thread that zenity, which it tries last, is missing.
     static IS_MISSING: Cell<bool> = const { Cell::new(false) };
 }
 
-struct Ear;
+struct DialogLog;
 
-impl Log for Ear {
+impl Log for DialogLog {
     fn enabled(&self, metadata: &Metadata) -> bool {
         metadata.level() == Level::Error && metadata.target().starts_with("rfd")
     }
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dialog_that_is_not_there_is_told_from_one_that_was_cancelled() {
+    fn a_missing_dialog_is_told_from_a_cancelled_one() {
         let missing = || {
             log::error!(target: "rfd::backend", "Failed to pick file with zenity: No such file or directory");
             None
@@ -68,7 +68,7 @@ mod tests {
             None
         };
         assert_eq!(ask(missing), Asked::NoDialog);
-        assert_eq!(ask(no_portal), Asked::Cancelled, "zenity was shown after that");
+        assert_eq!(ask(no_portal), Asked::Cancelled, "rfd shows zenity after that");
         assert_eq!(ask(|| Some("a.glb".into())), Asked::Chosen("a.glb".into()));
     }
 }

@@ -1,4 +1,4 @@
-//! The small windows over everything, and the desktop's file dialogs.
+//! The small windows over the main window, and the desktop's file dialogs.
 
 mod background;
 mod desktop_dialog;
@@ -15,12 +15,12 @@ pub(super) struct Dialogs {
     pub pending: Option<PendingDialog>,
     /// The path that is being typed, while that window is open.
     pub typed_path: Option<TypedPath>,
-    /// What went wrong last, until it is closed.
+    /// The last error, until its window is closed.
     pub error: Option<String>,
-    /// What was written where, until it is closed.
+    /// A message about a file that was written, until its window is closed.
     pub notice: Option<String>,
-    /// Whether the colour behind the mesh is being chosen.
+    /// Whether the window for the background colour is open.
     pub chooses_background: bool,
-    /// Whether it is asked if everything is to be forgotten.
+    /// Whether the window that asks before everything is forgotten is open.
     pub asks_to_forget: bool,
 }

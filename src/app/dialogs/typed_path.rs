@@ -1,4 +1,4 @@
-//! A path that is typed: the window that takes it, and keys that come before its field has the focus.
+//! The window in which a path is typed. Keys that are pressed before its text field has the focus are kept for it.
 
 use std::path::Path;
 
@@ -26,9 +26,9 @@ pub(crate) enum Purpose {
 pub(crate) struct TypedPath {
     purpose: Purpose,
     path: String,
-    /// Why it is to be typed, if something else was asked for.
+    /// Why the path must be typed, if a dialog was asked for.
     why: Option<&'static str>,
-    /// What was typed before the field had the focus; none once it has had it.
+    /// Events of keys that were pressed before the field had the focus; none once it has had the focus.
     early: Option<Vec<Event>>,
 }
 
@@ -38,11 +38,11 @@ pub(crate) struct PendingDialog {
     pub job: BackgroundJob<Asked>,
     /// When it was asked for, on the window's clock in s.
     pub since: f64,
-    /// What was typed since, for the field that is there if no dialog is.
+    /// Events of keys that were pressed since, for the text field that replaces a missing dialog.
     pub early: Vec<Event>,
 }
 
-/// How soon a dialog that isn't there is known not to be, in s; until then nothing acts on what is typed.
+/// How long it takes at most to know that there is no dialog, in s. Until then, keys are kept back.
 const SOON: f64 = 0.5;
 
 impl PendingDialog {
@@ -52,7 +52,7 @@ impl PendingDialog {
 }
 
 /// Why a path is typed where a dialog was asked for.
-const NO_DIALOG: &str = "This desktop has no file dialog (no portal, no zenity): type the path.";
+const NO_DIALOG: &str = "This desktop has no file dialog (neither a portal nor zenity). Type the path instead.";
 
 impl Purpose {
     fn title(self) -> &'static str {
@@ -66,7 +66,7 @@ impl Purpose {
         }
     }
 
-    /// What may be typed.
+    /// The kinds of file that can be typed.
     fn takes(self) -> &'static str {
         match self {
             Self::Open => "A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, or a height image (.png, .jpg)",
@@ -86,7 +86,7 @@ impl Purpose {
         }
     }
 
-    /// What is there before anything is typed.
+    /// The path that the text field starts with.
     fn proposed(self, open: Option<&Source>) -> String {
         let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
         match (self, open) {
@@ -104,14 +104,14 @@ pub(crate) fn absolute(name: &str) -> String {
     std::path::absolute(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }
 
-/// The name of a file that is made of a mesh of this title: without the title's own ending, and with this one.
-pub(crate) fn name_beside(title: &str, ending: &str) -> String {
+/// The name of a file that is made from a mesh with this title: the title's ending is replaced by `ending`.
+pub fn name_beside(title: &str, ending: &str) -> String {
     let stem = Path::new(title).file_stem().unwrap_or_default().to_string_lossy();
-    // A shape's title has a colon, which isn't for file names everywhere.
+    // A shape's title has a colon, which some systems forbid in file names.
     stem.replace([':', '@', ' '], "-") + ending
 }
 
-/// What a person does in the window.
+/// The button that was pressed.
 enum Answer {
     Accept,
     Cancel,
@@ -136,7 +136,7 @@ impl TypedPath {
             response.request_focus();
         }
         if self.early.is_some() {
-            // What is typed takes the place of what is there.
+            // Everything is selected, so that typing replaces it.
             let all = CCursorRange::two(CCursor::new(0), CCursor::new(self.path.chars().count()));
             let mut state = TextEdit::load_state(ui.ctx(), response.id).unwrap_or_default();
             state.cursor.set_char_range(Some(all));
@@ -155,12 +155,12 @@ impl TypedPath {
 }
 
 impl App {
-    /// The window that takes a path, by its title, and why it is there if something else was asked for.
+    /// The title of the window in which a path is typed, and why it is shown if a dialog was asked for.
     pub fn path_asked_for(&self) -> Option<(&'static str, Option<&'static str>)> {
         self.dialogs.typed_path.as_ref().map(|typed| (typed.purpose.title(), typed.why))
     }
 
-    /// Opens the window that takes a path, with one to begin with in it.
+    /// Opens the window in which a path is typed, with a proposed path.
     pub(in crate::app) fn type_path(&mut self, purpose: Purpose) {
         if self.dialogs.typed_path.as_ref().is_some_and(|typed| typed.purpose == purpose) {
             return;
@@ -169,7 +169,7 @@ impl App {
         self.dialogs.typed_path = Some(TypedPath { purpose, path, why: None, early: Some(Vec::new()) });
     }
 
-    /// The same where there is no dialog to choose it in.
+    /// The same, if the desktop has no dialog.
     fn type_path_instead(&mut self, purpose: Purpose, early: Vec<Event>) {
         self.type_path(purpose);
         if let Some(typed) = &mut self.dialogs.typed_path {
@@ -178,7 +178,7 @@ impl App {
         }
     }
 
-    /// What was typed from a place on, after a key that asks for a path, is for the field.
+    /// Keeps the keys of this frame from event `place` on for the text field: they were pressed after the key that opened it.
     pub(in crate::app) fn hold_from(&mut self, context: &egui::Context, place: usize) {
         let dialog =
             self.dialogs.pending.as_mut().filter(|dialog| dialog.is_new(context)).map(|dialog| &mut dialog.early);
@@ -188,7 +188,7 @@ impl App {
         }
     }
 
-    /// Keeps what is typed until the path's field has the focus, or a dialog is there, so that nothing else acts on it.
+    /// Keeps keys back until the text field has the focus or a dialog is shown, so that nothing else acts on them.
     pub(in crate::app) fn hold_typing(&mut self, context: &egui::Context) {
         if let Some(dialog) = self.dialogs.pending.as_mut().filter(|dialog| dialog.is_new(context)) {
             return dialog.early.extend(take_typing(context, 0));
@@ -216,9 +216,9 @@ impl App {
         let Some(TypedPath { purpose, path, .. }) = &self.dialogs.typed_path else { return };
         let (purpose, path) = (*purpose, path.trim());
         let taken = match purpose {
-            // Nobody was asked whether a file that is there is to be replaced.
+            // This window doesn't ask before it replaces a file, so it never does.
             Purpose::SaveChart | Purpose::SavePicture | Purpose::ExportMesh if Path::new(path).exists() => {
-                Err(format!("{} is there already: choose another name", shown_path(Path::new(path))))
+                Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
             Purpose::SaveChart | Purpose::SavePicture | Purpose::ExportMesh => {
                 self.take_source(context, purpose, Source::File(path.into()))
@@ -234,10 +234,10 @@ impl App {
         }
     }
 
-    /// Does what the path was asked for.
+    /// Opens or writes the file that was chosen.
     ///
     /// # Errors
-    /// No such file can be written, in a sentence.
+    /// Why the file can't be written, in a sentence.
     fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) -> Result<(), String> {
         match (purpose, source) {
             (Purpose::Truth, source) => self.open_truth(context, source),
@@ -250,7 +250,7 @@ impl App {
         Ok(())
     }
 
-    /// Takes what was chosen in the desktop's dialog, or asks for it to be typed where there is none.
+    /// Takes the answer of the desktop's dialog, or opens the window to type a path if there is no dialog.
     pub(in crate::app) fn take_dialog(&mut self, context: &egui::Context) {
         let Some(ended) = self.dialogs.pending.as_ref().and_then(|dialog| dialog.job.take()) else { return };
         let Some(PendingDialog { purpose, early, .. }) = self.dialogs.pending.take() else { return };
@@ -269,12 +269,12 @@ impl App {
     }
 }
 
-/// The field, wherever it is shown.
+/// The id of the text field.
 fn field() -> Id {
     Id::unique("typed path")
 }
 
-/// Takes keys and text out of what comes in this frame, from a place on.
+/// Removes keys and text from this frame's events, from an index on, and returns them.
 fn take_typing(context: &egui::Context, from: usize) -> Vec<Event> {
     let is_typing =
         |event: &Event| matches!(event, Event::Text(_) | Event::Key { .. } | Event::Paste(_) | Event::Ime(_));

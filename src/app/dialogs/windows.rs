@@ -1,4 +1,4 @@
-//! The small windows over everything, and the desktop's file dialog.
+//! The small windows over the main window, and the desktop's file dialog.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ impl App {
     }
 
     pub(in crate::app) fn truth_dialog(&mut self, context: &egui::Context) {
-        self.dialog(Purpose::Truth, context, || meshes("Choose what the mesh should have been").pick_file());
+        self.dialog(Purpose::Truth, context, || meshes("Choose a reference surface").pick_file());
     }
 
     /// Asks where the picture is to be saved.
@@ -35,12 +35,12 @@ impl App {
         });
     }
 
-    /// The name of a file that is made of the mesh.
+    /// The proposed name of a file that is made from the mesh.
     fn proposed_name(&self, ending: &str) -> String {
         self.source().map_or_else(|| format!("mesh{ending}"), |source| name_beside(&source.title(), ending))
     }
 
-    /// The desktop's file dialog, on a thread of its own.
+    /// Opens the desktop's file dialog on a thread of its own.
     pub(in crate::app) fn dialog(
         &mut self,
         purpose: Purpose,
@@ -54,7 +54,7 @@ impl App {
         }
     }
 
-    /// What lies over everything.
+    /// Shows the small windows that are open.
     pub(in crate::app) fn windows(&mut self, context: &egui::Context) {
         self.path_window(context);
         self.keys_window(context);
@@ -65,7 +65,7 @@ impl App {
         self.message_window(context);
     }
 
-    /// What went wrong, or what was written, until it is closed.
+    /// Shows the last error, or the last file that was written, until it is closed.
     fn message_window(&mut self, context: &egui::Context) {
         let (title, text) = match (&self.dialogs.error, &self.dialogs.notice) {
             (Some(error), _) => ("Problem", error),

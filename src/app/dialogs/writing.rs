@@ -15,10 +15,10 @@ impl App {
         self.jobs.export.is_some() || self.jobs.picture_file.is_some()
     }
 
-    /// Writes the picture in the middle, without what is written over it, as a PNG file.
+    /// Writes the viewport's picture, without the texts over it, as a PNG file.
     ///
     /// # Errors
-    /// The path ends otherwise, nothing is drawn yet, or the device was lost; in a sentence.
+    /// The path doesn't end in .png, nothing is drawn yet, or the device was lost; as a sentence.
     pub fn save_picture(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
         if ending(&path) != "png" {
             return Err(format!("{}: the name must end in .png", shown_path(&path)));
@@ -33,10 +33,10 @@ impl App {
         Ok(())
     }
 
-    /// Writes what is emitted for this view, or for the frozen one, as a .glb or .obj file beside the window.
+    /// Starts to write the mesh that is emitted for this view, or for the frozen one, as a .glb or .obj file.
     ///
     /// # Errors
-    /// The path ends otherwise; in a sentence.
+    /// The path has another ending; as a sentence.
     pub fn export_mesh(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
         Exported::check(&path, 0, 0).map_err(|error| error.to_string())?;
         let Some(document) = &self.document else { return Ok(()) };
@@ -46,7 +46,7 @@ impl App {
         Ok(())
     }
 
-    /// Says what was written, or why nothing was.
+    /// Shows what was written, or why it couldn't be.
     pub(in crate::app) fn take_written(&mut self) {
         let exported = self.jobs.export.as_ref().and_then(ExportJob::take);
         if let Some(ended) = exported {

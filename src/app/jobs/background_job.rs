@@ -1,5 +1,5 @@
-//! Jobs beside the window, on threads of their own. One that panics ends alone: it becomes a sentence, and the window stays
-//! as it is.
+//! Jobs that run on threads of their own while the window goes on. A job that panics ends with an error; the window isn't
+//! affected.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,10 +10,10 @@ use thiserror::Error;
 
 use crate::app::text::shortened;
 
-/// Characters that are said of why, at most.
+/// The greatest length of a panic's message that is shown, in characters.
 const MAX_REASON: usize = 200;
 
-/// Why a job came to no end.
+/// Why a job ended without a result.
 #[derive(Debug, Error)]
 #[error("stopped unexpectedly ({0})")]
 pub(crate) struct Stopped(String);
@@ -22,36 +22,36 @@ pub(crate) struct Stopped(String);
 pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 
 impl<T: Send + 'static> BackgroundJob<T> {
-    /// Starts a job; the window is repainted when it ends, however it does.
-    pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
+    /// Starts a job. The window is repainted when it ends, even if it panics.
+    pub fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
         let (sender, done) = channel();
         let context = context.clone();
         spawn(move || {
-            // Nobody is waiting any more if it isn't wanted by now.
+            // The receiver is gone if the result is no longer wanted.
             let _ = sender.send(caught(job));
             context.request_repaint();
         });
         Self(done)
     }
 
-    /// What came of it, once it has ended: then it has nothing more to say.
-    pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
+    /// Returns the result once the job has ended. Must not be called again after that.
+    pub fn take(&self) -> Option<Result<T, Stopped>> {
         match self.0.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
-            // Without a thread the sender is gone as well.
-            Err(TryRecvError::Disconnected) => Some(Err(Stopped("the system gives no more threads".into()))),
+            // If no thread could be started, the sender was dropped.
+            Err(TryRecvError::Disconnected) => Some(Err(Stopped("the system can't start another thread".into()))),
         }
     }
 }
 
 impl<T: Send + 'static> BackgroundJob<T> {
-    /// The same job, which repaints another window when it ends.
-    pub(crate) fn waking(self, context: &egui::Context) -> Self {
+    /// Returns the same job, which repaints another window when it ends.
+    pub fn waking(self, context: &egui::Context) -> Self {
         let (sender, done) = channel();
         let context = context.clone();
         spawn(move || {
-            // Without a result there was no thread: then this one ends without as well.
+            // There is no result if the job's thread could not be started; then there is none here either.
             if let Ok(result) = self.0.recv() {
                 let _ = sender.send(result);
             }
@@ -69,23 +69,23 @@ impl<T> BackgroundJob<T> {
     }
 }
 
-/// A thread; none if the system gives no more.
-pub(crate) fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+/// Starts a thread. Returns none if the system refuses.
+pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
     std::thread::Builder::new().spawn(job).ok()
 }
 
 /// Runs a job that may panic.
 ///
 /// # Errors
-/// It did: why, in its own words.
-pub(crate) fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
-    // What it leaves half done is dropped with it: jobs share nothing with the window but what they send.
+/// The panic's message.
+pub fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
+    // A panic can't leave shared state half changed: jobs share nothing with the window but what they send.
     catch_unwind(AssertUnwindSafe(job)).map_err(|panic| Stopped(words(panic.as_ref())))
 }
 
 fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    let first = text.and_then(|text| text.lines().next()).unwrap_or("for no reason that it gave");
+    let first = text.and_then(|text| text.lines().next()).unwrap_or("no reason given");
     shortened(first, MAX_REASON)
 }
 
@@ -97,7 +97,7 @@ mod tests {
 
     use super::*;
 
-    /// What a job came to, and how often the window was asked to repaint.
+    /// A job's result, and how often the window was asked to repaint.
     fn ended<T: Send + 'static>(job: impl FnOnce() -> T + Send + 'static) -> (Result<T, Stopped>, usize) {
         let context = egui::Context::default();
         let repaints = Arc::new(AtomicUsize::new(0));
@@ -106,7 +106,7 @@ mod tests {
             counted.fetch_add(1, Ordering::SeqCst);
         });
         let (beside, start) = (BackgroundJob::start(&context, job), Instant::now());
-        // The result is there by the time that the window is asked to look.
+        // The result is sent before the window is asked to repaint.
         while repaints.load(Ordering::SeqCst) == 0 {
             assert!(start.elapsed() < Duration::from_secs(30), "it hasn't ended");
             std::thread::sleep(Duration::from_millis(1));
@@ -115,13 +115,13 @@ mod tests {
     }
 
     #[test]
-    fn a_job_gives_what_it_made_and_wakes_the_window() {
+    fn a_job_returns_its_result_and_repaints_the_window() {
         let (result, repaints) = ended(|| 6 * 7);
         assert_eq!((result.ok(), repaints), (Some(42), 1));
     }
 
     #[test]
-    fn a_job_that_moves_to_another_window_wakes_that() {
+    fn a_job_that_moves_to_another_window_repaints_that_window() {
         let (go, wait) = channel::<()>();
         let first = egui::Context::default();
         let job = BackgroundJob::start(&first, move || wait.recv().is_ok());
@@ -137,13 +137,13 @@ mod tests {
     }
 
     #[test]
-    fn a_job_that_panics_becomes_a_sentence_and_wakes_the_window() {
+    fn a_job_that_panics_returns_its_message_and_repaints_the_window() {
         let (result, repaints) = ended(|| [1, 2, 3][std::hint::black_box(5)]);
         let said = result.expect_err("it panicked").to_string();
         assert_eq!(said, "stopped unexpectedly (index out of bounds: the len is 3 but the index is 5)");
         assert_eq!(repaints, 1);
         let (result, _) = ended(|| std::panic::panic_any(7));
-        assert!(result.is_err_and(|stopped: Stopped| stopped.to_string().ends_with("(for no reason that it gave)")));
+        assert!(result.is_err_and(|stopped: Stopped| stopped.to_string().ends_with("(no reason given)")));
         let long = caught(|| panic!("{}\nand more", "x".repeat(1000))).expect_err("it panicked").to_string();
         assert!(long.chars().count() < 240 && !long.contains("more"), "{long}");
     }

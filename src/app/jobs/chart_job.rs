@@ -1,5 +1,5 @@
-//! Settings tried beside the window for its chart: on a thread of its own, and on a device of its own, so that neither
-//! waits for the other.
+//! Measures settings for the window's chart, on a thread and a device of its own, so that neither the window nor the
+//! measurement waits for the other.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,17 +17,17 @@ use crate::render::{Camera, Target};
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::truth::Truth;
 
-/// What points of a chart are about, besides the settings that they are of.
+/// What all points of a chart have in common: mesh, pose, reference surface, view and settings that aren't tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Of {
+pub struct ChartBasis {
     pub document: u64,
     pub moment: Option<Moment>,
-    /// Tells one truth from the next.
+    /// Counts reference surfaces; see [`App::yardstick`](crate::app::App).
     pub truth: u64,
     pub camera: Camera,
-    /// Of the view, in px.
+    /// Width and height of the view, in px.
     pub size: [u32; 2],
-    /// What all settings that are tried have in common.
+    /// The settings that aren't varied.
     pub base: Settings,
 }
 
@@ -35,42 +35,42 @@ pub(crate) struct Of {
 pub(crate) struct Job {
     pub adapter: wgpu::Adapter,
     pub loaded: Loaded,
-    pub of: Of,
+    pub of: ChartBasis,
     pub truth: Option<Arc<Truth>>,
-    /// What the window has, if the list doesn't.
+    /// The window's settings, if the list doesn't have them.
     pub current: Option<Settings>,
     pub settings: Vec<Setting>,
     pub effort: Effort,
 }
 
-/// What is known.
-pub(crate) struct Charted {
-    pub of: Of,
+/// The results so far.
+pub struct Charted {
+    pub of: ChartBasis,
     pub subject: Subject,
-    /// Settings of more triangles than are measured.
+    /// Settings that have too many triangles to be measured.
     pub left_out: Vec<Setting>,
-    /// The truth's bounding diagonal, in object units, of which errors are parts.
+    /// The diagonal of the reference surface's bounding box, in object units. Errors are parts of it.
     pub diagonal: Option<f64>,
-    /// What the window had when it was last measured beside the list; nothing if those were too many triangles.
+    /// The window's settings that were last measured beside the list; without a result if they have too many triangles.
     pub current: Option<(Settings, Option<Probe>)>,
 }
 
 impl Charted {
-    pub(crate) fn new(of: Of, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
+    pub fn new(of: ChartBasis, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
         let (diagonal, truth) = truth.map(|(truth, words)| (truth.diagonal(), words)).unzip();
         let subject = Subject { title, truth, adapter, size: of.size, rows: Vec::new() };
         Self { of, subject, left_out: Vec::new(), diagonal, current: None }
     }
 
-    /// Takes a row to its place among those of its method, from coarse to fine.
+    /// Inserts a row among those of its method, which go from coarse to fine.
     fn add(&mut self, row: Row) {
         let rows = &mut self.subject.rows;
         let finer = rows.iter().position(|other| other.setting.is_finer(&row.setting));
         rows.insert(finer.unwrap_or(rows.len()), row);
     }
 
-    /// Whether this setting was tried.
-    pub(crate) fn has(&self, setting: &Setting) -> bool {
+    /// Whether this setting was measured or left out.
+    pub fn has(&self, setting: &Setting) -> bool {
         self.left_out.contains(setting) || self.row(setting).is_some()
     }
 
@@ -79,7 +79,7 @@ impl Charted {
     }
 }
 
-/// Runs, one at a time.
+/// Measures one list of settings at a time.
 #[derive(Default)]
 pub(crate) struct ChartJob {
     /// Kept while the chart is open, because making its pipelines takes longer than measuring a setting.
@@ -92,9 +92,9 @@ pub(crate) struct ChartJob {
 
 /// A run under way; dropping it cancels it.
 struct Running {
-    found: Receiver<Found>,
+    found: Receiver<ChartMessage>,
     wanted: Progress,
-    /// While this is set nothing new is tried.
+    /// While this is set, no new setting is measured.
     held: Arc<AtomicBool>,
     done: usize,
     all: usize,
@@ -106,7 +106,7 @@ impl Drop for Running {
     }
 }
 
-enum Found {
+enum ChartMessage {
     Engine(Box<Engine>),
     Row(Box<Row>),
     LeftOut(Setting),
@@ -116,13 +116,13 @@ enum Found {
 }
 
 impl ChartJob {
-    /// How many settings were tried, and how many there are, while they are.
-    pub(crate) fn progress(&self) -> Option<(usize, usize)> {
+    /// How many settings are done, and how many there are; none if no run is under way.
+    pub fn progress(&self) -> Option<(usize, usize)> {
         self.running.as_ref().map(|running| (running.done, running.all))
     }
 
-    /// Starts a run, whose results go into what is known.
-    pub(crate) fn start(&mut self, context: &egui::Context, job: Job) {
+    /// Starts a run, whose results are added to those so far.
+    pub fn start(&mut self, context: &egui::Context, job: Job) {
         self.stop();
         let (sender, found) = channel();
         let (wanted, held) = (Progress::new(), Arc::new(AtomicBool::new(false)));
@@ -131,21 +131,21 @@ impl ChartJob {
         let worker = Worker { sender, wanted: wanted.clone(), held: held.clone(), context };
         self.running = Some(Running { found, wanted, held, done: 0, all });
         self.last = spawn(move || {
-            // One that failed has said so.
+            // If the last run failed, it has reported that itself.
             let _ = last.map(JoinHandle::join);
             let failed = match caught(|| worker.run(job, engine)) {
                 Ok(run) => run.err().map(|error| format!("The chart could not be measured: {error}")),
                 Err(stopped) => Some(format!("Measuring the chart {stopped}")),
             };
             if let Some(why) = failed {
-                worker.say(Found::Failed(why));
+                worker.say(ChartMessage::Failed(why));
             }
             worker.context.request_repaint();
         });
     }
 
-    /// Stops what is under way; what is known stays known.
-    pub(crate) fn stop(&mut self) {
+    /// Stops the run; its results so far stay.
+    pub fn stop(&mut self) {
         self.running = None;
     }
 
@@ -155,30 +155,30 @@ impl ChartJob {
         self.engine = None;
     }
 
-    /// Lets what is under way wait before it tries anything new, or go on.
-    pub(crate) fn hold(&self, hold: bool) {
+    /// Makes the run wait before its next setting, or lets it go on.
+    pub fn hold(&self, hold: bool) {
         if let Some(running) = &self.running {
             running.held.store(hold, Ordering::Relaxed);
         }
     }
 
-    /// Takes what has come in.
+    /// Takes the results that have come in.
     ///
     /// # Errors
-    /// The run has failed: why.
-    pub(crate) fn take(&mut self) -> Result<(), String> {
+    /// Why the run has failed.
+    pub fn take(&mut self) -> Result<(), String> {
         let Some(running) = &mut self.running else { return Ok(()) };
         let Some(charted) = &mut self.charted else { return Ok(()) };
         loop {
             match running.found.try_recv() {
-                Ok(Found::Engine(engine)) => {
+                Ok(ChartMessage::Engine(engine)) => {
                     self.engine = Some(*engine);
                     continue;
                 }
-                Ok(Found::Row(row)) => charted.add(*row),
-                Ok(Found::LeftOut(setting)) => charted.left_out.push(setting),
-                Ok(Found::Current(settings, probe)) => charted.current = Some((*settings, probe)),
-                Ok(Found::Failed(why)) => {
+                Ok(ChartMessage::Row(row)) => charted.add(*row),
+                Ok(ChartMessage::LeftOut(setting)) => charted.left_out.push(setting),
+                Ok(ChartMessage::Current(settings, probe)) => charted.current = Some((*settings, probe)),
+                Ok(ChartMessage::Failed(why)) => {
                     self.close();
                     return Err(why);
                 }
@@ -194,22 +194,22 @@ impl ChartJob {
     }
 }
 
-/// The thread's side.
+/// The state of the thread.
 struct Worker {
-    sender: Sender<Found>,
+    sender: Sender<ChartMessage>,
     wanted: Progress,
     held: Arc<AtomicBool>,
     context: egui::Context,
 }
 
 impl Worker {
-    fn say(&self, found: Found) {
-        // Nobody listens any more if the run was cancelled.
+    fn say(&self, found: ChartMessage) {
+        // The receiver is gone if the run was cancelled.
         let _ = self.sender.send(found);
         self.context.request_repaint();
     }
 
-    /// Waits while it is held; whether to go on then.
+    /// Waits while the run is held, and returns whether to go on.
     fn goes_on(&self) -> bool {
         while self.held.load(Ordering::Relaxed) && self.wanted.check().is_ok() {
             std::thread::sleep(Duration::from_millis(10));
@@ -222,9 +222,9 @@ impl Worker {
             Some(engine) => engine,
             None => Engine::new(Gpu::on(&job.adapter)?),
         };
-        self.say(Found::Engine(Box::new(engine.clone())));
-        let Of { moment, camera, size, base, .. } = job.of;
-        // As much as what is measured takes at most, in one piece.
+        self.say(ChartMessage::Engine(Box::new(engine.clone())));
+        let ChartBasis { moment, camera, size, base, .. } = job.of;
+        // Enough for the largest number of triangles that is measured, in one chunk.
         let mut scene = engine.scene(&job.loaded, ARENA_BYTES / 4)?;
         scene.frame_clip(moment.map(|moment| moment.clip));
         scene.set_moment(moment)?;
@@ -235,7 +235,7 @@ impl Worker {
         if let Some(settings) = job.current.filter(|_| self.goes_on()) {
             let probe = bench.probe(&settings)?;
             engine.gpu.check()?;
-            self.say(Found::Current(Box::new(settings), probe));
+            self.say(ChartMessage::Current(Box::new(settings), probe));
         }
         for setting in job.settings {
             if !self.goes_on() {
@@ -243,7 +243,7 @@ impl Worker {
             }
             let row = bench.measure(&setting)?;
             engine.gpu.check()?;
-            self.say(row.map_or(Found::LeftOut(setting), |row| Found::Row(Box::new(row))));
+            self.say(row.map_or(ChartMessage::LeftOut(setting), |row| ChartMessage::Row(Box::new(row))));
         }
         Ok(())
     }

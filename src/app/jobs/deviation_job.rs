@@ -1,4 +1,4 @@
-//! How far what is shown is from what it should have been, measured beside the window for the overlay.
+//! Measures the distance of what is shown from its reference surface, on a thread of its own, for the deviation overlay.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel, sync_channel};
 
@@ -10,34 +10,34 @@ use crate::progress::Progress;
 use crate::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
 use crate::tessellate::{PosedMesh, Surface};
 
-/// What is known about the distance to the truth.
+/// The measurement of the distance to the reference surface, and its last result.
 #[derive(Default)]
-pub(crate) struct DeviationJob {
-    /// What was last asked for.
-    of: Option<Of>,
-    /// Before the copying: dropped first, so that its thread doesn't take an end of parts for all of them.
+pub struct DeviationJob {
+    /// What the last measurement that was started is about.
+    of: Option<DeviationBasis>,
+    /// Declared before `copying`, so that it is dropped first: its thread must not take a closed channel for the last part.
     comparing: Option<Comparing>,
     copying: Option<Copying>,
-    found: Option<Found>,
-    /// Counts results.
+    found: Option<DeviationResult>,
+    /// Counts changes of the result.
     pub generation: u64,
 }
 
-/// What a result is about.
+/// What a result depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Of {
+pub struct DeviationBasis {
     pub document: u64,
     pub tessellation: u64,
-    /// Tells one truth from the next.
+    /// Counts reference surfaces.
     pub truth: u64,
-    /// Whose limit it is held against without one.
+    /// The surface whose limit is measured against, if there is no reference surface.
     pub limit: Surface,
 }
 
-/// A result; the samples themselves are the scene's.
+/// A result. The scene has the samples themselves.
 #[derive(Clone, Copy)]
-pub(crate) struct Found {
-    of: Of,
+pub struct DeviationResult {
+    of: DeviationBasis,
     /// None if nothing was emitted.
     pub worst: Option<WorstPoint>,
     /// Object units.
@@ -46,14 +46,14 @@ pub(crate) struct Found {
     pub left_out: u64,
 }
 
-impl Found {
+impl DeviationResult {
     /// Object units; 0 if nothing was emitted.
     pub(crate) fn largest(&self) -> f64 {
         self.worst.map_or(0.0, |worst| worst.value)
     }
 }
 
-/// The thread that compares; it gives up when this is dropped.
+/// The thread that measures. It stops when this is dropped.
 struct Comparing {
     found: Receiver<Result<DeviationField, Stopped>>,
     wanted: Progress,
@@ -66,13 +66,13 @@ impl Drop for Comparing {
 }
 
 impl DeviationJob {
-    /// The last result; of something else while that is measured which is wanted by now.
-    pub(crate) fn found(&self) -> Option<&Found> {
+    /// The last result. While a new measurement is under way, it is about something else.
+    pub fn found(&self) -> Option<&DeviationResult> {
         self.found.as_ref()
     }
 
     /// The result, if it is about this.
-    pub(crate) fn found_of(&self, of: Of) -> Option<&Found> {
+    pub fn found_of(&self, of: DeviationBasis) -> Option<&DeviationResult> {
         self.found.as_ref().filter(|found| found.of == of)
     }
 
@@ -80,39 +80,39 @@ impl DeviationJob {
         self.comparing.is_some()
     }
 
-    /// The part of all triangles that is measured, 0 to 1, while they are.
-    pub(crate) fn fraction(&self) -> Option<f32> {
+    /// The progress of the measurement, 0 to 1; none if none is under way.
+    pub fn fraction(&self) -> Option<f32> {
         self.comparing.as_ref().map(|comparing| comparing.wanted.fraction())
     }
 
-    /// Stops what is under way; what is known stays known.
-    pub(crate) fn stop(&mut self) {
+    /// Stops the measurement. The last result stays.
+    pub fn stop(&mut self) {
         if self.comparing.take().is_some() {
             self.copying = None;
             self.of = None;
         }
     }
 
-    /// Copies no more of what is under way, which then ends without a result, and isn't tried again by itself.
-    pub(crate) fn give_up(&mut self) {
+    /// Stops copying, so that the measurement ends without a result. It isn't started again by itself.
+    pub fn give_up(&mut self) {
         self.copying = None;
     }
 
-    /// Forgets everything, and stops what is under way.
-    pub(crate) fn forget(&mut self) {
+    /// Stops the measurement and forgets the last result.
+    pub fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
-    /// Goes on measuring, or starts over if that isn't what was asked for last; the scene, whose counts are known, gets
-    /// what comes of it.
+    /// Goes on with the measurement, or starts another if `of` has changed. The scene, whose counts must be known, gets the
+    /// result.
     ///
     /// # Errors
-    /// The device was lost, or measuring this stopped.
-    pub(crate) fn go_on(
+    /// The device was lost, or the measurement's thread panicked.
+    pub fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,
-        of: Of,
+        of: DeviationBasis,
         target: impl FnOnce() -> DeviationTarget,
     ) -> Result<(), Trouble> {
         if self.of != Some(of) {
@@ -128,7 +128,7 @@ impl DeviationJob {
                 scene.set_deviation(gpu, Some((&field, scale)));
                 self.generation += 1;
                 let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);
-                self.found = Some(Found { of, worst, rms, left_out });
+                self.found = Some(DeviationResult { of, worst, rms, left_out });
             }
             Some(Ok(Err(stopped))) => {
                 self.do_without(gpu, scene);
@@ -140,7 +140,7 @@ impl DeviationJob {
         Ok(())
     }
 
-    /// It failed: what waits for distances is drawn without.
+    /// Ends a measurement that failed. The picture, which waits for distances, is drawn without them.
     fn do_without(&mut self, gpu: &Gpu, scene: &mut Scene) {
         self.comparing = None;
         scene.set_deviation(gpu, Some((&DeviationField::empty(), DEVIATION_PX_SCALE)));
@@ -161,14 +161,14 @@ impl DeviationJob {
                 let _ = sender.send(result);
             }
         });
-        // Without a sender the thread knows of the end.
+        // Without chunks the sender is dropped, which tells the thread that there are none.
         self.copying = if chunks > 0 { Some(copy_chunk(gpu, scene, 0, parts)?) } else { None };
         self.comparing = Some(Comparing { found, wanted });
         Ok(())
     }
 }
 
-/// Measures the parts as they come. `None` if no longer wanted, or the device was lost.
+/// Measures the parts as they come. Returns `None` if the result is no longer wanted, or the device was lost.
 fn field(
     parts: &Receiver<Part>,
     posed: &PosedMesh,

@@ -1,4 +1,4 @@
-//! A mesh in the window, and its loading beside the window.
+//! The mesh that is open, and the job that loads it.
 
 use std::io::ErrorKind;
 use std::sync::Arc;
@@ -16,35 +16,35 @@ use crate::settings::{ARENA_BYTES, Settings, SplitSide};
 use crate::tessellate::Deformed;
 use crate::truth::Truth;
 
-/// What is open.
-pub(crate) struct Document {
+/// The mesh that is open.
+pub struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
     pub edges: EdgeCounts,
-    /// What the scene was posed for; none at rest.
+    /// The moment whose pose the scene has; none at rest.
     pub moment: Option<Moment>,
     pub checks: Checks,
-    /// Of the mesh's bounds at rest, in object units.
+    /// The bounding diagonal at rest, in object units.
     pub diagonal: f32,
-    /// What its shape is sampled from, if it is such a shape.
+    /// The exact surface, if the mesh is a shape that has one.
     pub exact: Option<Arc<Truth>>,
-    /// Tells one loaded document from the next, also of one file.
+    /// A number of its own for each document, even if the same file is loaded again.
     pub generation: u64,
 }
 
 impl Document {
-    /// The mesh and its topology as they are shown, or as loaded while nobody knows them in the pose shown.
-    pub(crate) fn shown(&self) -> Deformed {
+    /// The mesh and its topology in the pose that is shown; at rest as long as that pose isn't known on the CPU.
+    pub fn shown(&self) -> Deformed {
         self.posed().unwrap_or_else(|| (self.loaded.mesh.clone(), self.loaded.topology.clone()))
     }
 
-    /// The same; none while nobody knows.
-    pub(crate) fn posed(&self) -> Option<Deformed> {
+    /// The mesh and its topology in the pose that is shown; none as long as that pose isn't known on the CPU.
+    pub fn posed(&self) -> Option<Deformed> {
         self.scene.tessellator.posed().deformed_if_quick()
     }
 
-    /// Bytes on the device: topology and output, of both halves if there are two surfaces.
-    pub(crate) fn bytes(&self) -> u64 {
+    /// Bytes on the device: topology and output, of both halves if the split has two surfaces.
+    pub fn bytes(&self) -> u64 {
         let of = |scene: &Scene| {
             let tessellator = &scene.tessellator;
             tessellator.buffers().bytes() + scene.work_bytes() + tessellator.arena_bytes()
@@ -53,37 +53,37 @@ impl Document {
     }
 }
 
-/// Memory for a tessellation's output: steps that a software adapter takes no longer for than a person notices.
-pub(crate) fn arena_bytes(engine: &Engine) -> u64 {
+/// Memory for a tessellation's output, in bytes. A software adapter gets less, so that each step of a picture is short.
+pub fn arena_bytes(engine: &Engine) -> u64 {
     if engine.gpu.is_software() { ARENA_BYTES / 8 } else { ARENA_BYTES }
 }
 
 /// A mesh on the device, unless the device has no room for it.
 ///
 /// # Errors
-/// The mesh is larger than the adapter binds, the device is out of memory, or it was lost.
-pub(crate) fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
+/// The mesh needs a larger buffer than the adapter can bind, the device is out of memory, or it was lost.
+pub fn scene_of(engine: &Engine, loaded: &Loaded) -> Result<Scene, GpuError> {
     engine.gpu.attempt(|| engine.scene(loaded, arena_bytes(engine)))?
 }
 
 /// A load under way; dropping it cancels it.
 pub(crate) struct Load {
     pub source: Source,
-    /// What the mesh will have become.
+    /// How the mesh is being prepared.
     pub preparation: Preparation,
-    /// Whether the camera stays where it is: the same mesh is loaded again.
+    /// Whether the camera stays where it is, because the same mesh is loaded again.
     pub keep_view: bool,
     pub progress: Progress,
-    /// What is said once the mesh is there.
+    /// A message to show once the mesh is loaded.
     pub remark: Option<String>,
     job: BackgroundJob<Result<Document, Option<NotLoaded>>>,
 }
 
-/// What went wrong.
-pub(crate) struct NotLoaded {
-    /// In a sentence.
+/// Why a mesh could not be loaded.
+pub struct NotLoaded {
+    /// The reason, as a sentence.
     pub why: String,
-    /// Whether the file isn't there.
+    /// Whether the file doesn't exist.
     pub is_gone: bool,
 }
 
@@ -94,8 +94,8 @@ impl NotLoaded {
 }
 
 impl Load {
-    /// Loads on a thread of its own, and makes the pipelines there that a picture with these settings needs.
-    pub(crate) fn start(
+    /// Starts a thread that loads the mesh and makes the pipelines that a picture with these settings needs.
+    pub fn start(
         engine: &Engine,
         context: &egui::Context,
         source: Source,
@@ -112,8 +112,8 @@ impl Load {
         Self { job: BackgroundJob::start(context, load), source, preparation, keep_view, progress, remark: None }
     }
 
-    /// The outcome, once there is one: a document, what went wrong, or nothing if it was cancelled.
-    pub(crate) fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
+    /// Returns the result once there is one: a document, why there is none, or no reason if loading was cancelled.
+    pub fn take(&mut self) -> Option<Result<Document, Option<NotLoaded>>> {
         let stopped = |stopped| format!("{}: loading it {stopped}; the file may be damaged", self.source.title());
         Some(self.job.take()?.unwrap_or_else(|error| Err(Some(NotLoaded::because(stopped(error))))))
     }
@@ -145,7 +145,7 @@ fn load(
     };
     let no_room = |error: GpuError| Some(NotLoaded::because(format!("{}: {error}", source.title())));
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
-    // What is compiled here, beside the window, the first picture doesn't wait for.
+    // Pipelines are made here, so that the first picture doesn't wait for the driver's compiler.
     engine.prepare(&scene, settings).map_err(no_room)?;
     let edges = loaded.topology.edge_counts();
     let checks = Checks::start(context, &loaded);
@@ -159,7 +159,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_load_that_panics_is_a_sentence_about_the_file() {
+    fn a_load_that_panics_returns_an_error_that_names_the_file() {
         let indices: &[u32] = std::hint::black_box(&[]);
         let mut load = Load {
             job: BackgroundJob::start(&egui::Context::default(), move || panic!("index {} of {}", 7, indices.len())),

@@ -1,4 +1,4 @@
-//! Writing the tessellated mesh beside the window.
+//! Writes the tessellated mesh on a thread of its own.
 
 use std::path::{Path, PathBuf};
 
@@ -14,26 +14,20 @@ use crate::progress::Progress;
 use crate::render::Scene;
 use crate::tessellate::{Inputs, Tessellated};
 
-/// The part of the work that reading the mesh back from the device is; the rest is writing the file.
+/// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
 const READING: f32 = 0.8;
 
 /// An export under way; dropping it cancels it.
 pub(crate) struct ExportJob {
     pub progress: Progress,
     path: PathBuf,
-    /// None only while it changes hands.
+    /// None only for a moment, inside [`Self::wake`].
     job: Option<BackgroundJob<Result<(), String>>>,
 }
 
 impl ExportJob {
-    /// Starts to write what these inputs make of the document, in the pose that is shown, as a .glb or .obj file.
-    pub(crate) fn start(
-        context: &egui::Context,
-        engine: &Engine,
-        document: &Document,
-        inputs: Inputs,
-        path: PathBuf,
-    ) -> Self {
+    /// Starts to tessellate the document with these inputs, in the pose that is shown, and to write a .glb or .obj file.
+    pub fn start(context: &egui::Context, engine: &Engine, document: &Document, inputs: Inputs, path: PathBuf) -> Self {
         let progress = Progress::new();
         let export = Export {
             engine: engine.clone(),
@@ -52,15 +46,15 @@ impl ExportJob {
         shown_path(Path::new(self.path.file_name().unwrap_or_default()))
     }
 
-    /// What was written where, or why nothing was, in a sentence; once it has ended.
-    pub(crate) fn take(&self) -> Option<Result<String, String>> {
+    /// Returns a sentence once the export has ended: what was written, or as an error why nothing was.
+    pub fn take(&self) -> Option<Result<String, String>> {
         let stopped = |stopped: Stopped| Err(format!("exporting the mesh {stopped}"));
         let ended = self.job.as_ref()?.take()?.unwrap_or_else(stopped);
         Some(ended.map(|()| format!("{} is written.", shown_path(&self.path))))
     }
 
-    /// Goes on, and repaints another window when it ends.
-    pub(crate) fn wake(&mut self, context: &egui::Context) {
+    /// Lets the job repaint another window when it ends.
+    pub fn wake(&mut self, context: &egui::Context) {
         self.job = self.job.take().map(|job| job.waking(context));
     }
 }
@@ -82,7 +76,7 @@ struct Export {
 }
 
 impl Export {
-    /// Tessellates in a scene of its own, so that the window's isn't disturbed; nothing is written once it is cancelled.
+    /// Tessellates in a scene of its own, so that the window's isn't changed. Writes nothing if it was cancelled.
     fn run(&self, make: impl FnOnce() -> Result<Scene, GpuError>) -> Result<(), String> {
         let failed = |error: GpuError| error.to_string();
         let mut scene = self.engine.gpu.attempt(make).and_then(|scene| scene).map_err(failed)?;
@@ -99,7 +93,7 @@ impl Export {
         exported.write(&self.path).map_err(|error| error.to_string())
     }
 
-    /// What is emitted, chunk by chunk; none once it is cancelled.
+    /// Reads back what is emitted, chunk by chunk. Returns none if it was cancelled.
     fn read(&self, scene: &mut Scene) -> Result<Option<Tessellated>, GpuError> {
         let mut out = Tessellated::default();
         let chunks = scene.tessellator.chunk_count();

@@ -1,4 +1,4 @@
-//! Opening a mesh, and loading it again: one load at a time, the latest.
+//! Opens meshes and loads them again. A new load cancels the one before it.
 
 use std::path::PathBuf;
 
@@ -13,8 +13,8 @@ use crate::load::Source;
 pub(in crate::app) const MESHES: [&str; 5] = ["gltf", "glb", "obj", "stl", "ply"];
 
 impl App {
-    /// Starts to load a mesh beside the window; a load that is under way is cancelled. The mesh that is open keeps its
-    /// view, and what was made of it.
+    /// Starts to load a mesh on a thread of its own; a load that is under way is cancelled. If it is the mesh that is open,
+    /// it keeps its view and its preparation.
     pub fn open(&mut self, context: &egui::Context, source: Source) {
         let same = self.document.as_ref().filter(|document| document.loaded.source == source);
         let preparation = same.map(|document| document.loaded.preparation.clone());
@@ -23,7 +23,7 @@ impl App {
         self.jobs.load = Some(Load::start(&self.engine, context, source, preparation, self.settings, keep_view));
     }
 
-    /// Loads the same mesh again with something else made of it: `change` changes what is, or is on its way.
+    /// Loads the same mesh again after `change` has changed its preparation.
     pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
         let Some(Loaded { source, .. }) = self.document.as_ref().map(|document| &document.loaded) else { return };
         let mut preparation = self.preparation();
@@ -31,14 +31,14 @@ impl App {
         self.jobs.load = Some(Load::start(&self.engine, context, source.clone(), preparation, self.settings, true));
     }
 
-    /// What is made of the mesh, or will be once it is loaded again.
+    /// The preparation of the mesh, or of the load of the same mesh that is under way.
     pub(in crate::app) fn preparation(&self) -> Preparation {
         let again = self.jobs.load.as_ref().filter(|load| load.keep_view).map(|load| &load.preparation);
         let shown = self.document.as_ref().map(|document| &document.loaded.preparation);
         again.or(shown).cloned().unwrap_or_else(|| self.plain())
     }
 
-    /// Nothing is made of a mesh but what the file holds.
+    /// A preparation that leaves the mesh as the file has it.
     fn plain(&self) -> Preparation {
         Preparation { limits: self.jobs.limits, ..Preparation::default() }
     }
@@ -51,7 +51,7 @@ impl App {
     }
 
     pub(in crate::app) fn take_loaded(&mut self, context: &egui::Context) {
-        // It is framed for the viewport, whose size the first frame tells.
+        // Framing the mesh needs the viewport's size, which is known after the first frame.
         if self.viewport.picture.target.is_none() {
             return;
         }
@@ -85,20 +85,20 @@ impl App {
             }
             Err(Some(NotLoaded { mut why, is_gone })) => {
                 if is_gone && self.persistence.gone(&source) {
-                    why += "; it isn't listed as recent any more";
+                    why += "; it was removed from the recent files";
                 }
                 self.dialogs.error = Some(why);
-                // A window shows something, also if the first file can't be.
+                // If the first file can't be loaded, the window shows its default mesh.
                 if self.document.is_none() {
                     self.open(context, Source::default());
                 }
             }
-            // Cancelled by the person in front of the window, who knows.
+            // It was cancelled in the window, so no message is needed.
             Err(None) => {}
         }
     }
 
-    /// Opens what is dropped on the window: one file, the first that can be a mesh, or else the first.
+    /// Opens a file that is dropped on the window. Of several, it opens the first mesh, or else the first file.
     pub(in crate::app) fn take_dropped(&mut self, context: &egui::Context) {
         let dropped: Vec<PathBuf> =
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
@@ -107,8 +107,7 @@ impl App {
         self.open_path(context, path.clone());
         if let Some(load) = self.jobs.load.as_mut().filter(|_| dropped.len() > 1) {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            load.remark =
-                Some(format!("Of {} files that were dropped only {name} is open: one is at a time.", dropped.len()));
+            load.remark = Some(format!("{} files were dropped, but only one can be open: {name}.", dropped.len()));
         }
     }
 }

@@ -1,5 +1,5 @@
-//! What is shown, measured beside the window: chunk after chunk is copied back without waiting, and looked at on a
-//! thread of its own.
+//! Measures what is shown while the window goes on: chunk after chunk is copied back without waiting, and a thread of its
+//! own measures it.
 
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, channel, sync_channel};
 
@@ -14,34 +14,34 @@ use crate::render::Scene;
 use crate::tessellate::{Convention, Edges, PatchFactors, Vertex};
 use crate::view::ScreenView;
 
-/// Why nothing more is learnt of what is shown.
+/// Why a measurement ended without a result.
 #[derive(Debug, Error)]
 pub(crate) enum Trouble {
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    #[error("measuring what is shown {0}; another setting is measured anew")]
+    #[error("measuring the picture {0}; any other setting starts a new measurement")]
     Measuring(Stopped),
-    #[error("measuring the deviation {0}; another setting is measured anew")]
+    #[error("measuring the deviation {0}; any other setting starts a new measurement")]
     Deviating(Stopped),
 }
 
-/// What is known about the shown tessellation.
+/// The measurement of the tessellation that is shown, and its results.
 #[derive(Default)]
-pub(crate) struct MeasureJob {
-    /// Document and tessellation that were last asked for.
+pub struct MeasureJob {
+    /// The document and tessellation that the last measurement is about.
     of: Option<(u64, u64)>,
-    /// Where sizes on screen were last asked for.
+    /// The view that sizes on screen were last measured for.
     seen_from: Option<ScreenView>,
-    /// Before the copying: dropped first, so that its thread doesn't take an end of parts for all of them.
+    /// Declared before `copying`, so that it is dropped first: its thread must not take a closed channel for the last part.
     comparing: Option<Comparing>,
     copying: Option<Copying>,
     found: Option<Measured>,
     sizes: Option<Sizes>,
-    /// Counts results, and their absence.
+    /// Counts changes of the result, including its loss.
     pub generation: u64,
 }
 
-/// The thread that compares; it gives up when this is dropped.
+/// The thread that measures. It stops when this is dropped.
 struct Comparing {
     found: Receiver<Result<(Measured, Sizes), Stopped>>,
     wanted: Progress,
@@ -53,7 +53,7 @@ impl Drop for Comparing {
     }
 }
 
-/// A readback under way. Its parts go to the comparing thread in order.
+/// A readback under way. Its parts go to the measuring thread in order.
 pub(in crate::app) struct Copying {
     readback: Readback,
     part: PartKind,
@@ -61,24 +61,24 @@ pub(in crate::app) struct Copying {
     parts: SyncSender<Part>,
 }
 
-/// Parts that wait for the comparing thread at most: each is as large as the arena.
+/// How many parts may wait for the measuring thread: each is as large as the arena.
 pub(in crate::app) const WAITING: usize = 1;
 
-/// What a copy holds.
+/// The contents of a part.
 #[derive(Clone, Copy)]
 pub(in crate::app) enum PartKind {
-    /// As many bytes of patches' factors, then of those that LOD gave.
+    /// `patch_bytes` bytes of the patches' factors, then the factors that LOD gave.
     Factors { patch_bytes: usize, edges: Edges, convention: Convention },
-    /// The output of patches from `first_patch` on: as many bytes of vertices, then indices.
+    /// The output of patches from `first_patch` on: `vertex_bytes` bytes of vertices, then indices.
     Chunk { first_patch: u32, vertex_bytes: usize },
 }
 
-/// Bytes that are on the host, but not copied out yet: the comparing thread does that.
+/// A readback that has arrived. The measuring thread copies its bytes out.
 pub(in crate::app) struct Part(pub PartKind, pub Readback);
 
 impl MeasureJob {
-    /// What is shown, once measured.
-    pub(crate) fn found(&self) -> Option<&Measured> {
+    /// The results for what is shown, once measured.
+    pub fn found(&self) -> Option<&Measured> {
         self.found.as_ref()
     }
 
@@ -87,8 +87,8 @@ impl MeasureJob {
         self.found.as_ref().map(|found| &found.cracks)
     }
 
-    /// Sizes of the triangles shown, once measured; they say where they were seen from.
-    pub(crate) fn sizes(&self) -> Option<&Sizes> {
+    /// Sizes of the triangles shown, once measured, with the view that they were measured for.
+    pub fn sizes(&self) -> Option<&Sizes> {
         self.sizes.as_ref()
     }
 
@@ -96,29 +96,29 @@ impl MeasureJob {
         self.copying.is_some() || self.comparing.is_some()
     }
 
-    /// Forgets what was found about anything but this document and tessellation.
-    pub(crate) fn keep_only(&mut self, document: u64, tessellation: u64) {
+    /// Forgets results that are about another document or tessellation.
+    pub fn keep_only(&mut self, document: u64, tessellation: u64) {
         if self.of.is_some_and(|of| of != (document, tessellation)) {
             self.forget();
         }
     }
 
-    /// Stops what is under way, and doesn't try it again by itself.
-    pub(crate) fn give_up(&mut self) {
+    /// Stops the measurement. It isn't started again by itself.
+    pub fn give_up(&mut self) {
         (self.comparing, self.copying) = (None, None);
     }
 
-    /// Forgets everything, and stops what is under way.
-    pub(crate) fn forget(&mut self) {
+    /// Stops the measurement and forgets its results.
+    pub fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
-    /// Goes on measuring document `document`, whose counts are known; starts over if it emits something else by now, and if
-    /// `follows` is set also if it is seen from elsewhere. True when what is known has changed.
+    /// Goes on measuring document `document`, whose counts must be known. Starts over if its tessellation has changed, and
+    /// if `follows` is set also if its view has. Returns true if the results have changed.
     ///
     /// # Errors
-    /// The device was lost, or measuring this stopped.
-    pub(crate) fn go_on(
+    /// The device was lost, or the measurement's thread panicked.
+    pub fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,
@@ -132,7 +132,7 @@ impl MeasureJob {
             return Ok(true);
         }
         if follows && self.seen_from != Some(view) {
-            // What doesn't depend on the view stays known.
+            // Results that don't depend on the view stay.
             let (found, generation) = (self.found.take(), self.generation);
             *self = Self { of, found, generation, ..Self::start(gpu, scene, view) };
             return Ok(true);
@@ -158,8 +158,8 @@ impl MeasureJob {
         }
     }
 
-    /// The part of all chunks that has been copied, 0 to 1, while they are.
-    pub(crate) fn fraction(&self, chunks: usize) -> Option<f32> {
+    /// The part of all chunks that has been copied, 0 to 1; none if none are being copied.
+    pub fn fraction(&self, chunks: usize) -> Option<f32> {
         self.copying.as_ref().map(|copying| copying.next_chunk as f32 / chunks.max(1) as f32)
     }
 
@@ -184,19 +184,19 @@ impl MeasureJob {
     }
 }
 
-/// Sends on what has been copied, and copies the next chunk.
+/// Sends a part that has been copied to the measuring thread, and starts to copy the next chunk.
 pub(in crate::app) fn copy_on(under_way: &mut Option<Copying>, gpu: &Gpu, scene: &mut Scene) -> Result<(), GpuError> {
     let Some(copying) = under_way else { return Ok(()) };
     match copying.readback.poll() {
         Ok(true) => {}
         Ok(false) => return Ok(()),
         Err(error) => {
-            // Without a sender the comparing thread ends as well: it isn't tried again by itself.
+            // Dropping the sender ends the measuring thread as well. It isn't started again by itself.
             *under_way = None;
             return Err(error);
         }
     }
-    // The comparing thread ends early only when the measurement was replaced; without a sender it knows of the end.
+    // The measuring thread ends early only if the measurement was replaced. Dropping the sender tells it the end.
     let Some(Copying { readback, part, next_chunk, parts }) = under_way.take() else { return Ok(()) };
     if let Err(TrySendError::Full(Part(part, readback))) = parts.try_send(Part(part, readback)) {
         *under_way = Some(Copying { readback, part, next_chunk, parts });
@@ -237,7 +237,7 @@ pub(in crate::app) fn copy_chunk(
     Ok(Copying { readback, part, next_chunk: index + 1, parts })
 }
 
-/// Gives a chunk that was copied back to every visitor. `None` if the device was lost.
+/// Gives a chunk that was copied back to every visitor. Returns `None` if the device was lost.
 pub(in crate::app) fn visit(
     first_patch: u32,
     vertex_bytes: usize,
@@ -252,7 +252,7 @@ pub(in crate::app) fn visit(
     Some(())
 }
 
-/// Looks at the parts as they come, and compares once all are there. `None` if no longer wanted, or the device was lost.
+/// Surveys the parts as they come. Returns `None` if the result is no longer wanted, or the device was lost.
 fn survey(
     parts: &Receiver<Part>,
     mesh: &Mesh,

@@ -1,4 +1,4 @@
-//! What is looked for in a mesh beside the window, once it is loaded: bad normals, T-junctions, edges that nearly meet.
+//! Checks of a mesh that run on a thread of their own once it is loaded: bad normals, T-junctions, and edges that nearly meet.
 
 use std::sync::{Arc, OnceLock};
 
@@ -7,25 +7,25 @@ use crate::engine::Loaded;
 use crate::mesh::{NormalFaults, TJunction, WeldPreview, t_junctions, weld_previews};
 use crate::progress::Progress;
 
-/// Checks under way or done; dropping them stops them.
+/// The checks of a mesh and their results. Dropping them stops them.
 #[derive(Default)]
-pub(crate) struct Checks {
-    found: Arc<Found>,
+pub struct Checks {
+    found: Arc<CheckResults>,
     wanted: Progress,
     /// None once it has ended.
     job: Option<BackgroundJob<()>>,
 }
 
 #[derive(Default)]
-struct Found {
+struct CheckResults {
     normal_faults: OnceLock<NormalFaults>,
     t_junctions: OnceLock<Vec<TJunction>>,
     joins: OnceLock<Vec<WeldPreview>>,
 }
 
 impl Checks {
-    /// Starts them on a thread of their own; each result repaints the window.
-    pub(crate) fn start(context: &egui::Context, loaded: &Loaded) -> Self {
+    /// Starts the checks on a thread of their own. Each result repaints the window.
+    pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
         let mut checks = Self::default();
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
         let weld = loaded.preparation.weld;
@@ -54,8 +54,8 @@ impl Checks {
         self.found.t_junctions.get().map(Vec::as_slice)
     }
 
-    /// What each tolerance would join, once tried.
-    pub(crate) fn joins(&self) -> Option<&[WeldPreview]> {
+    /// What each weld tolerance would join, once known.
+    pub fn joins(&self) -> Option<&[WeldPreview]> {
         self.found.joins.get().map(Vec::as_slice)
     }
 
@@ -63,8 +63,8 @@ impl Checks {
         self.job.is_some()
     }
 
-    /// Whether they have ended, and if before they were done, why; said once.
-    pub(crate) fn take_stopped(&mut self) -> Option<Stopped> {
+    /// Notices the end of the checks. Returns the reason, only once, if they stopped before they were done.
+    pub fn take_stopped(&mut self) -> Option<Stopped> {
         let ended = self.job.as_ref()?.take()?;
         self.job = None;
         ended.err()

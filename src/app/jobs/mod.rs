@@ -19,7 +19,7 @@ use export_job::ExportJob;
 use measure_job::MeasureJob;
 use truth::TruthLoad;
 
-/// Jobs that are under way, and what the measuring ones know.
+/// The jobs that are under way, and the results of measurements.
 #[derive(Default)]
 pub(super) struct Jobs {
     /// The limits of files that are opened.
@@ -29,6 +29,6 @@ pub(super) struct Jobs {
     pub measure: MeasureJob,
     pub deviation: DeviationJob,
     pub export: Option<ExportJob>,
-    /// The writing of a picture: what was written where, or why it wasn't.
+    /// The job that writes a picture. It returns a sentence: what was written, or as an error why nothing was.
     pub picture_file: Option<BackgroundJob<Result<String, String>>>,
 }

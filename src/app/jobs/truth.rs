@@ -1,4 +1,4 @@
-//! What the mesh should have been: which truth it is held against, and its loading.
+//! The reference surface that the mesh is compared with, and the job that loads it.
 
 use std::sync::Arc;
 
@@ -11,31 +11,31 @@ use crate::settings::Colors;
 use crate::tessellate::Displacement;
 use crate::truth::Truth;
 
-/// A truth that was chosen for the mesh.
-pub(crate) struct Chosen {
+/// A reference surface that was chosen for the mesh.
+pub struct ChosenTruth {
     pub source: Source,
     truth: Arc<Truth>,
-    /// Tells one from the next; never 0 or 1.
+    /// A number of its own for each one, from 2 on: see [`App::yardstick`].
     generation: u64,
 }
 
-/// A truth under way; dropping it cancels it.
-pub(crate) struct TruthLoad {
+/// The load of a reference surface. Dropping it cancels it.
+pub struct TruthLoad {
     pub source: Source,
     pub progress: Progress,
-    /// None only while it changes hands.
-    job: Option<BackgroundJob<Result<Chosen, Option<String>>>>,
+    /// None only for a moment, inside [`Self::wake`].
+    job: Option<BackgroundJob<Result<ChosenTruth, Option<String>>>>,
 }
 
 impl TruthLoad {
-    /// Loads on a thread of its own.
+    /// Starts to load on a thread of its own.
     fn start(context: &egui::Context, source: Source, limits: Limits) -> Self {
         static GENERATION: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(2);
         let generation = GENERATION.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let progress = Progress::new();
         let (wanted, own_progress) = (source.clone(), progress.clone());
         let load = move || match Truth::load(&wanted, &limits, &own_progress) {
-            Ok(Some(truth)) => Ok(Chosen { source: wanted, truth: Arc::new(truth), generation }),
+            Ok(Some(truth)) => Ok(ChosenTruth { source: wanted, truth: Arc::new(truth), generation }),
             Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
             Err(LoadError::Cancelled(_)) => Err(None),
             Err(error) => Err(Some(error.to_string())),
@@ -43,7 +43,7 @@ impl TruthLoad {
         Self { job: Some(BackgroundJob::start(context, load)), source, progress }
     }
 
-    /// Goes on, and repaints another window when it ends.
+    /// Lets the job repaint another window when it ends.
     pub(in crate::app) fn wake(&mut self, context: &egui::Context) {
         self.job = self.job.take().map(|job| job.waking(context));
     }
@@ -56,17 +56,17 @@ impl Drop for TruthLoad {
 }
 
 impl App {
-    /// Starts to load what the mesh should have been beside the window; what it was held against before stays until then.
+    /// Starts to load a reference surface. Until it is loaded, the one before it stays.
     pub fn open_truth(&mut self, context: &egui::Context, source: Source) {
         self.jobs.truth_load = Some(TruthLoad::start(context, source, self.jobs.limits));
     }
 
-    /// The truth that was chosen for what is shown.
+    /// The reference surface that was chosen for the mesh.
     pub fn truth(&self) -> Option<&Source> {
         self.truth.as_ref().map(|chosen| &chosen.source)
     }
 
-    /// Goes back to what the mesh is held against by itself.
+    /// Goes back to the default reference surface: the exact surface of a shape, or the limit surface.
     pub(in crate::app) fn forget_truth(&mut self) {
         self.truth = None;
         self.jobs.truth_load = None;
@@ -84,14 +84,16 @@ impl App {
                 self.settings.overlays.colors = Colors::Deviation;
             }
             Err(Some(error)) => self.dialogs.error = Some(error),
-            // Cancelled by the person in front of the window, who knows.
+            // It was cancelled in the window, so no message is needed.
             Err(None) => {}
         }
     }
 
-    /// What is measured from, and what it is called. In a pose and displaced a mesh is none that a truth at rest knows of.
+    /// The reference surface that distances are measured from: its number, the surface (none for the limit surface), and
+    /// its name. The number is 0 for the limit surface, 1 for the exact surface, and from 2 on for a chosen one. In a pose it
+    /// is always the limit surface, and an exact surface isn't used for a displaced mesh.
     pub(in crate::app) fn yardstick(&self) -> (u64, Option<Arc<Truth>>, String) {
-        let limit = || (0, None, "its own limit".to_owned());
+        let limit = || (0, None, "limit surface".to_owned());
         let Some(document) = self.document.as_ref().filter(|_| self.viewport.playback.moment().is_none()) else {
             return limit();
         };

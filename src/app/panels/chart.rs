@@ -1,39 +1,39 @@
-//! Speed against accuracy of what is shown: what is tried when, whether it still is of what is shown, and saving it.
+//! The state of the chart panel: which settings are measured when, whether the chart is out of date, and saving it.
 
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::app::jobs::chart_job::{ChartJob, Charted, Job, Of};
+use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
 use crate::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
 use crate::settings::Settings;
 use crate::tessellate::Tessellation;
 
-/// What the chart's panel is about.
+/// The state of the chart panel.
 #[derive(Default)]
 pub(crate) struct Chart {
     pub is_open: bool,
     pub(in crate::app) cost: Cost,
-    /// Surfaces and LODs that are tried; shading is the window's.
+    /// The surfaces and LODs that are tried. Normals are those of the window.
     pub(in crate::app) plan: Plan,
     pub(in crate::app) effort: Effort,
     pub(in crate::app) charting: ChartJob,
-    /// What the window last had that isn't in the chart, and since when, on the window's clock in s.
+    /// The window's settings, if they aren't in the chart, and since when they are unchanged, on the window's clock in s.
     still: Option<(Settings, f64)>,
     pub(in crate::app) saving: Option<BackgroundJob<Result<(), String>>>,
 }
 
-/// How long settings that aren't in the chart are left alone before they are measured too, in s.
+/// How long settings that aren't in the chart must stay unchanged before they are measured as well, in s.
 const STILL: f64 = 0.4;
 
 impl Chart {
-    /// Stops what is under way; what is known stays.
-    pub(crate) fn stop(&mut self) {
+    /// Stops measuring; the results so far stay.
+    pub fn stop(&mut self) {
         self.charting.stop();
     }
 
-    /// Stops, and frees its device, which may be as lost as the window's was; what is known stays.
+    /// Stops measuring and frees the chart's device, which may be lost like the window's. The results so far stay.
     pub(in crate::app) fn go_on_in(&mut self, context: &egui::Context) {
         self.charting.close();
         self.still = None;
@@ -53,22 +53,22 @@ impl App {
         }
     }
 
-    /// Changes what the chart tries, and how much it spends on it.
+    /// Changes the settings that the chart tries, and its effort.
     pub fn chart_with(&mut self, plan: Plan, effort: Effort) {
         (self.panels.chart.plan, self.panels.chart.effort) = (plan, effort);
     }
 
-    /// How many settings were tried for the chart, and how many there are, while they are.
+    /// How many of the chart's settings are done, and how many there are; none if it isn't measuring.
     pub fn charting(&self) -> Option<(usize, usize)> {
         self.panels.chart.charting.progress()
     }
 
-    /// What was measured for the chart.
+    /// The rows that were measured for the chart.
     pub fn chart_rows(&self) -> &[Row] {
         self.panels.chart.charted().map_or(&[], |charted| &charted.subject.rows)
     }
 
-    /// What was measured of settings that the chart doesn't list.
+    /// The measurement of the window's settings, if the chart doesn't list them.
     pub fn chart_current(&self) -> Option<Probe> {
         self.panels.chart.charted()?.current?.1
     }
@@ -76,26 +76,26 @@ impl App {
     /// Writes the chart as an SVG, PNG or CSV file.
     ///
     /// # Errors
-    /// The path ends otherwise, or can't be written. Without a chart nothing is written.
+    /// The path has another ending, or can't be written. Without a chart nothing is written.
     pub fn save_chart(&self, path: &Path) -> Result<(), SaveError> {
         self.panels.chart.charted().map_or(Ok(()), |charted| save(path, &charted.subject))
     }
 
-    /// What a chart of what is shown would be about.
-    fn chart_of(&self) -> Option<Of> {
+    /// What a chart that is measured now would be about.
+    fn chart_of(&self) -> Option<ChartBasis> {
         let document = self.document.as_ref()?;
         let size = self.viewport.picture.target.as_ref()?.0.size;
         let (moment, truth, base) = (self.moment(), self.yardstick().0, base(&self.settings));
-        Some(Of { document: document.generation, moment, truth, camera: self.viewport.camera, size, base })
+        Some(ChartBasis { document: document.generation, moment, truth, camera: self.viewport.camera, size, base })
     }
 
-    /// What the chart is of that isn't shown any more.
-    pub(in crate::app) fn chart_is_of(&self) -> Option<&'static str> {
+    /// Why the chart is out of date; none if it isn't.
+    pub(in crate::app) fn chart_outdated(&self) -> Option<&'static str> {
         let (charted, now) = (self.panels.chart.charted()?, self.chart_of()?);
         charted.of.other_than(&now)
     }
 
-    /// Starts to measure what is missing of the chart; all of it, if nothing is, or it is of something else.
+    /// Starts to measure the settings that the chart lacks. Measures all anew if it lacks none, or is out of date.
     pub(in crate::app) fn measure_chart(&mut self, context: &egui::Context) {
         let Some(of) = self.chart_of() else { return };
         let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
@@ -110,7 +110,7 @@ impl App {
             self.panels.chart.charting.charted = Some(charted);
         }
         let mut settings = if starts_over { all } else { missing };
-        // What the window has comes first.
+        // The window's own setting comes first.
         let own = Setting::of(&self.settings);
         settings.sort_by_key(|setting| Some(*setting) != own);
         let is_listed = settings.first().is_some_and(|first| Some(*first) == own);
@@ -120,20 +120,20 @@ impl App {
         self.panels.chart.charting.start(context, job);
     }
 
-    /// What is tried, in order.
+    /// The settings that are tried, in order.
     pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
         let plan = Plan { normals: vec![self.settings.tessellation.normals], ..self.panels.chart.plan.clone() };
         coarse_first(plan.settings())
     }
 
-    /// As much as for the command's chart, but one core stays the window's.
+    /// The effort of the command's chart, but with one core left for the window.
     fn chart_effort(&self) -> Effort {
         let mut effort = self.panels.chart.effort;
         effort.accuracy.threads = effort.accuracy.threads.saturating_sub(1).max(1);
         effort
     }
 
-    /// What the window has, if the chart neither lists nor knows it.
+    /// The window's settings, if they aren't measured yet.
     fn unknown_current(&self) -> Option<Settings> {
         let (charted, current) = (self.panels.chart.charted()?, whole(&self.settings));
         let listed = Setting::of(&current).is_some_and(|own| charted.has(&own));
@@ -141,7 +141,7 @@ impl App {
         (!listed && !known).then_some(current)
     }
 
-    /// Takes what has been measured, and measures the window's own settings once they are left alone.
+    /// Takes new results, and starts to measure the window's own settings once they stay unchanged.
     pub(in crate::app) fn take_chart(&mut self, context: &egui::Context) {
         if let Err(error) = self.panels.chart.charting.take() {
             self.dialogs.error = Some(error);
@@ -176,7 +176,7 @@ impl App {
         self.panels.chart.charting.start(context, job);
     }
 
-    /// Lets measuring wait while the window has something to draw or to measure itself.
+    /// Makes the chart's measuring wait while the window draws or measures.
     pub(in crate::app) fn hold_chart(&self) {
         self.panels.chart.charting.hold(self.is_busy());
     }
@@ -198,24 +198,24 @@ impl App {
     }
 }
 
-impl Of {
-    /// What of this isn't the other's, in words; none if they are the same.
+impl ChartBasis {
+    /// Says in which respect this differs from `now`; none if they are equal.
     fn other_than(&self, now: &Self) -> Option<&'static str> {
         if self.document != now.document {
-            Some("another mesh: measure again")
+            Some("another mesh is shown")
         } else if self.moment != now.moment {
-            Some("another moment: measure again")
+            Some("another pose is shown")
         } else if self.truth != now.truth {
-            Some("another reference surface: measure again")
+            Some("another reference surface is chosen")
         } else if (self.camera, self.size) != (now.camera, now.size) {
-            Some("another view: measure again")
+            Some("the view has changed")
         } else {
-            (self.base != now.base).then_some("other settings: measure again")
+            (self.base != now.base).then_some("other settings have changed")
         }
     }
 }
 
-/// What settings that are tried have in common: all but what they change.
+/// The settings without those that the chart varies, which are set to their defaults.
 fn base(settings: &Settings) -> Settings {
     let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
         Tessellation::default();

@@ -1,4 +1,4 @@
-//! The chart's picture: error against time or triangles, both logarithmic, and what lies under the pointer.
+//! Draws the chart: error against time or triangles, both logarithmic, and finds the point under the pointer.
 
 use egui::{Color32, Pos2, Stroke, vec2};
 use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotTransform};
@@ -11,25 +11,25 @@ use crate::plot::INK;
 pub(super) struct Diagram<'a> {
     pub charted: &'a Charted,
     pub cost: Cost,
-    /// Whether it is of something else than what is shown.
+    /// Whether the chart is out of date.
     pub is_stale: bool,
     /// The window's own setting.
     pub own: Option<Setting>,
 }
 
-/// A point of it.
+/// A point of the diagram.
 #[derive(Clone, Copy)]
 pub(super) enum Spot<'a> {
     Row(&'a Row),
-    /// What the window has, measured beside the list.
+    /// The window's settings, measured beside the list.
     Current,
 }
 
 /// How far around a point the pointer finds it, in points.
 const REACH: f32 = 9.0;
-/// The rings around the window's own setting, and around what a click applies, in points.
+/// The radius of the rings around the window's own setting and around the point under the pointer, in points.
 const RING: f32 = 8.5;
-/// How far beyond the outermost values the axes go, and how far below them what is as good as 0 lies, in decades.
+/// How far the axes go beyond the outermost values, and how far below them values that count as 0 are drawn, in decades.
 const SLACK: f64 = 0.1;
 const ZERO: f64 = 0.35;
 
@@ -38,12 +38,12 @@ const ZERO: f64 = 0.35;
 struct Logs {
     low: f64,
     high: f64,
-    /// Where what is as good as 0 lies, if something is.
+    /// Where values that count as 0 are drawn; none if there are no such values.
     zero: Option<f64>,
 }
 
 impl Logs {
-    /// Around these values, all that are above `floor`.
+    /// An axis for these values. Those that aren't above `floor` count as 0.
     fn around(values: impl Iterator<Item = f64>, floor: f64) -> Self {
         let (mut low, mut high, mut has_zero) = (f64::INFINITY, f64::NEG_INFINITY, false);
         for value in values {
@@ -53,7 +53,7 @@ impl Logs {
                 has_zero = true;
             }
         }
-        // Nothing to show is a chart too.
+        // Without values the axis still has a range.
         if low > high {
             (low, high) = (-1.0, 1.0);
         }
@@ -70,11 +70,11 @@ impl Logs {
         self.zero.map_or(self.low, |zero| zero - SLACK)
     }
 
-    /// Ticks as the chart's files have them.
+    /// The same ticks as in the chart's files.
     fn marks(&self, (from, to): (f64, f64)) -> Vec<GridMark> {
         let values = [from.max(self.low), to].map(|log| 10f64.powf(log));
         let ticks = Axis { values, px: [0.0, 1.0], zero_px: 0.0 }.ticks();
-        // What is written, the plot takes for a step of a decade, and the rest for fine lines.
+        // The plot draws steps of 1 with a number and small steps as fine lines.
         let mark = |Tick { value, named }| GridMark { value: value.log10(), step_size: if named { 1.0 } else { 0.03 } };
         let zero = self.zero.map(|value| GridMark { value, step_size: 1.0 });
         ticks.into_iter().map(mark).chain(zero).collect()
@@ -90,13 +90,13 @@ impl Logs {
 }
 
 impl<'a> Diagram<'a> {
-    /// Draws it as large as there is room; what the pointer is on, and whether that was clicked.
-    pub(super) fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
+    /// Draws the diagram as large as there is room. Returns the point under the pointer and whether it was clicked.
+    pub fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
         let subject = &self.charted.subject;
         let spots = self.spots();
         let x = Logs::around(spots.iter().map(|(_, [cost, _])| *cost), 0.0);
         let y = Logs::around(spots.iter().map(|(_, [_, error])| *error), subject.floor() * subject.unit());
-        // A plot keeps its view until it is reset: another cost is another plot.
+        // A plot keeps its view until it is reset, so each cost has a plot of its own.
         let plot = Plot::new(("chart", self.cost == Cost::Ms))
             .x_axis_label(self.cost.name())
             .y_axis_label(if subject.truth.is_some() { "Error, % of diagonal" } else { "Error, px" })
@@ -130,7 +130,7 @@ impl<'a> Diagram<'a> {
         Some((*spot, response.clicked()))
     }
 
-    /// Points whose error is known, with their cost and their error as it is shown.
+    /// The points whose error is known, with their cost and error in the units of the axes.
     fn spots(&self) -> Vec<(Spot<'a>, [f64; 2])> {
         let subject = &self.charted.subject;
         let of_row = |row: &'a Row| Some((Spot::Row(row), [self.cost.of(row), subject.error(row)? * subject.unit()]));
@@ -149,7 +149,7 @@ impl<'a> Diagram<'a> {
             let front = race.front(|row| self.cost.of(row)).into_iter();
             let places: Vec<_> =
                 front.map(|(row, error)| canvas.place([self.cost.of(row), error * subject.unit()])).collect();
-            // A front of one point is no line.
+            // Circles, because a front of one point has no line.
             for place in &places {
                 canvas.painter.circle_filled(*place, 4.5, inks.front);
             }
@@ -180,7 +180,7 @@ impl<'a> Diagram<'a> {
         }
     }
 
-    /// Says that this is what the window shows.
+    /// Marks the window's own setting with a ring and a label.
     fn ring(&self, ui: &egui::Ui, canvas: &Canvas, place: Pos2) {
         let color = ui.visuals().strong_text_color();
         canvas.painter.circle_stroke(place, RING, Stroke::new(2.0, color));
@@ -195,7 +195,7 @@ impl<'a> Diagram<'a> {
     }
 }
 
-/// Where one paints.
+/// The painter, and the transform from values to the screen.
 struct Canvas {
     painter: egui::Painter,
     transform: PlotTransform,
@@ -210,12 +210,12 @@ impl Canvas {
 }
 
 /// Colours of this theme.
-pub(super) struct Inks {
-    /// Between points and whatever is under them.
-    rim: Color32,
+pub struct Inks {
+    /// Drawn around points, to set them off from what is under them.
+    halo: Color32,
     front: Color32,
     text: Color32,
-    /// For all methods alike.
+    /// The colour of all methods if the chart is out of date.
     stale: Option<Color32>,
 }
 
@@ -224,7 +224,7 @@ impl Inks {
         let visuals = ui.visuals();
         let front = Color32::from_gray(if visuals.dark_mode { 62 } else { 222 });
         let stale = is_stale.then(|| Color32::from_gray(if visuals.dark_mode { 112 } else { 165 }));
-        Self { rim: visuals.extreme_bg_color, front, text: visuals.strong_text_color(), stale }
+        Self { halo: visuals.extreme_bg_color, front, text: visuals.strong_text_color(), stale }
     }
 
     pub(super) fn front(&self) -> Color32 {
@@ -235,7 +235,7 @@ impl Inks {
         self.text
     }
 
-    /// The chart's ink is the theme's.
+    /// The colour of a method. The chart's ink is replaced by the theme's text colour.
     fn of(&self, look: &Look) -> Color32 {
         let color = look.color;
         let own = if color == INK { self.text } else { Color32::from_rgb(color.0, color.1, color.2) };
@@ -243,8 +243,8 @@ impl Inks {
     }
 }
 
-/// A line as methods have them.
-pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
+/// Draws a method's line, dashed or not.
+pub fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
     match dash {
         None => {
             painter.line(points.to_vec(), stroke);
@@ -255,8 +255,8 @@ pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, das
     }
 }
 
-/// A method's point.
-pub(super) fn marker(painter: &egui::Painter, at: Pos2, look: &Look, inks: &Inks) {
+/// Draws a method's point.
+pub fn marker(painter: &egui::Painter, at: Pos2, look: &Look, inks: &Inks) {
     let color = inks.of(look);
     let shape = |radius: f64, color: Color32| {
         if look.shape == Shape::Disc {
@@ -267,12 +267,12 @@ pub(super) fn marker(painter: &egui::Painter, at: Pos2, look: &Look, inks: &Inks
             painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
         }
     };
-    shape(RADIUS + 1.2, inks.rim);
+    shape(RADIUS + 1.2, inks.halo);
     shape(RADIUS, color);
     match look.fill {
         Fill::Full => {}
-        Fill::Hollow => shape(RADIUS - 1.6, inks.rim),
-        Fill::Pale => shape(RADIUS - 1.2, inks.rim.lerp_to_gamma(color, 0.4)),
+        Fill::Hollow => shape(RADIUS - 1.6, inks.halo),
+        Fill::Pale => shape(RADIUS - 1.2, inks.halo.lerp_to_gamma(color, 0.4)),
     }
 }
 
@@ -281,7 +281,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_exact_lies_below_all_else_and_is_called_0() {
+    fn values_below_the_floor_are_drawn_below_all_others_and_labelled_0() {
         let logs = Logs::around([0.0, 0.01, 10.0].into_iter(), 1e-7);
         let places = [0.0, 0.01, 10.0].map(|value| logs.place(value));
         assert!(logs.start() < places[0] && places[0] < places[1] && places[2] < logs.high, "{places:?}");
@@ -290,11 +290,11 @@ mod tests {
         let named: Vec<_> = marks.iter().filter(|mark| mark.step_size == 1.0).map(|mark| logs.text(*mark)).collect();
         assert_eq!(named, ["0.01", "0.1", "1", "10", "0"]);
         let positive = Logs::around([0.01, 10.0].into_iter(), 1e-7);
-        assert_eq!((positive.zero, positive.start()), (None, positive.low), "no room for none where there is none");
+        assert_eq!((positive.zero, positive.start()), (None, positive.low), "without zeros no room is kept for them");
     }
 
     #[test]
-    fn a_short_axis_has_ticks_too() {
+    fn axes_of_small_ranges_have_ticks() {
         for (least, most) in [(25.0, 38.0), (0.2, 0.21), (3.0, 3.0)] {
             let logs = Logs::around([least, most].into_iter(), 0.0);
             let marks = logs.marks((logs.start(), logs.high));

@@ -1,4 +1,4 @@
-//! Below the picture: the chart, what steers it, and its front as a list.
+//! The chart panel below the picture: the controls, the chart, and its front as a list.
 
 use egui::RichText;
 
@@ -15,21 +15,21 @@ use crate::tessellate::Surface;
 const HEIGHT: f32 = 320.0;
 const HEIGHTS: std::ops::RangeInclusive<f32> = 200.0..=700.0;
 const LIST_WIDTH: f32 = 360.0;
-/// As wide as its longest text, so that nothing beside it moves.
+/// The width of the button's longest text, in points, so that nothing beside it moves.
 const BUTTON_WIDTH: f32 = 96.0;
-/// Says what is missing from the chart for too many triangles.
+/// Says how many settings aren't in the chart because they have too many triangles.
 fn left_out(charted: &Charted) -> String {
     let own = charted.current.is_some_and(|(_, probe)| probe.is_none());
     match (charted.left_out.len(), own) {
         (0, false) => String::new(),
-        (0, true) => "current left out as too fine; ".into(),
-        (count, false) => format!("{count} left out as too fine; "),
-        (count, true) => format!("{count} and current left out as too fine; "),
+        (0, true) => "current settings left out (too many triangles); ".into(),
+        (count, false) => format!("{count} left out (too many triangles); "),
+        (count, true) => format!("{count} and current settings left out (too many triangles); "),
     }
 }
 
-const NOTHING_YET: &str = "Measure tries surfaces and LODs at many settings on this mesh, in this view: how far off each is, \
-                           and how long it takes. A click on a point applies its setting.";
+const NOTHING_YET: &str = "Measure tries surfaces and LODs at many settings on this mesh, in this view, and shows the error \
+                           and the time of each. A click on a point applies its setting.";
 
 impl App {
     pub(in crate::app) fn chart_panel(&mut self, ui: &mut egui::Ui) {
@@ -43,7 +43,7 @@ impl App {
             self.chart_facts(ui);
             let mut applied = None;
             if let Some(charted) = self.panels.chart.charted().filter(|charted| !charted.subject.rows.is_empty()) {
-                let is_stale = self.chart_is_of().is_some();
+                let is_stale = self.chart_outdated().is_some();
                 let own = Setting::of(&self.settings);
                 let diagram = Diagram { charted, cost: self.panels.chart.cost, is_stale, own };
                 legend(ui, charted, is_stale);
@@ -70,11 +70,12 @@ impl App {
         let (done, all) = self.measure_button(ui);
         let part = done as f32 / all.max(1) as f32;
         let bar = egui::ProgressBar::new(part).desired_width(120.0).text(format!("{done} of {all}"));
-        // Of nothing it would paint a round end.
+        // An empty bar would paint a round end.
         let bar = if done == 0 { bar.fill(egui::Color32::TRANSPARENT) } else { bar };
         let most = grouped(self.panels.chart.effort.most_triangles);
         ui.add(bar).on_hover_text(format!(
-            "Settings tried, of all. Trying waits while a picture is drawn. Those of more than {most} triangles are left out."
+            "Settings measured, of all. Measuring waits while a picture is drawn. Settings with more than {most} triangles \
+             are left out."
         ));
         ui.separator();
         let cost = &mut self.panels.chart.cost;
@@ -90,13 +91,13 @@ impl App {
         }
     }
 
-    /// What the chart is of, and what isn't in it.
+    /// What the chart shows, what it leaves out, and whether it is out of date.
     fn chart_facts(&self, ui: &mut egui::Ui) {
         let Some(charted) = self.panels.chart.charted() else { return };
         let left_out = left_out(charted);
         let facts = format!("{left_out}{} {}", charted.subject.title, charted.subject.facts());
-        let (text, hover) = match self.chart_is_of() {
-            Some(other) => (RichText::new(format!("of {other}")).color(ui.visuals().warn_fg_color), "Measured: "),
+        let (text, hover) = match self.chart_outdated() {
+            Some(why) => (RichText::new(format!("out of date: {why}")).color(ui.visuals().warn_fg_color), "Measured: "),
             None => (RichText::new(&facts).weak(), ""),
         };
         ui.add(egui::Label::new(text).truncate()).on_hover_text(format!("{hover}{facts}"));
@@ -108,25 +109,25 @@ impl App {
         is_idle && self.document.is_some() && !self.chart_settings().is_empty()
     }
 
-    /// What starts measuring, or ends it; how many settings are known, of all.
+    /// Shows the button that starts or cancels measuring. Returns how many settings are done, and how many there are.
     fn measure_button(&mut self, ui: &mut egui::Ui) -> (usize, usize) {
         let button = |text| egui::Button::new(text).min_size(egui::vec2(BUTTON_WIDTH, 0.0));
         if let Some(progress) = self.panels.chart.charting.progress() {
-            if ui.add(button("Cancel")).on_hover_text("Stops measuring; what is measured stays.").clicked() {
+            if ui.add(button("Cancel")).on_hover_text("Stops measuring; the results so far stay.").clicked() {
                 self.panels.chart.stop();
             }
             return progress;
         }
         let settings = self.chart_settings();
-        let charted = self.panels.chart.charted().filter(|_| self.chart_is_of().is_none());
+        let charted = self.panels.chart.charted().filter(|_| self.chart_outdated().is_none());
         let known = charted.map_or(0, |charted| settings.iter().filter(|setting| charted.has(setting)).count());
         let (text, hover) = match known {
             0 if self.panels.chart.charted().is_none() => {
-                ("Measure", "Tries every method at many settings, beside the window, and times each.")
+                ("Measure", "Tries every method at many settings and times each. The window stays usable.")
             }
-            0 => ("Measure again", "Tries all settings on what is shown now."),
-            known if known < settings.len() => ("Measure on", "Tries the settings that are missing."),
-            _ => ("Measure again", "Tries all settings anew."),
+            0 => ("Measure again", "Measures all settings on what is shown now."),
+            known if known < settings.len() => ("Measure on", "Measures the settings that are missing."),
+            _ => ("Measure again", "Measures all settings anew."),
         };
         let enabled = self.document.is_some() && !settings.is_empty();
         let response = ui.add_enabled(enabled, button(text)).on_hover_text(hover);
@@ -147,7 +148,7 @@ impl App {
             ui.weak("Level of detail");
             LodKind::ALL.into_iter().for_each(|lod| switch(ui, &mut plan.lods, lod, lod_name(lod)));
         });
-        response.on_hover_text("Which surfaces and LODs are tried; they are shaded with the window's normals.");
+        response.on_hover_text("The surfaces and LODs that are tried, with the normals of the settings panel.");
     }
 }
 
@@ -159,7 +160,7 @@ fn lod_name(lod: LodKind) -> &'static str {
     }
 }
 
-/// Has something among others, or not.
+/// A checkbox that adds `one` to a list or removes it.
 fn switch<T: PartialEq>(ui: &mut egui::Ui, all: &mut Vec<T>, one: T, name: &str) {
     let mut has = all.contains(&one);
     if ui.checkbox(&mut has, name).changed() {
@@ -171,14 +172,14 @@ fn switch<T: PartialEq>(ui: &mut egui::Ui, all: &mut Vec<T>, one: T, name: &str)
     }
 }
 
-/// The diagram, and what is under the pointer; the setting that was clicked on.
+/// Shows the diagram and a tooltip for the point under the pointer. Returns the setting that was clicked on.
 fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let (spot, is_clicked) = diagram.show(ui)?;
     let text = match spot {
         Spot::Row(row) => format!("{}\n{}", diagram.charted.subject.named(row), facts(diagram.charted, &probe(row))),
         Spot::Current => {
             let measured = diagram.charted.current.and_then(|(_, probe)| probe)?;
-            format!("What the window shows\n{}", facts(diagram.charted, &measured))
+            format!("The window's settings\n{}", facts(diagram.charted, &measured))
         }
     };
     egui::Tooltip::always_open(
@@ -199,7 +200,7 @@ fn probe(row: &Row) -> Probe {
     Probe { triangles, vertices, time, errors, max_error_px }
 }
 
-/// What a point says of itself.
+/// The measurements of a point, as text.
 fn facts(charted: &Charted, probe: &Probe) -> String {
     let mut lines = Vec::new();
     if let (Some(errors), Some(diagonal)) = (probe.errors, charted.diagonal) {
@@ -216,7 +217,7 @@ fn facts(charted: &Charted, probe: &Probe) -> String {
     lines.join("\n")
 }
 
-/// What points and lines mean.
+/// The legend of points and lines.
 fn legend(ui: &mut egui::Ui, charted: &Charted, is_stale: bool) {
     let inks = Inks::new(ui, is_stale);
     let looks = looks(&charted.subject);
@@ -242,11 +243,11 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, is_stale: bool) {
         let rect = sample(ui, 26.0);
         let ends = [rect.left_center(), rect.right_center()];
         line(ui.painter(), &ends, egui::Stroke::new(9.0, inks.front()), None);
-        ui.label("unbeaten").on_hover_text("Nothing has less error at less cost.");
+        ui.label("front").on_hover_text("Settings that no other setting beats in both error and cost.");
     });
 }
 
-/// What nothing beats, as buttons that apply it; the setting of the one that was pressed.
+/// Lists the settings of the front as buttons that apply them. Returns the setting whose button was pressed.
 fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let subject = &diagram.charted.subject;
     let races = subject.races();
@@ -255,7 +256,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let cost = if diagram.cost == Cost::Ms { "ms" } else { "tri" };
     ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
     columns(ui, &format!("{unit:>8} {cost:>8}  setting"), true).on_hover_text(
-        "What nothing beats, the cheapest first: less error at less cost has no other. A click applies it.",
+        "The front: settings that no other setting beats in both error and cost, the cheapest first. A click applies one.",
     );
     let mut applied = None;
     list(ui, "Front", front.len(), |ui, index| {

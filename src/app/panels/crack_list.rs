@@ -1,4 +1,4 @@
-//! Edges whose sides disagree, the worst first; one of them in detail; and T-junctions.
+//! The lists of cracked edges and of T-junctions, and the details of the selected edge.
 
 use egui::RichText;
 
@@ -16,7 +16,7 @@ use crate::view::ulp;
 use glam::Vec3;
 
 impl App {
-    /// A list of edges; a click frames one.
+    /// The list of edges whose sides disagree, the widest gap first. A click frames one.
     pub(in crate::app) fn worst_edges(&mut self, ui: &mut egui::Ui) {
         let (Some(document), Some(cracks)) = (&self.document, self.jobs.measure.cracks()) else { return };
         if cracks.edges.is_empty() {
@@ -41,7 +41,8 @@ impl App {
                 ui.selectable_label(self.viewport.selected_edge == Some(edge), RichText::new(text).monospace());
             let response = response.on_hover_ui(|ui| {
                 ui.label(format!(
-                    "{} px on screen, {} ULP; {} points and {} normals differ; factors {}. A click frames the edge.",
+                    "The gap is {} px on screen, {} ULP. {} points and {} normals differ; the factors {}. A click frames \
+                     the edge.",
                     short(self.viewport.picture.gap_of_edge_px(crack)),
                     short(crack.gap / ulp),
                     crack.different_bits,
@@ -59,7 +60,7 @@ impl App {
         }
     }
 
-    /// The selected edge: its kind, its triangles, and what each side made of it.
+    /// The selected edge: its kind, its gap, and the points of each side.
     pub(in crate::app) fn edge_details(&mut self, ui: &mut egui::Ui) {
         let (Some(edge), Some(document)) = (self.viewport.selected_edge, &self.document) else { return };
         let topology = &document.loaded.topology;
@@ -78,7 +79,7 @@ impl App {
         ui.separator();
         let sides = self.jobs.measure.found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         egui::Grid::new("edge").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            fact(ui, "Kind", kind, "What the edge's sides have in common.");
+            fact(ui, "Kind", kind, "How the normals and uvs of the edge's sides agree.");
             if let Some(crack) = self.crack_of(edge, SplitSide::Right) {
                 let (px, ulps) = (self.viewport.picture.gap_of_edge_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
@@ -88,7 +89,7 @@ impl App {
                     &format!("{} ULP", short(ulps)),
                     "In units of the last place of the mesh's largest coordinate.",
                 );
-                fact(ui, "", &format!("{} px", short(px)), "On screen.");
+                fact(ui, "", &format!("{} px", short(px)), "The gap on screen.");
             }
         });
         side_rows(ui, &sides);
@@ -110,17 +111,19 @@ impl App {
         ui.horizontal(|ui| {
             swatch(ui, T_JUNCTION_COLOR);
             ui.label("T-junctions").on_hover_text(
-                "Points between the ends of open edges, on them or close beside them. No tessellation closes these: the edge is cut without knowing of the points.",
+                "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these gaps, \
+                 because the edge is cut without knowing of the point.",
             );
             number(ui, &grouped(junctions.len() as u64));
         });
-        columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, of 1"), true);
+        columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, 0 to 1"), true);
         let mut clicked: Option<TJunction> = None;
         list(ui, "t-junctions", junctions.len(), |ui, row| {
             let TJunction { edge, point, t, .. } = junctions[row];
             let text = RichText::new(format!("{point:<9}{edge:<9}{t:>11.3}")).monospace();
             let response = ui.selectable_label(self.viewport.selected_edge == Some(edge), text);
-            let response = response.on_hover_text("Where along the edge the point lies. A click frames the edge.");
+            let response =
+                response.on_hover_text("Where the point lies along the edge, from 0 to 1. A click frames the edge.");
             if response.clicked() {
                 clicked = Some(junctions[row]);
             }
@@ -132,7 +135,7 @@ impl App {
         }
     }
 
-    /// Selects an edge and turns the camera so that it is in the middle, seen from the side its triangles face.
+    /// Selects an edge and turns the camera so that it is in the middle, seen from the side that its triangles face.
     pub fn select_edge(&mut self, edge: u32) {
         let Some(document) = &self.document else { return };
         let topology = &document.shown().1;
@@ -148,8 +151,8 @@ impl App {
         self.measured(half).cracks()?.edges.iter().find(|crack| crack.edge == edge)
     }
 
-    /// What marks the selected edge: each of its sides in a colour of its own, the later ones thinner, so that sides in
-    /// one place both show; and where they are farthest apart. If its patches emit nothing, the straight line.
+    /// The lines that mark the selected edge: each side in a colour of its own, the later ones thinner so that sides that
+    /// coincide both show, and a dot where they are farthest apart. If its patches emit nothing, it is the straight line.
     pub(in crate::app) fn selection_lines(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(edge) = self.viewport.selected_edge else { return Vec::new() };
         let sides = self.measured(half).found().map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
@@ -178,13 +181,13 @@ impl App {
     }
 }
 
-/// Each side: its triangle in the colour that it has over the mesh, and its factor.
+/// A row for each side: its triangle with the colour that the side has over the mesh, its factor and its segments.
 fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     egui::Grid::new("sides").num_columns(3).min_col_width(60.0).show(ui, |ui| {
         ui.weak("side");
         for (text, hover) in [
-            ("factor", "As LOD gave it, before it was clamped and rounded."),
-            ("segments", "That the side was cut into."),
+            ("factor", "The factor that LOD gave, before it was clamped and rounded."),
+            ("segments", "The number of segments that the side was cut into."),
         ] {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.weak(text).on_hover_text(hover));
         }
@@ -206,7 +209,7 @@ pub(in crate::app) fn kind_name(kind: EdgeKind) -> &'static str {
     EDGE_KINDS.iter().find(|(known, ..)| *known == kind).map_or("", |(_, name, _)| name)
 }
 
-/// Every point of an edge, and how far its sides are apart there; the positions themselves on hover.
+/// A row for each point of an edge with the distance between its sides. The hover text has the positions.
 fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     let Some((first, others)) = sides.split_first() else { return };
     let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);

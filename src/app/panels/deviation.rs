@@ -1,10 +1,10 @@
-//! How far off the picture is: measuring it, the section that says it, its marks and its scale. Both halves are read against one.
+//! The deviation of what is shown: its measurement, its section in the panel, its marks and its colour scale.
 
 use egui::RichText;
 use glam::{Vec2, Vec3};
 
 use crate::app::App;
-use crate::app::jobs::deviation_job::{DeviationJob, Found, Of};
+use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationResult};
 use crate::app::jobs::measure_job::Trouble;
 use crate::app::text::{grouped, short, shortened};
 use crate::app::viewport::legend::Distances;
@@ -24,18 +24,18 @@ impl App {
         }
     }
 
-    fn deviation_of(&self, half: SplitSide) -> Option<Of> {
+    fn deviation_of(&self, half: SplitSide) -> Option<DeviationBasis> {
         let document = self.document.as_ref()?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
         let (document, truth, limit) = (document.generation, self.yardstick().0, self.settings.tessellation.surface);
-        Some(Of { document, tessellation, truth, limit })
+        Some(DeviationBasis { document, tessellation, truth, limit })
     }
 
     fn shows_deviation(&self) -> bool {
         self.settings.overlays.colors == Colors::Deviation
     }
 
-    /// Counts the results that the picture shows; 0 without the overlay.
+    /// Counts changes of the deviation that the picture shows; 0 without the overlay.
     pub(in crate::app) fn deviation_shown(&self) -> u64 {
         if self.shows_deviation() {
             self.jobs.deviation.generation + self.viewport.left.deviating.generation
@@ -44,18 +44,19 @@ impl App {
         }
     }
 
-    /// How far what is shown is from the truth, once that is known.
+    /// The largest distance of a half from the reference surface, once it is known.
     pub fn deviation(&self, half: SplitSide) -> Option<f64> {
         Some(self.known_deviation(half)?.worst?.value)
     }
 
-    fn known_deviation(&self, half: SplitSide) -> Option<&Found> {
+    fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
         self.deviating(half).found_of(self.deviation_of(half)?)
     }
 
-    /// Lets measuring go on, if the overlay is on and nothing is under way that it would disturb. Without a truth both halves
-    /// are held against the limit of the right one, which has these inputs: what flat triangles converge to they are already.
+    /// Goes on measuring if the overlay is on, no clip plays and no picture is under way. Without a reference surface both
+    /// halves are compared with the limit surface of the right one, which has these inputs. The limit surface of a flat left
+    /// half would be that half itself.
     pub(in crate::app) fn deviate(&mut self, inputs: &Inputs) -> Result<(), Trouble> {
         if !self.shows_deviation() || self.viewport.playback.is_playing() {
             self.jobs.deviation.stop();
@@ -83,11 +84,12 @@ impl App {
         Ok(())
     }
 
-    /// In object units, for the half that is farther off by what was last known of each.
+    /// The colour scale in object units, for the larger of the halves' last known deviations.
     fn deviation_scale(&self) -> Option<Scale> {
         let scene = &self.document.as_ref()?.scene;
         let shown = SplitSide::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
-        let largest = shown.filter_map(|half| self.deviating(half).found()).map(Found::largest).reduce(f64::max)?;
+        let largest =
+            shown.filter_map(|half| self.deviating(half).found()).map(DeviationResult::largest).reduce(f64::max)?;
         Some(deviation_scale(largest, scene.ulp()))
     }
 
@@ -100,20 +102,20 @@ impl App {
         }
     }
 
-    /// The mark on the place of a half that is farthest from the truth.
+    /// The lines that mark the point of a half that is farthest from the reference surface.
     pub(in crate::app) fn worst_mark(&self, half: SplitSide) -> Vec<LineSegment> {
         let shown = self.known_deviation(half).filter(|_| self.shows_deviation());
         let worst = shown.and_then(|found| found.worst);
         worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()))
     }
 
-    /// What the marks are a function of: the result that each is of, 0 for none.
+    /// The number of the result that each half's mark shows; 0 for no mark.
     pub(in crate::app) fn worst_marked(&self) -> [u64; 2] {
         let is_marked = |half| self.shows_deviation() && self.known_deviation(half).is_some();
         SplitSide::BOTH.map(|half| if is_marked(half) { self.deviating(half).generation } else { 0 })
     }
 
-    /// What the legend says of distances.
+    /// What the legend shows about distances.
     pub(in crate::app) fn legend_distances(&self) -> Distances {
         let unit = self.settings.deviation_in;
         let scale = match unit {
@@ -126,19 +128,19 @@ impl App {
         Distances { unit, scale, is_partial, measured }
     }
 
-    /// The largest distance of a half in the unit that is coloured, while that is shown; it keeps its place until it is known.
+    /// The largest distance of a half, in the overlay's unit; none without the overlay. Until it is known, it is an ellipsis.
     pub(in crate::app) fn largest_text(&self, half: SplitSide) -> Option<String> {
         if !self.shows_deviation() {
             return None;
         }
         let (number, unit) = match self.settings.deviation_in {
-            DeviationUnit::Units => (self.known_deviation(half).map(Found::largest), "units"),
+            DeviationUnit::Units => (self.known_deviation(half).map(DeviationResult::largest), "units"),
             DeviationUnit::Px => (self.deviation_px(half), "px"),
         };
         Some(format!("{} {unit}", number.map_or_else(|| "…".into(), short)))
     }
 
-    /// What the mesh is held against, and how far off the picture is; while that is shown.
+    /// The section about deviation: the reference surface and the distances. It is shown with the overlay.
     pub(in crate::app) fn deviation_section(&mut self, ui: &mut egui::Ui) {
         if !self.shows_deviation() {
             return;
@@ -147,7 +149,7 @@ impl App {
         let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
         let is_split = self.settings.half(SplitSide::Left).is_some();
         if is_split && truth.is_none() {
-            name = format!("{}'s limit", self.settings.tessellation.surface.label());
+            name = format!("limit of {}", self.settings.tessellation.surface.label());
         }
         let mut clicked = None;
         egui::Grid::new("deviation").num_columns(2).min_col_width(104.0).show(ui, |ui| {
@@ -158,7 +160,7 @@ impl App {
                 let Some(settings) = self.settings.half(half) else { continue };
                 let place = if half == SplitSide::Left { "Left" } else { "Right" };
                 if is_split {
-                    let hover = "What is shown in this half of the split.";
+                    let hover = "The surface in this half of the split view.";
                     ui.label(RichText::new(place).strong()).on_hover_text(hover);
                     number(ui, settings.tessellation.surface.label());
                     ui.end_row();
@@ -180,12 +182,12 @@ impl App {
         }
     }
 
-    /// How far off a half is; true if its worst point was clicked. Until it is measured the rows keep their places.
+    /// Rows with a half's distances, or ellipses until they are measured. Returns true if the worst point was clicked.
     fn deviation_rows(&self, ui: &mut egui::Ui, half: SplitSide, place: &str) -> bool {
         let found = self.known_deviation(half);
         let text = |number: Option<f64>, unit| format!("{} {unit}", number.map_or_else(|| "…".into(), short));
         let hover = "The largest distance between the emitted triangles and the reference surface, in object units.";
-        fact(ui, "Largest", &text(found.map(Found::largest), "units"), hover);
+        fact(ui, "Largest", &text(found.map(DeviationResult::largest), "units"), hover);
         let hover =
             "The distance on screen between the worst point and the nearest point of the reference surface, in px.";
         fact(ui, "", &text(self.deviation_px(half), "px"), hover);
@@ -193,7 +195,7 @@ impl App {
         fact(ui, "RMS", &text(found.map(|found| found.rms), "units"), hover);
         ui.horizontal(|ui| {
             swatch(ui, WORST_COLOR);
-            ui.label("Worst point").on_hover_text("Where the distance is largest. A click frames it.");
+            ui.label("Worst point").on_hover_text("The point where the distance is largest. A click frames it.");
         });
         let worst = found.and_then(|found| found.worst);
         let column = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -202,14 +204,15 @@ impl App {
             let response = ui.add_enabled(worst.is_some(), button);
             let name = format!("{place} Worst point {text}");
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, worst.is_some(), name.trim_start()));
-            let hover = "Turns the camera to it. LOD and clipping stay as they are, so that it stays the worst.";
+            let hover =
+                "Turns the camera to this point. LOD and clipping stay frozen, so that it remains the worst point.";
             response.on_hover_text(hover).clicked()
         });
         ui.end_row();
         column.inner
     }
 
-    /// The largest distance of a half in px, seen as the last picture was.
+    /// The largest distance of a half in px, in the view of the last picture.
     fn deviation_px(&self, half: SplitSide) -> Option<f64> {
         let (worst, view) = (self.known_deviation(half)?.worst?, self.viewport.picture.seen_from()?);
         let at = |place: glam::DVec3| project(view.clip_from_object, view.viewport, place.as_vec3());
@@ -222,7 +225,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let (mesh, topology) = document.shown();
         let Some(patch) = topology.patches.get(worst.patch as usize) else { return };
-        // Tessellated for the new view it would be another mesh, with another worst point.
+        // A tessellation for the new view would have another worst point.
         if self.viewport.frozen.is_none() && follows_view(&self.settings) {
             self.viewport.frozen = self.viewport.picture.shown_view();
         }
@@ -237,7 +240,7 @@ impl App {
     }
 }
 
-/// Whether what is emitted depends on where one looks from.
+/// Whether the tessellation depends on the camera.
 fn follows_view(settings: &Settings) -> bool {
     settings.tessellation.used_lod() != Lod::Uniform
         || settings.tessellation.clip != Clip::Off

@@ -1,4 +1,4 @@
-//! Displacement: the image that loads the mesh again, and what is done with it.
+//! The rows for displacement: choosing a height map, which loads the mesh again, and its options.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ fn is_image(path: &Path) -> bool {
 }
 
 impl App {
-    /// Opens a mesh, or displaces the one that is open by an image.
+    /// Opens a mesh. An image displaces the mesh that is open instead.
     pub fn open_path(&mut self, context: &egui::Context, path: PathBuf) {
         if is_image(&path) && self.document.is_some() {
             self.displace(context, Some(HeightSource::File(path)));
@@ -35,19 +35,19 @@ impl App {
         });
     }
 
-    /// Loads the same mesh again with other heights, which displace it once they are there.
+    /// Loads the same mesh again with another height map, or without one.
     pub fn displace(&mut self, context: &egui::Context, heights: Option<HeightSource>) {
         self.prepare(context, |preparation| preparation.heights = heights);
     }
 
-    /// Another mesh is shown, or the same with other heights: first ones displace it, and without any nothing does.
+    /// Adapts displacement to a mesh that was just loaded: on if it is the first with heights, off without heights.
     pub(in crate::app) fn take_heights(&mut self, before: Option<&HeightSource>) {
         self.settings.tessellation.displacement = match (self.has_heights(), before) {
             (true, None) => Displacement::On,
             (true, Some(_)) => return,
             (false, _) => Displacement::Off,
         };
-        // Nobody set it, so nobody takes it back.
+        // This isn't a step of undo, because it follows from the mesh.
         self.history.displace(self.settings.tessellation.displacement);
     }
 
@@ -55,7 +55,7 @@ impl App {
         self.document.as_ref().is_some_and(|document| document.loaded.mesh.heights.is_some())
     }
 
-    /// The image's row; and while there is one, what is done with it.
+    /// The row for the height map, and the rows of its options while there is one.
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
         let label = ui.label("Height map");

@@ -23,7 +23,7 @@ pub(super) struct Panels {
     pub chart: Chart,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
-    /// What displacement was before it was last switched.
+    /// The displacement before it was last switched.
     pub last_displacement: Displacement,
 }
 

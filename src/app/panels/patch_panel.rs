@@ -1,4 +1,4 @@
-//! The selected patch: what LOD and the tessellator made of it, who its neighbours are, and what it was made from.
+//! The section about the selected patch: its factors, pattern, neighbours, corners and adjacency indices.
 
 use egui::{RichText, Ui};
 
@@ -20,7 +20,7 @@ use crate::tessellate::{
     domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
 };
 
-/// What was asked for in the section.
+/// What was clicked in the section.
 enum Wish {
     Select(Option<u32>),
     Edge(u32),
@@ -28,8 +28,8 @@ enum Wish {
     Deselect,
 }
 
-/// A selected triangle, and all that is known about it.
-struct Shown<'a> {
+/// The selected triangle, its patch, and what is known about them.
+struct SelectedPatch<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     triangle: u32,
@@ -37,11 +37,11 @@ struct Shown<'a> {
     convention: Convention,
     lod: Lod,
     selected_edge: Option<u32>,
-    /// Once it is measured: all zero where nothing is emitted.
+    /// Known once measured. All are 0 if the patch emits nothing.
     factors: Option<PatchFactors>,
     sides: Option<[EdgeSide; 3]>,
     hit: Option<PickedTriangle>,
-    /// Whether it is measured only later.
+    /// Whether a clip plays, so that nothing is measured until it pauses.
     is_playing: bool,
 }
 
@@ -53,10 +53,10 @@ impl App {
         let mut wish = chosen_triangle(ui, mesh, topology, self.selected_triangle());
         let found = self.jobs.measure.found();
         match (self.selected_triangle(), self.selected_patch()) {
-            (None, _) => drop(ui.weak("Click a triangle, or give its number.")),
+            (None, _) => drop(ui.weak("Click a triangle, or type its number.")),
             (Some(triangle), None) => drop(ui.label(format!("Triangle {triangle} is degenerate: it has no patch."))),
             (Some(triangle), Some(patch)) => {
-                let shown = Shown {
+                let shown = SelectedPatch {
                     mesh,
                     topology,
                     triangle,
@@ -69,7 +69,7 @@ impl App {
                     hit: self.hit().copied(),
                     is_playing: self.is_playing(),
                 };
-                // Tables: lines closer than elsewhere.
+                // The tables have less space between lines than the rest of the panel.
                 ui.scope(|ui| {
                     ui.spacing_mut().item_spacing.y = 3.0;
                     ui.spacing_mut().interact_size.y = 16.0;
@@ -92,7 +92,7 @@ impl App {
     }
 }
 
-/// The number of the selected triangle, which can be dragged and typed; and what one does with it.
+/// The number of the selected triangle, which can be dragged and typed, and the buttons beside it.
 fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Option<u32>) -> Option<Wish> {
     let mut wish = None;
     ui.horizontal(|ui| {
@@ -113,25 +113,27 @@ fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Opti
         }
         let patch = selected.and_then(|triangle| topology.patch_of(triangle));
         let frame = ui.add_enabled(patch.is_some(), egui::Button::new("Frame").small());
-        if frame.on_hover_text("Puts the patch in the middle, seen from where it faces (Shift+F).").clicked() {
+        if frame.on_hover_text("Turns the camera so that the patch is in the middle and faces it (Shift+F).").clicked()
+        {
             wish = Some(Wish::Frame);
         }
         let deselect = ui.add_enabled(selected.is_some(), egui::Button::new("Deselect").small());
         deselect.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, selected.is_some(), "Deselect patch"));
-        if deselect.on_hover_text(with_key("Selects nothing.", &Action::Cancel)).clicked() {
+        if deselect.on_hover_text(with_key("Clears the selection.", &Action::Cancel)).clicked() {
             wish = Some(Wish::Deselect);
         }
     });
     wish
 }
 
-impl Shown<'_> {
-    /// Every factor: its edge, as LOD gave it, as the tessellator has it, and the segments that it cuts.
+impl SelectedPatch<'_> {
+    /// A row for each factor: its edge, the factor that LOD gave, the factor that the tessellator uses, and the segments.
     fn factor_rows(&self, ui: &mut Ui) {
         title(ui, "Factors", "TessFactor[i] belongs to the edge on which weight i (u, v, w) is 0.");
         let header = format!("{:<4}{:<4}{:>8}{:>8}{:>6}", "", "edge", "asked", "used", "cut");
         factor_row(ui, None, &header, true).on_hover_text(
-            "Asked: as LOD gave it. Used: as the tessellator clamped and rounded it. Cut: into so many segments.",
+            "Asked: the factor that LOD gave. Used: the factor after the tessellator clamped and rounded it. Cut: the \
+             number of segments.",
         );
         for i in 0..3 {
             let (word, side) = (self.factors.map(|f| f.outside[i as usize]), factor_side(self.convention, i));
@@ -140,7 +142,7 @@ impl Shown<'_> {
             factor_row(ui, Some(FACTOR_COLORS[i as usize]), &text, false).on_hover_text(format!("TessFactor[{i}]"));
         }
         let asked = match self.lod {
-            // What the error asks for is a whole number already, and isn't kept.
+            // LOD by error asks for a whole number and doesn't keep it, so the used factor is shown.
             Lod::Error => self.factors.map(|factors| used(factors.inside) as f32),
             _ => (0..3).map(|i| self.asked(i)).reduce(|a, b| Some(a?.max(b?))).flatten(),
         };
@@ -157,7 +159,7 @@ impl Shown<'_> {
         self.sides.as_ref().map(|sides| sides[factor_side(self.convention, i) as usize].factor)
     }
 
-    /// Three columns; dots until they are known.
+    /// The three columns of numbers, or ellipses until they are known.
     fn factor_numbers(&self, asked: Option<f32>, word: Option<u32>, cut: Option<u32>) -> String {
         match (asked, word, cut) {
             _ if self.factors.is_some_and(patch_is_culled) => format!("{:>22}", "culled"),
@@ -176,22 +178,22 @@ impl Shown<'_> {
         title(
             ui,
             &format!("Pattern: {pattern}"),
-            "Domain points and triangles that the tessellator makes of the factors.",
+            "The domain points and triangles that the tessellator makes from these factors.",
         );
         let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
         let empty = match self.factors {
             None if self.is_playing => "measured when paused",
             None => "measuring…",
-            Some(PatchFactors { inside: OUT_OF_VIEW, .. }) => "out of view: nothing is emitted",
-            Some(PatchFactors { inside: FACING_AWAY, .. }) => "facing away: nothing is emitted",
-            Some(_) => "culled by a factor: nothing is emitted",
+            Some(PatchFactors { inside: OUT_OF_VIEW, .. }) => "out of view, so nothing is emitted",
+            Some(PatchFactors { inside: FACING_AWAY, .. }) => "facing away, so nothing is emitted",
+            Some(_) => "a factor is 0 or less, so nothing is emitted",
         };
         pattern_plot(ui, self.factors, self.hit.map(|hit| hit.number), letters, empty);
     }
 
-    /// Every edge: its kind, and the triangles across it.
+    /// A row for each edge: its kind, and the triangles across it.
     fn edge_rows(&self, ui: &mut Ui, wish: &mut Option<Wish>) {
-        title(ui, "Edges of the patch", "From corner to corner; a click selects one.");
+        title(ui, "Edges of the patch", "Edges are named by their two corners. A click selects one.");
         let grid =
             egui::Grid::new("patch edges").num_columns(4).min_col_width(14.0).min_row_height(0.0).spacing([8.0, 3.0]);
         grid.show(ui, |ui| {
@@ -225,7 +227,11 @@ impl Shown<'_> {
 
     /// Position, normal and uv of every corner.
     fn corner_rows(&self, ui: &mut Ui) {
-        title(ui, "Corners", "As loaded: object units, unit normals, texture coordinates. Exact numbers on hover.");
+        title(
+            ui,
+            "Corners",
+            "Position in object units, unit normal and texture coordinates, as loaded. Hover texts have the exact numbers.",
+        );
         for (k, corner) in (0..).zip(self.topology.patch_corners(self.patch)) {
             let point = self.topology.corner_points[corner as usize];
             let (at, letter) = (&self.mesh.corners[corner as usize], letter(self.convention, k));
@@ -247,7 +253,7 @@ impl Shown<'_> {
 
     /// The nine indices of PN-AEN, and the three of dominant corners.
     fn index_rows(&self, ui: &mut Ui) {
-        let hover = "Indices of corners, as pnaen adjacency writes them: nine, or twelve with the dominant corners.";
+        let hover = "Indices of corners as `pnaen adjacency` writes them: nine, or twelve with the dominant corners.";
         title(ui, "Adjacency indices", hover);
         let twelve = adjacency::twelve(self.topology, self.patch);
         let row = |name: &str, indices: &[u32]| {
@@ -256,20 +262,20 @@ impl Shown<'_> {
         ui.label(dense(row("corners", &twelve[..3]))).on_hover_text("The triangle's own corners 0, 1, 2.");
         for k in 0..3_usize {
             let pair = &twelve[3 + 2 * k..5 + 2 * k];
-            let hover = "The neighbour's corners across this edge, in the patch's direction; its own where there is not \
-                         one neighbour.";
+            let hover = "The neighbour's corners along this edge, in the patch's direction. Without exactly one neighbour \
+                         they are the patch's own.";
             ui.label(dense(row(&format!("edge {}", ends_text(k as u32)), pair))).on_hover_text(hover);
         }
         ui.label(dense(row("dominant", &twelve[9..]))).on_hover_text("The lowest corner on each of the three points.");
     }
 
-    /// The emitted triangle that was clicked on: its domain points.
+    /// The domain points of the emitted triangle that was clicked on.
     fn hit_rows(&self, ui: &mut Ui) {
         let Some(hit) = &self.hit else { return };
-        let hover = "Its number in the patch, and its domain points in 16.16 fixed point and as decimals.";
+        let hover = "The triangle's number in the patch, and its domain points in 16.16 fixed point and as decimals.";
         title(ui, &format!("Emitted triangle {}", hit.number), hover);
         ui.label(dense(format!("{:<5}{:>9}{:>9}{:>9}", "point", "u", "v", "w")).weak());
-        // A triangle of a tessellation that isn't measured yet has no numbers.
+        // The points' numbers are known once the tessellation is measured.
         let points = self.factors.filter(|&factors| hit.number < triangle_count(factors));
         let points = points.map(|factors| domain_triangle(&domain_plan(factors), hit.number));
         for (k, vertex) in hit.vertices.iter().enumerate() {
@@ -281,7 +287,7 @@ impl Shown<'_> {
     }
 }
 
-/// Buttons that select the triangles of patches; the one that was clicked on.
+/// Buttons that select the triangles of patches. Returns the triangle whose button was clicked.
 fn neighbours(ui: &mut Ui, topology: &Topology, patches: &[u32]) -> Option<u32> {
     let button = |ui: &mut Ui, patch: &u32| {
         let triangle = topology.patches[*patch as usize].triangle;
@@ -310,7 +316,7 @@ fn neighbours(ui: &mut Ui, topology: &Topology, patches: &[u32]) -> Option<u32> 
     }
 }
 
-/// Triangles that are listed across one edge: of a hundred, one looks at the first few.
+/// How many triangles across one edge are listed.
 const LISTED_NEIGHBOURS: usize = 16;
 
 /// The factor in a word: see [`PatchFactors`].
@@ -330,7 +336,7 @@ fn factor_row(ui: &mut Ui, color: Option<[u8; 3]>, text: &str, is_weak: bool) ->
     row.inner
 }
 
-/// Monospaced, small enough for a position's three coordinates.
+/// Small monospaced text, so that a position's three coordinates fit on one line.
 fn dense(text: impl Into<String>) -> RichText {
     RichText::new(text).monospace().size(12.0)
 }

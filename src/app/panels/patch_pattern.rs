@@ -12,9 +12,9 @@ use crate::tessellate::{
 const SIZE: Vec2 = vec2(250.0, 244.0);
 /// Points around the triangle, for the letters of its corners.
 const MARGIN: Vec2 = vec2(14.0, 26.0);
-/// Points of a pattern that can be numbered: more would not be read.
+/// The greatest number of points that are numbered; more numbers would overlap.
 const NUMBERED: u32 = 60;
-/// Points on screen within which a domain point is under the pointer.
+/// How close the pointer must be to a domain point to show its weights, in points of the screen.
 const REACH: f32 = 8.0;
 
 /// A point's weights in 16.16 fixed point, and as decimals.
@@ -24,9 +24,9 @@ pub(super) fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
     [weights.map(|weight| format!("{weight:>9}")).concat(), decimals.concat()]
 }
 
-/// Draws the pattern, or an empty one until the factors are known. `letters` are written where u, v and w are 1; triangle
-/// `hit` is filled; `empty` is said where there are no points.
-pub(super) fn pattern_plot(
+/// Draws the pattern, or an empty one until the factors are known. `letters` are written where u, v and w are 1. Triangle
+/// `hit` is filled. `empty` is the text that is shown if there are no points.
+pub fn pattern_plot(
     ui: &mut Ui,
     factors: Option<PatchFactors>,
     hit: Option<u32>,
@@ -56,7 +56,7 @@ pub(super) fn pattern_plot(
     hover(ui, response, factors, &points)
 }
 
-/// Where the plot has a domain point: u is 1 on top, v at the left and w at the right.
+/// The position of a domain point in the plot: u is 1 at the top, v at the left and w at the right.
 fn place(rect: Rect, [u, v]: [u32; 2]) -> Pos2 {
     let [u, v] = [u, v].map(|weight| weight as f32 / FIXED_ONE as f32);
     let inner = rect.shrink2(MARGIN);
@@ -77,7 +77,7 @@ fn draw_triangles(ui: &Ui, factors: PatchFactors, points: &[Pos2], hit: Option<u
         let [a, b, c] = domain_triangle(&plan, t);
         [(a, b), (b, c), (c, a)]
     });
-    // Two triangles share an edge and run it in opposite directions; the outline is drawn by itself.
+    // Two triangles share each inner edge in opposite directions, so each is drawn once. The outline is drawn separately.
     let lines = edges.filter(|(a, b)| a < b).map(|(a, b)| Shape::line_segment([at(a), at(b)], stroke));
     painter.extend(lines);
 }
@@ -107,7 +107,7 @@ fn draw_points(ui: &Ui, points: &[Pos2]) {
     }
 }
 
-/// Tells the number and the weights of the point under the pointer.
+/// Shows the number and the weights of the point under the pointer.
 fn hover(ui: &Ui, response: Response, factors: PatchFactors, points: &[Pos2]) -> Response {
     let Some(pointer) = response.hover_pos() else { return response };
     let near = (0..).zip(points).map(|(i, point)| (i, point.distance(pointer)));

@@ -75,7 +75,7 @@ impl App {
         });
         self.back_face_row(ui);
         let mut frozen = self.viewport.frozen.is_some();
-        let hover = "Keeps LOD and clipping as they are for the present camera, while you look from elsewhere.";
+        let hover = "Keeps LOD and clipping as they are for this camera while you look from elsewhere.";
         let hover = with_key(hover, &Action::FreezeLodCamera);
         if ui.checkbox(&mut frozen, "Freeze LOD camera").on_hover_text(hover).changed() {
             self.toggle_frozen();
@@ -96,14 +96,14 @@ impl App {
             egui::Checkbox::new(&mut self.settings.tessellation.cull_back_faces, options::CULL_BACK_FACES.label);
         ui.add_enabled(is_solid, check)
             .on_hover_text(format!(
-                "{} They are drawn where their backs can be seen: in an animation, while the near plane cuts the mesh, and \
-                 where PN, edges by each patch or a mistaken convention tear it.",
+                "{} They are drawn all the same where backs can be seen: in an animation, while the near plane cuts the mesh, and \
+                 where PN, edges computed by each patch, or a wrong convention tear the surface.",
                 option_hover(&options::CULL_BACK_FACES, "")
             ))
             .on_disabled_hover_text(BACKS_ARE_SEEN);
     }
 
-    /// The tolerances, each with what it would join; another one loads the mesh again.
+    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
@@ -116,7 +116,7 @@ impl App {
                     for joins in all {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));
                         ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
-                            "As a part of the bounding diagonal: {} units here. Compared with the exact weld.",
+                            "Relative to the bounding diagonal: {} units here. The numbers are compared with the exact weld.",
                             short(f64::from(joins.tolerance * document.diagonal))
                         ));
                     }
@@ -126,8 +126,8 @@ impl App {
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(
-            "Positions within this part of the bounding diagonal become one point, which joins open edges that nearly \
-             meet. The list says how many each tolerance would join.",
+            "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances are \
+             relative to the bounding diagonal. The list says how many edges each would join.",
         );
         ui.end_row();
         if chosen != weld {
@@ -138,7 +138,7 @@ impl App {
     fn view_rows(&mut self, ui: &mut egui::Ui) {
         let mut split = self.settings.split.is_some();
         let hover = with_key(
-            "Left of the divider is the untessellated mesh or another surface, right of it this one, seen from one camera.",
+            "Shows the untessellated mesh, or another surface, left of a divider and the tessellation right of it.",
             &Action::SplitView,
         );
         if ui.checkbox(&mut split, "Split view").on_hover_text(hover).changed() {
@@ -151,7 +151,7 @@ impl App {
             let slider = egui::Slider::new(&mut percent, 0.0..=100.0).max_decimals(0).suffix(" %");
             let response = ui.add_enabled(split, slider).labelled_by(label.id);
             if response
-                .on_hover_text("Where the view is split, in percent of its width from the left (--split).")
+                .on_hover_text("The position of the divider, in percent of the view's width from the left (--split).")
                 .changed()
             {
                 self.viewport.last_split = percent / 100.0;
@@ -187,12 +187,12 @@ fn factor_keys() -> String {
     format!("{up} and {down}")
 }
 
-/// What an overlay shows, and its key.
+/// The hover text of an overlay: what it shows, and its key.
 fn overlay_hover(overlay: Overlay) -> String {
     with_key(overlay.text(), &Action::Setting(Change::Overlay(overlay)))
 }
 
-/// What the surface's colours mean, and the key of the overlay that gives them.
+/// The hover text of a choice of colours: their meaning, and the overlay's key.
 fn colors_hover(colors: Colors) -> String {
     let overlays = Overlays { colors, ..Overlays::default() };
     overlays.on().next().map_or_else(|| colors.text().to_owned(), overlay_hover)
@@ -209,10 +209,12 @@ fn distances_row(ui: &mut egui::Ui, settings: &mut Settings) {
     };
     let label = ui.label("Near");
     ui.horizontal(|ui| {
-        let hover = "Up to this distance to the eye every edge has the full factor, in bounding radii of the mesh (--distances).";
+        let hover =
+            "Edges up to this distance from the eye have the full factor. In bounding radii of the mesh (--distances).";
         drag(ui, label, &mut own.near, least..=far * 0.99, hover);
         let label = ui.label("far");
-        let hover = "From this distance to the eye on every edge has factor 1, in bounding radii of the mesh (--distances).";
+        let hover =
+            "Edges from this distance to the eye on have factor 1. In bounding radii of the mesh (--distances).";
         drag(ui, label, &mut own.far, near * 1.01..=most, hover);
     });
     ui.end_row();

@@ -1,4 +1,4 @@
-//! On the right: what one learns.
+//! The panel on the right: statistics of the tessellation and the mesh.
 
 use egui::RichText;
 
@@ -12,11 +12,15 @@ use crate::view::ulp;
 
 /// Name and explanation of each kind of edge.
 pub(in crate::app) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
-    (EdgeKind::Smooth, "smooth", "Two triangles that share normals and uvs."),
-    (EdgeKind::Split, "split normal", "Two triangles whose normals differ at an end: where PN cracks."),
-    (EdgeKind::Seam, "uv seam", "Two triangles that share normals but not uvs."),
-    (EdgeKind::Boundary, "boundary", "Only one triangle: a hole or a border."),
-    (EdgeKind::NonManifold, "non-manifold", "Three or more triangles."),
+    (EdgeKind::Smooth, "smooth", "Edges of two triangles that share normals and uvs."),
+    (
+        EdgeKind::Split,
+        "split normal",
+        "Edges of two triangles whose normals differ at an end. PN triangles crack here.",
+    ),
+    (EdgeKind::Seam, "uv seam", "Edges of two triangles that share normals but not uvs."),
+    (EdgeKind::Boundary, "boundary", "Edges of only one triangle: a hole or a border."),
+    (EdgeKind::NonManifold, "non-manifold", "Edges of three or more triangles."),
 ];
 
 impl App {
@@ -58,7 +62,7 @@ impl App {
 
     fn crack_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        // Until they are measured the rows keep their places.
+        // Until they are measured, the rows show ellipses.
         let cracks = self.jobs.measure.cracks();
         let count = |number: fn(&Cracks) -> u64| cracks.map_or_else(|| "…".into(), |cracks| grouped(number(cracks)));
         let gap = |size: &dyn Fn(&Cracks) -> f64, unit: &str| {
@@ -66,26 +70,26 @@ impl App {
         };
         let ulp = ulp(&document.loaded.topology);
         egui::Grid::new("cracks").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Points of edges with several sides, once for each side after the first.";
+            let hover = "Points of edges with several sides, counted once for each side after the first.";
             fact(ui, "Points compared", &count(|cracks| cracks.edge_points), hover);
-            let hover = "Those that differ in at least one bit from the first side's.";
+            let hover = "Points that differ in at least one bit from the first side's.";
             fact(ui, "Different", &count(|cracks| cracks.different_bits), hover);
             let hover = "Edges whose sides were given factors that differ in at least one bit.";
             fact(ui, "Factors differ", &count(|cracks| cracks.different_factors), hover);
-            let hover = "Points whose normals differ in at least one bit though the file's agree.";
+            let hover = "Points whose normals differ in at least one bit although the normals in the file agree.";
             fact(ui, "Normals differ", &count(|cracks| cracks.different_normals), hover);
             ui.horizontal(|ui| {
                 swatch(ui, CRACK_COLOR);
                 ui.label("Cracked edges")
-                    .on_hover_text("Edges with a point or factor that differs; the overlay shows them.");
+                    .on_hover_text("Edges with a point or factor that differs. The overlay Cracks shows them.");
             });
             number(ui, &count(|cracks| cracks.cracked().count() as u64));
             ui.end_row();
-            let hover = "Largest distance between two sides' positions of one point, in object units.";
+            let hover = "The largest distance between two sides' positions of one point, in object units.";
             fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
-            let hover = "In units of the last place of the mesh's largest coordinate.";
+            let hover = "The same in ULP of the mesh's largest coordinate.";
             fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
-            fact(ui, "", &gap(&|cracks| self.viewport.picture.gap_px(cracks), "px"), "On screen.");
+            fact(ui, "", &gap(&|cracks| self.viewport.picture.gap_px(cracks), "px"), "The largest gap on screen.");
             ui.horizontal(|ui| {
                 swatch(ui, FOLD_COLOR);
                 ui.label("Folds").on_hover_text("Triangles that face away from the side that their patch faces.");
@@ -104,19 +108,19 @@ impl App {
         egui::Grid::new("patches").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             let drawn = count(&|culled| all - u64::from(culled.total()));
             fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
-            let hover = "Patches left out by clipping, for the LOD camera.";
+            let hover = "Patches that clipping leaves out, because the LOD camera can't see them.";
             fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
-            let hover = "Patches left out because their surface shows its back everywhere, to the LOD camera.";
+            let hover = "Patches that are left out because the LOD camera sees only their backs.";
             fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
             let limit =
                 self.jobs.measure.found().map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
-            let hover = "Patches with a factor at the tessellator's maximum, 63 or 64. They may need more segments than they \
-                         have, so that LOD by error may miss its tolerance there.";
+            let hover = "Patches with a factor at the tessellator's maximum, 63 or 64. They may need more segments, so LOD by \
+                         error may miss its tolerance there.";
             fact(ui, "At maximum factor", &limit, hover);
         });
     }
 
-    /// What is tessellated too finely, or for nothing.
+    /// What is tessellated too finely or needlessly.
     fn waste_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let patches = document.loaded.topology.patches.len() as u64;
@@ -124,11 +128,12 @@ impl App {
         let small = self.sizes_shown().map_or_else(unknown, |sizes| part(sizes.small, sizes.in_view));
         let low = self.jobs.measure.found().map_or_else(unknown, |found| part(found.patches_low.into(), patches));
         egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Triangles in view that are half of squares with sides of less than 3 px, and their share of those \
-                         in view. Where only the camera moved, they are counted anew while the triangle size is shown.";
+            let hover = "Triangles in view that are smaller than half of a square with sides of 3 px, and their share of all \
+                         triangles in view. After the camera alone has moved, they are counted anew only while triangle \
+                         sizes are shown.";
             marked(ui, "Below 3 px", &small, hover);
-            let hover = "Patches whose factors are all below 2, and their share of all patches: drawing them untessellated \
-                         would hardly show.";
+            let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
+                         tessellation.";
             marked(ui, "Below factor 2", &low, hover);
         });
     }
@@ -138,21 +143,21 @@ impl App {
         let (mesh, topology) = (&document.loaded.mesh, &document.loaded.topology);
         let size = document.scene.bounds.max - document.scene.bounds.min;
         egui::Grid::new("mesh").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "As loaded.");
+            fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "Triangles as loaded.");
             fact(ui, "Patches", &grouped(topology.patches.len() as u64), "Triangles that are tessellated.");
             fact(
                 ui,
                 "Degenerate",
                 &grouped(u64::from(topology.degenerate)),
-                "Triangles left out: two corners on one point.",
+                "Triangles that are left out because two of their corners lie on one point.",
             );
+            fact(ui, "Points", &grouped(topology.points.len() as u64), "Distinct positions, after welding.");
             fact(
                 ui,
-                "Points",
-                &grouped(topology.points.len() as u64),
-                "Positions, welded where they are equal, or within the tolerance chosen.",
+                "Corners",
+                &grouped(mesh.corners.len() as u64),
+                "Distinct combinations of position, normal and uv.",
             );
-            fact(ui, "Corners", &grouped(mesh.corners.len() as u64), "Distinct position, normal and uv.");
             self.normal_facts(ui);
             fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
             for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
@@ -160,7 +165,7 @@ impl App {
                     ui,
                     axis,
                     &format!("{} units", short(f64::from(length))),
-                    "Extent of the mesh, in object units; all through the clip, if one is chosen.",
+                    "Extent of the mesh in object units; over the whole clip, if one is chosen.",
                 );
             }
             fact(ui, "Loading", &format!("{} ms", short(document.loaded.load_ms)), "Reading the file.");
@@ -183,7 +188,12 @@ impl App {
         heading(ui, "Passes");
         egui::Grid::new("passes").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             for time in &self.viewport.picture.times {
-                fact(ui, time.pass, &format!("{:.3} ms", time.ms), "The GPU's own time for the last run of this pass.");
+                fact(
+                    ui,
+                    time.pass,
+                    &format!("{:.3} ms", time.ms),
+                    "The time of this pass's last run, by the GPU's clock.",
+                );
             }
         });
     }
@@ -193,16 +203,16 @@ impl App {
         let Some(document) = &self.document else { return };
         let faults = document.checks.normal_faults();
         let count = |number: Option<u32>| number.map_or_else(|| "…".into(), |count| grouped(count.into()));
-        let hover = "Corners whose normal points against their triangle.";
+        let hover = "Corners whose normal points to the back of their triangle.";
         fact(ui, "Normals inward", &count(faults.map(|faults| faults.against_face)), hover);
-        let hover = "Edges at an end of which two sides' normals are opposite.";
+        let hover = "Edges where the normals of two sides point in opposite directions.";
         fact(ui, "Normals opposite", &count(faults.map(|faults| faults.opposite)), hover);
         let hover = "Corners whose normal runs along one of their edges.";
         fact(ui, "Normals along edge", &count(faults.map(|faults| faults.along_edge)), hover);
     }
 }
 
-/// A row whose name has the colour that it has over the mesh.
+/// A row with the colour that marks waste on the mesh.
 fn marked(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
     ui.horizontal(|ui| {
         swatch(ui, WASTE_COLOR);

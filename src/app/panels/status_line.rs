@@ -1,4 +1,4 @@
-//! Below: what it cost.
+//! The status line below: patches, triangles, cracks, memory and time.
 
 use egui::RichText;
 
@@ -17,7 +17,7 @@ impl App {
                 return;
             };
             let scene = &document.scene;
-            // While a clip plays, the last picture's: fields that flicker can't be read.
+            // While a clip plays, the numbers of the last picture are shown, so that they don't flicker.
             let is_known = scene.tessellator.is_counted() || self.is_playing();
             let totals = is_known.then(|| scene.tessellator.totals());
             let (vertices, triangles) = totals.map_or_else(
@@ -31,19 +31,19 @@ impl App {
                 ui,
                 120.0,
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
-                "Patches drawn, of all; the rest is out of view or faces away.",
+                "Patches drawn, of all. The others are out of view or face away.",
             );
             status(
                 ui,
                 170.0,
                 format!("{} to {} triangles", grouped(before.0), triangles),
-                "Before and after tessellation.",
+                "Triangles before and after tessellation.",
             );
             status(
                 ui,
                 160.0,
                 format!("{} to {} vertices", grouped(before.1), vertices),
-                "Before and after tessellation.",
+                "Vertices before and after tessellation.",
             );
             self.status_of_cracks(ui);
             status(
@@ -66,13 +66,13 @@ impl App {
         });
     }
 
-    /// Tessellation and drawing, by the last run of each pass and the GPU's own clock; or else the last whole picture.
+    /// The times of tessellation and drawing by the GPU's clock, or of the last whole picture, and their hover text.
     fn times(&self) -> (String, String) {
         let times = &self.viewport.picture.times;
         if !(self.viewport.picture.pass_times_hold && times.iter().any(|time| time.pass == "draw")) {
             let ms = self.viewport.picture.picture_ms.map_or_else(|| "…".into(), |ms| format!("{ms:.1} ms"));
-            let why = "From submitting the last picture to its completion: this adapter can't time single passes, or the \
-                       picture was drawn in several steps.";
+            let why = "The time from submitting the last picture to its completion. Passes aren't timed one by one, because \
+                       this adapter can't do that or the picture was drawn in several steps.";
             return (ms, why.into());
         }
         let sum =
@@ -80,13 +80,13 @@ impl App {
         let (tessellation, draw): (f64, f64) = (sum(false), sum(true));
         let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
         let hover =
-            format!("Tessellation and drawing: each pass's last run, by the GPU's own clock.\n{}", passes.join("\n"));
+            format!("Tessellation and drawing: each pass's last run, by the GPU's clock.\n{}", passes.join("\n"));
         (format!("{:.2} + {:.2} ms", tessellation, draw), hover)
     }
 
     fn status_of_cracks(&self, ui: &mut egui::Ui) {
         const WIDTH: f32 = 150.0;
-        let hover = "Edges whose sides differ, and the largest gap on screen.";
+        let hover = "The number of edges whose sides differ, and the largest gap on screen.";
         match self.jobs.measure.cracks() {
             None => {
                 let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());

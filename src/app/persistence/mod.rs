@@ -1,4 +1,4 @@
-//! What lasts: settings, the window's size, recent files and their cameras, kept from one window to the next.
+//! Settings, the window's size, recent files and their cameras, which are saved for the next window.
 
 mod saved_settings;
 mod saved_state;
@@ -22,37 +22,37 @@ use saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState};
 pub(super) use saved_state::{LEAST_SIZE, WindowGeometry};
 pub(super) use state_file::folder;
 
-/// Files that are offered to be opened again.
+/// How many recent files the menu lists.
 const RECENT: usize = 10;
-/// How long what changes is left to change on before it is written, in s.
+/// How long changes are collected before they are written, in s.
 const REST: f64 = 3.0;
 
-/// What is kept, and its writing beside the window.
+/// The saved state, and the job that writes it.
 #[derive(Default)]
 pub struct Persistence {
-    /// None where nothing is kept.
+    /// The path of the file; none if nothing is saved.
     place: Option<PathBuf>,
     kept: SavedState,
-    /// What the file holds, or will once it is written.
+    /// The state that the file has, or will have once it is written.
     written: SavedState,
-    /// Since when that isn't what is kept, on the window's clock in s.
+    /// Since when `kept` differs from `written`, on the window's clock in s.
     changed: Option<f64>,
     writing: Option<BackgroundJob<Result<(), String>>>,
-    /// What is wrong with the file; said once.
+    /// The problem with the file, which is shown only once.
     said: Option<String>,
-    /// The file that is open, among those that are kept.
+    /// The path of the file that is open, if it is among the saved ones.
     open: Option<String>,
 }
 
 impl Persistence {
-    /// What was kept in a folder; without one nothing was, and nothing will be.
+    /// Reads the state that was saved in a folder. Without a folder nothing is read, and nothing will be saved.
     pub fn read(folder: Option<&Path>) -> Self {
         let Some(folder) = folder else { return Self::default() };
-        let state_file::Found { kept, place, said } = state_file::read(folder);
+        let state_file::StoredState { kept, place, said } = state_file::read(folder);
         Self { place, written: kept.clone(), kept, said, ..Self::default() }
     }
 
-    /// What the window opens with.
+    /// The settings that the window opens with.
     pub fn settings(&self) -> &Settings {
         &self.kept.settings
     }
@@ -66,7 +66,7 @@ impl Persistence {
         self.kept.files.iter().filter(|file| !file.is_gone).take(RECENT).map(|file| file.path.as_str())
     }
 
-    /// Another mesh is open: where it was last looked at from, if that is known and of use.
+    /// Puts a mesh that was opened first among the recent files. Returns the camera it was last seen with, if it still fits.
     pub(in crate::app) fn opened(&mut self, source: &Source, diagonal: f32) -> Option<Camera> {
         self.open = path_of(source);
         let path = self.open.clone()?;
@@ -80,12 +80,12 @@ impl Persistence {
         camera
     }
 
-    /// A file is there no more: whether it leaves the list by that. Its camera is kept, should it come back.
+    /// Removes a file that no longer exists from the list. Returns whether it was listed. Its camera is kept.
     pub(in crate::app) fn gone(&mut self, source: &Source) -> bool {
         self.known(source).is_some_and(|file| !std::mem::replace(&mut file.is_gone, true))
     }
 
-    /// A file was loaded again, which may have been gone meanwhile.
+    /// Lists a file again that was loaded, in case it was gone before.
     pub(in crate::app) fn is_back(&mut self, source: &Source) {
         if let Some(file) = self.known(source) {
             file.is_gone = false;
@@ -97,7 +97,7 @@ impl Persistence {
         self.kept.files.iter_mut().find(|file| file.path == path)
     }
 
-    /// Takes what the window has by now.
+    /// Takes over the window's present state.
     fn take(&mut self, context: &egui::Context, settings: &Settings, seen: Option<SavedCamera>) {
         self.kept.take_settings(settings);
         self.kept.frame = frame_now(context, &self.kept.frame);
@@ -107,12 +107,12 @@ impl Persistence {
         }
     }
 
-    /// Writes what has changed, once it has had time to change on. What went wrong with that is said once.
+    /// Writes changes once they have been collected for a while. Returns the first failure, as a sentence.
     fn write_on(&mut self, context: &egui::Context) -> Option<String> {
         let place = self.place.as_ref()?;
         if let Some(ended) = self.writing.as_ref().and_then(BackgroundJob::take) {
             self.writing = None;
-            let failed = ended.unwrap_or_else(|stopped| Err(format!("keeping settings {stopped}"))).err();
+            let failed = ended.unwrap_or_else(|stopped| Err(format!("saving settings {stopped}"))).err();
             if failed.is_some() && self.said.is_none() {
                 self.said.clone_from(&failed);
                 return failed;
@@ -134,16 +134,16 @@ impl Persistence {
         None
     }
 
-    /// Goes on in another window, by its clock.
+    /// Goes on in another window, which has another clock.
     pub(in crate::app) fn go_on_in(&mut self, context: &egui::Context) {
         self.changed = None;
         self.writing = self.writing.take().map(|writing| writing.waking(context));
     }
 
-    /// Writes what is left to be written.
+    /// Writes all changes that aren't written yet.
     ///
     /// # Errors
-    /// What and why, in a sentence.
+    /// Why the file can't be written, as a sentence.
     fn finish(&mut self) -> Result<(), String> {
         let Some(place) = &self.place else { return Ok(()) };
         if let Some(writing) = self.writing.take() {
@@ -157,13 +157,13 @@ impl Persistence {
     }
 }
 
-/// What files are known by: their absolute path, if it can be written down.
+/// The absolute path of a file, if it is valid UTF-8.
 fn path_of(source: &Source) -> Option<String> {
     let Source::File(path) = source else { return None };
     Some(std::path::absolute(path).ok()?.to_str()?.to_owned())
 }
 
-/// The window as it is; while it is maximised it keeps the size that it goes back to.
+/// The geometry of the window. While it is maximised, its size is the one that it goes back to.
 fn frame_now(context: &egui::Context, before: &WindowGeometry) -> WindowGeometry {
     let (zoom, size) = (context.zoom_factor(), context.viewport_rect().size());
     let window = context.input(|input| {
@@ -171,7 +171,7 @@ fn frame_now(context: &egui::Context, before: &WindowGeometry) -> WindowGeometry
         (window.maximized.unwrap_or(false), window.fullscreen.unwrap_or(false), window.minimized.unwrap_or(false))
     });
     let (is_maximized, is_fullscreen, is_minimized) = window;
-    // Whole points, which a window that opens with them has again.
+    // Rounded to whole points, so that a window that opens with this size has it exactly.
     let sized = [(size.x * zoom).round(), (size.y * zoom).round()];
     let is_large = sized.iter().zip(LEAST_SIZE).all(|(side, least)| *side >= least);
     let is_own = is_large && !(is_maximized || is_fullscreen || is_minimized);
@@ -180,7 +180,7 @@ fn frame_now(context: &egui::Context, before: &WindowGeometry) -> WindowGeometry
 }
 
 impl App {
-    /// Goes on where the last window ended: with its settings, and with the camera of the file that is being opened.
+    /// Takes over the state that the last window saved.
     pub fn resume(&mut self, context: &egui::Context, mut lasting: Persistence) {
         self.settings = *lasting.settings();
         self.viewport.last_split = self.settings.split.unwrap_or(self.viewport.last_split);
@@ -190,7 +190,7 @@ impl App {
         self.persistence = lasting;
     }
 
-    /// Takes the camera that the mesh was last looked at with, where that is known; one that was loaded again keeps the view.
+    /// Sets the camera that the mesh was last seen with, if it is known. A mesh that was loaded again keeps its view.
     pub(in crate::app) fn look_as_before(&mut self, keep_view: bool) {
         let Some(document) = &self.document else { return };
         if keep_view {
@@ -200,7 +200,7 @@ impl App {
         self.viewport.camera = camera.unwrap_or(self.viewport.camera);
     }
 
-    /// Keeps what the window has by now; called once a frame, when all that it does is done.
+    /// Saves the window's state. Called at the end of each frame.
     pub(in crate::app) fn keep(&mut self, context: &egui::Context) {
         let diagonal = self.document.as_ref().map(|document| document.diagonal);
         let seen = diagonal.map(|diagonal| SavedCamera { camera: self.viewport.camera, diagonal });
@@ -209,12 +209,12 @@ impl App {
         self.dialogs.error = self.dialogs.error.take().or(failed);
     }
 
-    /// Writes what was changed last, when the window is closed.
+    /// Writes the last changes when the window is closed.
     pub(in crate::app) fn keep_for_good(&mut self) -> Result<(), String> {
         self.persistence.finish()
     }
 
-    /// Asks whether everything that is kept is to be forgotten.
+    /// Asks whether everything that is saved should be forgotten.
     pub(in crate::app) fn forget_window(&mut self, context: &egui::Context) {
         if !self.dialogs.asks_to_forget {
             return;
@@ -223,7 +223,10 @@ impl App {
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         let answer = window.show(context, |ui| {
             ui.set_max_width(320.0);
-            ui.label("Settings, theme, size, recent files and their cameras: there is no way back. The mesh stays.");
+            ui.label(
+                "This forgets settings, theme, window size, recent files and their cameras, and can't be undone. The \
+                 mesh stays open.",
+            );
             ui.horizontal(|ui| {
                 let forgets = ui.button("Forget them").clicked();
                 ui.button("Cancel").clicked().then_some(false).or(forgets.then_some(true))
@@ -237,7 +240,7 @@ impl App {
         }
     }
 
-    /// Goes back to how the window first opened; the mesh stays, and is framed.
+    /// Goes back to the state of a first start. The mesh stays open, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
         self.settings = Settings::opening().with(Tessellation {

@@ -1,11 +1,11 @@
-//! Settings as JSON: members and values have the names that options declare.
+//! Settings as JSON, whose members and values have the names that options declare.
 
 use serde_json::{Map, Value as Json, json};
 
 use crate::settings::{Declaration, Kind, Settings, Value, options};
 
-/// Every option that is saved.
-pub(super) fn written_settings(settings: &Settings) -> Json {
+/// Returns all settings as a JSON object.
+pub fn written_settings(settings: &Settings) -> Json {
     let mut members = Map::new();
     for option in options::all() {
         let values = match option.get(settings) {
@@ -29,8 +29,8 @@ fn written(value: Value) -> Json {
     }
 }
 
-/// What is missing, or isn't a value of its option, is as the window opens with it.
-pub(super) fn read_settings(value: &Json) -> Settings {
+/// Reads settings. Members that are missing or invalid get the values of a first start.
+pub fn read_settings(value: &Json) -> Settings {
     let mut settings = Settings::opening();
     for option in options::all() {
         if let Some(value) = read(option, value) {
@@ -47,7 +47,7 @@ fn read(option: &Declaration, all: &Json) -> Option<Value> {
     match (&option.kind, &members[..]) {
         (Kind::Choice(_), [name]) => option.kind.named(name.as_str()?).map(Value::Name),
         (Kind::Several(_), [names]) => {
-            // Those that are known: newer versions may have others.
+            // Unknown names are skipped: a newer version may have written them.
             let names = names.as_array()?.iter().filter_map(Json::as_str);
             Some(Value::Names(names.filter_map(|name| option.kind.named(name)).collect()))
         }

@@ -1,5 +1,5 @@
-//! What is kept from one window to the next, as JSON. Each field is read for itself: one that is missing, unknown or out of
-//! its range is as it is in a window that opens for the first time, so that older and newer versions understand each other.
+//! The saved state as JSON. Each field is read on its own: one that is missing, unknown or out of range gets its value of a
+//! first start, so that older and newer versions can read each other's files.
 
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -13,32 +13,32 @@ use crate::render::Camera;
 use crate::settings::Settings;
 use crate::tessellate::{Displacement, Tessellation};
 
-/// Files whose cameras are kept, at most.
-pub(super) const MAX_FILES: usize = 50;
-/// The smallest and largest side of a window, in points.
-pub(crate) const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
+/// The greatest number of files that are saved with their cameras.
+pub const MAX_FILES: usize = 50;
+/// The smallest width and height, and the largest side of a window, in points.
+pub const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
 const LARGEST_SIDE: f32 = 16384.0;
-/// How much larger or smaller than usual the window's text is.
+/// The range of the window's zoom; 1 is the usual size.
 const ZOOM_RANGE: RangeInclusive<f32> = 0.2..=5.0;
-/// How much larger or smaller a mesh may have become for its camera to be of use still.
+/// The range of a mesh's size, relative to the size when its camera was saved, in which that camera is still used.
 const SAME_SIZE: RangeInclusive<f32> = 0.5..=2.0;
 const THEMES: [(ThemePreference, &str); 3] =
     [(ThemePreference::System, "system"), (ThemePreference::Light, "light"), (ThemePreference::Dark, "dark")];
 
-/// All of it.
+/// Everything that is saved.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct SavedState {
-    /// Without what is bound to a mesh.
+pub struct SavedState {
+    /// Without displacement, which depends on the mesh.
     pub settings: Settings,
     pub frame: WindowGeometry,
-    /// The one that was opened last comes first.
+    /// The file that was opened last comes first.
     pub files: Vec<SavedFile>,
 }
 
-/// The window itself.
+/// The window's size, theme and zoom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WindowGeometry {
-    /// While it isn't maximised, in points that are as large as without zoom.
+    /// Width and height while it isn't maximised, in points without zoom.
     pub size: [f32; 2],
     pub is_maximized: bool,
     pub theme: ThemePreference,
@@ -47,19 +47,19 @@ pub struct WindowGeometry {
 
 /// A file that was open.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct SavedFile {
-    /// Absolute.
+pub struct SavedFile {
+    /// The absolute path.
     pub path: String,
     pub seen: Option<SavedCamera>,
-    /// It wasn't there when it was last asked for: it isn't listed until it is back.
+    /// Whether the file was missing when it was last opened. It isn't listed until it can be loaded again.
     pub is_gone: bool,
 }
 
-/// Where a mesh was last looked at from.
+/// The camera that a mesh was last seen with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SavedCamera {
     pub camera: Camera,
-    /// Of the mesh's bounds, in object units.
+    /// The mesh's bounding diagonal, in object units.
     pub diagonal: f32,
 }
 
@@ -76,15 +76,15 @@ impl Default for SavedState {
 }
 
 impl SavedCamera {
-    /// Its camera, unless the mesh has another size by now.
-    pub(super) fn camera_for(&self, diagonal: f32) -> Option<Camera> {
+    /// Returns the camera, unless the mesh's size has changed too much.
+    pub fn camera_for(&self, diagonal: f32) -> Option<Camera> {
         SAME_SIZE.contains(&(diagonal / self.diagonal)).then_some(self.camera)
     }
 }
 
 impl SavedState {
-    /// None if it isn't what [`Self::written`] made.
-    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
+    /// Parses a saved state. Returns none if it isn't a JSON object.
+    pub fn read(bytes: &[u8]) -> Option<Self> {
         let all: Value = serde_json::from_slice(bytes).ok()?;
         all.is_object().then(|| {
             let mut files: Vec<SavedFile> = Vec::new();
@@ -97,15 +97,15 @@ impl SavedState {
         })
     }
 
-    /// As text, with a line end.
-    pub(super) fn written(&self) -> String {
+    /// Returns the JSON text, with a line end.
+    pub fn written(&self) -> String {
         let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
         let settings = written_settings(&self.settings);
         format!("{:#}\n", json!({ "settings": settings, "window": self.frame.written(), "files": files }))
     }
 
-    /// Settings without what is bound to a mesh: heights displace it once it has some.
-    pub(super) fn take_settings(&mut self, settings: &Settings) {
+    /// Takes settings, without displacement, which depends on the mesh.
+    pub fn take_settings(&mut self, settings: &Settings) {
         self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
     }
 }
@@ -174,7 +174,7 @@ impl SavedCamera {
     }
 }
 
-/// The members of an object, or of anything else, which has none.
+/// Reads the members of a JSON object. Any other value has none.
 struct Fields<'a>(&'a Value);
 
 impl Fields<'_> {

@@ -1,4 +1,4 @@
-//! Where the picture is seen from, as far as commands change it.
+//! The commands that move the camera.
 
 use glam::{Vec2, vec2};
 
@@ -10,7 +10,7 @@ use crate::render::Camera;
 const DEGREES_PER_KEY: f32 = 7.5;
 /// Points that a press of an arrow key moves the target by.
 const POINTS_PER_KEY: f32 = 40.0;
-/// What a press of a key makes of the distance to the mesh.
+/// The factor by which a press of a key changes the distance to the mesh.
 const CLOSER: f32 = 0.8;
 
 impl App {
@@ -32,7 +32,7 @@ impl App {
         }
     }
 
-    /// Shows all of the mesh: all through its clip, and as far as heights lift it.
+    /// Moves the camera so that all of the mesh is in view, over its whole clip and with its displacement.
     pub(in crate::app) fn frame(&mut self) {
         if let Some(document) = &self.document {
             self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.picture.size());
@@ -40,14 +40,14 @@ impl App {
         }
     }
 
-    /// Whether the camera still is where [`Self::frame`] last put it; it may have turned.
+    /// Whether the camera has its target and distance of the last [`Self::frame`]. It may have turned.
     pub(in crate::app) fn is_framed(&self) -> bool {
         let place = |camera: &Camera| (camera.target, camera.distance);
         self.viewport.framed.as_ref().map(place) == Some(place(&self.viewport.camera))
     }
 }
 
-/// To the right and up.
+/// The direction on screen; x is to the right, y is up.
 fn towards(direction: Direction) -> Vec2 {
     match direction {
         Direction::Left => Vec2::NEG_X,

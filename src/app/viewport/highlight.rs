@@ -1,4 +1,4 @@
-//! The lines over the mesh: cracks, T-junctions, the worst point, what is selected.
+//! The lines over the mesh: cracks, T-junctions, the worst point, and the selection.
 
 use super::selection::Outlined;
 use crate::app::App;
@@ -7,27 +7,27 @@ use crate::mesh::{Moment, Topology};
 use crate::render::{LineSegment, crack_lines, t_junction_lines};
 use crate::settings::SplitSide;
 
-/// What the lines over the mesh are a function of.
+/// Everything that the lines over the mesh depend on.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Highlight {
     document: u64,
-    /// By half.
+    /// The number of each half's measurement.
     measured: [u64; 2],
-    /// Which scene is left of the split; 0 for none.
+    /// The number of the scene in the left half; 0 for none.
     left: u64,
     cracks: bool,
     t_junctions: bool,
     selected_edge: Option<u32>,
     outlined: Outlined,
     worst: [u64; 2],
-    /// If there are any; and whether it is known where they are then.
+    /// The moment, if lines depend on it, and whether the pose is known on the CPU.
     moment: Option<(Moment, bool)>,
-    /// Counts the times that they changed.
+    /// Counts changes of the lines.
     pub generation: u64,
 }
 
 impl App {
-    /// Puts the lines over the mesh that belong there by now: cracks, T-junctions, the selected edge.
+    /// Updates the lines over the mesh if anything that they depend on has changed.
     pub(in crate::app) fn mark(&mut self) {
         let Some(document) = &self.document else { return };
         let overlays = self.settings.overlays;
@@ -63,7 +63,7 @@ impl App {
         }
     }
 
-    /// The lines over a half, in the pose that it is shown in if that is known.
+    /// The lines over a half, in its pose if that is known on the CPU.
     fn marks(&self, half: SplitSide, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
         let overlays = self.settings.overlays;
         let mut lines = Vec::new();
@@ -74,7 +74,7 @@ impl App {
             lines.extend(crack_lines(found, &document.loaded.topology));
         }
         lines.extend(self.worst_mark(half));
-        // Over all else.
+        // The selection comes last, so that it is over all other lines.
         if let Some(topology) = posed {
             lines.extend(self.patch_outline(topology, half));
             lines.extend(self.selection_lines(topology, half));

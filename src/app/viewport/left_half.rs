@@ -1,4 +1,4 @@
-//! Left of the split: another surface of the mesh, made beside the window and only while it is shown, and what is known of it.
+//! The left half of a split view with another surface. Its scene is made on a thread of its own, and only while it is shown.
 
 use std::time::{Duration, Instant};
 
@@ -13,20 +13,20 @@ use crate::render::Scene;
 use crate::settings::{Choice, SplitSide};
 use crate::view::ScreenView;
 
-/// What takes longer to make than this is said to be made.
+/// Making a scene for longer than this is shown in the window.
 const NOTICED: Duration = Duration::from_millis(300);
 
-/// The left half's scene is the document's.
+/// The state of the left half. The document has its scene.
 #[derive(Default)]
 pub(crate) struct LeftHalf {
     making: Option<Making>,
-    /// Counts scenes that were made; tells one from the next.
+    /// Counts the scenes that were made.
     pub made: u64,
     pub measuring: MeasureJob,
     pub deviating: DeviationJob,
 }
 
-/// A scene under way, on a thread of its own.
+/// A scene that is being made on a thread of its own.
 struct Making {
     document: u64,
     start: Instant,
@@ -42,13 +42,13 @@ impl LeftHalf {
         self.making.is_none()
     }
 
-    /// Whether it takes so long to make that one wonders.
-    pub(crate) fn takes_long(&self) -> bool {
+    /// Whether making the scene takes so long that the window should say so.
+    pub fn takes_long(&self) -> bool {
         self.making.as_ref().is_some_and(|making| making.start.elapsed() > NOTICED)
     }
 
-    /// Forgets what is known of a scene that is there no more.
-    pub(crate) fn forget(&mut self) {
+    /// Forgets the measurements of a scene that no longer exists.
+    pub fn forget(&mut self) {
         self.making = None;
         self.measuring.forget();
         self.deviating.forget();
@@ -56,7 +56,7 @@ impl LeftHalf {
 }
 
 impl App {
-    /// Makes what is shown left of the split, or lets go of it, once no picture is under way that has it otherwise.
+    /// Makes the left half's scene or drops it, as the settings want it. Waits until no picture is under way.
     pub(in crate::app) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
         let scene = &mut document.scene;
@@ -84,17 +84,17 @@ impl App {
             }
             None => self.viewport.left.making = Some(making),
             Some(Ok(Err(error))) => self.leave_as_it_came(&error.to_string()),
-            Some(Err(stopped)) => self.leave_as_it_came(&format!("making it {stopped}")),
+            Some(Err(stopped)) => self.leave_as_it_came(&format!("tessellating it {stopped}")),
         }
         Ok(())
     }
 
     fn leave_as_it_came(&mut self, why: &str) {
         self.settings.split_surface = None;
-        self.dialogs.error = Some(format!("no other surface can be shown left of the split: {why}"));
+        self.dialogs.error = Some(format!("the left half can't show another surface: {why}"));
     }
 
-    /// Measures the left half's cracks and the points of its edges as long as they are shown.
+    /// Measures the left half's cracks and the points of its edges while they are shown.
     pub(in crate::app) fn measure_left(&mut self, view: ScreenView) -> Result<(), Trouble> {
         let is_selected = self.viewport.selected_edge.is_some() || self.selected_triangle().is_some();
         let is_wanted = self.settings.half(SplitSide::Left).is_some() && (self.settings.overlays.cracks || is_selected);
@@ -110,7 +110,7 @@ impl App {
         Ok(())
     }
 
-    /// What is known of a half.
+    /// The measurements of a half.
     pub(in crate::app) fn measured(&self, half: SplitSide) -> &MeasureJob {
         match half {
             SplitSide::Left => &self.viewport.left.measuring,
@@ -118,7 +118,7 @@ impl App {
         }
     }
 
-    /// What is written over a half of two surfaces: the method, and while that is shown how far off it is.
+    /// The title of a half if the split has two surfaces: the surface, and with the deviation overlay its largest deviation.
     pub(in crate::app) fn half_title(&self, half: SplitSide) -> Option<String> {
         let name = self.settings.half(half)?.tessellation.surface.label();
         Some(match self.largest_text(half) {

@@ -1,4 +1,4 @@
-//! In the viewport's lower right corner: what the surface's colours mean, where they are numbers or marks.
+//! The legend in the viewport's lower right corner, which explains colours that stand for numbers.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 
@@ -7,33 +7,33 @@ use crate::render::layout::WASTE_COLOR;
 use crate::render::{DEVIATION_PX_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
 use crate::settings::{Colors, DeviationUnit};
 
-/// Points: the scale's bar at its widest, a block of one colour before it, and what lies around them.
+/// Sizes in points: the bar of the scale at its widest, the block of one colour before it, the margin, and the text.
 const BAR: egui::Vec2 = vec2(196.0, 12.0);
 const BLOCK_WIDTH: f32 = 42.0;
 const MARGIN: f32 = 10.0;
 const TEXT: f32 = 11.0;
-/// Pieces that the bar is painted in.
+/// The number of pieces that the bar is painted in.
 const PIECES: u16 = 98;
 
-/// What a legend says.
+/// The contents of a legend.
 struct Legend {
     title: String,
-    /// For a screen reader, and on hover.
+    /// The hover text.
     meaning: String,
-    /// With the numbers that are written under it.
+    /// The scale and the numbers under it.
     scale: Option<(Scale, Vec<f32>)>,
-    /// Whether [`WASTE_COLOR`] means something.
+    /// Whether [`WASTE_COLOR`] is part of the legend.
     waste: bool,
 }
 
-/// What is known of the distances to the truth.
-pub(crate) struct Distances {
+/// What is known of the distances to the reference surface.
+pub struct Distances {
     pub unit: DeviationUnit,
-    /// None as long as nothing was measured.
+    /// None until something is measured.
     pub scale: Option<Scale>,
     /// Whether some of the surface has no colour.
     pub is_partial: bool,
-    /// The part that is done, while they are measured.
+    /// The progress of the measurement, 0 to 1; none if none is under way.
     pub measured: Option<f32>,
 }
 
@@ -48,15 +48,15 @@ fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend> {
         Colors::Material | Colors::Barycentric => None,
         Colors::Factors => Some(legend(
             "Factor",
-            "Colours of tessellation factors, 1 to 64: inside each patch its inside factor, along each edge that edge's.",
+            "Colours of tessellation factors, 1 to 64. Each patch shows its inside factor, and along an edge the edge's factor.",
             Some((FACTOR_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
         )),
         Colors::TriangleSize => Some(Legend {
             waste: true,
             ..legend(
                 "Triangle size, px",
-                "Colours of triangles by their size on screen, 3 to 64 px: the side of the square that a triangle is half \
-                 of. One colour below 3 px.",
+                "Colours of triangles by their size on screen, 3 to 64 px. The size is the side of a square with twice the \
+                 triangle's area. All triangles below 3 px have one colour.",
                 Some((SIZE_SCALE, &[3.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
             )
         }),
@@ -79,13 +79,14 @@ fn deviation_legend(distances: &Distances) -> Legend {
         None => String::new(),
     };
     let scale = distances.scale.unwrap_or(DEVIATION_PX_SCALE);
-    // A number each decade.
+    // The scale has two decades: a tick at each end and one between them.
     let ticks = [scale.least, (scale.least * scale.most).sqrt(), scale.most];
     Legend {
         title: format!("Deviation, {unit}{state}"),
-        meaning: "Colours of the distance to the truth, from a hundredth of the largest, rounded up. Nearer places look as the \
-                  first colour, grey ones aren't measured."
-            .to_owned(),
+        meaning:
+            "Colours of the distance to the reference surface. The scale ends at the largest distance, rounded up, and \
+                  begins at a hundredth of that; smaller distances have the first colour. What isn't measured is grey."
+                .to_owned(),
         scale: Some((scale, if distances.scale.is_some() { ticks.to_vec() } else { Vec::new() })),
         waste: false,
     }
@@ -132,7 +133,7 @@ fn bar(ui: &egui::Ui, rect: Rect, scale: &Scale, ticks: &[f32]) {
         let x = at(scale.place(tick));
         let stroke = egui::Stroke::new(1.0, Color32::from_gray(235));
         ui.painter().vline(x, rect.bottom()..=rect.bottom() + 3.0, stroke);
-        // Long ones at the ends would stick out.
+        // Long numbers at the ends are moved inwards, so that they stay on the legend.
         let font = egui::FontId::proportional(TEXT);
         let galley = ui.painter().layout_no_wrap(tick_text(tick), font, Color32::from_gray(235));
         let half = 0.5 * galley.size().x;
@@ -142,7 +143,7 @@ fn bar(ui: &egui::Ui, rect: Rect, scale: &Scale, ticks: &[f32]) {
     }
 }
 
-/// As short as it can be; ends of scales are round.
+/// Formats a tick as shortly as possible. The ends of scales are round numbers.
 fn tick_text(tick: f32) -> String {
     if (1e-3..1e5).contains(&tick) {
         let rounded = format!("{tick:.5}");

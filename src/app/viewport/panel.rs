@@ -1,4 +1,4 @@
-//! The panel in the middle: the pointer moves the camera; over the picture are the divider, notes and progress.
+//! The viewport's panel: moving the camera with the pointer, and the divider, notes and progress over the picture.
 
 use std::sync::Arc;
 
@@ -19,10 +19,10 @@ use crate::view::ScreenView;
 
 /// Degrees that the camera turns for a point of dragging.
 const DEGREES_PER_POINT: f32 = 0.4;
-/// SplitSide the width in points in which the divider can be grabbed.
+/// How far beside the divider it can be grabbed, in points.
 const DIVIDER_REACH: f32 = 5.0;
 
-/// Where the halves of a split have their names: beside the divider.
+/// The alignment of the halves' titles, which are at the top beside the divider.
 const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TOP];
 
 impl App {
@@ -38,7 +38,7 @@ impl App {
         if let Err(error) = self.advance(ui.ctx(), size) {
             self.dialogs.error = Some(error.to_string());
         }
-        // What was refused may be half drawn.
+        // A picture that the device refused may be half drawn.
         let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
         if let Some((_, id)) = self.viewport.picture.target.as_ref().filter(|_| is_whole) {
             let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
@@ -50,7 +50,7 @@ impl App {
         legend(ui, rect, self.settings.overlays.colors, &self.legend_distances());
     }
 
-    /// Lets everything beside the window go on, and draws what is wanted.
+    /// Goes on with drawing and all measurements.
     fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), Trouble> {
         // Callbacks of readbacks run here; a lost device reports through its own callback.
         self.engine.gpu.poll(wgpu::PollType::Poll);
@@ -78,7 +78,7 @@ impl App {
             viewport,
         };
         let drawn = self.viewport.picture.draw(&self.engine, document, &wanted);
-        // What the device says itself explains more than what it led to.
+        // The device's own error explains more than the errors that follow from it.
         if let Err(problem) = self.engine.gpu.check().and(drawn) {
             self.viewport.picture.refuse(&mut document.scene, &wanted);
             return Err(problem.into());
@@ -112,22 +112,22 @@ impl App {
         if self.pick()? || (self.is_busy() && !measures_only) {
             context.request_repaint();
         } else if measures_only {
-            // Drawing the window would only take time from it.
+            // Drawing the window more often would only slow the measurement down.
             context.request_repaint_after(std::time::Duration::from_millis(30));
         }
         Ok(())
     }
 
-    /// Takes the moment that is wanted by now, unless a picture of another is under way: that is finished first, so that
-    /// playing shows pictures however long one takes.
+    /// Poses the scene for the wanted moment, unless a picture of another moment is under way. That one is finished first,
+    /// so that playing shows pictures even if each takes long.
     fn pose(&mut self) -> Result<(), GpuError> {
         if self.viewport.picture.is_free() { self.pose_now() } else { Ok(()) }
     }
 
-    /// Takes the moment that is wanted.
+    /// Poses the scene for the wanted moment.
     ///
     /// # Errors
-    /// The mesh's rig is larger than the adapter binds.
+    /// The mesh's rig needs a larger buffer than the adapter can bind.
     pub(in crate::app) fn pose_now(&mut self) -> Result<(), GpuError> {
         let wanted = self.moment();
         let Some(document) = &mut self.document else { return Ok(()) };
@@ -171,12 +171,12 @@ impl App {
             *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
             self.viewport.last_split = *split;
         } else if response.dragged_by(PointerButton::Middle) {
-            // As beside it.
+            // The middle button pans, as it does beside the divider.
             let drag = response.drag_delta();
             self.viewport.camera.pan(vec2(drag.x, drag.y), vec2(rect.width(), rect.height()));
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        // Over the picture, which is dark in both themes.
+        // The colours don't depend on the theme, because the picture is dark in both.
         let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
         let titles = match (left, right) {
@@ -189,7 +189,7 @@ impl App {
         }
     }
 
-    /// How many triangles what is wanted has.
+    /// The number of triangles of the wanted picture, as text.
     fn triangles(&self) -> String {
         let of = |scene: &Scene| scene.tessellator.totals().1;
         let triangles = self.document.as_ref().map_or(0, |document| {
@@ -200,7 +200,7 @@ impl App {
         format!("{} triangles", grouped(triangles))
     }
 
-    /// What the picture alone doesn't say: loading, freezing.
+    /// Notes over the picture: the frozen camera, and the progress of loading, exporting and drawing.
     fn viewport_notes(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         if self.viewport.frozen.is_some() {
             let position = rect.left_bottom() + egui::vec2(10.0, -10.0);
@@ -217,27 +217,28 @@ impl App {
                 (Stage::Heights, Some(heights)) => format!("Reading heights: {}", heights.title()),
                 _ => format!("Loading {}", load.source.title()),
             };
-            let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what is open stays open.");
+            let (done, hover) = (Some(load.progress.fraction()), "Stops loading. The mesh that is open stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if let Some(load) = &self.jobs.truth_load {
             let title = format!("Loading the reference surface {}", load.source.title());
-            let (done, hover) = (Some(load.progress.fraction()), "Stops loading; what the mesh is held against stays.");
+            let (done, hover) =
+                (Some(load.progress.fraction()), "Stops loading. The reference surface before it stays.");
             if progress(ui, rect, &title, done, ("Cancel", hover)) {
                 self.jobs.truth_load = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if let Some(export) = &self.jobs.export {
             let (title, done) = (format!("Exporting {}", export.name()), Some(export.progress.fraction()));
-            let hover = with_key("Stops exporting; nothing is written.", &Action::Cancel);
+            let hover = with_key("Stops exporting. Nothing is written.", &Action::Cancel);
             if progress(ui, rect, &title, done, ("Cancel", &hover)) {
                 self.jobs.export = None;
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {
-            let hover = "Draws with these settings after all. Any other change draws too.";
+            let hover = "Draws the picture with these settings after all. Any change of settings draws it too.";
             if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, ("Draw", hover)) {
                 self.viewport.picture.cancelled = None;
                 ui.ctx().request_repaint();
@@ -245,7 +246,7 @@ impl App {
         } else if let Some(drawing) = self.viewport.picture.drawing.as_ref().filter(|_| self.viewport.picture.is_long())
         {
             let done = Some(drawing.given as f32 / drawing.steps as f32);
-            let hover = with_key("Leaves the last picture as it is, and every setting too.", &Action::Cancel);
+            let hover = with_key("Stops drawing. The last picture and all settings stay.", &Action::Cancel);
             if progress(ui, rect, &format!("Drawing {}", self.triangles()), done, ("Cancel", &hover)) {
                 self.viewport.picture.cancel();
             }
@@ -253,8 +254,8 @@ impl App {
     }
 }
 
-/// What takes long and the part of it that is done, in the middle of the picture, and a button with its explanation. True
-/// when that is pressed.
+/// Shows the title and progress of something that takes long in the middle of the picture, and a button with a hover text.
+/// Returns true if the button is pressed.
 fn progress(
     ui: &mut egui::Ui,
     rect: egui::Rect,
@@ -275,7 +276,7 @@ fn progress(
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), popup).inner
 }
 
-/// What a half of a split is called, at its top beside the divider; nothing where it has no room for that.
+/// Shows the title of a half at its top beside the divider, if there is enough room.
 fn half_note(ui: &egui::Ui, half: egui::Rect, align: egui::Align2, text: &str, name: &str) {
     let galley = note_text(ui, text, egui::Color32::from_gray(235));
     let room = half.shrink(8.0);
@@ -288,7 +289,7 @@ fn half_note(ui: &egui::Ui, half: egui::Rect, align: egui::Align2, text: &str, n
     paint_note(ui, place, galley);
 }
 
-/// A short text over the picture, legible on any of it.
+/// Shows a short text over the picture, on a dark background.
 fn note(ui: &egui::Ui, position: egui::Pos2, align: egui::Align2, text: &str) {
     let galley = note_text(ui, text, egui::Color32::from_gray(235));
     paint_note(ui, align.anchor_size(position, galley.size()), galley);

@@ -1,4 +1,4 @@
-//! Names over the picture: the selected patch's corners with their weights, and its edges with their factors.
+//! Labels over the picture: the selected patch's corners with their weights, and its edges with their factors.
 
 use egui::{Color32, Pos2, Rect, Stroke, Vec2};
 
@@ -12,9 +12,9 @@ use crate::settings::SplitSide;
 use crate::tessellate::{domain_side, factor_side, segments};
 use crate::view::{ScreenView, project};
 
-/// Points on screen that a patch must extend over to be labelled.
+/// The smallest extent of a patch on screen, in points, that is labelled.
 const LEAST_EXTENT: f32 = 60.0;
-/// Points between what is labelled and its label, and around a label.
+/// The distance between a label and the labelled point, and the margin around a label, in points.
 const GAP: f32 = 10.0;
 const MARGIN: Vec2 = Vec2::new(6.0, 3.0);
 
@@ -49,7 +49,7 @@ impl App {
             Some((i, place, self.factor_text(patch, i), rgb(FACTOR_COLORS[i as usize])))
         });
         let edges: Vec<_> = edges.collect();
-        // The longest names of edges that leave room for one another, or none.
+        // Long names of edges if they don't overlap, else short ones, else none.
         for name in ["TessFactor", ""] {
             let named = edges.iter().map(|(i, place, value, color)| (*place, format!("{name}[{i}]{value}"), *color));
             let labels: Vec<_> = corners.iter().cloned().chain(named).collect();
@@ -60,7 +60,7 @@ impl App {
         show(ui, rect, middle, &corners);
     }
 
-    /// Outlines the triangle as it came, left of the split, where the picture has no lines over the mesh.
+    /// Outlines the untessellated triangle left of the split, where the picture has no lines over the mesh.
     fn source_outline(&self, painter: &egui::Painter, corners: [Pos2; 3]) {
         let [casing, inner] = [8.0, 5.5].map(|px| px / painter.pixels_per_point());
         let side = |i: u32| domain_side(self.convention(), i) as usize;
@@ -73,7 +73,7 @@ impl App {
         }
     }
 
-    /// Factor `i` of a patch as LOD gave it, and the segments that it became.
+    /// Factor `i` of a patch as LOD gave it, and the number of segments.
     fn factor_text(&self, patch: u32, i: u32) -> String {
         let (Some(document), Some(found)) = (&self.document, self.jobs.measure.found()) else { return " = …".into() };
         let Some(sides) = found.outlines.patch(&document.loaded.topology, patch) else { return String::new() };
@@ -83,8 +83,8 @@ impl App {
     }
 }
 
-/// Writes each text beside its place and away from `middle`, where the place is in sight; false, and nothing, if two would
-/// overlap.
+/// Shows each text beside its position, on the side away from `middle`, if the position is in `rect`. Shows nothing and
+/// returns false if two would overlap.
 fn show(ui: &egui::Ui, rect: Rect, middle: Pos2, labels: &[(Pos2, String, Color32)]) -> bool {
     let mut placed: Vec<(Rect, _)> = Vec::new();
     for (place, text, color) in labels.iter().filter(|(place, ..)| rect.contains(*place)) {
@@ -111,14 +111,14 @@ mod tests {
     use egui::pos2;
 
     #[test]
-    fn labels_are_all_shown_or_none_where_two_would_overlap() {
+    fn no_labels_are_shown_if_two_would_overlap() {
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 300.0));
         let label = |x, y| (pos2(x, y), "TessFactor[0] = 8.00 -> 9".to_owned(), Color32::WHITE);
         egui::__run_test_ui(|ui| {
             let all = |labels: &[_]| show(ui, rect, pos2(200.0, 150.0), labels);
             assert!(all(&[label(200.0, 50.0), label(200.0, 250.0)]), "above and below");
             assert!(!all(&[label(200.0, 50.0), label(210.0, 52.0)]), "one over the other");
-            assert!(all(&[label(200.0, 50.0), label(200.0, -50.0)]), "what is out of sight has no label");
+            assert!(all(&[label(200.0, 50.0), label(200.0, -50.0)]), "positions out of sight have no label");
         });
     }
 }

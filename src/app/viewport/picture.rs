@@ -1,4 +1,4 @@
-//! The picture in the middle, drawn when anything that it is a function of has changed, step by step beside the window.
+//! The viewport's picture. It is drawn anew if anything that it depends on has changed, step by step while the window goes on.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,13 +16,13 @@ use crate::settings::{Colors, Settings, SplitSide};
 use crate::tessellate::{Inputs, LodView, Tessellation};
 use crate::view::ScreenView;
 
-/// Everything that the picture is a function of.
+/// Everything that the picture depends on.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Wanted {
     pub document: u64,
     pub moment: Option<Moment>,
     pub lines: u64,
-    /// Which distances to the truth are shown.
+    /// The number of the deviation result that is shown.
     pub deviation: u64,
     pub camera: Camera,
     pub settings: Settings,
@@ -33,7 +33,7 @@ pub(crate) struct Wanted {
 }
 
 impl Wanted {
-    /// What a half is tessellated with, if there is such a half.
+    /// The inputs of a half's tessellation, if there is such a half.
     fn inputs_of(&self, half: SplitSide) -> Option<Inputs> {
         Some(Inputs {
             tessellation: Tessellation {
@@ -45,38 +45,38 @@ impl Wanted {
     }
 }
 
-/// A picture under way: one step a submission, so that the window goes on beside it.
-pub(crate) struct Drawing {
+/// A picture that is being drawn. Each step is a submission of its own, so that the window can be drawn in between.
+pub struct Drawing {
     wanted: Wanted,
     start: Instant,
-    /// Steps that the device has been given, of all.
+    /// How many of the `steps` have been submitted.
     pub given: usize,
     pub steps: usize,
 }
 
-/// Pictures of up to so many steps are finished also if something newer is wanted.
-pub(crate) const SHORT: usize = 8;
+/// Pictures of up to this many steps are finished even if a newer one is wanted.
+pub const SHORT: usize = 8;
 
 /// The picture and what it cost.
 pub(crate) struct Picture {
     pub target: Option<(Target, egui::TextureId)>,
     pub drawn: Option<Wanted>,
-    /// What the device counts for: it is drawn before anything newer, so that a long drag shows pictures.
+    /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
     counting: Option<Wanted>,
     /// The picture that is being drawn, step by step.
     pub drawing: Option<Drawing>,
-    /// What the person in front of the window doesn't want to wait for.
+    /// The picture whose drawing was cancelled.
     pub cancelled: Option<Wanted>,
     /// Whether the picture shown is not the one wanted.
     pub outdated: bool,
     timing: Timing,
-    /// The last run of each pass, where the GPU's clock can be trusted.
+    /// The times of each pass's last run, if the adapter has timestamps.
     pub times: Vec<PassTime>,
-    /// Whether those make up the last picture, which was drawn in one step.
+    /// Whether `times` add up to the last picture, because it was drawn in one step.
     pub pass_times_hold: bool,
     /// From submitting the last picture to its completion, in ms.
     pub picture_ms: Option<f64>,
-    /// Whether the device has finished what it was last given.
+    /// Set once the device has finished the last submission.
     pub in_flight: Option<Arc<AtomicBool>>,
     pictures: u64,
 }
@@ -118,24 +118,24 @@ impl Picture {
         self.target.as_ref().map_or(vec2(800.0, 600.0), |(target, _)| target.viewport())
     }
 
-    /// The view that the LOD of what is shown was computed for.
-    pub(crate) fn shown_view(&self) -> Option<LodView> {
+    /// The view that the shown picture's LOD was computed for.
+    pub fn shown_view(&self) -> Option<LodView> {
         self.drawn.as_ref().map(|drawn| drawn.inputs.view)
     }
 
-    /// The largest gap of these cracks in px, seen as the last picture was.
-    pub(crate) fn gap_px(&self, cracks: &Cracks) -> f64 {
+    /// The largest gap of these cracks in px, in the view of the last picture.
+    pub fn gap_px(&self, cracks: &Cracks) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| cracks.max_gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
-    /// The gap of one edge in px, seen as the last picture was.
-    pub(crate) fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
+    /// The gap of one edge in px, in the view of the last picture.
+    pub fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
-    /// A pixel (from the left and the top) of the last picture, and which half's surface is there: the right one's also where
-    /// the mesh is as it came.
-    pub(crate) fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
+    /// A pixel of the last picture, counted from the left and the top, and the half whose scene is there. Where the left
+    /// half shows the untessellated mesh, that is the right half's scene.
+    pub fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let Wanted { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let pixel = Pixel { clip_from_object, size, at, split: settings.split };
@@ -146,19 +146,19 @@ impl Picture {
         Some((half, Pixel { split: None, ..pixel }))
     }
 
-    /// Where the picture that is shown was seen from.
-    pub(crate) fn seen_from(&self) -> Option<ScreenView> {
+    /// The view of the picture that is shown.
+    pub fn seen_from(&self) -> Option<ScreenView> {
         let Wanted { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })
     }
 
-    /// Bytes of the textures drawn into.
-    pub(crate) fn bytes(&self) -> u64 {
+    /// Bytes of the textures that are drawn into.
+    pub fn bytes(&self) -> u64 {
         self.target.as_ref().map_or(0, |(target, _)| target.bytes())
     }
 
-    /// Looks whether the picture in flight has landed, and takes the times that have come in.
-    pub(crate) fn land(&mut self, engine: &Engine) {
+    /// Takes a picture that the device has finished, and the times that have come in.
+    pub fn land(&mut self, engine: &Engine) {
         if self.in_flight.as_ref().is_some_and(|done| done.load(Ordering::Acquire)) {
             self.in_flight = None;
             if let Some(drawing) = self.drawing.take_if(|drawing| drawing.given == drawing.steps) {
@@ -176,13 +176,8 @@ impl Picture {
         }
     }
 
-    /// A target of the size wanted, registered with egui.
-    pub(crate) fn fit(
-        &mut self,
-        app: &egui_wgpu::RenderState,
-        engine: &Engine,
-        size: [u32; 2],
-    ) -> Result<(), GpuError> {
+    /// Makes a target of this size, registered with egui, if there is none yet.
+    pub fn fit(&mut self, app: &egui_wgpu::RenderState, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
@@ -210,7 +205,7 @@ impl Picture {
             drawing.wanted == *wanted || (drawing.steps <= SHORT && drawing.wanted.document == document.generation)
         };
         self.drawing = self.drawing.take_if(&mut keeps_on);
-        // What is selected meanwhile is no reason to draw after all.
+        // Selecting something doesn't draw a picture whose drawing was cancelled.
         let same =
             |cancelled: &Wanted| Wanted { lines: wanted.lines, deviation: wanted.deviation, ..*cancelled } == *wanted;
         self.cancelled = self.cancelled.filter(same);
@@ -246,8 +241,8 @@ impl Picture {
         Ok(())
     }
 
-    /// Lets the device count what each half will emit, with these inputs if `anew` is set. True once it is known; while the
-    /// left half is still being made, it isn't.
+    /// Lets the device count what each half will emit, with the wanted inputs if `anew` is set. Returns true once the counts
+    /// are known, and false while the left half is still being made.
     fn count(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, anew: bool) -> Result<bool, GpuError> {
         let mut is_counted = true;
         for half in SplitSide::BOTH {
@@ -269,8 +264,8 @@ impl Picture {
         Ok(is_counted)
     }
 
-    /// Whether the last picture stays until the distances are known that the new one shows: so from the same place, where
-    /// without them it would only flicker.
+    /// Whether the last picture stays until the new one's deviation is known. It does so for an unchanged camera, where
+    /// a picture without deviation would only flicker.
     fn holds(&self, scene: &Scene, wanted: &Wanted) -> bool {
         let from_here = |drawn: &Wanted| {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
@@ -282,18 +277,18 @@ impl Picture {
         shows && self.drawing.is_none() && !is_known && self.drawn.as_ref().is_some_and(from_here)
     }
 
-    /// Whether nothing is under way that a new pose would disturb.
-    pub(crate) fn is_free(&self) -> bool {
+    /// Whether no picture is under way, so that the scene may change.
+    pub fn is_free(&self) -> bool {
         self.drawing.is_none() && self.counting.is_none() && self.in_flight.is_none()
     }
 
-    /// Whether a picture is under way that takes more than a few steps.
-    pub(crate) fn is_long(&self) -> bool {
+    /// Whether a picture of more than [`SHORT`] steps is under way.
+    pub fn is_long(&self) -> bool {
         self.drawing.as_ref().is_some_and(|drawing| drawing.steps > SHORT)
     }
 
-    /// The device refused what was wanted: that isn't drawn again by itself, and what may be half drawn isn't shown.
-    pub(crate) fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
+    /// Handles a picture that the device refused: it isn't drawn again by itself, nor shown, as it may be half drawn.
+    pub fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
         (self.drawn, self.drawing, self.counting) = (None, None, None);
         self.cancelled = Some(*wanted);
         for half in SplitSide::BOTH {
@@ -303,8 +298,8 @@ impl Picture {
         }
     }
 
-    /// Leaves the picture under way as it is: the last one stays until something else is wanted.
-    pub(crate) fn cancel(&mut self) {
+    /// Stops drawing. The last picture stays until another one is wanted.
+    pub fn cancel(&mut self) {
         self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);
     }
 }

@@ -1,4 +1,4 @@
-//! What moves: clip, time and speed, and playing.
+//! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
 use crate::app::text::shortened;
@@ -7,20 +7,20 @@ use crate::commands::{Action, with_key};
 use crate::mesh::Moment;
 use crate::mesh::rig::Clip;
 
-/// How much faster than it was made a clip plays.
+/// The range of speeds at which a clip plays; 1 is its own speed.
 const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.1..=4.0;
-/// Clips that the list offers.
+/// How many clips the list shows.
 const LISTED: usize = 1000;
 
-/// Where the mesh is in its clips.
+/// The clip and the time that the mesh is shown at.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Playback {
     /// None at rest.
     clip: Option<usize>,
-    /// s.
+    /// Time in the clip, in s.
     time: f64,
     speed: f64,
-    /// While playing: when, on the window's clock in s, the time was last moved on.
+    /// While playing: when `time` was last advanced, on the window's clock in s.
     playing: Option<f64>,
 }
 
@@ -39,15 +39,15 @@ impl Playback {
         self.playing.is_some()
     }
 
-    /// Goes on by the clock of another window.
-    pub(crate) fn go_on_in(&mut self, context: &egui::Context) {
+    /// Goes on in another window, which has another clock.
+    pub fn go_on_in(&mut self, context: &egui::Context) {
         let now = context.input(|input| input.time);
         self.playing = self.playing.map(|_| now);
     }
 }
 
 impl App {
-    /// Clip and time that are wanted; none at rest, and while a crease band keeps the mesh from moving.
+    /// The wanted clip and time; none at rest, and for a mesh with a crease band, which can't be animated.
     pub fn moment(&self) -> Option<Moment> {
         self.viewport.playback.moment().filter(|moment| moment.clip < self.clips().len())
     }
@@ -57,31 +57,31 @@ impl App {
         self.viewport.playback.is_playing()
     }
 
-    /// What the mesh that is open can do.
+    /// The clips of the mesh that is open.
     fn clips(&self) -> &[Clip] {
         let rig = self.document.as_ref().and_then(|document| document.loaded.mesh.rig.as_deref());
         rig.map_or(&[], |rig| &rig.clips)
     }
 
-    /// Names of the clips, as the command line tells those of one name apart.
+    /// The names of the clips, made distinct as on the command line.
     pub(in crate::app) fn clip_names(&self) -> Vec<String> {
         let rig = self.document.as_ref().and_then(|document| document.loaded.mesh.rig.as_deref());
         rig.map_or_else(Vec::new, |rig| (0..rig.clips.len().min(LISTED)).map(|clip| rig.clip_name(clip)).collect())
     }
 
-    /// Shows a clip from its start on, not playing; or the mesh at rest.
+    /// Shows the start of a clip without playing it, or the mesh at rest.
     pub fn choose_clip(&mut self, clip: Option<usize>) {
         let clip = clip.filter(|&clip| clip < self.clips().len());
         let was_framed = self.is_framed();
         self.viewport.playback = Playback { clip, speed: self.viewport.playback.speed, ..Playback::default() };
         self.frame_clip();
-        // Who looks at all of it goes on to, also where the clip goes far; who looks at a detail stays there.
+        // A camera that frames the whole mesh frames the whole clip now; one that shows a detail stays.
         if was_framed {
             self.frame();
         }
     }
 
-    /// Takes what depends on the extent of what is shown from all of the clip.
+    /// Sets the scene's bounds to those of the whole clip.
     pub(in crate::app) fn frame_clip(&mut self) {
         let clip = self.moment().map(|moment| moment.clip);
         if let Some(document) = &mut self.document {
@@ -89,8 +89,8 @@ impl App {
         }
     }
 
-    /// Keeps clip and time for a document that is the same mesh loaded again, also with a crease band, with which it doesn't move;
-    /// forgets them for another.
+    /// Keeps clip and time if the same mesh was loaded again, even with a crease band, with which it can't be animated.
+    /// Resets them for another mesh.
     pub(in crate::app) fn keep_playback(&mut self, is_same: bool) {
         let count = self.clips().len();
         if !is_same {
@@ -103,13 +103,13 @@ impl App {
         if self.viewport.playback.clip.is_some() {
             self.frame_clip();
         }
-        // Before anything is drawn of it.
+        // The scene must have its pose before it is drawn.
         if let Err(error) = self.pose_now() {
             self.dialogs.error = Some(error.to_string());
         }
     }
 
-    /// Plays, the first clip if none is chosen; or pauses.
+    /// Plays the clip, or the first one if none is chosen; or pauses.
     pub(in crate::app) fn toggle_playing(&mut self, context: &egui::Context) {
         if self.clips().is_empty() {
             return;
@@ -121,7 +121,7 @@ impl App {
         self.viewport.playback.playing = if self.viewport.playback.playing.is_some() { None } else { Some(now) };
     }
 
-    /// Moves the time on while a clip plays, round and round.
+    /// Advances the time while a clip plays in a loop.
     pub(in crate::app) fn play_on(&mut self, context: &egui::Context) {
         let Some((last, clip)) = self.viewport.playback.playing.zip(self.viewport.playback.clip) else { return };
         let now = context.input(|input| input.time);
@@ -131,7 +131,7 @@ impl App {
         context.request_repaint();
     }
 
-    /// Only for a mesh that can move.
+    /// The section about animation, which only a mesh with clips has.
     pub(in crate::app) fn animation_section(&mut self, ui: &mut egui::Ui) {
         if self.clips().is_empty() {
             let read = self.document.as_ref().map(|document| &document.loaded.read);
@@ -148,7 +148,13 @@ impl App {
             let mut choices = vec![(None, "Rest pose", "The mesh as it is without any clip.")];
             let clips = texts.iter().enumerate();
             choices.extend(clips.map(|(i, (name, hover))| (Some(i), name.as_str(), hover.as_str())));
-            chooser(ui, "Clip", "What moves the mesh; shown from its start on.", &mut chosen, &choices);
+            chooser(
+                ui,
+                "Clip",
+                "The animation clip. A clip that is chosen is shown from its start.",
+                &mut chosen,
+                &choices,
+            );
             self.time_row(ui);
             self.speed_row(ui);
             ui.label("");
@@ -165,18 +171,18 @@ impl App {
         let duration = clip.map_or(0.0, |clip| clip.duration);
         let hover = if clip.is_some() { format!("Time in the clip, 0 to {duration:.3} s.") } else { String::new() };
         let label = ui.label("Time").on_hover_text(&hover);
-        // Without any length the handle would be in the middle.
+        // With an empty range the handle would be in the middle.
         let end = if duration > 0.0 { duration } else { 1.0 };
         let slider = egui::Slider::new(&mut self.viewport.playback.time, 0.0..=end).fixed_decimals(3).suffix(" s");
         ui.add_enabled(duration > 0.0, slider)
             .labelled_by(label.id)
             .on_hover_text(hover)
-            .on_disabled_hover_text("Choose a clip that takes time.");
+            .on_disabled_hover_text("Choose a clip that is longer than 0 s.");
         ui.end_row();
     }
 
     fn speed_row(&mut self, ui: &mut egui::Ui) {
-        let hover = "How fast the clip plays: 1 is as it was made.";
+        let hover = "How fast the clip plays. 1 is its own speed.";
         let label = ui.label("Speed").on_hover_text(hover);
         let slider = egui::Slider::new(&mut self.viewport.playback.speed, SPEED_RANGE)
             .max_decimals(2)
@@ -189,15 +195,15 @@ impl App {
     fn play_button(&mut self, ui: &mut egui::Ui) {
         let is_playing = self.is_playing();
         let button = egui::Button::new(if is_playing { "Pause" } else { "Play" }).min_size(egui::vec2(72.0, 0.0));
-        let hover = "Plays the clip round and round, the first one if none is chosen. What is shown is measured while it is \
-                     paused.";
+        let hover = "Plays the clip in a loop, or the first clip if none is chosen. Cracks and other statistics are measured \
+                     only while it is paused.";
         if ui.add(button).on_hover_text(with_key(hover, &Action::PlayOrPause)).clicked() {
             self.toggle_playing(ui.ctx());
         }
     }
 }
 
-/// A clip's name in the room that a list has, and all that is known about it.
+/// A clip's name, short enough for the list, and its hover text.
 fn clip_texts(clip: &Clip) -> (String, String) {
     (shortened(&clip.name, 18), format!("{}: {:.3} s.", shortened(&clip.name, 200), clip.duration))
 }

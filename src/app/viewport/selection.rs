@@ -1,4 +1,4 @@
-//! What is selected: a triangle of the mesh, one of its edges, and the emitted triangle that was clicked on.
+//! The selection: a triangle of the mesh, one of its edges, and the emitted triangle that was clicked on.
 
 use egui::Response;
 use glam::Vec3;
@@ -12,20 +12,20 @@ use crate::render::{LineSegment, Picked, PickedTriangle, Picking, Pixel, patch_l
 use crate::settings::SplitSide;
 use crate::tessellate::Convention;
 
-/// A triangle that is looked at, and a click that is still being answered. The edge is [`App::selected_edge`].
+/// The selected triangle, and a click that is still being answered. The selected edge is [`App::selected_edge`].
 #[derive(Default)]
 pub(crate) struct Selection {
     /// Index into the mesh's triangles.
     triangle: Option<u32>,
-    /// With the tessellation that it belongs to.
+    /// The emitted triangle that was clicked on, and its tessellation's number.
     hit: Option<(u64, PickedTriangle)>,
     /// A click on a picture whose tessellation isn't known yet.
     clicked: Option<(SplitSide, Pixel)>,
-    /// With the tessellation that is searched; none for the left half's, of which nothing more is said.
+    /// The search for the triangle under a click, and its tessellation's number; none for the left half's.
     picking: Option<(Option<u64>, Picking)>,
 }
 
-/// What the lines over a selected patch are a function of, besides what was measured.
+/// What the lines over a selected patch depend on, besides the measurements.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Outlined {
     triangle: Option<u32>,
@@ -34,8 +34,8 @@ pub(crate) struct Outlined {
 }
 
 impl Selection {
-    /// Keeps what is looked at, and lets go of what is about one tessellation.
-    pub(crate) fn forget_tessellation(&mut self) {
+    /// Keeps the selected triangle, and forgets everything about the tessellation.
+    pub fn forget_tessellation(&mut self) {
         *self = Self { triangle: self.triangle, ..Self::default() };
     }
 
@@ -46,23 +46,23 @@ impl Selection {
 }
 
 impl App {
-    /// The triangle that is looked at: an index into the mesh's triangles.
+    /// The selected triangle: an index into the mesh's triangles.
     pub fn selected_triangle(&self) -> Option<u32> {
         self.viewport.selection.triangle
     }
 
-    /// The emitted triangle that was clicked on, as long as it is emitted.
+    /// The emitted triangle that was clicked on, until the tessellation changes.
     pub fn hit(&self) -> Option<&PickedTriangle> {
         let emitted = self.document.as_ref()?.scene.tessellator.generation();
         self.viewport.selection.hit.as_ref().filter(|(of, _)| *of == emitted).map(|(_, triangle)| triangle)
     }
 
-    /// The patch of the triangle that is looked at.
+    /// The patch of the selected triangle.
     pub(in crate::app) fn selected_patch(&self) -> Option<u32> {
         self.document.as_ref()?.loaded.topology.patch_of(self.viewport.selection.triangle?)
     }
 
-    /// What factors and weights are taken for.
+    /// The convention of factors and weights.
     pub(in crate::app) fn convention(&self) -> Convention {
         self.settings.tessellation.convention
     }
@@ -77,7 +77,7 @@ impl App {
         }
     }
 
-    /// Lets go of the triangle, unless `edge` is one of its edges: one looks at that now.
+    /// Deselects the triangle, unless `edge` is one of its edges.
     pub(in crate::app) fn keep_triangle_of(&mut self, edge: u32) {
         if !self.patch_has(edge) {
             self.viewport.selection = Selection::default();
@@ -90,13 +90,13 @@ impl App {
         topology.patches[patch as usize].sides.iter().any(|&side| topology.sides[side as usize].edge == edge)
     }
 
-    /// Nothing is looked at any more.
+    /// Deselects the triangle and the edge.
     pub(in crate::app) fn deselect(&mut self) {
         self.viewport.selection = Selection::default();
         self.viewport.selected_edge = None;
     }
 
-    /// Asks what the picture shows where it was clicked.
+    /// Starts to answer a click on the picture.
     pub(in crate::app) fn click(&mut self, response: &Response, pixels_per_point: f32) {
         let Some(pointer) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
         let place = (pointer - response.rect.min) * pixels_per_point;
@@ -104,7 +104,7 @@ impl App {
             self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
     }
 
-    /// Lets the device look for what was clicked on, and takes what it has found: true if it has.
+    /// Searches for what was clicked on, on the device. Returns true once the result is taken.
     ///
     /// # Errors
     /// The device was lost.
@@ -114,7 +114,7 @@ impl App {
             && let Some((half, pixel)) = self.viewport.selection.clicked.take()
             && let Some(scene) = document.scene.half_mut(half)
         {
-            // What takes many steps to draw would take as long to pick: then it is done without emitted triangles.
+            // Picking in a tessellation of many chunks would take as long as drawing it, so its emitted triangles are left out.
             let split = if scene.tessellator.chunk_count() > SHORT { Some(1.0) } else { pixel.split };
             let pixel = Pixel { split, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
@@ -134,7 +134,7 @@ impl App {
         let (Some(picked), Some(document)) = (found, &self.document) else { return self.deselect() };
         let topology = &document.loaded.topology;
         let Some(patch) = topology.patches.get(picked.patch as usize) else { return self.deselect() };
-        // Weights are by corner: opposite corner k is side k + 1.
+        // The weight is a corner's number, and side k + 1 lies opposite corner k.
         let side = patch.sides[(picked.weight as usize + 1) % 3];
         self.viewport.selected_edge = Some(topology.sides[side as usize].edge);
         let hit = emitted.zip(picked.triangle);
@@ -156,7 +156,7 @@ impl App {
         patch_edges(topology, patch, self.measured(half).found().map(|found| &found.outlines), self.convention())
     }
 
-    /// What marks the selected patch: its edges in the colours of their factors, and the emitted triangle clicked on.
+    /// The lines that mark the selected patch: its edges in their factors' colours, and the emitted triangle clicked on.
     pub(in crate::app) fn patch_outline(&self, topology: &Topology, half: SplitSide) -> Vec<LineSegment> {
         let Some(patch) = self.selected_patch() else { return Vec::new() };
         let mut lines = patch_lines(&self.patch_edges(topology, patch, half));

@@ -1,5 +1,5 @@
-//! A device that fails. A command that it refuses costs the picture; when it is lost the window goes on with another, and
-//! all that isn't the device's stays: mesh, settings, camera, playback, truth, chart, what is selected.
+//! Failures of the graphics device. If it refuses a command, the picture isn't drawn. If it is lost, the window goes on with
+//! another device and keeps its mesh, settings, camera, animation, reference surface, chart and selection.
 
 use std::time::{Duration, Instant};
 
@@ -14,28 +14,28 @@ use crate::app::viewport::picture::Picture;
 use crate::engine::Engine;
 use crate::gpu::{Gpu, GpuError};
 
-/// A device that is lost sooner after the last one isn't replaced by itself.
+/// A device that is lost sooner than this after the last one isn't replaced automatically.
 const LASTS: Duration = Duration::from_secs(60);
 
-/// When a device was lost last.
+/// When the last device was lost.
 #[derive(Default)]
 pub(crate) struct DeviceLosses(Option<Instant>);
 
 impl DeviceLosses {
-    /// Whether one that is lost now is replaced without asking: the first one is, and any that has drawn a picture and came
-    /// a minute or more after the last loss. Others would be lost again.
+    /// Whether a device that is lost now is replaced automatically. The first one is, and so is one that has drawn a picture
+    /// and is lost a minute or more after the last. Others would probably be lost again.
     fn replaces(&mut self, now: Instant, has_drawn: bool) -> bool {
         let last = self.0.replace(now);
         last.is_none_or(|last| has_drawn && now.duration_since(last) >= LASTS)
     }
 }
 
-/// What follows a window that was closed.
-pub(crate) enum Next {
+/// What happens after a window was closed.
+pub enum Next {
     Quit,
-    /// Another, with the same state.
+    /// Another window opens with the same state.
     Anew,
-    /// Nothing, and why.
+    /// The program ends with this error.
     GiveUp(String),
 }
 
@@ -45,12 +45,12 @@ impl App {
         self.window.fatal_screen.as_ref().map_or(&self.engine.gpu, |screen| &screen.gpu)
     }
 
-    /// Whether that was lost: then nothing can be shown in this window any more.
+    /// Whether that device was lost, so that nothing can be shown in this window any more.
     pub fn is_lost(&self) -> bool {
         self.gpu().lost().is_some()
     }
 
-    /// What is said, once it isn't replaced any more.
+    /// The message of the screen that is shown if a lost device isn't replaced.
     pub fn fatal_message(&self) -> Option<&str> {
         self.window.fatal_screen.as_ref().map(FatalScreen::why)
     }
@@ -74,14 +74,14 @@ impl App {
         self.persistence.frame()
     }
 
-    /// The same in another window, with its device; `before` is the window that was. If that device is better not tried, or
-    /// doesn't do, it only says so and offers to save.
+    /// Moves the state to another window with a new device; `before` is the context of the window before. If the new device
+    /// isn't to be used, or fails, the window only says so and offers to save the mesh.
     ///
     /// # Errors
     /// The window isn't drawn through wgpu.
     pub fn anew(mut self, creation: &eframe::CreationContext, before: &egui::Context) -> Result<Self, GpuError> {
         let state = creation.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
-        // Theme and zoom, and what is folded or scrolled where.
+        // egui's memory has theme, zoom, scroll positions and folded sections.
         let memory = before.memory(Clone::clone);
         creation.egui_ctx.memory_mut(|own| *own = memory);
         style(&creation.egui_ctx);
@@ -103,7 +103,7 @@ impl App {
         Ok(self)
     }
 
-    /// Makes on another device what was on the last one. Without success nothing is changed.
+    /// Makes on another device everything that was on the last one. If that fails, nothing is changed.
     fn move_to(
         &mut self,
         context: &egui::Context,
@@ -133,7 +133,7 @@ impl App {
         Ok(())
     }
 
-    /// What is under way goes on, and wakes this window; what was under way on the lost device starts over.
+    /// Lets jobs go on and repaint this window. Those that need the lost device start over.
     fn go_on_in(&mut self, context: &egui::Context) {
         if let Some(load) = self.jobs.load.take() {
             let (source, preparation) = (load.source.clone(), load.preparation.clone());
@@ -157,7 +157,7 @@ impl App {
         self.viewport.playback.go_on_in(context);
     }
 
-    /// Says what the device has refused since it was last asked.
+    /// Shows an error that the device has reported.
     pub(in crate::app) fn take_device_problem(&mut self) {
         if let Err(problem) = self.engine.gpu.check() {
             self.dialogs.error = Some(problem.to_string());
@@ -175,7 +175,7 @@ mod tests {
     use crate::load::Source;
     use crate::mesh::Shape;
 
-    /// Steps until nothing is under way.
+    /// Runs frames until nothing is under way.
     fn settle(harness: &mut Harness<App>) {
         let start = Instant::now();
         harness.run_steps(3);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_picture_that_is_refused_is_not_shown_nor_tried_again_by_itself() {
+    fn a_refused_picture_is_not_shown_and_not_drawn_again_automatically() {
         let torus = Some(Source::Shape(Shape::Torus));
         let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(|context| {
             App::new(context, torus, Limits::default()).expect("these tests need a graphics adapter")
@@ -204,10 +204,10 @@ mod tests {
             harness.get_by_label_contains("the graphics device refused a command");
             harness.get_by_label("Draw");
             assert_eq!(harness.state().pictures(), pictures, "nothing was drawn");
-            assert!(harness.state().viewport.picture.drawn.is_none(), "and nothing is shown as if it were");
+            assert!(harness.state().viewport.picture.drawn.is_none(), "no picture is shown as if it were drawn");
             harness.get_by_label("Close").click();
             harness.run_steps(20);
-            assert!(harness.query_by_label("Close").is_none(), "it isn't tried again");
+            assert!(harness.query_by_label("Close").is_none(), "no second message: it isn't drawn again");
         };
         refused(&mut harness);
         harness.get_by_label("Draw").click();
@@ -230,7 +230,7 @@ mod tests {
             let replaces = |&(s, has_drawn): &(u64, bool)| losses.replaces(start + Duration::from_secs(s), has_drawn);
             times.iter().map(replaces).collect::<Vec<_>>()
         };
-        assert_eq!(lost(&[(0, false)]), [true], "also before the first picture");
+        assert_eq!(lost(&[(0, false)]), [true], "the first loss, even before a picture");
         assert_eq!(lost(&[(5, true), (64, true)]), [true, false], "59 s later");
         assert_eq!(lost(&[(5, true), (65, true)]), [true, true]);
         assert_eq!(lost(&[(5, true), (600, false)]), [true, false], "it has drawn nothing");

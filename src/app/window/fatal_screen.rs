@@ -1,4 +1,4 @@
-//! In place of the window, when its device was lost again: what happened, and saving what needs no device.
+//! The screen that replaces the window if its device was lost again: it says what happened and offers to save the mesh.
 
 use std::path::{Path, PathBuf};
 
@@ -12,12 +12,12 @@ use crate::gpu::Gpu;
 use crate::mesh::Moment;
 use crate::tessellate::{Inputs, tessellate, totals};
 
-/// What is said, and what a person does about it.
-pub(crate) struct FatalScreen {
-    /// The device that the words are drawn with, and nothing else.
+/// The state of the screen.
+pub struct FatalScreen {
+    /// The device that this screen alone is drawn with.
     pub gpu: Gpu,
     why: String,
-    /// Where the mesh is to be saved, as it is typed.
+    /// The path that is typed for saving the mesh.
     path: Option<String>,
     saving: Option<BackgroundJob<Result<String, String>>>,
     said: Option<String>,
@@ -39,7 +39,7 @@ impl FatalScreen {
 }
 
 impl App {
-    /// Quits as the window does.
+    /// Handles the window's key to quit.
     pub(in crate::app) fn fatal_screen_keys(&self, context: &egui::Context) {
         if context.input_mut(|input| input.consume_shortcut(&QUIT)) {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -69,8 +69,8 @@ impl App {
         ui.heading("Nothing can be drawn");
         ui.label(&screen.why);
         ui.label(
-            "It isn't tried again by itself: a driver that loses its device twice mostly does so again. Settings, recent \
-             files and their cameras are kept for the next window.",
+            "The window doesn't try another device by itself, because a driver that loses its device twice usually loses it \
+             again. Settings, recent files and their cameras are saved.",
         );
         if self.document.is_some() {
             ui.add_space(12.0);
@@ -81,7 +81,7 @@ impl App {
         }
         ui.add_space(12.0);
         ui.horizontal(|ui| {
-            let hover = "Opens the window with a new device, and the same mesh, settings and camera.";
+            let hover = "Opens the window with a new device and the same mesh, settings and camera.";
             if ui.button("Try again").on_hover_text(hover).clicked() {
                 screen.tries_again = true;
                 ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
@@ -106,7 +106,7 @@ impl App {
             ui.add(egui::TextEdit::singleline(path).desired_width(420.0)).labelled_by(label.id);
             let is_free = screen.saving.is_none() && !path.trim().is_empty();
             let text = if screen.saving.is_some() { "Saving…" } else { "Save mesh" };
-            let hover = "Writes what these settings make of the mesh, seen from here; computed on the CPU.";
+            let hover = "Tessellates the mesh on the CPU with these settings, for this camera, and writes it.";
             if ui.add_enabled(is_free, egui::Button::new(text)).on_hover_text(hover).clicked() {
                 let path = PathBuf::from(path.trim());
                 let view = self.viewport.camera.lod_view(self.viewport.picture.size(), &document.scene.bounds);
@@ -119,10 +119,10 @@ impl App {
     }
 }
 
-/// What was written where; or why it wasn't, in a sentence as well.
+/// Writes the mesh. Returns a sentence: what was written, or as an error why it wasn't.
 fn save(loaded: &Loaded, moment: Option<Moment>, inputs: &Inputs, path: &Path) -> Result<String, String> {
     if path.exists() {
-        return Err(format!("{} is there already: choose another name", path.display()));
+        return Err(format!("{} exists already: choose another name", path.display()));
     }
     let posed = loaded.posed(moment);
     let (mesh, topology) = (&posed.mesh, &posed.topology);

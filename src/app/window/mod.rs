@@ -1,4 +1,4 @@
-//! The window itself: opening it, replacing a graphics device that was lost, and the screen that is left when none can be.
+//! Opens the window, replaces a graphics device that was lost, and shows a screen if it can't be replaced.
 
 pub(super) mod device_lost;
 pub(super) mod fatal_screen;
@@ -9,10 +9,10 @@ use fatal_screen::FatalScreen;
 
 pub(crate) use run::{WindowError, run};
 
-/// What became of the devices that the window was drawn with.
+/// The losses of the devices that the window was drawn with.
 #[derive(Default)]
 pub(super) struct WindowState {
     pub losses: DeviceLosses,
-    /// Shown in place of everything else, once a lost device isn't replaced any more.
+    /// Shown in place of everything else if a lost device isn't replaced.
     pub fatal_screen: Option<FatalScreen>,
 }

@@ -1,4 +1,4 @@
-//! Opening the window; and another in its place, where the device that draws it was lost.
+//! Opens the window, and another in its place if its device was lost.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -16,34 +16,34 @@ use crate::load::Source;
 
 #[derive(Debug, Error)]
 pub enum WindowError {
-    /// Why, in a few words.
+    /// The reason, in a few words.
     #[error("no window could be opened ({0})")]
     NoDisplay(String),
-    /// In a sentence.
+    /// The reason, as a sentence.
     #[error("{0}")]
     NoAdapter(String),
     #[error("the window can't be drawn ({0}): check the graphics driver, or use the commands (pnaen --help)")]
     Failed(String),
-    /// Why there is none, in a sentence or a few words.
+    /// Why there is no other device, in a sentence or a few words.
     #[error(
         "the graphics device was lost, and there is no other ({0}); settings and camera are kept for the next window"
     )]
     Gone(String),
 }
 
-/// Opens the window on `source`, or on a cube made in code, and returns when it is closed; on the adapter that was asked
-/// for. Files larger than `limits` says aren't opened.
+/// Opens the window with `source`, or with a cube made in code, on the chosen adapter. Returns when it is closed. Files
+/// beyond `limits` aren't opened.
 ///
 /// # Errors
-/// There is no display, or none that a window can be drawn on.
-pub(crate) fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
+/// There is no display, no adapter, or the window can't be drawn.
+pub fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
     run_watched(source, limits, adapter, |_, _| {})
 }
 
-/// The same; `watch` is told of every frame before it is made, of all windows that follow each other.
+/// Like [`run`], but calls `watch` before every frame, in all windows that follow each other.
 ///
 /// # Errors
-/// There is no display, or none that a window can be drawn on.
+/// There is no display, no adapter, or the window can't be drawn.
 pub fn run_watched(
     source: Option<Source>,
     limits: Limits,
@@ -93,13 +93,13 @@ fn sized(frame: &WindowGeometry) -> egui::ViewportBuilder {
         .with_min_inner_size(LEAST_SIZE)
 }
 
-/// What is left of a window.
+/// The state of a window that was closed.
 struct Closed {
     app: App,
     context: egui::Context,
 }
 
-/// Shows a window until it is closed. Its state outlives it, whatever the window library does.
+/// Shows a window until it is closed. Its state outlives it, even if the window library panics.
 fn show(
     viewport: egui::ViewportBuilder,
     adapter: &AdapterChoice,
@@ -112,7 +112,7 @@ fn show(
         let creator: eframe::AppCreator = Box::new(|context| {
             let app = create.take().ok_or("it was opened twice")?(context)?;
             *state.borrow_mut() = Some(Closed { app, context: context.egui_ctx.clone() });
-            Ok(Box::new(Shown { state: state.clone(), watch: watch.clone() }))
+            Ok(Box::new(WatchedApp { state: state.clone(), watch: watch.clone() }))
         });
         let options = eframe::NativeOptions {
             viewport: viewport.clone(),
@@ -124,15 +124,15 @@ fn show(
     };
     let mut ended = run();
     if matches!(ended, Ok(Ok(()))) && state.borrow().is_none() {
-        // The event loop has only now ended what a panic in the window before left half done.
+        // After a panic in the window before, the event loop's first run only cleans up. The second one shows the window.
         ended = run();
     }
     let closed = state.take();
     let is_lost = closed.as_ref().is_some_and(|closed| closed.app.is_lost());
     match (ended, closed) {
         (Ok(Ok(())), Some(closed)) => Ok(closed),
-        (Ok(Ok(())), None) => Err(WindowError::Failed("it was closed before it was there".into())),
-        // A device that is lost in the midst of painting makes egui panic: it has no other way to say so.
+        (Ok(Ok(())), None) => Err(WindowError::Failed("it was closed before it was shown".into())),
+        // egui panics if the device is lost while it paints.
         (_, Some(mut closed)) if is_lost => {
             eframe::App::on_exit(&mut closed.app);
             Ok(closed)
@@ -142,13 +142,13 @@ fn show(
     }
 }
 
-/// What the window library shows: the state that outlives it.
-struct Shown {
+/// The app that the window library runs. It forwards to the state that outlives it.
+struct WatchedApp {
     state: Rc<RefCell<Option<Closed>>>,
     watch: Watch,
 }
 
-impl Shown {
+impl WatchedApp {
     fn with(&self, what: impl FnOnce(&mut App)) {
         if let Some(closed) = self.state.borrow_mut().as_mut() {
             what(&mut closed.app);
@@ -156,7 +156,7 @@ impl Shown {
     }
 }
 
-impl eframe::App for Shown {
+impl eframe::App for WatchedApp {
     fn logic(&mut self, context: &egui::Context, frame: &mut eframe::Frame) {
         self.with(|app| {
             self.watch.borrow_mut()(app, context);
@@ -173,7 +173,7 @@ impl eframe::App for Shown {
     }
 }
 
-/// The window library's errors are about its own files, or have its words around ours.
+/// Converts the window library's errors, which name its own files or wrap this program's errors.
 fn in_words(error: eframe::Error) -> WindowError {
     match error {
         eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
@@ -190,7 +190,7 @@ fn in_words(error: eframe::Error) -> WindowError {
     }
 }
 
-/// The device that egui draws with is the engine's own.
+/// Makes egui create the device that the engine needs, since both share it.
 fn wgpu_configuration(choice: AdapterChoice) -> egui_wgpu::WgpuConfiguration {
     let mut configuration = egui_wgpu::WgpuConfiguration::default();
     if let egui_wgpu::WgpuSetup::CreateNew(new) = &mut configuration.wgpu_setup {

@@ -17,7 +17,7 @@ use crate::numbers::utc;
 const SHAPES: [Shape; 7] =
     [Shape::Icosphere, Shape::Ellipsoid, Shape::Torus, Shape::Cylinder, Shape::Cone, Shape::Saddle, Shape::Bicubic];
 
-/// The project's own mesh, where the command is run in its folder.
+/// The project's own mesh, which is there if the command runs in the project's folder.
 const VASE: &str = "assets/vase.glb";
 
 /// What is charted if no mesh was named.
@@ -26,8 +26,8 @@ pub(super) fn usual() -> Vec<Source> {
     SHAPES.into_iter().map(Source::Shape).chain(vase).collect()
 }
 
-/// Names for pictures, one a mesh: letters, digits and hyphens, and no name twice.
-pub(super) fn pictures(meshes: &[Source]) -> Vec<String> {
+/// Returns a file name for each mesh's picture, of letters, digits and hyphens; no name occurs twice.
+pub fn pictures(meshes: &[Source]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for mesh in meshes {
         let stem = match mesh {
@@ -43,8 +43,8 @@ pub(super) fn pictures(meshes: &[Source]) -> Vec<String> {
     names
 }
 
-/// What it runs on, now, and by which command line.
-pub(super) fn occasion(gpu: &Gpu) -> Occasion {
+/// Describes this run: adapter, driver, date and command line.
+pub fn occasion(gpu: &Gpu) -> Occasion {
     let info = &gpu.info;
     let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|words| !words.is_empty());
     let driver: Vec<String> = driver.map(str::to_owned).chain([format!("{:?}", info.backend)]).collect();
@@ -57,7 +57,7 @@ pub(super) fn occasion(gpu: &Gpu) -> Occasion {
     }
 }
 
-/// The command with its arguments, as one types them.
+/// Returns the command line, quoted for a shell.
 fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "_@%+=:,./-".contains(letter);
     let typed = |argument: OsString| {
@@ -67,8 +67,8 @@ fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
     ["pnaen".to_owned()].into_iter().chain(arguments.map(typed)).collect::<Vec<_>>().join(" ")
 }
 
-/// Makes the folder, so that a command that takes minutes doesn't fail at its end.
-pub(super) fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
+/// Makes the folder before anything is measured, so that a command that takes minutes doesn't fail at its end.
+pub fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
     std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     Ok(folder.to_owned())
 }

@@ -7,7 +7,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 use crate::settings::{Choice, Declaration, Description, Kind, Settings, Value, descriptions, options};
 use crate::tessellate::{Displacement, Tessellation};
 
-/// What is tessellated how.
+/// How a mesh is tessellated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct TessellationOptions {
     pub tessellation: Tessellation,

@@ -1,4 +1,4 @@
-//! What the values of options may be.
+//! Parsers of the values of options.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -9,8 +9,8 @@ use glam::Vec3;
 use crate::load::Source;
 use crate::mesh::crease_band::WIDEST;
 
-/// Reads where to write a picture: not a name that says it is no PNG file.
-pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
+/// Parses the path of a picture. Refuses endings of other formats than PNG.
+pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
@@ -23,8 +23,8 @@ pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// Reads where to write a mesh: a name that says in what format.
-pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
+/// Parses the path of a mesh to write, whose ending gives its format.
+pub fn model() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
         let known = matches!(crate::export::ending(&path).as_str(), "glb" | "obj");
@@ -46,7 +46,7 @@ impl FromStr for Size {
     }
 }
 
-/// Where one looks from.
+/// The direction and distance of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CameraOption {
     /// Degrees.
@@ -72,11 +72,11 @@ impl FromStr for CameraOption {
     }
 }
 
-/// A place in object units.
+/// A position in object units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Place(pub Vec3);
+pub struct Position(pub Vec3);
 
-impl FromStr for Place {
+impl FromStr for Position {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -87,13 +87,13 @@ impl FromStr for Place {
     }
 }
 
-/// Reads a mesh's source, whose path may be in any encoding.
-pub(crate) fn source() -> impl TypedValueParser<Value = Source> {
+/// Parses a mesh's source, whose path may be in any encoding.
+pub fn source() -> impl TypedValueParser<Value = Source> {
     OsStringValueParser::new().try_map(Source::try_from)
 }
 
-/// A number of bytes, with a unit or without.
-pub(super) fn bytes(text: &str) -> Result<u64, String> {
+/// Parses a number of bytes, with a unit or without.
+pub fn bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
     let unit = match unit.trim().to_lowercase().as_str() {
         "" | "b" => Some(1),
@@ -107,19 +107,19 @@ pub(super) fn bytes(text: &str) -> Result<u64, String> {
     bytes.filter(|bytes| *bytes > 0).ok_or_else(|| expected.into())
 }
 
-/// A difference from 0 to 1.
-pub(crate) fn threshold(text: &str) -> Result<f64, String> {
+/// Parses a difference from 0 to 1.
+pub fn threshold(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
     number.ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
-/// A weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
-pub(super) fn weld(text: &str) -> Result<f32, String> {
+/// Parses a weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
+pub fn weld(text: &str) -> Result<f32, String> {
     within(text, 0.0..=0.1)
 }
 
-/// The width of a crease band, relative to the bounding diagonal.
-pub(super) fn crease_band(text: &str) -> Result<f32, String> {
+/// Parses the width of a crease band, relative to the bounding diagonal.
+pub fn crease_band(text: &str) -> Result<f32, String> {
     within(text, 0.0..=WIDEST)
 }
 
@@ -145,8 +145,8 @@ mod tests {
             assert!(bad.parse::<CameraOption>().is_err(), "{bad}");
         }
         assert_eq!(["1", "2KiB", "3 mib", "2GiB"].map(bytes), [1, 2 << 10, 3 << 20, 2 << 30].map(Ok));
-        assert_eq!(bytes("2GiB"), Ok(Limits::default().file), "what --max-size is by default");
-        assert_eq!(bytes("256MiB"), Ok(Limits::default().memory), "what --max-memory is by default");
+        assert_eq!(bytes("2GiB"), Ok(Limits::default().file), "the default of --max-size");
+        assert_eq!(bytes("256MiB"), Ok(Limits::default().memory), "the default of --max-memory");
         for bad in ["", "0", "0GiB", "-1", "1.5GiB", "GiB", "1GB", "1e9", "99999999999GiB", "+1"] {
             assert!(bytes(bad).is_err(), "{bad}");
         }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::settings::random;
 
-/// Every field with its value. Without `..`: a new field must be named here, and then be reached by a declaration.
+/// Every field with its value. Patterns have no `..`, so a new field must be named here and then reached by a declaration.
 fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
     let Settings { tessellation, overlays, deviation_in, split, split_surface, background } = settings;
     let Tessellation {
@@ -109,7 +109,7 @@ fn names_are_unique_and_texts_are_sentences() {
 }
 
 #[test]
-fn defaults_are_values_of_their_options_and_are_read_as_they_are_written() {
+fn defaults_are_valid_and_written_values_parse_back() {
     for declaration in all() {
         for settings in [Settings::default(), Settings::opening()] {
             let value = declaration.get(&settings);
@@ -123,7 +123,7 @@ fn defaults_are_values_of_their_options_and_are_read_as_they_are_written() {
 }
 
 #[test]
-fn what_is_no_value_changes_nothing() {
+fn invalid_values_change_nothing() {
     let nan_and_beyond = |range: &Range| [f32::NAN, range.least - 0.001, range.most * 1.001, f32::INFINITY];
     for declaration in all() {
         let mut settings = Settings::default();
@@ -153,7 +153,7 @@ fn what_is_no_value_changes_nothing() {
 }
 
 #[test]
-fn options_have_no_effect_where_nothing_looks_at_them() {
+fn unused_options_have_no_effect() {
     let idle = |settings: &Settings| -> Vec<_> {
         all().filter(|option| (option.no_effect)(settings).is_some()).map(|option| option.name).collect()
     };

@@ -13,7 +13,7 @@ fn targets(page: &Page) -> Vec<String> {
     own.filter(|target| !target.starts_with("http://") && !target.starts_with("https://")).collect()
 }
 
-/// Text between backticks is code: what looks like a link there is none.
+/// Removes text between backticks, which is code and has no links.
 fn without_code_spans(text: &str) -> String {
     text.split('`').step_by(2).collect::<Vec<_>>().join("code")
 }
@@ -35,7 +35,7 @@ fn anchors(page: &Page) -> Vec<String> {
     page.prose().into_iter().filter_map(heading).map(anchor).collect()
 }
 
-/// What is wrong with a link, if anything is.
+/// Says what is wrong with a link; none if it is valid.
 fn fault(page: &Page, target: &str) -> Option<String> {
     let (path, anchor) = target.split_once('#').map_or((target, None), |(path, anchor)| (path, Some(anchor)));
     let file = page.resolve(path);
@@ -55,7 +55,7 @@ fn is_left_out(file: &Path) -> bool {
 }
 
 #[test]
-fn links_between_pages_lead_somewhere() {
+fn links_between_pages_are_valid() {
     let pages = all_pages();
     let links: Vec<_> = pages.iter().flat_map(|page| targets(page).into_iter().map(move |to| (page, to))).collect();
     assert!(links.len() > 200, "only {} links were found", links.len());

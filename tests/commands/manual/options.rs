@@ -1,4 +1,4 @@
-//! Options: the manual's page of commands has every one that `--help` has, and no page has another.
+//! Options: the manual's page of commands lists every option of `--help`, and no page names an unknown one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +10,7 @@ type Options = BTreeSet<String>;
 const COMMANDS: [&str; 10] =
     ["render", "tessellate", "factors", "adjacency", "domain", "info", "stability", "gallery", "chart", "adapters"];
 
-/// The options that a command prints with `--help`; an empty name is the window's.
+/// The options that a command prints with `--help`. An empty name stands for the window.
 fn options_in_help(command: &str) -> Options {
     let arguments: Vec<_> = [command, "--help"].into_iter().filter(|argument| !argument.is_empty()).collect();
     let help = output(&arguments);
@@ -67,7 +67,7 @@ fn the_manual_lists_the_options_of_every_command() {
 }
 
 #[test]
-fn pages_name_only_options_that_there_are() {
+fn pages_name_only_existing_options() {
     let by_command: BTreeMap<_, _> = COMMANDS.into_iter().map(|command| (command, options_in_help(command))).collect();
     let all: Options = by_command.values().flatten().cloned().chain(["--help".into(), "--version".into()]).collect();
     let mut commands = 0;

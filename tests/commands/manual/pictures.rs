@@ -1,4 +1,4 @@
-//! Pictures: each is what the command in the comment above it draws. `PNAEN_UPDATE_IMAGES=1` makes them again, on the software
+//! Pictures: each is what the command in the comment above it draws. `PNAEN_UPDATE_IMAGES=1` draws them again, on the software
 //! driver; look at each before keeping it.
 
 use std::collections::BTreeSet;
@@ -11,20 +11,20 @@ use image::RgbImage;
 use super::{Page, root, user_pages};
 use crate::{Folder, command};
 
-/// How far a picture may be from the committed one, which another driver or processor may have drawn: as for the pictures of
+/// How much a picture may differ from the committed one, which another driver or processor may have drawn. The same as in
 /// `tests/gpu/pictures.rs`.
 const THRESHOLD: &str = "0.001";
-/// ms that a frame of a moving picture is seen, and the last one.
+/// How long a frame of a moving picture is shown, and the last frame, in ms.
 const FRAME_MS: u16 = 350;
 const LAST_FRAME_MS: u16 = 1800;
 
-/// A picture of a page, and how it is made.
+/// A picture of a page, and the command that draws it.
 struct Picture {
     page: String,
     image: PathBuf,
     /// The words after `pnaen`, without `-o` and its value.
     arguments: Vec<String>,
-    /// What `{}` stands for in each frame; none for a picture that doesn't move.
+    /// The value of `{}` in each frame; empty for a still picture.
     frames: Vec<String>,
 }
 
@@ -55,7 +55,7 @@ impl Picture {
     /// Draws the picture into a file, with this value for `{}`; compares it with `reference`.
     ///
     /// # Errors
-    /// What the program says if the picture differs.
+    /// Standard error of the program if the picture differs.
     fn draw(&self, value: &str, output: &str, reference: Option<&str>) -> Result<(), String> {
         let own = self.arguments.iter().map(|word| word.replace("{}", value));
         let mut arguments: Vec<_> = own.chain(["-o", output].map(str::to_owned)).collect();
@@ -107,7 +107,7 @@ impl Picture {
     }
 }
 
-/// Writes a moving PNG picture, an APNG file, that repeats for ever.
+/// Writes a moving picture that repeats for ever: an APNG file.
 fn write_frames(path: &Path, frames: &[RgbImage]) {
     let (width, height) = frames[0].dimensions();
     let file = BufWriter::new(File::create(path).expect("a writable folder"));
@@ -166,7 +166,7 @@ fn moving_pictures_are_what_their_commands_draw() {
 
 #[test]
 fn every_page_of_the_manual_has_a_picture_and_every_picture_a_command() {
-    // A page that a test writes has none.
+    // The page of keys is written by a test and has no picture.
     for page in user_pages().into_iter().filter(|page| page.name != "docs/manual/keys.md") {
         assert!(!Picture::of(&page).is_empty(), "{} has no picture with a command", page.name);
     }
