@@ -238,10 +238,18 @@ fn a_setting_is_applied_and_read_back_and_changes_nothing_else() {
             })
         );
     }
-    assert_eq!(Setting::of(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })), None, "charts don't try LOD by distance");
+    assert_eq!(
+        Setting::of(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })),
+        None,
+        "charts don't try LOD by distance"
+    );
     let equal =
         own.with(Tessellation { lod: Lod::Distance, partitioning: Partitioning::Subtriangulation, ..own.tessellation });
-    assert_eq!(Setting::of(&equal).map(|setting| setting.to_string()), Some("factor 7".into()), "subtriangulation is uniform under any LOD");
+    assert_eq!(
+        Setting::of(&equal).map(|setting| setting.to_string()),
+        Some("factor 7".into()),
+        "subtriangulation is uniform under any LOD"
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Lines that mark what is found on a mesh.
+//! Lines that mark cracks, T-junctions, the largest deviation, and the selected patch.
 
 use glam::Vec3;
 
@@ -7,12 +7,12 @@ use super::layout::{CRACK_COLOR, FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR,
 use crate::measure::{CrackedEdge, Measured};
 use crate::mesh::{TJunction, Topology};
 
-/// Every side of every cracked edge.
+/// The lines of every side of every cracked edge.
 pub fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
     crack_lines_in(measured, topology, |_| CRACK_COLOR)
 }
 
-/// Every side of every cracked edge, each edge in the colour (sRGB) that `color` gives it.
+/// The lines of every side of every cracked edge. `color` returns the sRGB colour of each edge.
 pub fn crack_lines_in(
     measured: &Measured,
     topology: &Topology,
@@ -29,7 +29,7 @@ pub fn crack_lines_in(
     lines
 }
 
-/// The open edges that T-junctions lie on, and a dot on each point.
+/// Lines along the open edges that T-junctions lie on, and a dot on each junction's point.
 pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
     let at = |point: u32| topology.points[point as usize];
     let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
@@ -40,7 +40,7 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
     marks.collect()
 }
 
-/// The place that is farthest from the truth: a dot on it, and a line to the truth's point.
+/// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.
 pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
     let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
     let mark =

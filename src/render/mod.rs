@@ -1,4 +1,4 @@
-//! Pictures: a camera, a scene on the device, and one indirect draw a material into an offscreen texture.
+//! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
 mod camera;
 mod coverage;
@@ -30,7 +30,7 @@ pub use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
 pub use scene::{LineSegment, Scene};
 pub use target::{Target, samples};
 
-/// The files with the entry points of what draws and picks: one shader module each.
+/// The shader files with entry points for drawing and picking. Each makes one shader module.
 #[cfg(test)]
 static MODULES: [&crate::gpu::WgslFile; 6] = [
     &coverage::PASS_COVERAGE,

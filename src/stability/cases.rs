@@ -60,7 +60,8 @@ pub struct CaseView {
 pub const DEFAULT_VIEW: CaseView =
     CaseView { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
 
-const CASE: Case = Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, view: DEFAULT_VIEW };
+const CASE: Case =
+    Case { name: "", about: "", mesh: Mesh::default, weld: 0.0, probe: Probe::Edges, view: DEFAULT_VIEW };
 
 /// Every case, in the order of the documentation.
 pub const CASES: [Case; 34] = [
@@ -359,7 +360,11 @@ mod tests {
         }
         let manual = text("docs/manual/measuring.md");
         let linked = |case: &Case| manual.contains(&format!("| [{0}](../stability/stability.md#{0}) |", case.name));
-        assert_eq!(CASES.iter().find(|case| !linked(case)).map(|case| case.name), None, "missing in the manual's table");
+        assert_eq!(
+            CASES.iter().find(|case| !linked(case)).map(|case| case.name),
+            None,
+            "missing in the manual's table"
+        );
     }
 
     #[test]

@@ -259,7 +259,11 @@ mod tests {
         for shown in Partitioning::ALL {
             let picture = sweep_chart(&[sweep(shown, &jumps)], 1.0, [640, 400]).expect("it draws");
             for partitioning in Partitioning::ALL {
-                assert_eq!(has(&picture, CurveStyle::of(partitioning).color), partitioning == shown, "{partitioning:?}");
+                assert_eq!(
+                    has(&picture, CurveStyle::of(partitioning).color),
+                    partitioning == shown,
+                    "{partitioning:?}"
+                );
             }
         }
     }

@@ -93,7 +93,9 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
         1 => format!("{name} (one comparison)"),
         _ => {
             let [least, most] = [times.least, times.most].map(short);
-            format!("{name} (geometric mean of {count} comparisons over surfaces, meshes and errors; {least} to {most} times fewer)")
+            format!(
+                "{name} (geometric mean of {count} comparisons over surfaces, meshes and errors; {least} to {most} times fewer)"
+            )
         }
     };
     let triangles = compared(times.mean, ["fewer triangles than", "as many triangles as"]);

@@ -17,9 +17,14 @@ pub fn section(part: &Part) -> String {
     let mut text = format!("\n## {title}\n\n{}\n\n", facts(part));
     let _ = writeln!(text, "![Largest error of {title} over ms and over triangles]({})", part.picture);
     for race in part.subject.races() {
-        let of =
-            race.surface.map_or_else(String::new, |surface| format!(" (`{}`, compared with its own limit)", surface.name()));
-        let _ = write!(text, "\nSettings that no other setting beats, in triangles or in ms{of}:\n\n{}", front(part, &race));
+        let of = race
+            .surface
+            .map_or_else(String::new, |surface| format!(" (`{}`, compared with its own limit)", surface.name()));
+        let _ = write!(
+            text,
+            "\nSettings that no other setting beats, in triangles or in ms{of}:\n\n{}",
+            front(part, &race)
+        );
         let (table, missing) = best(part, &race);
         if !table.is_empty() {
             let _ = write!(text, "\nThe fewest triangles with which each method reaches an error{of}:\n\n{table}");

@@ -132,7 +132,9 @@ fn with_limits(surface: Surface, error: f64) -> Part {
 fn the_limit_of_a_surface_is_named_with_its_reason() {
     let text = said(&[with_limits(PhongAen, 0.02)]);
     assert!(
-        text.contains("However fine, `flat` comes no closer than 4.00 % (Torus \\<7\\>), on 1 of 1 mesh: its points lie"),
+        text.contains(
+            "However fine, `flat` comes no closer than 4.00 % (Torus \\<7\\>), on 1 of 1 mesh: its points lie"
+        ),
         "{text}"
     );
     assert!(text.contains("`phong-aen` comes no closer than 2.00 %"), "{text}");
@@ -196,7 +198,8 @@ fn without_a_reference_surface_surfaces_are_not_compared() {
     let text = page(&occasion(), &[own.clone()]);
     assert!(text.contains("- Torus \\<7\\>: no reference surface is known"), "{text}");
     assert!(
-        text.contains("in triangles or in ms (`flat`, compared with its own limit):") && !text.contains("no closer than"),
+        text.contains("in triangles or in ms (`flat`, compared with its own limit):")
+            && !text.contains("no closer than"),
         "{text}"
     );
     assert!(!text.contains("### Error of at most") && text.contains("| largest error, px |\n"), "{text}");
