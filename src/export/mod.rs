@@ -32,7 +32,8 @@ pub enum ExportError {
     #[error("{path}: could not be written ({})", file_reason(reason))]
     Io { path: String, reason: std::io::Error },
     #[error(
-        "{path}: {triangles} triangles are too many for this format (the limit is 4 GiB as .glb, and 4 billion vertices as .obj): lower the factor"
+        "{path}: {triangles} triangles are too many for this format, which holds 4 GiB as .glb and 4 billion vertices as .obj: lower \
+         the factor"
     )]
     TooLarge { path: String, triangles: u64 },
     #[error("{path}: a texture could not be encoded ({reason})")]

@@ -97,9 +97,9 @@ fn normals() -> Exhibit {
     Exhibit {
         name: "normals",
         title: "Shading normals",
-        about: "The same surface shaded with different normals. The surface's own normals have a step wherever patches meet at an \
-                angle, which they do almost everywhere. Quadratic normals follow edges that bend back, and bulge where the \
-                author's normals don't mean a curve. Linear normals keep what the author's normals say.",
+        about: "The same surface shaded with different normals. Linear normals keep what the author's normals say. Quadratic \
+                normals follow edges that bend back, and bulge where the author's normals don't mean a curve. The surface's \
+                own normals have a step wherever patches meet at an angle, which they do almost everywhere.",
         shape: Shape::CubeSmooth,
         overlays: Overlays::default(),
         tiles: Normals::ALL.iter().map(|&normals| of(normals)).collect(),

@@ -1,5 +1,5 @@
-//! A small animated glTF document, which tests write and then read. It has a square beam with split normals and uv seams, which two
-//! joints bend and two morph targets swell, and beside it an octahedron that flies.
+//! A small animated glTF document, which tests write and then read. It has a square beam with split normals and uv seams, which
+//! two joints bend and two morph targets swell, and beside it an octahedron that flies.
 
 use serde_json::{Value, json};
 

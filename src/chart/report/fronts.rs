@@ -63,8 +63,9 @@ pub fn table_of(parts: &[Part]) -> String {
         return String::new();
     }
     format!(
-        "\n### How often each method is on the front\n\nThe number of meshes on which a method has settings that no other setting \
-         beats, in triangles or in ms, and the number of these settings. The mesh without tessellation doesn't count.\n\n{}",
+        "\n### How often each method is on the front\n\nThe number of meshes on which a method has settings that no other \
+         setting beats, in triangles or in ms, and the number of these settings. The mesh without tessellation doesn't \
+         count.\n\n{}",
         markdown::table(&COLUMNS, &[0], &rows)
     )
 }

@@ -59,8 +59,8 @@ pub fn table_of(parts: &[Part]) -> String {
     let columns: Vec<String> = ["mesh".to_owned()].into_iter().chain(names).collect();
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     format!(
-        "\n### How close each surface gets\n\nThe smallest value that the largest error has at any setting; \"or less\" where finer \
-         settings might come closer still.\n\n{}",
+        "\n### How close each surface gets\n\nThe smallest value that the largest error has at any setting; \"or less\" \
+         where finer settings might come closer still.\n\n{}",
         markdown::table(&columns, &[0], &rows)
     )
 }
@@ -140,8 +140,8 @@ fn reason(surface: Surface) -> String {
             let alpha = Settings::default().tessellation.alpha;
             let rises = 2.0 * alpha;
             format!(
-                "to second order it rises 2 alpha times as high above its triangles as a smooth surface does, which is {rises} times \
-                 for an alpha of {alpha}, so on a fine mesh its error is {} times that of `flat`",
+                "to second order it rises 2 alpha times as high above its triangles as a smooth surface does, which is \
+                 {rises} times for an alpha of {alpha}, so on a fine mesh its error is {} times that of `flat`",
                 (rises - 1.0).abs()
             )
         }

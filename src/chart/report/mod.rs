@@ -113,8 +113,8 @@ const ABOUT: &str = "A method is a surface with a level of detail (LOD): a unifo
      surface. All rows are in [results.csv](results.csv).";
 
 /// Warns about times on software adapters.
-const SOFTWARE: &str = "This adapter is software. Its triangles and errors are those of any other adapter, but its times are those of a CPU, and say \
-     nothing about GPUs. ";
+const SOFTWARE: &str = "This adapter is software. Its triangles and errors are those of any other adapter, but its times \
+     are those of a CPU, and say nothing about GPUs. ";
 
 #[cfg(test)]
 mod tests;
