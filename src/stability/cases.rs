@@ -76,8 +76,8 @@ pub const CASES: [Case; 34] = [
     Case {
         name: "smooth-torus",
         about: "A torus with smooth normals, without any defect. Yet as published about half of all edge points and \
-                a quarter of all edge LODs differ in their last bits, since the two patches add the same numbers in \
-                opposite orders. An edge that is computed once, in its own direction, has one result.",
+                a quarter of all factors of edges differ in their last bits, since the two patches add the same \
+                numbers in opposite orders. An edge that is computed once, in its own direction, has one result.",
         mesh: || Shape::Torus.build(),
         ..CASE
     },
@@ -239,9 +239,9 @@ pub const CASES: [Case; 34] = [
         name: "inflection",
         about: "A level sheet whose normals all lean one way, some a little more than others. PN and Phong \
                 tessellation make a gentle swell of it. Nagata's edges are the flattest parabolas that are \
-                perpendicular to both normals. No flat parabola is that where both ends rise: between planes that \
-                are nearly parallel, the parabolas reach many edge lengths away, and the sheet folds. The guard at \
-                0.1 degrees straightens only edges that are worse than these.",
+                perpendicular to both normals. Where both ends rise, no flat parabola is: between planes that are \
+                nearly parallel, the parabolas reach many edge lengths away, and the sheet folds. The guard at 0.1 \
+                degrees straightens only edges that are worse than these.",
         mesh: meshes::inflection,
         probe: Probe::Folds,
         view: CaseView { azimuth: 20.0, elevation: 50.0, ..DEFAULT_VIEW },
@@ -278,8 +278,8 @@ pub const CASES: [Case; 34] = [
     Case {
         name: "moving",
         about: "A cylinder that two joints and a morph target bend and swell, in as many poses as there are trials. \
-                Each point is deformed once, whatever meets there, and the edges' control points are made \
-                afterwards: what agrees at rest agrees in every pose.",
+                Each point is deformed once for all triangles that meet there, and the edges' control points are \
+                made afterwards. So what agrees at rest agrees in every pose.",
         mesh: meshes::moving,
         ..CASE
     },
@@ -296,8 +296,8 @@ pub const CASES: [Case; 34] = [
         name: "eye-inside",
         about: "The eye is inside a sphere, and some control points lie behind it. The paper's clip test finds every \
                 control point outside one side of the view or another, and drops patches that fill the view; its LOD \
-                divides by w, which mirrors what is behind. A test of each plane of the view by itself and depths \
-                that stay positive have neither fault.",
+                divides by w, which mirrors what is behind. Testing each plane of the view by itself, and keeping \
+                depths positive, avoids both faults.",
         mesh: || Shape::Icosahedron.build(),
         probe: Probe::View,
         view: CaseView { azimuth: 30.0, elevation: 20.0, distance: 0.1, target: [-0.3, -0.35, -0.75], factor: 0.0 },
