@@ -1,5 +1,5 @@
-//! The real window, on a display of its own: it loses its device, and goes on with another one. Where there is no X, it isn't
-//! tested. A program of its own, since windows want the main thread.
+//! Tests the real window on a virtual display (Xvfb, on Linux only), for example how it goes on after its device is lost. It is a
+//! program of its own, since windows need the main thread.
 
 use std::cell::{Cell, RefCell};
 use std::io::{BufRead, BufReader};
@@ -16,7 +16,7 @@ use pnaen::internals::{AdapterChoice, Gpu};
 use pnaen::internals::{App, run_watched};
 use pnaen::load::Limits;
 
-/// Longer than all of it takes on two slow cores.
+/// More time than each test needs on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(180);
 
 fn main() {
@@ -36,17 +36,17 @@ fn main() {
     let _display = Display::open().expect("these tests need Xvfb: run ./setup.sh");
     // SAFETY: nothing else runs yet that could read the environment at the same time.
     unsafe { std::env::set_var("PNAEN_CONFIG", "") };
-    an_adapter_that_is_not_there_is_a_sentence();
+    a_missing_adapter_is_reported_in_one_line();
     closing_while_a_mesh_loads_ends_at_once();
-    where_there_is_no_dialog_a_path_is_typed();
-    a_window_that_loses_its_device_goes_on_once_and_then_says_so();
+    without_a_file_dialog_a_path_is_typed();
+    a_window_replaces_a_lost_device_once_and_then_reports_the_loss();
     println!("display: ok");
 }
 
-/// What this program does alone, as another process that finds no dialog.
+/// The argument with which this program starts itself as another process, which finds no file dialog.
 const NO_DIALOG: &str = "--no-dialog";
 
-/// An X server, gone when the test is.
+/// An X server, which ends with the test.
 struct Display(Child);
 
 impl Display {
@@ -56,7 +56,7 @@ impl Display {
         let mut server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
         let mut number = String::new();
         BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
-        // SAFETY: as above.
+        // SAFETY: nothing else runs yet that could read the environment at the same time.
         unsafe { std::env::set_var("DISPLAY", format!(":{}", number.trim())) };
         Some(Self(server))
     }
@@ -69,9 +69,9 @@ impl Drop for Display {
     }
 }
 
-/// What a window has that a person would miss.
+/// The state of a window that must survive the loss of its device.
 #[derive(Clone, Debug, PartialEq)]
-struct Had {
+struct WindowState {
     source: Option<Source>,
     settings: Settings,
     camera: Camera,
@@ -79,7 +79,7 @@ struct Had {
     totals: Option<(u64, u64)>,
 }
 
-impl Had {
+impl WindowState {
     fn of(app: &App) -> Self {
         Self {
             source: app.source().cloned(),
@@ -91,14 +91,14 @@ impl Had {
     }
 }
 
-/// As a driver does that was reset.
+/// Loses the device, as a reset driver does.
 fn lose(gpu: &Gpu) {
     gpu.device.destroy();
     let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
     assert!(gpu.lost().is_some());
 }
 
-/// Shows what is there to whoever runs this by hand.
+/// Saves a picture of the display if `PNAEN_TEST_PICTURES` names a folder, for people who run this by hand.
 fn picture(name: &str) {
     if let Some(folder) = std::env::var_os("PNAEN_TEST_PICTURES") {
         let path = std::path::Path::new(&folder).join(name);
@@ -106,7 +106,7 @@ fn picture(name: &str) {
     }
 }
 
-fn an_adapter_that_is_not_there_is_a_sentence() {
+fn a_missing_adapter_is_reported_in_one_line() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_pnaen"));
     let output = command.args(["--adapter", "no such thing"]).output().expect("the program starts");
     let said = String::from_utf8_lossy(&output.stderr);
@@ -133,14 +133,14 @@ fn closing_while_a_mesh_loads_ends_at_once() {
     assert!(ended.is_ok() && took.is_some_and(|took| took < Duration::from_secs(2)), "{ended:?} {took:?}");
 }
 
-fn where_there_is_no_dialog_a_path_is_typed() {
+fn without_a_file_dialog_a_path_is_typed() {
     let mut command = Command::new(std::env::current_exe().expect("this program"));
-    // No portal, and nothing that could be started.
+    // There is no portal, and no program that could show a dialog.
     command.arg(NO_DIALOG).env("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nowhere").env("PATH", "/nowhere");
     assert!(command.status().expect("this program starts").success());
 }
 
-/// The window that takes a path: its title, and why it is there.
+/// The window that asks for a path: its title, and the reason.
 type Asked = (&'static str, Option<&'static str>);
 
 fn without_a_dialog() {
@@ -148,12 +148,12 @@ fn without_a_dialog() {
     let said: Rc<RefCell<Vec<Asked>>> = Rc::default();
     let seen = said.clone();
     let watch = move |app: &mut App, context: &egui::Context| {
-        assert!(start.elapsed() < PATIENCE, "nothing takes a path");
+        assert!(start.elapsed() < PATIENCE, "no window asks for a path");
         context.request_repaint();
         if let Some(asked) = app.path_asked_for() {
-            assert!(app.settings().overlays.wireframe, "what is typed meanwhile is no shortcut");
+            assert!(app.settings().overlays.wireframe, "a key typed meanwhile is no shortcut");
             seen.borrow_mut().push(asked);
-            // The frame after shows it.
+            // The window is visible some frames later.
             if seen.borrow().len() == 5 {
                 picture("0-no-dialog.png");
                 context.send_viewport_cmd(egui::ViewportCommand::Close);
@@ -171,12 +171,12 @@ fn without_a_dialog() {
     assert!(matches!(said.first(), Some(("Open path", Some(why))) if why.contains("no file dialog")), "{said:?}");
 }
 
-fn a_window_that_loses_its_device_goes_on_once_and_then_says_so() {
+fn a_window_replaces_a_lost_device_once_and_then_reports_the_loss() {
     let (start, torus) = (Instant::now(), Source::Shape(Shape::Torus));
-    let had: Rc<RefCell<Vec<Had>>> = Rc::default();
+    let had: Rc<RefCell<Vec<WindowState>>> = Rc::default();
     let (seen, mut still) = (had.clone(), 0);
     let watch = move |app: &mut App, context: &egui::Context| {
-        assert!(start.elapsed() < PATIENCE, "the window has come no further than {}", seen.borrow().len());
+        assert!(start.elapsed() < PATIENCE, "the window got no further than step {}", seen.borrow().len());
         context.request_repaint();
         if app.fatal_message().is_some() {
             still += 1;
@@ -194,11 +194,11 @@ fn a_window_that_loses_its_device_goes_on_once_and_then_says_so() {
             still = 0;
             let number = seen.borrow().len() + 1;
             picture(&format!("{number}-window.png"));
-            seen.borrow_mut().push(Had::of(app));
+            seen.borrow_mut().push(WindowState::of(app));
             let gpu = app.gpu().clone();
             match number {
                 1 => lose(&gpu),
-                // Between what the window shows and its painting, which egui can't do then.
+                // The device is lost after the window's contents are made and before egui paints them.
                 _ => context.on_end_pass("lose", Arc::new(move |_| lose(&gpu))),
             }
         }
@@ -206,7 +206,7 @@ fn a_window_that_loses_its_device_goes_on_once_and_then_says_so() {
     let ended = run_watched(Some(torus.clone()), Limits::default(), AdapterChoice::Best, watch);
     assert!(ended.is_ok(), "{ended:?}");
     let had = had.borrow();
-    assert_eq!(had.len(), 2, "lost, and lost again");
+    assert_eq!(had.len(), 2, "the device was lost twice");
     assert_eq!((had[0].source.as_ref(), had[0].triangle), (Some(&torus), Some(7)));
-    assert_eq!(had[0], had[1], "all is as it was");
+    assert_eq!(had[0], had[1], "the state is kept");
 }

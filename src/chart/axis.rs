@@ -1,13 +1,15 @@
-//! A logarithmic axis: where a value lies, and which values are marked.
+//! A logarithmic axis: the position of each value, and its ticks.
 
 use crate::numbers::grouped;
 
-/// From one value to another, along px.
+/// A logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Axis {
+pub struct Axis {
+    /// The least and the greatest value.
     pub values: [f64; 2],
+    /// Where the axis starts and ends, in px of the chart.
     pub px: [f64; 2],
-    /// How far beyond the low end what is as good as 0 has its place, in px; 0 if nothing is.
+    /// The space at the low end for values that count as 0, in px; 0 if there are none.
     pub zero_px: f64,
 }
 
@@ -15,16 +17,16 @@ pub(crate) struct Axis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Tick {
     pub value: f64,
-    /// Whether it is written beside the axis.
+    /// Whether the value is written beside the axis.
     pub named: bool,
 }
 
-/// Beyond the outermost values, as a factor.
+/// By which factor the axis goes beyond the outermost values.
 const SLACK: f64 = 1.25;
 
 impl Axis {
-    /// Around these values, all that are above `floor`.
-    pub(crate) fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
+    /// An axis that holds all values above `floor`. Smaller ones count as 0.
+    pub fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
         let (mut least, mut most, mut has_zero) = (f64::INFINITY, 0.0_f64, false);
         for value in values {
             if value > floor {
@@ -33,13 +35,13 @@ impl Axis {
                 has_zero = true;
             }
         }
-        // Nothing to show is a chart too.
+        // Without values, the axis shows some range.
         let values = if most > 0.0 { [least / SLACK, most * SLACK] } else { [0.1, 10.0] };
         Self { values, px, zero_px: if has_zero { 22.0 } else { 0.0 } }
     }
 
-    /// In px; values too small for the axis are at its zero.
-    pub(crate) fn place(&self, value: f64) -> f64 {
+    /// The position of a value in px. Values below the axis are at its zero.
+    pub fn place(&self, value: f64) -> f64 {
         let [from, to] = self.px;
         let zero = from + self.zero_px * (to - from).signum();
         if value < self.values[0] {
@@ -49,8 +51,8 @@ impl Axis {
         zero + (value.log10() - low) / (high - low) * (to - zero)
     }
 
-    /// Powers of ten named, the digits between them not; where there are few powers, 2 and 5 are named too.
-    pub(crate) fn ticks(&self) -> Vec<Tick> {
+    /// The ticks. Powers of ten are named; on short axes, digits between them are named too.
+    pub fn ticks(&self) -> Vec<Tick> {
         let [low, high] = self.values;
         let decades = (high / low).log10();
         let named: &[u32] = match decades {
@@ -71,8 +73,8 @@ impl Axis {
     }
 }
 
-/// A tick's value, as short as it goes.
-pub(crate) fn tick_text(value: f64) -> String {
+/// A tick's value as short text.
+pub fn tick_text(value: f64) -> String {
     if value >= 0.999e6 {
         format!("{} M", grouped((value / 1e6).round() as u64))
     } else if value >= 0.999 {

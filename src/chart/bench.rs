@@ -1,4 +1,4 @@
-//! One setting after another, timed and measured.
+//! Times and measures one setting after another.
 
 use std::time::Duration;
 
@@ -11,12 +11,12 @@ use crate::settings::Settings;
 use crate::tessellate::{Clip, Tessellation};
 use crate::truth::Truth;
 
-/// How much is spent on a setting.
+/// How much time is spent on a setting.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     pub runs: Runs,
     pub accuracy: AccuracyOptions,
-    /// Settings of more triangles are left out.
+    /// Settings with more triangles are left out.
     pub most_triangles: u64,
 }
 
@@ -27,21 +27,21 @@ impl Default for Effort {
     }
 }
 
-/// A mesh on the device, seen from one place, and what it is held against.
-pub(crate) struct Bench<'a> {
+/// A mesh on the device with one camera, and the reference surface that it is compared with.
+pub struct Bench<'a> {
     pub engine: &'a Engine,
-    /// As it is named in rows.
+    /// The mesh's name in rows.
     pub mesh: String,
     pub scene: Scene,
     pub target: &'a Target,
     pub camera: Camera,
     pub truth: Option<&'a Truth>,
-    /// What settings that are tried have in common.
+    /// The settings that all methods have in common.
     pub base: Settings,
     pub effort: Effort,
 }
 
-/// What some settings cost, and how far off they are: see [`Row`].
+/// The cost and the errors of some settings: see [`Row`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probe {
     pub triangles: u64,
@@ -52,7 +52,7 @@ pub struct Probe {
 }
 
 impl Bench<'_> {
-    /// Measures a setting; none if it has more triangles than the effort allows.
+    /// Measures a setting. Returns `None` if it has more triangles than the effort allows.
     ///
     /// # Errors
     /// The device was lost.
@@ -61,15 +61,15 @@ impl Bench<'_> {
         Ok(probe.map(|probe| self.row(setting, probe)))
     }
 
-    /// What came of a setting, as a row.
-    pub(crate) fn row(&self, setting: &Setting, probe: Probe) -> Row {
+    /// The row for a setting and its measurements.
+    pub fn row(&self, setting: &Setting, probe: Probe) -> Row {
         let Probe { triangles, vertices, time, errors, max_error_px } = probe;
         let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
         Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px }
     }
 
-    /// Measures any settings, but so that all of the mesh is emitted, whatever they leave out: otherwise it couldn't be held
-    /// against a truth. None if that is more triangles than the effort allows.
+    /// Measures any settings, without their clipping and culling: a comparison with a reference surface needs all of the mesh.
+    /// Returns `None` if that has more triangles than the effort allows.
     ///
     /// # Errors
     /// The device was lost.
@@ -102,8 +102,9 @@ impl Bench<'_> {
     }
 }
 
-/// What is measured of settings: the surface alone, all of it.
-pub(crate) fn whole(settings: &Settings) -> Settings {
+/// The settings that are measured in place of these: without clipping, culling, overlays and split, so that all of the
+/// surface is drawn, and nothing else.
+pub fn whole(settings: &Settings) -> Settings {
     let Settings { overlays, deviation_in, split, background, .. } = Settings::default();
     Settings {
         tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },

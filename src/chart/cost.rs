@@ -1,8 +1,8 @@
-//! What a setting costs: time, or triangles.
+//! The two costs of a setting: time, or triangles.
 
 use super::Row;
 
-/// What one pays.
+/// A cost of a setting: time in ms, or triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Cost {
     #[default]
@@ -15,8 +15,8 @@ impl Cost {
         self.either(row.time.total(), row.triangles)
     }
 
-    /// Of ms and triangles the one that it is.
-    pub(crate) fn either(self, ms: f64, triangles: u64) -> f64 {
+    /// Returns `ms` or `triangles`, whichever this cost is.
+    pub fn either(self, ms: f64, triangles: u64) -> f64 {
         match self {
             Self::Ms => ms,
             Self::Triangles => triangles as f64,

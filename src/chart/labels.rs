@@ -1,13 +1,13 @@
-//! Words beside points, as many as fit without one covering another.
+//! Places labels beside points, as many as fit without covering each other.
 
-/// A box in px: least and greatest coordinates.
+/// A rectangle in px: its least and greatest coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rect {
     pub min: [f64; 2],
     pub max: [f64; 2],
 }
 
-/// A point that is to have a label of this size, in px.
+/// A point that should have a label, and the label's size, in px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Wanted {
     pub at: [f64; 2],
@@ -27,7 +27,7 @@ impl Rect {
         (0..2).all(|k| self.min[k] <= other.min[k] && other.max[k] <= self.max[k])
     }
 
-    /// Whether a line from `a` to `b` comes inside.
+    /// Whether a line from `a` to `b` crosses the rectangle.
     fn is_crossed(&self, a: [f64; 2], b: [f64; 2]) -> bool {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         for k in 0..2 {
@@ -45,17 +45,12 @@ impl Rect {
     }
 }
 
-/// From a point to its label, in px.
+/// The space between a point and its label, in px.
 const GAP: f64 = 6.0;
 
-/// Places labels one after another, the first where it likes, inside `bounds`, over no point, no line and no other label;
-/// none for a label that fits nowhere.
-pub(super) fn place(
-    wanted: &[Wanted],
-    points: &[[f64; 2]],
-    lines: &[[[f64; 2]; 2]],
-    bounds: Rect,
-) -> Vec<Option<Rect>> {
+/// Places labels inside `bounds` so that they cover no point, line or other label. Earlier labels have the first choice. A
+/// label that fits nowhere gets `None`.
+pub fn place(wanted: &[Wanted], points: &[[f64; 2]], lines: &[[[f64; 2]; 2]], bounds: Rect) -> Vec<Option<Rect>> {
     let markers: Vec<Rect> = points.iter().map(|&point| Rect::around(point, 4.0)).collect();
     let mut placed: Vec<Option<Rect>> = Vec::new();
     for wish in wanted {
@@ -68,7 +63,7 @@ pub(super) fn place(
     placed
 }
 
-/// Around a point, the best first.
+/// The possible places of a label around its point, the best first.
 fn places(&Wanted { at: [x, y], size: [width, height] }: &Wanted) -> [Rect; 8] {
     let slant = GAP * 0.6;
     let (left, middle, right) = (x - width, x - width / 2.0, x);

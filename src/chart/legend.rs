@@ -1,38 +1,38 @@
-//! What every method looks like, and the lines that say so.
+//! Assigns a style to every method, and draws the legend that explains the styles.
 
 use plotters::prelude::*;
 
-use super::look::{Fill, Look, Shape, dash};
+use super::method_style::{Fill, MethodStyle, Shape, dash};
 use super::pen::{Drawn, FRONT, LEFT, Pen};
 use super::{LodKind, Method, Subject};
 use crate::plot::INK;
 use crate::settings::Choice;
 
-/// What something looks like, and what it is.
-pub(super) struct Entry {
+/// An entry of the legend: a sample and its name.
+pub struct Entry {
     sample: Sample,
     name: String,
 }
 
 enum Sample {
-    Marker(Look),
+    Marker(MethodStyle),
     Line(Option<[f64; 2]>),
     Front,
 }
 
-/// Entries in a line where there is one for each partitioning and normals.
+/// The number of entries in a line of partitionings and normals.
 const IN_A_LINE: usize = 3;
 
-/// Every method with its look.
-pub(crate) fn looks(subject: &Subject) -> Vec<(Method, Look)> {
+/// Every method of a subject, with its style.
+pub fn method_styles(subject: &Subject) -> Vec<(Method, MethodStyle)> {
     let methods = subject.methods();
     let variants = variants(&methods);
     let variant = |method: &Method| variants.iter().position(|other| same(other, method)).unwrap_or(0);
-    methods.iter().map(|method| (*method, Look::of(*method, variant(method)))).collect()
+    methods.iter().map(|method| (*method, MethodStyle::of(*method, variant(method)))).collect()
 }
 
-/// A method for each pair of partitioning and normals; none if every LOD has one of these, and there is nothing to tell
-/// apart.
+/// One method for each pair of partitioning and normals; empty if every LOD has only one such pair, so that the pairs needn't
+/// be told apart.
 fn variants(methods: &[Method]) -> Vec<Method> {
     let mut all: Vec<Method> = Vec::new();
     for method in methods {
@@ -48,13 +48,13 @@ fn same(a: &Method, b: &Method) -> bool {
     a.partitioning == b.partitioning && a.normals == b.normals
 }
 
-/// A line for surfaces, one for LODs, and more for what else there is several of.
-pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
+/// The lines of the legend: one for surfaces, one for LODs, and more for partitionings and normals if there are several.
+pub fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
     let Some(subject) = subjects.iter().max_by_key(|subject| subject.methods().len()) else { return Vec::new() };
     let variants = variants(&subject.methods());
     let (mut surfaces, mut lods) = (Vec::new(), Vec::new());
-    for (method, look) in looks(subject) {
-        add(&mut surfaces, Sample::Marker(Look { fill: Fill::Full, ..look }), method.surface.name().to_owned());
+    for (method, style) in method_styles(subject) {
+        add(&mut surfaces, Sample::Marker(MethodStyle { fill: Fill::Full, ..style }), method.surface.name().to_owned());
         let mut name = match method.lod {
             LodKind::Uniform => "uniform factor".to_owned(),
             LodKind::Paper => "white paper's LOD, px a segment".to_owned(),
@@ -71,27 +71,27 @@ pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
         if index % IN_A_LINE == 0 {
             lines.push(Vec::new());
         }
-        let look = Look { color: INK, shape: Shape::Disc, ..Look::of(*method, index) };
+        let style = MethodStyle { color: INK, shape: Shape::Disc, ..MethodStyle::of(*method, index) };
         let name = format!("{}, {} normals", method.partitioning.name(), method.normals.name());
-        lines.last_mut().into_iter().for_each(|line| add(line, Sample::Marker(look), name.clone()));
+        lines.last_mut().into_iter().for_each(|line| add(line, Sample::Marker(style), name.clone()));
     }
     lines
 }
 
-/// Once under each name.
+/// Adds an entry, unless there is one with this name.
 fn add(entries: &mut Vec<Entry>, sample: Sample, name: String) {
     if !entries.iter().any(|entry| entry.name == name) {
         entries.push(Entry { sample, name });
     }
 }
 
-/// Draws entries side by side; `size` is that of their text, in px.
-pub(super) fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], at: [f64; 2], size: i32) -> Drawn<DB> {
+/// Draws a line of entries from `at` on. `size` is the height of their text in px.
+pub fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], at: [f64; 2], size: i32) -> Drawn<DB> {
     let [mut x, y] = at;
     for Entry { sample, name } in entries {
         let long = match sample {
-            Sample::Marker(look) => {
-                pen.marker([x + 6.0, y], look)?;
+            Sample::Marker(style) => {
+                pen.marker([x + 6.0, y], style)?;
                 16.0
             }
             Sample::Line(dash) => {

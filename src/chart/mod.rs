@@ -1,11 +1,12 @@
-//! Speed against accuracy: every method at many settings, timed and held against a truth, as rows and as a picture.
+//! Speed against accuracy: every method is timed at many settings and compared with a reference surface. The results are rows,
+//! a picture and a report.
 
 mod axis;
 mod bench;
 mod cost;
 mod labels;
 mod legend;
-mod look;
+mod method_style;
 mod pen;
 mod picture;
 mod race;
@@ -14,18 +15,16 @@ mod save;
 mod setting;
 mod words;
 
-pub(crate) use axis::{Axis, Tick, tick_text};
-pub(crate) use bench::{Bench, Effort, Probe, whole};
-pub(crate) use cost::Cost;
-pub(crate) use legend::looks;
-pub(crate) use look::{Fill, Look, Shape, dash};
-pub(crate) use pen::RADIUS;
-pub(crate) use picture::{bitmap, svg};
-#[cfg(test)]
-pub(crate) use race::front;
-pub(crate) use race::{Race, Win, has_converged};
-pub(crate) use save::{SaveError, save};
-pub(crate) use setting::{LodKind, Method, Plan, Setting, coarse_first};
+pub use axis::{Axis, Tick, tick_text};
+pub use bench::{Bench, Effort, Probe, whole};
+pub use cost::Cost;
+pub use legend::method_styles;
+pub use method_style::{Fill, MethodStyle, Shape, dash};
+pub use pen::RADIUS;
+pub use picture::{bitmap, svg};
+pub use race::{Race, Win, front, has_converged};
+pub use save::{SaveError, save};
+pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use crate::gpu::{DRAWING, PassTime};
 use crate::settings::Choice;
@@ -52,32 +51,33 @@ pub(crate) const COLUMNS: [&str; 17] = [
     "normal_error_deg",
 ];
 
-/// One setting, measured.
+/// The measurements of one setting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// As it was named.
+    /// The mesh's name, as the user gave it.
     pub mesh: String,
     pub adapter: String,
     pub setting: Setting,
     pub triangles: u64,
     pub vertices: u64,
     pub time: Time,
-    /// Against the truth; none without one, or where nothing was emitted that has an area.
+    /// Compared with the reference surface; `None` without one, or if nothing with an area was emitted.
     pub errors: Option<Errors>,
-    /// The largest distance on screen, in px: from what was emitted to the truth, or without one to the surface's own limit;
-    /// none if nothing is in view.
+    /// The largest distance on screen, in px, from what was emitted to the reference surface, or without one to the limit of
+    /// the method's own surface; `None` if nothing is in view.
     pub max_error_px: Option<f64>,
 }
 
-/// Medians, in ms.
+/// Median times in ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Time {
-    /// From factors to what is emitted, and displaced: what is done again whenever the view changes. Control nets are made once.
+    /// All passes that run again when the view changes, from factors to displacement. Control nets are made once, and don't
+    /// count.
     pub tessellate: f64,
     pub draw: f64,
 }
 
-/// Distances both ways, as parts of the truth's bounding diagonal, and the largest angle between normals.
+/// Distances in both directions, as parts of the reference surface's bounding diagonal, and the largest angle between normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     pub largest: f64,
@@ -85,7 +85,7 @@ pub struct Errors {
     pub normal_degrees: f64,
 }
 
-/// Passes that run again with every view.
+/// The passes that run again when the view changes.
 const TESSELLATE: [&str; 7] = ["factors", "levels", "counts", "scan", "chunks", "emit", "displace"];
 
 impl Time {
@@ -102,12 +102,12 @@ impl Time {
 }
 
 impl Row {
-    /// What the passes emit.
+    /// The size of the emitted vertices and indices.
     pub fn bytes(&self) -> u64 {
         self.vertices * size_of::<Vertex>() as u64 + self.triangles * 12
     }
 
-    /// The fields of [`COLUMNS`]; numbers read back exactly, and what is not known is empty.
+    /// The fields of [`COLUMNS`]. Numbers read back exactly, and unknown values are empty.
     pub fn record(&self) -> [String; 17] {
         let Method { surface, normals, partitioning, lod } = self.setting.method;
         let known = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
@@ -133,27 +133,27 @@ impl Row {
     }
 }
 
-/// A mesh, and what was measured of it.
+/// A mesh with its measurements.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Subject {
-    /// What it is called.
+pub struct Subject {
+    /// The mesh's name in pictures and reports.
     pub title: String,
-    /// What it was held against, in words; none for the limits of its own surfaces.
+    /// The reference surface that it was compared with, in words; `None` if each surface was compared with its own limit.
     pub truth: Option<String>,
     pub adapter: String,
-    /// Of the view, in px.
+    /// The width and height of the view, in px.
     pub size: [u32; 2],
     pub rows: Vec<Row>,
 }
 
 impl Subject {
-    /// How far a row is off: a part of the truth's diagonal, or px without a truth.
-    pub(crate) fn error(&self, row: &Row) -> Option<f64> {
+    /// The largest error of a row: a part of the reference surface's diagonal, or px without a reference surface.
+    pub fn error(&self, row: &Row) -> Option<f64> {
         self.error_of(row.errors, row.max_error_px)
     }
 
-    /// The same, of anything measured as rows are.
-    pub(crate) fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
+    /// The largest error of any measurements: see [`Self::error`].
+    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
         let error = match self.truth {
             Some(_) => errors.map(|errors| errors.largest),
             None => max_error_px,

@@ -1,4 +1,4 @@
-//! Error against time and against triangles, side by side, mesh under mesh.
+//! The picture of a chart: for each mesh, the error over time and over triangles, side by side.
 
 use image::RgbImage;
 use plotters::coord::Shift;
@@ -6,19 +6,19 @@ use plotters::prelude::*;
 
 use super::axis::{Axis, Tick, tick_text};
 use super::labels::{Rect, Wanted, place};
-use super::legend::{Entry, draw_legend, legend, looks};
+use super::legend::{Entry, draw_legend, legend, method_styles};
 use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, RIGHT};
 use super::{Cost, Method, Row, Subject};
 use crate::plot::{self, ChartError, DENSITY, INK};
 
-/// Px from left to right, as READMEs show pictures.
+/// The picture's width in px: that of pictures in a README.
 const WIDTH: u32 = 960;
-/// Left and right of panels, between them, and how high they are, in px.
+/// The space to the left and right of the panels and between them, and the height of panels, in px.
 const LEFT_MARGIN: f64 = 70.0;
 const RIGHT_MARGIN: f64 = 16.0;
 const BETWEEN: f64 = 34.0;
 const PANEL_HEIGHT: f64 = 380.0;
-/// What stands over and under the panels of a mesh, and a line of text, in px.
+/// The heights of what is above and below the panels of a mesh, and of a line of text, in px.
 const HEAD: f64 = 48.0;
 const FOOT: f64 = 50.0;
 const LINE: f64 = 19.0;
@@ -29,20 +29,20 @@ const SMALL: i32 = 12;
 
 const GRID: RGBColor = RGBColor(236, 236, 236);
 
-/// What it looks like as a bitmap.
+/// Draws charts as a bitmap.
 ///
 /// # Errors
-/// Its font can't be used.
-pub(crate) fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
+/// The font can't be used.
+pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
     let layout = Layout::of(subjects);
     plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))
 }
 
-/// The same as an SVG file, whose text is text.
+/// Draws charts as an SVG file. Its labels are text.
 ///
 /// # Errors
-/// Its font can't be used.
-pub(crate) fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
+/// The font can't be used.
+pub fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
     plot::use_font()?;
     let layout = Layout::of(subjects);
     let (size, drawn) = ([WIDTH, layout.height()], [WIDTH, layout.height()].map(|side| side * DENSITY));
@@ -52,18 +52,18 @@ pub(crate) fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
         layout.draw(&area).map_err(|error| ChartError::failed(&error))?;
         area.present().map_err(|error| ChartError::failed(&error))?;
     }
-    // Drawn in whole px, so drawn larger than it is shown.
+    // The library draws in whole px, so the file is drawn larger than it is shown.
     let sides = |[width, height]: [u32; 2]| format!("width=\"{width}\" height=\"{height}\"");
     Ok(text.replacen(&sides(drawn), &sides(size), 1))
 }
 
-/// Where everything is.
+/// The layout of all charts: their subjects with the lines of text below them, and the legend.
 struct Layout<'a> {
     subjects: Vec<(&'a Subject, Vec<String>)>,
     legend: Vec<Vec<Entry>>,
 }
 
-/// Letters that a line of text has room for: sentences are broken there.
+/// The most letters in a line of text. Longer sentences are broken.
 const LETTERS: usize = 145;
 
 impl<'a> Layout<'a> {
@@ -115,7 +115,7 @@ fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[S
     Ok(())
 }
 
-/// One diagram.
+/// One diagram: the error over one cost.
 struct Panel<'a> {
     subject: &'a Subject,
     cost: Cost,
@@ -145,27 +145,27 @@ impl<'a> Panel<'a> {
         for front in &fronts {
             let points: Vec<_> = front.iter().map(|(row, error)| self.point(row, *error)).collect();
             pen.line(&points, FRONT, 9.0, None)?;
-            // A front of one point is no line.
+            // A front of one point is no line, so each point gets a square.
             points.iter().try_for_each(|[x, y]| pen.rect([x - 4.5, y - 4.5], [x + 4.5, y + 4.5], FRONT.filled()))?;
         }
-        let methods = looks(self.subject);
+        let methods = method_styles(self.subject);
         let rows = |method: Method| {
             let own = self.subject.rows.iter().filter(move |row| row.setting.method == method);
             own.filter_map(|row| Some((row, self.subject.error(row)?)))
         };
         let mut all: Vec<(&Row, [f64; 2])> = Vec::new();
         let mut lines = Vec::new();
-        for (method, look) in &methods {
+        for (method, style) in &methods {
             let points: Vec<_> = rows(*method).map(|(row, error)| (row, self.point(row, error))).collect();
             let path: Vec<_> = points.iter().map(|(_, point)| *point).collect();
-            pen.line(&path, look.color, 1.4, look.dash)?;
+            pen.line(&path, style.color, 1.4, style.dash)?;
             lines.extend(path.windows(2).map(|ends| [ends[0], ends[1]]));
             all.extend(points);
         }
-        for (method, look) in &methods {
-            rows(*method).try_for_each(|(row, error)| pen.marker(self.point(row, error), look))?;
+        for (method, style) in &methods {
+            rows(*method).try_for_each(|(row, error)| pen.marker(self.point(row, error), style))?;
         }
-        // Those that nothing beats have their say first.
+        // Points on the front get their labels first.
         let is_front = |row: &Row| fronts.iter().flatten().any(|(other, _)| std::ptr::eq(*other, row));
         all.sort_by_key(|(row, _)| !is_front(row));
         self.draw_labels(pen, &all, &lines)
@@ -220,7 +220,7 @@ impl<'a> Panel<'a> {
     }
 }
 
-/// Text in lines of at most so many letters, broken between words.
+/// Breaks text between words into lines of at most `letters` letters.
 fn broken(text: &str, letters: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {

@@ -1,29 +1,29 @@
-//! Which rows nobody beats, and which method is the fastest to reach an error.
+//! Compares rows: which ones no other row beats, and which method reaches an error fastest.
 
 use super::{Cost, Method, Row, Subject};
 use crate::tessellate::Surface;
 
-/// Rows of a mesh that can be compared, with their errors: all, if they were held against one truth; otherwise those of one
-/// surface, as each is off from its own limit.
+/// The rows of a mesh that can be compared, with their errors. With a reference surface these are all rows. Without one they
+/// are the rows of one surface, since each surface is compared with its own limit.
 #[derive(Clone, Debug)]
-pub(crate) struct Race<'a> {
-    /// The one that all are of, without a truth.
+pub struct Race<'a> {
+    /// The surface of all rows; `None` with a reference surface.
     pub surface: Option<Surface>,
     pub entries: Vec<(&'a Row, f64)>,
 }
 
-/// The fastest to reach an error.
+/// The row that reaches an error fastest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Win<'a> {
     pub error: f64,
     pub fastest: &'a Row,
-    /// The fastest of another method; none if no other reaches it.
+    /// The fastest row of another method; `None` if no other method reaches the error.
     pub next: Option<&'a Row>,
 }
 
-/// Of points with a cost and an error, the indices of those that no other one beats, by growing cost: each has less error
-/// than all that cost as much or less. Of equal points it is the first.
-pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
+/// Returns the front of points with a cost and an error: the indices of the points that no other one beats, by growing cost.
+/// Each has less error than all points that cost as much or less. Of equal points the front has the first.
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {
         let ((cost_a, error_a), (cost_b, error_b)) = (points[a], points[b]);
@@ -38,17 +38,17 @@ pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
     order
 }
 
-/// How many times the triangles of an earlier setting a later one has, that comes no closer: finer ones won't either.
+/// A setting must have this many times the triangles of a coarser one to show that finer settings come no closer.
 const FINER: u64 = 3;
 
-/// Which part of an error must be gone for a setting to be closer.
+/// An error that falls by more than this part of it counts as closer.
 const CLOSER: f64 = 0.05;
 
-/// Whether a method has come as close as it gets, so that finer settings cost more and show nothing new: of the rows of it, from
-/// coarse to fine, the last has three times the triangles of another, and each of its errors is less by a twentieth at most.
-/// What triangles are off from their surface falls as their number grows, or faster, so that half of that twentieth at most is
-/// left to gain.
-pub(crate) fn has_converged(rows: &[Row], method: Method) -> bool {
+/// Whether a method has come as close as it gets, so that finer settings cost more and show nothing new. Of its rows, from
+/// coarse to fine, the last must have three times the triangles of another, and each of its errors must be less by at most a
+/// twentieth. The distance between triangles and their surface falls at least as fast as their number grows, so finer settings
+/// can gain at most half of that twentieth.
+pub fn has_converged(rows: &[Row], method: Method) -> bool {
     let mut own = rows.iter().rev().filter(|row| row.setting.method == method);
     let Some(last) = own.next() else { return false };
     let errors = |row: &Row| {
@@ -64,8 +64,8 @@ pub(crate) fn has_converged(rows: &[Row], method: Method) -> bool {
 }
 
 impl Subject {
-    /// Rows whose error is known, as they can be compared.
-    pub(crate) fn races(&self) -> Vec<Race<'_>> {
+    /// The rows whose errors are known, grouped so that those of a group can be compared.
+    pub fn races(&self) -> Vec<Race<'_>> {
         let mut races: Vec<Race> = Vec::new();
         for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
             let surface = self.truth.is_none().then_some(row.setting.method.surface);
@@ -77,8 +77,8 @@ impl Subject {
         races
     }
 
-    /// Every method once, in the order of rows.
-    pub(crate) fn methods(&self) -> Vec<Method> {
+    /// All methods, in the order of their first rows.
+    pub fn methods(&self) -> Vec<Method> {
         let mut methods = Vec::new();
         for row in &self.rows {
             if !methods.contains(&row.setting.method) {
@@ -90,15 +90,15 @@ impl Subject {
 }
 
 impl<'a> Race<'a> {
-    /// The rows that no other one beats, with their errors; `cost` is what a row costs.
-    pub(crate) fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
+    /// The rows that no other one beats, with their errors. `cost` returns the cost of a row.
+    pub fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
         let points: Vec<_> = self.entries.iter().map(|(row, error)| (cost(row), *error)).collect();
         front(&points).into_iter().map(|index| self.entries[index]).collect()
     }
 
-    /// Errors to ask for, the largest first: up to `count` of 1, 2 and 5 times powers of ten, no smaller than `floor`, that
-    /// some rows reach and others don't.
-    pub(crate) fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
+    /// Errors that some rows reach and others don't, the largest first: up to `count` numbers that are 1, 2 or 5 times a power
+    /// of ten, and not smaller than `floor`.
+    pub fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
         let errors = self.entries.iter().map(|(_, error)| error.max(floor));
         let [least, most] = errors.fold([f64::INFINITY, 0.0], |[a, b], error| [a.min(error), b.max(error)]);
         if least >= most {
@@ -116,14 +116,14 @@ impl<'a> Race<'a> {
         (0..count).map(|k| levels[k * (levels.len() - 1) / (count - 1).max(1)]).collect()
     }
 
-    /// The row that is off by no more than `error` at the least cost.
-    pub(crate) fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
+    /// The cheapest row that `of` accepts, with an error of at most `error`.
+    pub fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
         let reached = self.entries.iter().filter(|(row, own)| *own <= error && of(row)).map(|(row, _)| *row);
         reached.min_by(|a, b| cost.of(a).total_cmp(&cost.of(b)))
     }
 
-    /// Who is the fastest to be off by no more than `error`; nobody, if no row is.
-    pub(crate) fn win(&self, error: f64) -> Option<Win<'a>> {
+    /// The fastest row with an error of at most `error`; `None` if there is none.
+    pub fn win(&self, error: f64) -> Option<Win<'a>> {
         let fastest = self.cheapest(error, Cost::Ms, |_| true)?;
         let next = self.cheapest(error, Cost::Ms, |row| row.setting.method != fastest.setting.method);
         Some(Win { error, fastest, next })

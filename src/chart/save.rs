@@ -1,4 +1,4 @@
-//! A chart as a file: a picture, or a table.
+//! Saves a chart as a picture or a table.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use crate::plot::ChartError;
 
 #[derive(Debug, Error)]
 pub enum SaveError {
-    #[error("{} can't be a chart: name it .svg, .png or .csv", shown_path(.0))]
+    #[error("{}: a chart's name must end in .svg, .png or .csv", shown_path(.0))]
     Ending(PathBuf),
     #[error(transparent)]
     Chart(#[from] ChartError),
@@ -23,11 +23,11 @@ pub enum SaveError {
     Write { path: PathBuf, reason: String },
 }
 
-/// Writes an SVG or PNG picture, or a CSV table: whichever the path's ending says.
+/// Writes an SVG or PNG picture or a CSV table, depending on the path's ending.
 ///
 /// # Errors
-/// The ending is another, or the file can't be written.
-pub(crate) fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
+/// The ending is another one, or the file can't be written.
+pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
     let failed = |reason: String| SaveError::Write { path: path.to_owned(), reason };
     let subjects = std::slice::from_ref(subject);
     let bytes = match crate::export::ending(path).as_str() {

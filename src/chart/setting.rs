@@ -1,25 +1,25 @@
-//! What is tried.
+//! The methods and settings that a chart tries.
 
 use std::fmt;
 
 use crate::settings::{Choice, Description, Settings};
 use crate::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
 
-/// Where factors come from, and what it is asked for.
+/// The kinds of LOD that a chart tries, and the number that says how fine each is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LodKind {
-    /// One factor everywhere
+    /// One factor for all edges.
     Uniform,
-    /// The white paper's length of an edge on screen, in px a segment
+    /// The white paper's LOD, in px per segment.
     Paper,
-    /// The error on screen, in px
+    /// LOD by error, in px on screen.
     Error,
 }
 
 impl LodKind {
     pub const ALL: [Self; 3] = [Self::Uniform, Self::Paper, Self::Error];
 
-    /// The one that these settings use; none for an LOD that isn't tried.
+    /// The kind of an LOD; `None` for one that isn't tried.
     fn of(lod: Lod) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.lod() == lod)
     }
@@ -32,7 +32,7 @@ impl LodKind {
         }
     }
 
-    /// The partitioning that it is commonly used with: numbers of segments whose rows nest are whole.
+    /// The partitioning that it is commonly used with. LOD by error uses numbers of segments that nest, which are whole.
     fn partitioning(self) -> Partitioning {
         match self {
             Self::Uniform | Self::Paper => Partitioning::FractionalOdd,
@@ -57,7 +57,7 @@ impl Choice for LodKind {
     }
 }
 
-/// A way to tessellate, but for how fine.
+/// A way to tessellate, except for how fine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Method {
     pub surface: Surface,
@@ -72,7 +72,7 @@ impl fmt::Display for Method {
     }
 }
 
-/// A method, and how fine: a factor, or px.
+/// A method, and a number that says how fine it is: a factor, or px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Setting {
     pub method: Method,
@@ -80,7 +80,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The one that these settings have; none under an LOD that isn't tried.
+    /// The setting that some settings amount to; `None` under an LOD that isn't tried.
     pub fn of(settings: &Settings) -> Option<Self> {
         let Tessellation { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings.tessellation;
         let lod = LodKind::of(settings.tessellation.used_lod())?;
@@ -92,7 +92,7 @@ impl Setting {
         Some(Self { method: Method { surface, normals, partitioning, lod }, value })
     }
 
-    /// These settings, but with this one for their own.
+    /// Some settings with this one applied.
     pub fn applied(&self, settings: &Settings) -> Settings {
         let Method { surface, normals, partitioning, lod } = self.method;
         let plain = Tessellation { surface, normals, partitioning, lod: lod.lod(), ..settings.tessellation };
@@ -103,7 +103,7 @@ impl Setting {
         })
     }
 
-    /// Whether it is the same method, but finer.
+    /// Whether this is a finer setting of the same method.
     pub fn is_finer(&self, than: &Self) -> bool {
         let finer = match self.method.lod {
             LodKind::Uniform => self.value > than.value,
@@ -112,7 +112,7 @@ impl Setting {
         finer && self.method == than.method
     }
 
-    /// How fine, as short as it goes.
+    /// The number that says how fine it is, as short text.
     pub fn label(&self) -> String {
         match self.method.lod {
             LodKind::Uniform => self.value.to_string(),
@@ -132,18 +132,19 @@ impl fmt::Display for Setting {
     }
 }
 
-/// Everything that is tried.
+/// All methods and settings that a chart tries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     pub surfaces: Vec<Surface>,
     pub normals: Vec<Normals>,
-    /// With every LOD; if empty, each has the one that it is commonly used with.
+    /// Each is tried with every LOD. If empty, each LOD has the partitioning that it is commonly used with.
     pub partitionings: Vec<Partitioning>,
     pub lods: Vec<LodKind>,
-    /// For uniform LOD.
+    /// The factors of uniform LOD.
     pub factors: Vec<f32>,
-    /// For the white paper's, and by error.
+    /// The px per segment of the white paper's LOD.
     pub pixels: Vec<f32>,
+    /// The tolerances of LOD by error, in px.
     pub tolerances: Vec<f32>,
 }
 
@@ -161,8 +162,8 @@ impl Default for Plan {
     }
 }
 
-/// The same settings, the coarsest of every method first, so that all of a chart fills in together.
-pub(crate) fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
+/// Reorders settings: the coarsest of every method first, then the next finer ones, so that all lines of a chart grow together.
+pub fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
     let place =
         |index: usize| settings[..index].iter().filter(|earlier| earlier.method == settings[index].method).count();
     let mut placed: Vec<_> = (0..settings.len()).map(|index| (place(index), settings[index])).collect();
@@ -171,7 +172,7 @@ pub(crate) fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
 }
 
 impl Plan {
-    /// Method by method, each from coarse to fine as listed. Subtriangulation is uniform, so it has no other LOD.
+    /// All settings, method by method, each from coarse to fine as listed. Subtriangulation is only tried with uniform LOD.
     pub fn settings(&self) -> Vec<Setting> {
         let mut all: Vec<Setting> = Vec::new();
         for method in self.methods() {
@@ -181,7 +182,7 @@ impl Plan {
                 LodKind::Error => &self.tolerances,
             };
             let settings = values.iter().map(|&value| Setting { method, value });
-            // What was named twice is tried once.
+            // A setting that was named twice is tried once.
             settings.for_each(|setting| {
                 if !all.contains(&setting) {
                     all.push(setting);

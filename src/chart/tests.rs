@@ -9,7 +9,7 @@ fn method(surface: Surface, lod: LodKind) -> Method {
     Method { surface, normals: Normals::Linear, partitioning: Partitioning::Integer, lod }
 }
 
-/// A row of so many ms and triangles, and an error that is a part of the diagonal and as many px.
+/// A row with this time in ms, this many triangles, and this error, both as a part of the diagonal and in px.
 pub(super) fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, error): (f64, u64, f64)) -> Row {
     Row {
         mesh: "shape:torus".into(),
@@ -28,7 +28,7 @@ pub(super) fn subject(truth: Option<&str>, rows: Vec<Row>) -> Subject {
     Subject { title: "Torus <7>".into(), truth, adapter: "an adapter".into(), size: [1280, 720], rows }
 }
 
-/// Flat is as far off as its mesh whatever the factor; PN-AEN comes closer.
+/// Rows in which flat has the mesh's error at every factor, and PN-AEN comes closer.
 pub(super) fn some_rows() -> Vec<Row> {
     use LodKind::{Error, Uniform};
     vec![
@@ -43,19 +43,19 @@ pub(super) fn some_rows() -> Vec<Row> {
 }
 
 #[test]
-fn the_front_is_what_nothing_beats() {
+fn the_front_has_the_points_that_no_other_beats() {
     assert_eq!(front(&[]), [0usize; 0]);
     assert_eq!(front(&[(1.0, 5.0), (2.0, 6.0), (2.0, 4.0), (3.0, 4.0), (4.0, 1.0)]), [0, 2, 4]);
-    assert_eq!(front(&[(1.0, 1.0), (1.0, 1.0)]), [0], "of equal ones the first");
+    assert_eq!(front(&[(1.0, 1.0), (1.0, 1.0)]), [0], "the first of equal points");
     let subject = subject(Some("it"), some_rows());
     let races = subject.races();
-    let [race] = &races[..] else { panic!("one truth is one race: {}", races.len()) };
+    let [race] = &races[..] else { panic!("one reference surface makes one group, not {}", races.len()) };
     let labels = |front: Vec<(&Row, f64)>| front.iter().map(|(row, _)| row.setting.to_string()).collect::<Vec<_>>();
     assert_eq!(labels(race.front(|row| row.time.total())), ["factor 1", "factor 2", "error 4 px", "error 1 px"]);
     assert_eq!(
         labels(race.front(|row| row.triangles as f64)),
         ["factor 1", "factor 2", "error 4 px", "error 1 px"],
-        "160 triangles for what 90 reach are beaten"
+        "factor 4 is beaten: it takes 160 triangles for an error that 90 reach"
     );
 }
 
@@ -98,7 +98,7 @@ proptest! {
 }
 
 #[test]
-fn a_lonely_point_has_its_label_beside_it() {
+fn a_single_point_has_its_label_beside_it() {
     let wanted = [Wanted { at: [50.0, 50.0], size: [20.0, 10.0] }];
     let all = Rect { min: [0.0; 2], max: [100.0; 2] };
     let [Some(label)] = place(&wanted, &[[50.0, 50.0]], &[], all)[..] else { panic!("there is room") };
@@ -108,7 +108,7 @@ fn a_lonely_point_has_its_label_beside_it() {
 }
 
 #[test]
-fn the_fastest_method_wins_and_the_next_is_another() {
+fn the_fastest_row_is_found_and_the_next_is_of_another_method() {
     let subject = subject(Some("it"), some_rows());
     let race = &subject.races()[0];
     let win = race.win(0.005).expect("three rows reach it");
@@ -124,7 +124,7 @@ fn the_fastest_method_wins_and_the_next_is_another() {
 }
 
 #[test]
-fn winners_are_named_in_sentences() {
+fn sentences_name_the_fastest_methods() {
     let expected = [
         "At 2 % of the diagonal pn-aen by uniform LOD (2) is fastest: 2.00 ms, 40 triangles; 1.2 times faster than pn-aen by error LOD (4 px).",
         "At 0.5 % of the diagonal pn-aen by error LOD (4 px) is fastest: 2.50 ms, 90 triangles; 1.6 times faster than pn-aen by uniform LOD (4).",
@@ -132,7 +132,7 @@ fn winners_are_named_in_sentences() {
         "Closest comes pn-aen by error LOD (1 px), to 0.0400 % of the diagonal.",
     ];
     assert_eq!(subject(Some("it"), some_rows()).sentences(), expected);
-    // Each surface is off from its own limit: flat from nothing, and PN-AEN isn't compared with it.
+    // Each surface is compared with its own limit. Flat has no error then, and isn't compared with PN-AEN.
     let mut rows = some_rows();
     for row in &mut rows {
         row.errors = None;
@@ -145,7 +145,7 @@ fn winners_are_named_in_sentences() {
 }
 
 #[test]
-fn names_say_what_tells_methods_apart() {
+fn names_have_only_what_tells_methods_apart() {
     let mut rows = some_rows();
     let plain = rows[2].setting.method;
     assert_eq!(subject(None, rows.clone()).name(plain), "pn-aen by uniform LOD");
@@ -181,14 +181,14 @@ fn rows_read_back_from_csv() {
 }
 
 #[test]
-fn a_view_costs_what_it_makes_run_again() {
+fn time_counts_the_passes_that_a_view_makes_run_again() {
     let passes = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
     let times = passes.map(|pass| PassTime { pass, ms: 1.0 });
     assert_eq!(Time::of(&times), Time { tessellate: 5.0, draw: 1.0 });
 }
 
 #[test]
-fn everything_listed_is_tried_once() {
+fn every_listed_setting_is_tried_once() {
     let plan = Plan {
         surfaces: vec![Surface::Flat, Surface::PnAen],
         normals: vec![Normals::Linear],
@@ -209,11 +209,11 @@ fn everything_listed_is_tried_once() {
         (0.25, 4.0)
     );
     let only = Plan { partitionings: vec![Partitioning::Subtriangulation], ..plan };
-    assert_eq!(names(&only), ["factor 1", "factor 2", "factor 1", "factor 2"], "it is uniform only");
+    assert_eq!(names(&only), ["factor 1", "factor 2", "factor 1", "factor 2"], "subtriangulation has only uniform LOD");
 }
 
 #[test]
-fn a_setting_is_applied_and_found_again_and_touches_nothing_else() {
+fn a_setting_is_applied_and_read_back_and_changes_nothing_else() {
     let own = Settings::opening().with(Tessellation {
         alpha: 0.5,
         midlevel: 0.25,
@@ -238,14 +238,22 @@ fn a_setting_is_applied_and_found_again_and_touches_nothing_else() {
             })
         );
     }
-    assert_eq!(Setting::of(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })), None, "not tried");
+    assert_eq!(
+        Setting::of(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })),
+        None,
+        "charts don't try LOD by distance"
+    );
     let equal =
         own.with(Tessellation { lod: Lod::Distance, partitioning: Partitioning::Subtriangulation, ..own.tessellation });
-    assert_eq!(Setting::of(&equal).map(|setting| setting.to_string()), Some("factor 7".into()), "uniform all the same");
+    assert_eq!(
+        Setting::of(&equal).map(|setting| setting.to_string()),
+        Some("factor 7".into()),
+        "subtriangulation is uniform under any LOD"
+    );
 }
 
 #[test]
-fn what_is_measured_leaves_nothing_out_and_keeps_the_surface() {
+fn measured_settings_leave_nothing_out_and_keep_the_surface() {
     let own = Settings {
         tessellation: Tessellation { alpha: 0.5, ..Settings::opening().tessellation },
         split: Some(0.5),
@@ -256,7 +264,7 @@ fn what_is_measured_leaves_nothing_out_and_keeps_the_surface() {
         (measured.tessellation.clip, measured.tessellation.cull_back_faces, measured.split),
         (Clip::Off, false, None)
     );
-    assert!(!measured.overlays.wireframe, "drawn without what one looks at");
+    assert!(!measured.overlays.wireframe, "overlays are off");
     assert_eq!(
         (measured.tessellation.alpha, measured.tessellation.lod, measured.tessellation.tolerance),
         (0.5, own.tessellation.lod, own.tessellation.tolerance)
@@ -270,13 +278,13 @@ fn the_coarsest_of_every_method_come_first() {
     assert_eq!(all.len(), plan.settings().len());
     assert!(plan.settings().iter().all(|setting| all.contains(setting)));
     let methods: Vec<Method> = all[..6].iter().map(|setting| setting.method).collect();
-    assert!((0..6).all(|k| !methods[..k].contains(&methods[k])), "each once");
+    assert!((0..6).all(|k| !methods[..k].contains(&methods[k])), "each method once");
     let factors = all.iter().filter(|setting| setting.method == methods[0]).map(|setting| setting.value);
-    assert_eq!(factors.collect::<Vec<_>>(), plan.factors, "in their order");
+    assert_eq!(factors.collect::<Vec<_>>(), plan.factors, "factors in their order");
 }
 
 #[test]
-fn a_chart_is_saved_by_its_ending() {
+fn the_ending_decides_how_a_chart_is_saved() {
     let shown = subject(Some("the exact surface"), some_rows());
     let folder = std::env::temp_dir().join(format!("pnaen-chart-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
@@ -297,7 +305,7 @@ fn a_chart_is_saved_by_its_ending() {
 }
 
 #[test]
-fn a_chart_is_drawn_whatever_there_is() {
+fn charts_without_rows_or_errors_are_drawn() {
     let zero = row(Surface::PnAen, LodKind::Uniform, 64.0, (1.0, 7, 0.0));
     let unknown = Row { errors: None, max_error_px: None, ..zero.clone() };
     for rows in [Vec::new(), vec![unknown], vec![zero.clone()], [some_rows(), vec![zero]].concat()] {
@@ -311,11 +319,11 @@ fn a_chart_is_drawn_whatever_there_is() {
 }
 
 #[test]
-fn what_is_exact_lies_at_the_bottom() {
+fn values_of_0_lie_at_the_bottom() {
     let axis = axis::Axis::around([0.0, 0.01, 1.0].into_iter(), 1e-7, [400.0, 0.0]);
     let places = [0.0, 0.01, 1.0].map(|value| axis.place(value));
     assert!(places[0] > places[1] && places[1] > places[2] && places[0] < 400.0, "{places:?}");
     let none = axis::Axis::around([0.01, 1.0].into_iter(), 1e-7, [400.0, 0.0]);
-    assert!(none.place(0.01) > places[1], "room for none where there is none");
+    assert!(none.place(0.01) > places[1], "no space for 0 without a value of 0");
     assert!(none.ticks().iter().all(|tick| (0.0..=400.0).contains(&none.place(tick.value))));
 }

@@ -1,37 +1,37 @@
-//! What a chart says, in sentences.
+//! The names and sentences in a chart.
 
 use super::{Method, Race, Row, Subject, Win};
 use crate::numbers::{grouped, short};
 use crate::settings::Choice;
 
-/// Errors that winners are named for.
+/// The number of errors for which the fastest method is named.
 const LEVELS: usize = 3;
 
-/// Errors below these are rounding: parts of the diagonal, and px.
+/// Errors below these are caused by rounding: as parts of the diagonal, and in px.
 const LEAST_PART: f64 = 1e-7;
 const LEAST_PX: f64 = 1e-3;
 
 impl Subject {
-    /// Errors no larger than this are as good as none.
-    pub(crate) fn floor(&self) -> f64 {
+    /// Errors up to this count as 0.
+    pub fn floor(&self) -> f64 {
         if self.truth.is_some() { LEAST_PART } else { LEAST_PX }
     }
 
-    /// What errors are multiplied by to be shown: to per cent, or not at all.
-    pub(crate) fn unit(&self) -> f64 {
+    /// The factor by which errors are multiplied to be shown: 100 for percent, or 1 for px.
+    pub fn unit(&self) -> f64 {
         if self.truth.is_some() { 100.0 } else { 1.0 }
     }
 
-    /// What errors are, and their unit.
-    pub(crate) fn error_name(&self) -> &'static str {
+    /// The label of the error axis, with its unit.
+    pub fn error_name(&self) -> &'static str {
         match self.truth {
             Some(_) => "Largest error, % of the diagonal",
             None => "Largest error, px",
         }
     }
 
-    /// What it was held against, seen how large, and on what it ran.
-    pub(crate) fn facts(&self) -> String {
+    /// The facts above the panels: the reference surface, the size of the view, and the adapter.
+    pub fn facts(&self) -> String {
         let against = match &self.truth {
             Some(truth) => format!("against {truth}"),
             None => "against each surface's own limit".to_owned(),
@@ -40,8 +40,8 @@ impl Subject {
         format!("{against}; {width} x {height} px; {}", self.adapter)
     }
 
-    /// Who wins at which error, and how close anything comes.
-    pub(crate) fn sentences(&self) -> Vec<String> {
+    /// The sentences below the panels: which method is fastest at which error, and how close the closest comes.
+    pub fn sentences(&self) -> Vec<String> {
         let mut all = Vec::new();
         for race in self.races() {
             let levels = race.levels(LEVELS, self.floor());
@@ -66,7 +66,7 @@ impl Subject {
         format!("At {} {name} is fastest: {cost}; {rest}.", self.amount(error))
     }
 
-    /// What comes closest to the truth.
+    /// Names the row that comes closest to the reference surface.
     fn closest(&self, race: &Race) -> Option<String> {
         self.truth.as_ref()?;
         let (row, error) = race.entries.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -74,13 +74,13 @@ impl Subject {
         Some(format!("Closest comes {}, to {percent} % of the diagonal.", self.named(row)))
     }
 
-    /// A method and its setting.
-    pub(crate) fn named(&self, row: &Row) -> String {
+    /// The name of a row's method, and its setting.
+    pub fn named(&self, row: &Row) -> String {
         format!("{} ({})", self.name(row.setting.method), row.setting.label())
     }
 
-    /// What a method is called among the others.
-    pub(crate) fn name(&self, method: Method) -> String {
+    /// A method's name, with the partitioning and normals where other methods of the subject differ in them.
+    pub fn name(&self, method: Method) -> String {
         let mut name = method.to_string();
         let others = self.methods();
         if others.iter().any(|other| other.lod == method.lod && other.partitioning != method.partitioning) {
@@ -92,7 +92,7 @@ impl Subject {
         name
     }
 
-    /// An error as it is written.
+    /// An error with its unit.
     fn amount(&self, error: f64) -> String {
         match self.truth {
             Some(_) => format!("{} % of the diagonal", plain(error * 100.0)),
@@ -101,8 +101,8 @@ impl Subject {
     }
 }
 
-/// A number with one digit that isn't 0.
-pub(super) fn plain(number: f64) -> String {
+/// Formats a number with one significant digit.
+pub fn plain(number: f64) -> String {
     let digit = (number.log10() + 1e-9).floor();
     if !(-6.0..6.0).contains(&digit) {
         return format!("{number:.0e}");

@@ -7,7 +7,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use super::{AdapterOption, CliError, Telling, WeldOption, file_error, options, warn, write_picture, write_text};
 use crate::engine::{Engine, Preparation};
 use crate::files::file_reason;
-use crate::gallery::{Exhibit, Gallery, Look, PAGE, exhibits, page};
+use crate::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, exhibits, page};
 use crate::load::{HeightSource, Source};
 use crate::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 
@@ -47,7 +47,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
         ));
     }
-    let look = Look {
+    let options = GalleryOptions {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },
         factor: args.factor,
@@ -58,7 +58,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     };
     let engine = Engine::chosen(&args.adapter.choice())?;
     std::fs::create_dir_all(&args.output).map_err(|error| file_error(&args.output, "made", &file_reason(&error)))?;
-    let mut gallery = Gallery::new(look, &engine);
+    let mut gallery = Gallery::new(options, &engine);
     warn(&gallery.warnings()?);
     let (mut all, mut telling) = (Vec::new(), Telling::new());
     for exhibit in exhibits() {

@@ -1,4 +1,4 @@
-//! Binary glTF 2.0: positions, normals, uvs, base colours and their textures.
+//! Writes binary glTF 2.0: positions, normals, uvs, and materials with base colours and textures.
 
 use std::borrow::Cow;
 
@@ -10,15 +10,19 @@ use gltf::json::{self, Index, Root};
 use super::{ExportError, Exported};
 use crate::mesh::Texture;
 
-/// A GLB file's length is 32 bits; leave room for its JSON.
-pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
+/// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
+pub const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
 
-/// Size of the attributes and indices of a mesh.
-pub(super) fn bytes(vertices: u64, triangles: u64) -> u64 {
+/// Returns the size of a mesh's attributes and indices in bytes.
+pub fn bytes(vertices: u64, triangles: u64) -> u64 {
     vertices * 32 + triangles * 12
 }
 
-pub(super) fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
+/// Returns the bytes of a file; `path` is for messages.
+///
+/// # Errors
+/// The file would be larger than 4 GiB, or a texture can't be encoded.
+pub fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
     let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
     let bytes = bytes(mesh.positions.len() as u64, triangles as u64);
     if bytes > MAX_BYTES {
@@ -50,7 +54,7 @@ struct Writer {
 }
 
 impl Writer {
-    /// Appends bytes as a view of their own, starting at a multiple of 4.
+    /// Appends bytes as a new buffer view, which starts at a multiple of 4.
     fn view(&mut self, bytes: &[u8], target: Option<json::buffer::Target>) -> Index<json::buffer::View> {
         let offset = self.bin.len();
         self.bin.extend_from_slice(bytes);
@@ -116,7 +120,7 @@ impl Writer {
         ])
     }
 
-    /// The texture of an image; materials that share the image share it.
+    /// Returns the texture for an image. Materials with the same image share it.
     fn texture(
         &mut self,
         texture: &std::sync::Arc<Texture>,

@@ -1,4 +1,4 @@
-//! Tessellated meshes as files.
+//! Writes tessellated meshes to files.
 
 mod glb;
 mod obj;
@@ -13,13 +13,15 @@ use crate::mesh::{Mesh, Topology};
 use crate::names::shown_path;
 use crate::tessellate::{Tessellated, linear_normal, linear_uv};
 
-/// A mesh with attributes, one run of triangles a material.
-pub(crate) struct Exported<'a> {
+/// A tessellated mesh: the attributes of each vertex, and a list of triangles for each material.
+pub struct Exported<'a> {
+    /// The mesh that was tessellated: its name and materials are written.
     pub mesh: &'a Mesh,
+    /// In object units.
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
-    /// As many as the mesh has materials.
+    /// The triangles of each material, as indices of vertices.
     pub triangles: Vec<Vec<[u32; 3]>>,
 }
 
@@ -30,7 +32,8 @@ pub(crate) enum ExportError {
     #[error("{path}: could not be written ({})", file_reason(reason))]
     Io { path: String, reason: std::io::Error },
     #[error(
-        "{path}: {triangles} triangles are more than it can hold (4 GiB as .glb, 4 billion vertices as .obj): lower the factor"
+        "{path}: {triangles} triangles are too many for this format, which holds 4 GiB as .glb and 4 billion vertices as .obj: lower \
+         the factor"
     )]
     TooLarge { path: String, triangles: u64 },
     #[error("{path}: a texture could not be encoded ({reason})")]
@@ -38,9 +41,9 @@ pub(crate) enum ExportError {
 }
 
 impl<'a> Exported<'a> {
-    /// Attributes of every emitted vertex: positions and uvs as they are; normals in full precision, which what is drawn
-    /// doesn't need.
-    pub(crate) fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
+    /// Collects the attributes of every emitted vertex. Positions are those that were emitted. Normals and uvs are interpolated
+    /// once more, since emitted normals are packed, which is precise enough only for drawing.
+    pub fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
         let corners = |patch: u32| topology.patch_corners(patch).map(|c| &mesh.corners[c as usize]);
         let vertices = &tessellated.vertices;
         let attributes = vertices.iter().map(|vertex| {
@@ -58,14 +61,14 @@ impl<'a> Exported<'a> {
         Self { mesh, positions, normals, uvs, triangles }
     }
 
-    /// Whether a file of that name can hold so many vertices and triangles: asked before they are read back.
+    /// Checks that a file with this name can hold so many vertices and triangles, before they are read back.
     ///
     /// # Errors
-    /// Another ending than .glb or .obj, or more than the format holds.
-    pub(crate) fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
+    /// The ending is neither .glb nor .obj, or the format can't hold that many.
+    pub fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
         let shown = shown_path(path);
         match ending(path).as_str() {
-            // Indices of either are 32 bits here.
+            // This program writes 32-bit indices in both formats.
             "obj" if vertices <= u64::from(u32::MAX) => Ok(()),
             "glb" if glb::bytes(vertices, triangles) <= glb::MAX_BYTES => Ok(()),
             "glb" | "obj" => Err(ExportError::TooLarge { path: shown, triangles }),
@@ -73,12 +76,12 @@ impl<'a> Exported<'a> {
         }
     }
 
-    /// Writes a .glb or .obj file, by the path's ending: beside it first, then renamed, so that a failure leaves what was
-    /// there.
+    /// Writes a .glb or .obj file, depending on the path's ending. The file is written under another name first and then renamed,
+    /// so that a failure leaves an older file intact.
     ///
     /// # Errors
-    /// Another ending, a file that can't be written, or more than the format holds.
-    pub(crate) fn write(&self, path: &Path) -> Result<(), ExportError> {
+    /// The ending is another one, the file can't be written, or the format can't hold that many triangles.
+    pub fn write(&self, path: &Path) -> Result<(), ExportError> {
         let shown = shown_path(path);
         let bytes = match ending(path).as_str() {
             "glb" => glb::encode(self, &shown)?,
@@ -89,7 +92,7 @@ impl<'a> Exported<'a> {
     }
 }
 
-/// In lower case; empty without one.
-pub(crate) fn ending(path: &Path) -> String {
+/// Returns the ending of a file's name without its dot, in lower case; empty if there is none.
+pub fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }

@@ -1,12 +1,13 @@
-//! Wavefront OBJ: text, in as many digits as bring back the same bits.
+//! Writes Wavefront OBJ: text, with enough digits that every number reads back exactly.
 
 use std::fmt::Write;
 
 use super::Exported;
 
-pub(super) fn encode(mesh: &Exported) -> Vec<u8> {
+/// Returns the text of a file.
+pub fn encode(mesh: &Exported) -> Vec<u8> {
     let mut text = format!("# {} tessellated by pnaen\n", mesh.mesh.name.replace(char::is_control, " "));
-    // Writing into a String cannot fail; Rust prints the shortest decimal that parses to the same f32.
+    // Writing into a String can't fail. Rust prints the shortest decimal that parses to the same f32.
     for p in &mesh.positions {
         let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
     }

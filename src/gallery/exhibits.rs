@@ -1,38 +1,38 @@
-//! What hangs in the gallery.
+//! The gallery's exhibits: which techniques it shows, and on which meshes.
 
 use crate::mesh::{HeightMap, Heights, Mesh, Shape};
 use crate::settings::{Choice, Description, Overlays, Settings};
 use crate::tessellate::{Displacement, Normals, Partitioning, Surface, Tessellation};
 
-/// One question, and a tile for every answer.
+/// One aspect of tessellation, with a tile for each technique.
 #[derive(Clone, Debug)]
-pub(crate) struct Exhibit {
-    /// Of its picture's file.
+pub struct Exhibit {
+    /// The name of its picture's file, without the ending.
     pub name: &'static str,
     pub title: &'static str,
     pub about: &'static str,
-    /// What it is shown on, where no mesh is named.
+    /// The shape that it is shown on if no mesh is named.
     pub shape: Shape,
     pub overlays: Overlays,
     pub tiles: Vec<Tile>,
 }
 
-/// One technique.
+/// One technique of an exhibit.
 #[derive(Clone, Debug)]
-pub(crate) struct Tile {
-    /// As the command line has it.
+pub struct Tile {
+    /// The name on the command line.
     pub name: String,
-    /// What it is, and whose: a sentence.
+    /// A sentence that says what the technique is, and where it was published.
     pub about: String,
     pub settings: Settings,
-    /// Where not everybody's is meant.
+    /// The tessellation factor, if it is another than [`super::GalleryOptions::factor`].
     pub factor: Option<f32>,
-    /// Of the bounding diagonal.
+    /// The width of the crease band, as a part of the bounding diagonal; 0 for none.
     pub crease_band: f32,
 }
 
 impl Tile {
-    /// A technique that is a value of an option: its name and explanation are the option's.
+    /// A technique that is one value of an option. Its name and explanation are those of the value.
     fn of(value: impl Choice, tessellation: Tessellation) -> Self {
         let Description { name, text, .. } = value.description();
         Self {
@@ -49,8 +49,8 @@ impl Tile {
     }
 }
 
-/// All of them, in the order in which a patch is made: surface, creases, normals, pattern, heights.
-pub(crate) fn exhibits() -> [Exhibit; 5] {
+/// All exhibits, in the order of the steps in which a patch is made: surface, creases, normals, pattern, heights.
+pub fn exhibits() -> [Exhibit; 5] {
     [surfaces(), creases(), normals(), patterns(), heights()]
 }
 
@@ -63,8 +63,9 @@ fn surfaces() -> Exhibit {
     Exhibit {
         name: "surfaces",
         title: "Surfaces",
-        about: "What each triangle becomes, from its corners' positions and normals alone. Where normals are split, surfaces \
-                that go by each side's own tear (red); those that agree on an edge's control points don't.",
+        about: "The patch that each technique makes of a triangle, from the positions and normals of its corners alone. Where \
+                normals are split, surfaces that follow each side's own normals tear (red). Surfaces whose sides share the \
+                control points of an edge don't.",
         shape: Shape::CubeSplit,
         overlays: Overlays { cracks: true, ..Overlays::default() },
         tiles: Surface::ALL.map(of).to_vec(),
@@ -77,14 +78,14 @@ fn creases() -> Exhibit {
     Exhibit {
         name: "creases",
         title: "Creases",
-        about: "What becomes of an edge whose sides have different normals: nothing, so that it tears; the mean of both sides' \
-                control points; the line that both tangent planes share; or a band of small triangles with one normal on the \
-                crease, made before.",
+        about: "Four ways to treat an edge whose sides have different normals: leave it as it is, so that it tears; first make a \
+                band of small triangles along the crease, which gives all sides one normal; follow the line that both tangent \
+                planes share; or take the mean of both sides' control points.",
         shape: Shape::Cylinder,
         overlays: Overlays { cracks: true, ..Overlays::default() },
         tiles: vec![
             of(Surface::Pn),
-            band.named("pn --rim 0.02", "A crease band, for PN triangles (Vlachos et al. 2001)."),
+            band.named("pn --crease-band 0.02", "A crease band, for PN triangles (Vlachos et al. 2001)."),
             of(Surface::PnCrease),
             of(Surface::PnAen),
         ],
@@ -96,9 +97,9 @@ fn normals() -> Exhibit {
     Exhibit {
         name: "normals",
         title: "Shading normals",
-        about: "Which normals the same surface is shaded with. Its own have a step wherever patches meet at an angle, which \
-                they do almost everywhere; quadratic ones follow edges that bend back, and bulge where authors' normals \
-                don't mean a curve; linear ones say what the author said.",
+        about: "The same surface shaded with different normals. Linear normals keep what the author's normals say. Quadratic \
+                normals follow edges that bend back, and bulge where the author's normals don't mean a curve. The surface's \
+                own normals have a step wherever patches meet at an angle, which they do almost everywhere.",
         shape: Shape::CubeSmooth,
         overlays: Overlays::default(),
         tiles: Normals::ALL.iter().map(|&normals| of(normals)).collect(),
@@ -113,7 +114,7 @@ fn patterns() -> Exhibit {
     Exhibit {
         name: "patterns",
         title: "Patterns",
-        about: "How one factor between two whole numbers becomes triangles.",
+        about: "The triangles that each partitioning makes of one factor between two whole numbers.",
         shape: Shape::Icosahedron,
         overlays: Overlays { wireframe: true, patches: true, ..Overlays::default() },
         tiles: Partitioning::ALL.map(of).to_vec(),
@@ -128,16 +129,16 @@ fn heights() -> Exhibit {
     Exhibit {
         name: "displacement",
         title: "Displacement",
-        about: "One height image over patches whose texture coordinates and normals don't agree where they meet. Dominant edges \
-                and vertices close seams, and one direction a point closes the rest.",
+        about: "One height image over patches whose texture coordinates and normals differ where they meet. Dominant edges and \
+                corners close seams, and moving each point along one direction closes the rest.",
         shape: Shape::CubeSplit,
         overlays: Overlays { cracks: true, ..Overlays::default() },
         tiles: Displacement::ALL.iter().map(|&displacement| of(displacement)).collect(),
     }
 }
 
-/// A height image for shapes made in code: waves that repeat with it.
-pub(super) fn waves(mesh: &Mesh) -> Heights {
+/// A height image of waves for shapes made in code. It can be repeated without a seam.
+pub fn waves(mesh: &Mesh) -> Heights {
     const SIZE: u32 = 128;
     let height = |i: u32| {
         let [x, y] = [i % SIZE, i / SIZE].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / SIZE as f32);

@@ -1,4 +1,5 @@
-//! Every technique side by side, on one mesh: pictures, numbers, and a page that says what each is and whose.
+//! Every technique side by side on one mesh: pictures, numbers, and a page that says what each technique is and where it was
+//! published.
 
 mod exhibits;
 mod page;
@@ -10,9 +11,9 @@ use glam::Vec3;
 use image::RgbImage;
 use thiserror::Error;
 
-pub(crate) use exhibits::{Exhibit, Tile, exhibits};
-pub(crate) use page::{PAGE, page};
-pub(crate) use tile::Shown;
+pub use exhibits::{Exhibit, Tile, exhibits};
+pub use page::{PAGE, page};
+pub use tile::TileResults;
 
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
@@ -23,7 +24,7 @@ use crate::progress::Progress;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Surface, Tessellation, displacement_reach};
-use tile::{Wall, draw_tile};
+use tile::{TileContext, draw_tile};
 
 /// Why there is no gallery.
 #[derive(Debug, Error)]
@@ -39,47 +40,47 @@ pub(crate) enum GalleryError {
 /// Width and height of one tile, in px.
 const TILE: [u32; 2] = [300, 240];
 
-/// Px that captions are high: pages show four tiles in a row at two thirds of their size.
+/// The height of captions in px. It is large because pages show four tiles in a row at two thirds of their size.
 const TEXT: u32 = 24;
 
-/// The factor at which it is looked where a surface goes, before anything is drawn.
-const LOOK_FACTOR: f32 = 4.0;
+/// The factor for the tessellation that the camera is fitted to, before anything is drawn.
+const FRAMING_FACTOR: f32 = 4.0;
 
-/// A surface that goes farther from the mesh's middle, in bounding radii, isn't stepped back for: patches that fly away
-/// leave the picture, and what everybody came to see stays.
+/// A surface that reaches farther than this from the mesh's middle, in bounding radii, doesn't count for the camera. Patches
+/// that fly away leave the picture, so that the rest stays large.
 const FARTHEST: f32 = 1.1;
 
-/// What is looked at, and how.
+/// What the gallery shows, and how.
 #[derive(Clone, Debug)]
-pub(crate) struct Look {
-    /// The mesh; none for a shape made in code that suits each exhibit.
+pub struct GalleryOptions {
+    /// The mesh; `None` for the shape that suits each exhibit.
     pub source: Option<Source>,
     pub preparation: Preparation,
     /// Tessellation factor.
     pub factor: f32,
-    /// How far white is above black, in bounding radii, and the height that stays.
+    /// How far white is above black, in bounding radii, and the height that stays where it is, from 0 to 1.
     pub height_scale: f32,
     pub midlevel: f32,
-    /// From the front to the right and upwards, in degrees.
+    /// The direction of the camera, in degrees from the front to the right, and upwards.
     pub azimuth: f32,
     pub elevation: f32,
 }
 
-/// The room in which exhibits are hung.
-pub(crate) struct Gallery<'a> {
-    look: Look,
+/// Draws exhibits on one device.
+pub struct Gallery<'a> {
+    options: GalleryOptions,
     engine: &'a Engine,
-    /// What was loaded already: a mesh of one's own is in every exhibit.
+    /// The meshes that were loaded already. A mesh that the user names is in every exhibit.
     loaded: Vec<Loaded>,
 }
 
 impl<'a> Gallery<'a> {
-    pub(crate) fn new(look: Look, engine: &'a Engine) -> Self {
-        Self { look, engine, loaded: Vec::new() }
+    pub fn new(options: GalleryOptions, engine: &'a Engine) -> Self {
+        Self { options, engine, loaded: Vec::new() }
     }
 
-    /// Draws an exhibit: its tiles in rows, and what each showed, in their order. `starting` is told each tile's number before
-    /// it is drawn.
+    /// Draws an exhibit's tiles in rows. Returns the picture, and the results of each tile in order. `starting` is called with
+    /// the index of each tile before it is drawn.
     ///
     /// # Errors
     /// [`GalleryError`].
@@ -87,48 +88,48 @@ impl<'a> Gallery<'a> {
         &mut self,
         exhibit: &Exhibit,
         mut starting: impl FnMut(usize),
-    ) -> Result<(RgbImage, Vec<Shown>), GalleryError> {
+    ) -> Result<(RgbImage, Vec<TileResults>), GalleryError> {
         let engine = self.engine;
         let target = Target::new(&engine.gpu, TILE)?;
         let camera = self.camera(exhibit, &target)?;
         let (mut parts, mut all) = (Vec::new(), Vec::new());
-        let mut hung: Option<(f32, Loaded, Scene)> = None;
+        let mut current: Option<(f32, Loaded, Scene)> = None;
         for (index, tile) in exhibit.tiles.iter().enumerate() {
             starting(index);
-            if hung.as_ref().is_none_or(|(crease_band, ..)| *crease_band != tile.crease_band) {
+            if current.as_ref().is_none_or(|(crease_band, ..)| *crease_band != tile.crease_band) {
                 let loaded = self.prepared(exhibit, tile.crease_band)?;
                 let scene = engine.scene(&loaded, ARENA_BYTES)?;
-                hung = Some((tile.crease_band, loaded, scene));
+                current = Some((tile.crease_band, loaded, scene));
             }
-            let Some((_, loaded, scene)) = &mut hung else { continue };
+            let Some((_, loaded, scene)) = &mut current else { continue };
             let settings = self.settings(tile);
-            let wall = Wall { engine, target: &target, camera: &camera, overlays: exhibit.overlays };
-            let (picture, shown) = draw_tile(&wall, settings, loaded, scene)?;
+            let context = TileContext { engine, target: &target, camera: &camera, overlays: exhibit.overlays };
+            let (picture, results) = draw_tile(&context, settings, loaded, scene)?;
             parts.push((tile.name.clone(), picture));
-            all.push(shown);
+            all.push(results);
         }
         let columns = if parts.len() % 4 == 0 { 4 } else { 3 };
         Ok((contact_sheet(&parts, columns, TEXT)?, all))
     }
 
-    /// What a mesh of one's own has to be said of: see [`crate::load::LoadedMesh::warnings`].
+    /// The warnings about the mesh that the user named: see [`crate::load::LoadedMesh::warnings`].
     ///
     /// # Errors
-    /// It can't be loaded.
-    pub(crate) fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
-        match self.look.source.clone() {
+    /// The mesh can't be loaded.
+    pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
+        match self.options.source.clone() {
             Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),
             None => Ok(Vec::new()),
         }
     }
 
-    /// One camera for all tiles of an exhibit, so that they can be compared: filled by the mesh under all of its surfaces, and
-    /// by as far as anything is displaced.
+    /// The camera for all tiles of an exhibit, so that they can be compared. The mesh with all surfaces of the exhibit fits
+    /// into its picture, with room for displacement.
     fn camera(&mut self, exhibit: &Exhibit, target: &Target) -> Result<Camera, GalleryError> {
         let loaded = self.prepared(exhibit, 0.0)?;
         let mut scene = self.engine.scene(&loaded, ARENA_BYTES)?;
         let framing = Camera::framing(&scene.bounds, target.viewport());
-        let mut camera = Camera { azimuth: self.look.azimuth, elevation: self.look.elevation, ..framing };
+        let mut camera = Camera { azimuth: self.options.azimuth, elevation: self.options.elevation, ..framing };
         let view = camera.lod_view(target.viewport(), &scene.bounds);
         let mut places: Vec<Vec3> = loaded.mesh.corners.iter().map(|corner| corner.position).collect();
         let (mut seen, mut farthest): (Vec<Surface>, f32) = (Vec::new(), 0.0);
@@ -141,7 +142,7 @@ impl<'a> Gallery<'a> {
             seen.push(settings.tessellation.surface);
             let plain = settings.with(Tessellation {
                 displacement: Displacement::Off,
-                factor: LOOK_FACTOR,
+                factor: FRAMING_FACTOR,
                 ..settings.tessellation
             });
             places.extend(self.places(&mut scene, plain, &camera, target)?);
@@ -150,7 +151,7 @@ impl<'a> Gallery<'a> {
         Ok(camera)
     }
 
-    /// Where a surface goes; nowhere, if it flies away.
+    /// The positions of a surface's vertices; none if it reaches beyond [`FARTHEST`].
     fn places(
         &self,
         scene: &mut Scene,
@@ -166,14 +167,14 @@ impl<'a> Gallery<'a> {
         };
         self.engine.visit(scene, &mut [&mut take])?;
         let (center, most) = (scene.bounds.center(), FARTHEST * scene.bounds.radius());
-        // Divided first: squares of very small or large lengths leave f32.
+        // Dividing first keeps the squares of very small or large lengths within the range of f32.
         let near = |place: &Vec3| place.is_finite() && ((*place - center) / most).length() <= 1.0;
         Ok(if places.iter().all(near) { places } else { Vec::new() })
     }
 
-    /// What a tile is drawn with.
+    /// The settings that a tile is drawn with.
     fn settings(&self, tile: &Tile) -> Settings {
-        let Look { height_scale, midlevel, factor, .. } = self.look;
+        let GalleryOptions { height_scale, midlevel, factor, .. } = self.options;
         tile.settings.with(Tessellation {
             factor: tile.factor.unwrap_or(factor),
             height_scale,
@@ -182,10 +183,9 @@ impl<'a> Gallery<'a> {
         })
     }
 
-    /// The exhibit's mesh; with the heights that suit a shape made in code where it is to be displaced and nobody named
-    /// others.
+    /// The exhibit's mesh. If the exhibit displaces it and the user named no height image, it has the waves made in code.
     fn prepared(&mut self, exhibit: &Exhibit, crease_band: f32) -> Result<Loaded, LoadError> {
-        let source = self.look.source.clone().unwrap_or(Source::Shape(exhibit.shape));
+        let source = self.options.source.clone().unwrap_or(Source::Shape(exhibit.shape));
         let mut loaded = self.load(source, crease_band)?.clone();
         let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement != Displacement::Off);
         if displaced && loaded.mesh.heights.is_none() {
@@ -197,7 +197,7 @@ impl<'a> Gallery<'a> {
     }
 
     fn load(&mut self, source: Source, crease_band: f32) -> Result<&Loaded, LoadError> {
-        let preparation = Preparation { crease_band, ..self.look.preparation.clone() };
+        let preparation = Preparation { crease_band, ..self.options.preparation.clone() };
         let known = |loaded: &Loaded| loaded.source == source && loaded.preparation == preparation;
         let index = match self.loaded.iter().position(known) {
             Some(index) => index,

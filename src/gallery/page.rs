@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Exhibit, Shown, Tile};
+use super::{Exhibit, Tile, TileResults};
 use crate::markdown;
 use crate::numbers::{grouped, hundredths, short};
 
@@ -10,13 +10,13 @@ use crate::numbers::{grouped, hundredths, short};
 pub(crate) const PAGE: &str = "gallery.md";
 
 /// What the columns and colours mean.
-const LEGEND: &str = "Red edges: their sides are half a px apart or more, in this view. Blue ones: less, if only by the last \
-     bit of a coordinate.\n\n\
-     Error: the largest distance in px between what is drawn and the surface that it stands for; none where patches agree \
-     on heights, since that surface is then no longer each patch's own. Points and normals: of edges, where \
-     their sides differ in at least one bit. Gaps are in px and in object units. ms: the median of several runs, of all \
-     passes that tessellate and of the draw without marks, which leaves out the backs of closed surfaces that nothing tears. Factors are lower than asked for where a tile would have more \
-     than about 2,000,000 triangles.\n";
+const LEGEND: &str = "Edges are red where the gap between their sides is at least half a px wide in this view, and blue where \
+     it is narrower, down to the last bit of a coordinate.\n\n\
+     Error is the largest distance in px between what is drawn and the surface that it approximates. There is none where \
+     patches agree on heights, since they then leave the surface that each patch has by itself. Points and normals are those \
+     of edges whose sides differ in at least one bit. Gaps are in px and in object units. Times are medians of several runs in \
+     ms: of all passes that tessellate, and of drawing without marks. Drawing leaves out the backs of closed surfaces that \
+     don't tear. Factors are lower than asked for where a tile would have more than about 2,000,000 triangles.\n";
 
 const COLUMNS: [&str; 11] = [
     "",
@@ -32,9 +32,9 @@ const COLUMNS: [&str; 11] = [
     "ms to draw",
 ];
 
-/// Every exhibit with its picture, and a line for each of its tiles. `subject` is the mesh, if one was named; `adapter` is
-/// what drew.
-pub(crate) fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<Shown>)]) -> String {
+/// Returns the page in Markdown: every exhibit with its picture, and a line for each of its tiles. `subject` is the mesh, if
+/// the user named one, and `adapter` the name of the device.
+pub fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<TileResults>)]) -> String {
     let on = subject.map_or("shapes made in code".to_owned(), ToOwned::to_owned);
     let mut text = format!(
         "# Every technique, side by side\n\nWritten by `pnaen gallery -o DIR`: {on}, drawn and timed on {adapter}.\n\n{LEGEND}"
@@ -51,9 +51,9 @@ pub(crate) fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<
     text
 }
 
-/// What each tile showed.
-fn table(tiles: &[Tile], shown: &[Shown]) -> String {
-    let row = |(tile, shown): (&Tile, &Shown)| {
+/// Returns a table with the results of each tile.
+fn table(tiles: &[Tile], shown: &[TileResults]) -> String {
+    let row = |(tile, shown): (&Tile, &TileResults)| {
         vec![
             format!("`{}`", tile.name),
             shown.factor.to_string(),
@@ -77,9 +77,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_as_they_do_elsewhere() {
+    fn a_row_has_short_numbers_and_the_page_names_mesh_and_adapter() {
         let [exhibit, ..] = exhibits();
-        let shown = Shown {
+        let shown = TileResults {
             factor: 5.5,
             triangles: 12345,
             error_px: None,

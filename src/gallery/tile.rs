@@ -1,4 +1,4 @@
-//! One tile: drawn, measured and timed.
+//! Draws, measures and times one tile.
 
 use image::{DynamicImage, RgbImage};
 
@@ -10,48 +10,49 @@ use crate::render::{Camera, LineSegment, Scene, Target, crack_lines_in};
 use crate::settings::{Overlays, Settings};
 use crate::tessellate::{Displacement, Inputs, Lod, Tessellation};
 
-/// Triangles in a tile, about: a mesh of many gets lower factors, since no tile has px for more.
+/// About the most triangles in a tile. Larger meshes get lower factors, since a tile has no pixels for more triangles.
 const MOST_TRIANGLES: f32 = 2e6;
 
-/// Gaps at least this wide, in px, are drawn as visible cracks.
+/// Gaps of at least this width, in px, are drawn as visible cracks.
 const VISIBLE_PX: f64 = 0.5;
-/// The sRGB colour of edges whose gaps are narrower than that.
-const CALM_COLOR: [u8; 3] = [120, 160, 205];
+/// The sRGB colour of edges whose gaps are narrower.
+const NARROW_COLOR: [u8; 3] = [120, 160, 205];
 
-/// Px to either side of the line of a crack that can be seen, and of one that can't: thinner than in the window, as tiles are
+/// Half the width in px of the lines for visible and for narrower cracks. They are thinner than in the window, since tiles are
 /// small.
 const HALF_WIDTHS: [f32; 2] = [1.25, 0.75];
 
-/// What an exhibit's tiles have in common.
-pub(super) struct Wall<'a> {
+/// What all tiles of an exhibit are drawn with.
+pub struct TileContext<'a> {
     pub engine: &'a Engine,
     pub target: &'a Target,
     pub camera: &'a Camera,
     pub overlays: Overlays,
 }
 
-/// What one tile showed.
+/// The measurements of one tile.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Shown {
+pub struct TileResults {
     pub factor: f32,
     pub triangles: u64,
-    /// The largest distance on screen between what was drawn and its surface, in px; none if nothing is in view.
+    /// The largest distance on screen between what was drawn and the surface that it approximates, in px; `None` if nothing is
+    /// in view, or if patches agree on heights.
     pub error_px: Option<f64>,
-    /// Edge points whose positions differ in at least one bit, and the widest gap in px and object units.
+    /// Edge points whose positions differ between sides in at least one bit, and the widest gap in px and in object units.
     pub different_bits: u64,
     pub max_gap_px: f64,
     pub max_gap: f64,
-    /// Edge points whose normals differ though the mesh's agree.
+    /// Edge points whose normals differ between sides although the mesh's normals agree.
     pub different_normals: u64,
     pub folds: u64,
-    /// Of all passes but the draw, and of the draw without marks: medians.
+    /// The median times of all passes but the draw, and of the draw without marks.
     pub tessellation_ms: f64,
     pub draw_ms: f64,
 }
 
-/// The same with a factor that the mesh isn't too large for; a whole one, if it has to be lower than asked.
-pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
-    // The tessellator makes about 1.5 triangles a patch for each square of the factor.
+/// The inputs with a factor at which the mesh makes no more than about [`MOST_TRIANGLES`]. A lowered factor is whole.
+pub fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
+    // The tessellator makes about 1.5 times the square of the factor triangles in a patch.
     let most = (MOST_TRIANGLES / (1.5 * scene.tessellator.topology().patches.len().max(1) as f32)).sqrt();
     debug_assert!(inputs.tessellation.lod == Lod::Uniform);
     Inputs {
@@ -63,19 +64,23 @@ pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     }
 }
 
-pub(super) fn draw_tile(
-    wall: &Wall,
+/// Times, measures and draws a tile. Returns its picture and its results.
+///
+/// # Errors
+/// The device fails.
+pub fn draw_tile(
+    context: &TileContext,
     settings: Settings,
     loaded: &Loaded,
     scene: &mut Scene,
-) -> Result<(RgbImage, Shown), GpuError> {
-    let &Wall { engine, target, camera, overlays } = wall;
+) -> Result<(RgbImage, TileResults), GpuError> {
+    let &TileContext { engine, target, camera, overlays } = context;
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let inputs = affordable(&settings.inputs(view), scene);
     let settings = settings.with(Tessellation { factor: inputs.tessellation.factor, ..settings.tessellation });
     scene.set_lines(&engine.gpu, &[]);
     let passes = engine.time(scene, target, camera, &settings, Runs::default())?;
-    // What patches agree on isn't on the surface that each has by itself, which the error is measured against.
+    // Points that patches agree on leave the surface that each patch has by itself, which the error is measured from.
     let is_shared = matches!(settings.tessellation.displacement, Displacement::On | Displacement::AsPublished);
     let wanted =
         Measurements { survey: true, screen_error: (!is_shared).then_some(&inputs), ..Measurements::default() };
@@ -87,7 +92,7 @@ pub(super) fn draw_tile(
         scene.set_lines(&engine.gpu, &crack_lines(&measured, loaded, gap_px));
     }
     engine.draw(scene, target, camera, &Settings { overlays, ..settings }, &mut Timing::Off)?;
-    let shown = Shown {
+    let results = TileResults {
         factor: settings.tessellation.factor,
         triangles: scene.tessellator.totals().1,
         error_px,
@@ -99,18 +104,18 @@ pub(super) fn draw_tile(
         tessellation_ms: ms(&passes, |pass| !DRAWING.contains(&pass)),
         draw_ms: ms(&passes, |pass| DRAWING.contains(&pass)),
     };
-    Ok((DynamicImage::from(target.read(&engine.gpu)?).to_rgb8(), shown))
+    Ok((DynamicImage::from(target.read(&engine.gpu)?).to_rgb8(), results))
 }
 
-/// Cracked edges in two classes, those that can be seen over those that can't.
+/// The lines of cracked edges, in two classes. Visible cracks are drawn over narrower ones.
 fn crack_lines(measured: &Measured, loaded: &Loaded, gap_px: impl Fn(&CrackedEdge) -> f64) -> Vec<LineSegment> {
-    let is_calm = |crack: &CrackedEdge| gap_px(crack) < VISIBLE_PX;
-    let color = |crack: &CrackedEdge| if is_calm(crack) { CALM_COLOR } else { CRACK_COLOR };
+    let is_narrow = |crack: &CrackedEdge| gap_px(crack) < VISIBLE_PX;
+    let color = |crack: &CrackedEdge| if is_narrow(crack) { NARROW_COLOR } else { CRACK_COLOR };
     let mut lines = crack_lines_in(measured, &loaded.topology, color);
-    let calm = linear(CALM_COLOR);
-    lines.sort_by_key(|line| line.color != calm);
-    let [seen, unseen] = HALF_WIDTHS;
-    lines.iter_mut().for_each(|line| line.half_width = if line.color == calm { unseen } else { seen });
+    let narrow = linear(NARROW_COLOR);
+    lines.sort_by_key(|line| line.color != narrow);
+    let [visible_width, narrow_width] = HALF_WIDTHS;
+    lines.iter_mut().for_each(|line| line.half_width = if line.color == narrow { narrow_width } else { visible_width });
     lines
 }
 

@@ -1,4 +1,5 @@
-//! How far what was emitted is from a surface that it should have been, both ways, and how far its normals lean from it.
+//! Accuracy: the distances between what was emitted and a reference surface, in both directions, and the angles between their
+//! normals.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -11,12 +12,12 @@ use super::visitor::{EmittedChunk, Visitor};
 use crate::tessellate::{LodView, Vertex, unpack_normal};
 use crate::truth::{Sample, Triangles, Truth};
 
-/// How finely is looked.
+/// How finely accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccuracyOptions {
-    /// Samples of the truth; and about as many of what was emitted, but at least four a triangle.
+    /// The number of samples on the reference surface. What was emitted gets about as many, but at least four per triangle.
     pub samples: usize,
-    /// Threads that work on it; the result is the same for any number.
+    /// The number of threads. The result doesn't depend on it.
     pub threads: usize,
 }
 
@@ -26,14 +27,14 @@ impl Default for AccuracyOptions {
     }
 }
 
-/// What was emitted, held against a truth chunk by chunk, wherever it was emitted.
+/// Compares what was emitted, on the CPU or the device, with a reference surface, chunk by chunk.
 ///
-/// All of the mesh must be emitted: what is clipped or culled is missing, and counts as distance from the truth.
-pub(crate) struct AccuracyMeasurement<'a> {
+/// All of the mesh must be emitted: parts that are clipped or culled count as distance from the reference surface.
+pub struct AccuracyMeasurement<'a> {
     truth: &'a Truth,
     options: AccuracyOptions,
     screen: Option<Screen>,
-    /// Points of the truth, and what was emitted nearest to each so far.
+    /// Points of the reference surface, each with the nearest emitted point so far.
     samples: Vec<(Sample, Option<WorstPoint>)>,
     sums: Sums,
 }
@@ -54,68 +55,69 @@ pub struct Angles {
     pub rms: f64,
 }
 
-/// Where something is largest.
+/// The place where a distance or angle is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstPoint {
-    /// Object units, px or degrees: what is largest.
+    /// The largest value, in object units, px or degrees.
     pub value: f64,
-    /// The patch that emitted what is here.
+    /// The patch that emitted the point.
     pub patch: u32,
-    /// Object units, as `truth`.
+    /// The emitted point, in object units.
     pub emitted: DVec3,
+    /// The point of the reference surface, in object units.
     pub truth: DVec3,
 }
 
-/// What came of it.
+/// The results of the comparison with a reference surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Of the truth's bounding box, in object units: distances are commonly given as parts of it.
+    /// The diagonal of the reference surface's bounding box, in object units. Distances are often given as parts of it.
     pub diagonal: f64,
-    /// From what was emitted to the truth.
+    /// From what was emitted to the reference surface.
     pub to_truth: Distances,
     pub worst_to_truth: WorstPoint,
-    /// From the truth to what was emitted.
+    /// From the reference surface to what was emitted.
     pub from_truth: Distances,
     pub worst_from_truth: WorstPoint,
-    /// The largest distance on screen between a point of what was emitted and the truth's nearest; none if none is in view,
-    /// or there is no view.
+    /// The largest distance on screen between an emitted point and the nearest point of the reference surface; `None` if no
+    /// point is in view, or there is no view.
     pub worst_px: Option<WorstPoint>,
-    /// Between shading normals and those of the truth's nearest point.
+    /// Between shading normals and the normals of the reference surface at the nearest points.
     pub normals: Angles,
     pub worst_normal: WorstPoint,
-    /// Vertices that are no numbers, which nothing can be said of; their triangles are left out.
+    /// The number of vertices with infinite or NaN coordinates. Their triangles are left out.
     pub not_finite: u64,
 }
 
 impl Accuracy {
-    /// Both directions: the larger of the largest, and the root of the mean of both mean squares.
+    /// Combines both directions: the larger of the largest distances, and the root of the mean of both mean squares.
     pub fn both_ways(&self) -> Distances {
         let [a, b] = [self.to_truth, self.from_truth];
         Distances { largest: a.largest.max(b.largest), rms: a.rms.hypot(b.rms) / 2.0_f64.sqrt() }
     }
 
-    /// Distances as parts of the truth's diagonal.
+    /// Distances as parts of [`Self::diagonal`].
     pub fn relative(&self, distances: Distances) -> Distances {
         let part = |x: f64| if self.diagonal > 0.0 { x / self.diagonal } else { 0.0 };
         Distances { largest: part(distances.largest), rms: part(distances.rms) }
     }
 }
 
-/// Into how many blocks things are cut that threads take one after another, and how many things are in one at most. Sums
-/// are made block by block, so that they don't depend on the number of threads.
+/// The number of blocks that threads take one after another, and the most items in one. Sums are made block by block, so that
+/// they don't depend on the number of threads.
 const BLOCKS: usize = 256;
 const LARGEST_BLOCK: usize = 1024;
-/// Into how many segments a triangle's edges are cut at most.
+/// The most segments that a triangle's edges are cut into for sampling.
 const MAX_STEPS: u32 = 200;
 
 impl<'a> AccuracyMeasurement<'a> {
-    /// Nothing seen yet. With a view, distances in px too.
-    pub(crate) fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
+    /// Starts a measurement. With a view, distances are also measured in px.
+    pub fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
         let samples = truth.samples(options.samples).into_iter().map(|sample| (sample, None)).collect();
         Self { truth, options, screen: view.map(Screen::new), samples, sums: Sums::default() }
     }
 
-    /// From what was emitted to the truth.
+    /// Measures from the emitted triangles to the reference surface.
     fn take_triangles(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
         let this = &*self;
         let mut used = vec![false; vertices.len()];
@@ -137,8 +139,8 @@ impl<'a> AccuracyMeasurement<'a> {
         self.sums = corners.into_iter().chain(insides).fold(std::mem::take(&mut self.sums), Sums::with);
     }
 
-    /// Cuts a triangle into equal ones, n along an edge, and takes the middle of each. n is no multiple of 3, for which
-    /// none of them has the triangle's own.
+    /// Cuts a triangle into equal ones, n along each edge, and takes the middle of each. n isn't a multiple of 3, since then no
+    /// sample would lie in the middle of the triangle itself.
     fn sample(&self, corners: [&Vertex; 3], sums: &mut Sums) {
         let positions = corners.map(position);
         let [a, b, c] = positions;
@@ -168,8 +170,8 @@ impl<'a> AccuracyMeasurement<'a> {
         }
     }
 
-    /// What came of it; none if nothing was emitted, or nothing that has an area.
-    pub(crate) fn finish(self) -> Option<Accuracy> {
+    /// The results; `None` if nothing with an area was emitted.
+    pub fn finish(self) -> Option<Accuracy> {
         let Sums { area, squares, angles, worst, worst_px, worst_normal, not_finite } = self.sums;
         let (worst_to_truth, worst_normal) = (worst?, worst_normal?);
         if area <= 0.0 {
@@ -220,7 +222,7 @@ impl Visitor for AccuracyMeasurement<'_> {
     }
 }
 
-/// A point of what was emitted, and its shading normal.
+/// An emitted point, and its shading normal.
 struct Point {
     position: DVec3,
     normal: DVec3,
@@ -235,11 +237,11 @@ fn normal(vertex: &Vertex) -> DVec3 {
     unpack_normal(vertex.normal).as_dvec3()
 }
 
-/// From what was emitted to the truth, so far.
+/// The sums and worst points so far, from what was emitted to the reference surface.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     area: f64,
-    /// Of distances and of angles in degrees, times area.
+    /// The squares of distances, and of angles in degrees, each times the area.
     squares: f64,
     angles: f64,
     worst: Option<WorstPoint>,
@@ -249,10 +251,10 @@ struct Sums {
 }
 
 impl Sums {
-    /// Takes a point that stands for some area.
+    /// Adds a point that stands for some area.
     fn add(&mut self, point: &Point, area: f64, truth: &Truth, screen: Option<&Screen>) {
         let nearest = truth.closest_facing(point.position, point.normal);
-        // Of the two ways to an angle, the one that is exact near 0.
+        // Unlike the arc cosine, this is exact for angles near 0.
         let angle = point.normal.cross(nearest.normal).length().atan2(point.normal.dot(nearest.normal)).to_degrees();
         let place = |value| WorstPoint { value, patch: point.patch, emitted: point.position, truth: nearest.point };
         let px = screen.and_then(|screen| screen.distance_px(point.position, nearest.point));
@@ -278,12 +280,12 @@ impl Sums {
     }
 }
 
-/// The first of the largest.
+/// The point with the larger value, or `a` if both are equal.
 pub(super) fn worse(a: WorstPoint, b: WorstPoint) -> WorstPoint {
     if b.value > a.value { b } else { a }
 }
 
-/// What `work` makes of every block of `count` things, in order.
+/// Cuts `count` items into blocks, runs `work` on each, and returns the results in order.
 pub(super) fn blocks<T: Send>(count: usize, threads: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
     let block_size = (count / BLOCKS).clamp(1, LARGEST_BLOCK);
     let next = AtomicUsize::new(0);

@@ -1,19 +1,19 @@
-//! Factors that were given patch by patch: whether the sides of every edge got the same, and if not, which order of a
-//! patch's factors would make it so.
+//! Checks factors that were given patch by patch: whether the sides of every edge have the same factor, and if not, in which
+//! order of a patch's factors they would.
 
 use crate::mesh::{Side, Topology};
 use crate::tessellate::{Convention, HullFactors, domain_side, factor_side};
 
-/// What was found.
+/// The result of the check.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Agreement {
     /// Edges with several sides that emit something.
     pub edges_compared: u64,
-    /// Patches that the tessellator leaves out: a factor of theirs is not greater than zero.
+    /// Patches that the tessellator leaves out because a factor isn't greater than zero.
     pub patches_culled: u64,
     /// Edges whose sides have different factors, the largest difference first.
     pub edges: Vec<Disagreement>,
-    /// Every order that a patch's three factors can be in.
+    /// Every order that the three factors of a patch can have.
     pub orders: [Order; 6],
 }
 
@@ -22,7 +22,7 @@ pub(crate) struct Agreement {
 pub(crate) struct Disagreement {
     /// Index in [`Topology::edges`].
     pub edge: u32,
-    /// Of every side that emits something: the mesh's triangle, and its factor.
+    /// For every side that emits something: the mesh's triangle, and its factor.
     pub sides: Vec<(u32, f32)>,
 }
 
@@ -40,18 +40,18 @@ impl Disagreement {
     }
 }
 
-/// An order that a patch's factors can be in.
+/// An order that a patch's factors can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Order {
     /// The sides that factors 0, 1 and 2 are for.
     pub sides: [u32; 3],
-    /// Edges whose sides have different factors if that is so.
+    /// Edges whose sides have different factors in this order.
     pub different: u64,
 }
 
 impl Order {
-    /// The first convention that writes factors so.
-    pub(crate) fn convention(&self) -> Option<Convention> {
+    /// The first convention that writes factors in this order.
+    pub fn convention(&self) -> Option<Convention> {
         Convention::ALL.into_iter().find(|&convention| order(convention, factor_side) == self.sides)
     }
 }
@@ -63,8 +63,8 @@ fn order(convention: Convention, side: fn(Convention, u32) -> u32) -> [u32; 3] {
 }
 
 impl Agreement {
-    /// Compares the sides of every edge as they will be cut under a convention.
-    pub(crate) fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
+    /// Compares the sides of every edge as they are cut under a convention.
+    pub fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
         let culled: Vec<bool> = given.iter().map(|patch| patch.culls()).collect();
         let shown = order(convention, domain_side);
         let mut agreement = Self {
@@ -108,7 +108,7 @@ fn differ(sides: &[&Side], given: &[HullFactors], order: [u32; 3]) -> bool {
     sides.iter().any(|side| own(side) != own(sides[0]))
 }
 
-/// The factor of a side if factors 0, 1 and 2 are for these sides.
+/// The factor of a side if factors 0, 1 and 2 are for the sides in `order`.
 fn factor(given: &[HullFactors], side: &Side, order: [u32; 3]) -> f32 {
     let at = order.iter().position(|&k| k as usize == side.index()).unwrap_or_default();
     given[side.patch() as usize].edges[at]
@@ -122,7 +122,7 @@ mod tests {
     use crate::settings::Settings;
     use crate::tessellate::{Lod, LodView, Tessellation, hull_factors};
 
-    /// What a convention writes for a torus seen at an angle.
+    /// The factors that a convention writes for a torus seen at an angle.
     fn written(convention: Convention) -> (Topology, Vec<HullFactors>) {
         let mesh = Shape::Torus.build();
         let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
@@ -159,7 +159,7 @@ mod tests {
                 assert!(agreement.edges.is_sorted_by(|a, b| a.difference() >= b.difference()));
             }
         }
-        // An order that nobody has a name for.
+        // No convention has this order.
         let (topology, mut given) = written(Convention::D3d11);
         given.iter_mut().for_each(|patch| patch.edges.swap(1, 2));
         assert_eq!(consistent(&Agreement::of(&topology, &given, Convention::D3d11)), [None]);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn culled_patches_disagree_with_nobody() {
+    fn culled_patches_are_not_compared() {
         let (topology, mut given) = written(Convention::D3d11);
         given[7].edges[0] = f32::NAN;
         given[8].edges[2] = -1.0;

@@ -1,4 +1,4 @@
-//! Cracks: for every edge, whether all its sides agree on it to the last bit.
+//! Cracks: edges whose sides don't agree to the last bit.
 
 use glam::{DVec3, Mat4, Vec2, Vec3};
 
@@ -6,19 +6,18 @@ use super::outlines::{EdgeSide, OutlinePoint, Outlines};
 use crate::mesh::{EdgeKind, Mesh, Topology};
 use crate::view::project;
 
-/// What was found.
+/// The cracks of a tessellation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cracks {
-    /// Points of edges that were compared: on every edge with several sides, each point once for each side after the
-    /// first.
+    /// The number of compared points: on every edge with several sides, each point counts once for each side after the first.
     pub edge_points: u64,
-    /// Edges that were compared: those with several sides.
+    /// The number of compared edges: those with several sides.
     pub edges_compared: u64,
     /// Points whose positions differ in at least one bit of one coordinate.
     pub different_bits: u64,
     /// Edges for which LOD gave the sides factors that differ in at least one bit.
     pub different_factors: u64,
-    /// Points whose normals differ in at least one bit though the sides' own normals agree at both ends.
+    /// Points whose normals differ in at least one bit although the mesh's normals agree at both ends.
     pub different_normals: u64,
     /// Edges with any such difference, the widest gap first.
     pub edges: Vec<CrackedEdge>,
@@ -31,13 +30,13 @@ pub struct CrackedEdge {
     pub edge: u32,
     /// Points whose positions differ.
     pub different_bits: u32,
-    /// Points whose normals differ, though they should not.
+    /// Points whose normals differ although the mesh's normals agree.
     pub different_normals: u32,
     pub different_factors: bool,
-    /// The largest distance between two sides, in object units: between their positions of one point, or if they have
-    /// different numbers of points, from a point of one to the other's line.
+    /// The largest distance between two sides, in object units. It is measured between their positions of each point, or if
+    /// they have different numbers of points, from each point of one to the line of the other.
     pub gap: f64,
-    /// The two positions so far apart.
+    /// The two positions that are farthest apart.
     pub widest: [Vec3; 2],
 }
 
@@ -65,7 +64,7 @@ impl Cracks {
         cracks
     }
 
-    /// Edges with a position or a factor that differs: those that can be seen through.
+    /// Edges whose positions or factors differ. Light may pass through them.
     pub fn cracked(&self) -> impl Iterator<Item = &CrackedEdge> {
         self.edges.iter().filter(|edge| edge.different_bits > 0 || edge.different_factors)
     }
@@ -75,7 +74,7 @@ impl Cracks {
         self.edges.first().map_or(0.0, |edge| edge.gap)
     }
 
-    /// The widest gap on screen, in px, of those that are the widest of their edge.
+    /// The widest gap on screen, in px. Only the widest gap of each edge in object units is considered.
     pub fn max_gap_px(&self, clip_from_object: Mat4, viewport: Vec2) -> f64 {
         self.edges.iter().map(|edge| edge.gap_px(clip_from_object, viewport)).fold(0.0, f64::max)
     }
@@ -89,7 +88,7 @@ impl CrackedEdge {
     }
 }
 
-/// Distinct sides of one edge that are compared with one another; more are compared with the first alone.
+/// Up to this many distinct sides of an edge are compared with each other. Further ones are compared only with the first.
 const PAIRED_SIDES: usize = 64;
 
 fn points_compared(sides: &[EdgeSide]) -> u64 {
@@ -97,7 +96,7 @@ fn points_compared(sides: &[EdgeSide]) -> u64 {
     others.iter().map(|other| first.points.len().max(other.points.len()) as u64).sum()
 }
 
-/// The crack, if anything differs.
+/// Compares the sides of an edge. Returns the crack, if anything differs.
 fn compare(edge: u32, sides: &[EdgeSide], different_normals: u32) -> Option<CrackedEdge> {
     let (first, others) = sides.split_first()?;
     let different_bits: u32 = others.iter().map(|other| different(first, other, same_position)).sum();
@@ -110,7 +109,7 @@ fn compare(edge: u32, sides: &[EdgeSide], different_normals: u32) -> Option<Crac
     Some(CrackedEdge { edge, different_bits, different_normals, different_factors, gap, widest })
 }
 
-/// The two positions that are farthest apart though they belong together, and how far, over all pairs of sides.
+/// The largest gap over all pairs of sides, and its two positions.
 fn widest(sides: &[EdgeSide]) -> (f64, [Vec3; 2]) {
     let mut distinct: Vec<&EdgeSide> = Vec::new();
     for side in sides {
@@ -146,7 +145,7 @@ fn farthest(a: &EdgeSide, b: &EdgeSide) -> (f64, [Vec3; 2]) {
     both.fold(none, larger)
 }
 
-/// In object units; positions that are not finite are as far apart as can be.
+/// The distance in object units; infinite if a coordinate is NaN.
 fn distance(a: Vec3, b: Vec3) -> f64 {
     let distance = a.as_dvec3().distance(b.as_dvec3());
     if distance.is_nan() { f64::INFINITY } else { distance }
@@ -164,14 +163,14 @@ fn same_position(a: &OutlinePoint, b: &OutlinePoint) -> bool {
     a.position.map(f32::to_bits) == b.position.map(f32::to_bits)
 }
 
-/// Points that are not the same; those that one side doesn't have differ from whatever is there.
+/// The number of points that differ. Points that only one side has count as different.
 fn different(a: &EdgeSide, b: &EdgeSide, same: fn(&OutlinePoint, &OutlinePoint) -> bool) -> u32 {
     let (a, b) = (&a.points, &b.points);
     let differ = a.iter().zip(b).filter(|(a, b)| !same(a, b)).count();
     (differ + a.len().abs_diff(b.len())) as u32
 }
 
-/// Points whose normals differ, over the sides whose source normals are those of an earlier side at both ends.
+/// The number of points whose normals differ, over sides with the same source normals at both ends as an earlier side.
 fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeSide]) -> u32 {
     let own = topology.side_range(&topology.edges[edge as usize]).map(|side| &topology.sides[side as usize]);
     let source = |patch: u32| {
@@ -183,7 +182,7 @@ fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeS
     let sources: Vec<_> = sides.iter().map(|side| source(side.patch)).collect();
     let mut count = 0;
     for (index, side) in sides.iter().enumerate() {
-        // Among many sides of one edge, the first few speak for the rest.
+        // On an edge with many sides, only the first ones are searched, to save time.
         let earlier = sources[..index.min(PAIRED_SIDES)].iter().position(|known| *known == sources[index]);
         if let Some(earlier) = earlier {
             count += different(&sides[earlier], side, |a, b| a.normal == b.normal);
@@ -200,7 +199,7 @@ mod tests {
     use crate::settings::Settings;
     use crate::tessellate::{Edges, Lod, LodView, Partitioning, Surface, Tessellation, tessellate};
 
-    /// A view into which every shape fits, at an angle that treats no edge as its neighbour.
+    /// A view that holds every shape, at an angle at which no two edges look alike.
     fn view() -> LodView {
         let turned = Mat4::from_rotation_y(0.4) * Mat4::from_rotation_x(0.3) * 0.3;
         let clip_from_object = Mat4 { w_axis: glam::vec4(0.1, 0.0, 0.5, 1.0), ..turned };
@@ -226,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn averaging_over_sides_closes_what_split_normals_tear() {
+    fn pn_tears_at_split_normals_and_pn_aen_does_not() {
         for partitioning in Partitioning::ALL {
             let settings =
                 Settings::from(Tessellation { surface: Surface::Pn, partitioning, ..Tessellation::default() });
@@ -249,21 +248,21 @@ mod tests {
         let factors = found.different_factors as f64 / found.edges_compared as f64;
         assert!(points > 0.2 && factors > 0.1, "{points} of points, {factors} of factors");
         let close = |edge: &CrackedEdge| edge.gap < 1e-5 || edge.different_factors;
-        assert!(found.edges.iter().all(close), "only the last bits: the points themselves are the same");
+        assert!(found.edges.iter().all(close), "only the last bits differ");
     }
 
     #[test]
     fn one_bit_of_one_point_or_normal_is_a_crack() {
         let (mesh, topology, mut outlines) = outlines(Shape::Torus, Settings::default());
         assert!(Cracks::find(&mesh, &topology, &outlines).edges.is_empty());
-        // The second point of patch 5's ring lies inside side 1.
-        let point = &mut outlines.ring_mut(5)[1];
+        // The second point of patch 5's outline lies inside side 1.
+        let point = &mut outlines.outline_mut(5)[1];
         point.position[0] = point.position[0].next_up();
         let cracks = Cracks::find(&mesh, &topology, &outlines);
         let side = topology.patches[5].sides[1];
         assert_eq!((cracks.different_bits, cracks.different_normals, cracks.edges.len()), (1, 0, 1));
         assert_eq!(cracks.edges[0].edge, topology.sides[side as usize].edge);
-        outlines.ring_mut(5)[1].normal ^= 1;
+        outlines.outline_mut(5)[1].normal ^= 1;
         let cracks = Cracks::find(&mesh, &topology, &outlines);
         assert_eq!((cracks.different_bits, cracks.different_normals, cracks.edges.len()), (1, 1, 1));
     }
@@ -271,7 +270,7 @@ mod tests {
     #[test]
     fn split_normals_may_differ() {
         let cube = cracks(Shape::CubeSplit, Settings::default());
-        assert_eq!(cube.different_normals, 0, "where the source's differ, nobody promised anything");
+        assert_eq!(cube.different_normals, 0, "normals that the mesh splits don't count");
     }
 
     fn side(points: &[[f32; 3]]) -> EdgeSide {
@@ -280,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn the_largest_gap_may_lie_between_any_two_sides() {
+    fn the_largest_gap_is_found_between_any_two_sides() {
         let bent = |x: f32| side(&[[0.0; 3], [x, 0.0, 0.0], [0.0; 3]]);
         let sides = [bent(0.0), bent(-0.25), bent(0.5), bent(0.5)];
         let crack = compare(7, &sides, 0).expect("they differ");
@@ -290,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_with_different_numbers_of_points_are_as_far_apart_as_their_lines() {
+    fn sides_with_different_numbers_of_points_are_compared_as_lines() {
         let coarse = side(&[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]]);
         let fine = side(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.5, 0.0], [4.0, 0.0, 0.0]]);
         let crack = compare(0, &[coarse, fine], 0).expect("they differ");

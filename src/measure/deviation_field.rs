@@ -1,4 +1,4 @@
-//! The distance from what was emitted to what it should have been, all over every triangle: what the overlay shows.
+//! Deviation over every triangle: the distances from what was emitted to a reference surface, which the overlay shows.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,13 +16,14 @@ use crate::truth::Truth;
 /// The surface that deviation is measured from.
 #[derive(Clone)]
 pub enum DeviationTarget {
+    /// A reference surface.
     Truth(Arc<Truth>),
     /// The limit surface under these inputs.
     Limit(Box<Inputs>),
 }
 
 impl DeviationTarget {
-    /// The same surface for a mesh: of a limit, its control nets.
+    /// The surface for a mesh. A limit surface needs the mesh's control nets.
     fn on<'a>(&'a self, mesh: &'a Mesh, topology: &'a Topology) -> TargetSurface<'a> {
         match self {
             Self::Truth(truth) => TargetSurface::Truth(truth),
@@ -31,58 +32,58 @@ impl DeviationTarget {
     }
 }
 
-/// A [`DeviationTarget`], ready to be asked for points.
+/// A [`DeviationTarget`] for one mesh.
 enum TargetSurface<'a> {
-    /// The nearest point of a truth.
+    /// Distances go to the nearest point of this surface.
     Truth(&'a Truth),
-    /// The point of the limit surface at the same place of the patch.
+    /// Distances go to the point of the limit surface at the same place of the patch.
     Limit(Box<LimitSurface<'a>>),
 }
 
-/// Into how many segments triangles' edges are cut, finest first. Multiples of 3 have a sample in the middle, where a flat
-/// triangle is mostly farthest from what it stands for; 0 is that sample alone.
+/// The numbers of segments that triangles' edges are cut into, finest first. With multiples of 3 there is a sample in the
+/// middle, where a flat triangle is mostly farthest from its surface. 0 means that sample alone.
 const STEPS: [u32; 5] = [24, 12, 6, 3, 0];
-/// Samples that are taken at most, where fewer a triangle will do.
+/// The most samples that are taken, as long as triangles can have fewer each.
 const SAMPLES: u64 = 1_000_000;
-/// Triangles that are looked at: as many numbers as any adapter binds at once.
-pub(crate) const MOST_TRIANGLES: u64 = 1 << 24;
+/// The most triangles that are measured: any adapter can bind a number for each.
+pub const MOST_TRIANGLES: u64 = 1 << 24;
 
 /// Distances in object units. Samples of a triangle lie on a grid that cuts its edges into equal segments: row i has the
 /// weight i / steps of corner 1, and in it sample j the weight j / steps of corner 2.
 #[derive(Clone, Debug)]
 pub struct DeviationField {
     pub steps: u32,
-    /// Those of each chunk, triangle after triangle. A triangle with a corner that is no number has no numbers.
+    /// The samples of each chunk, triangle after triangle. They are NaN for a triangle with a corner that isn't finite.
     pub chunks: Vec<Vec<f32>>,
-    /// Triangles that were too many.
+    /// The number of triangles beyond [`MOST_TRIANGLES`], which weren't measured.
     pub left_out: u64,
     worst: Option<WorstPoint>,
     area: f64,
-    /// Of distances, times area.
+    /// The sum of squared distances, each times its area.
     squares: f64,
 }
 
-/// How many samples a triangle has.
-pub(super) fn samples_of(steps: u32) -> u32 {
+/// The number of samples in a triangle.
+pub fn samples_of(steps: u32) -> u32 {
     (steps + 1) * (steps + 2) / 2
 }
 
 /// Measures a [`DeviationField`].
 pub(crate) struct DeviationMeasurement<'a> {
     target: TargetSurface<'a>,
-    /// Is told how far the measurement is, and may be cancelled.
+    /// Shows how far the measurement is, and can cancel it.
     progress: &'a Progress,
     field: DeviationField,
     /// Triangles in all chunks together.
     triangles: u64,
-    /// Triangles that may still be looked at.
+    /// How many more triangles may be measured.
     room: u64,
     cancelled: Option<Cancelled>,
 }
 
 impl<'a> DeviationMeasurement<'a> {
-    /// Nothing seen yet of a tessellation of this mesh with so many triangles.
-    pub(crate) fn new(
+    /// Starts to measure a tessellation of this mesh with this number of triangles.
+    pub fn new(
         target: &'a DeviationTarget,
         mesh: &'a Mesh,
         topology: &'a Topology,
@@ -133,7 +134,7 @@ impl<'a> DeviationMeasurement<'a> {
 }
 
 impl Visitor for DeviationMeasurement<'_> {
-    /// Looks at nothing more once it was cancelled.
+    /// Does nothing after it was cancelled.
     fn take(&mut self, chunk: &EmittedChunk) {
         if self.cancelled.is_none() {
             self.cancelled = self.measure(chunk).err();
@@ -142,19 +143,19 @@ impl Visitor for DeviationMeasurement<'_> {
 }
 
 impl DeviationField {
-    /// No samples yet, of so many triangles.
+    /// A field without samples yet, for this number of triangles.
     fn unknown(triangles: u64) -> Self {
         let fits = |steps: &u32| triangles.saturating_mul(samples_of(*steps).into()) <= SAMPLES;
         let steps = STEPS.into_iter().find(fits).unwrap_or(0);
         Self { steps, chunks: Vec::new(), left_out: 0, worst: None, area: 0.0, squares: 0.0 }
     }
 
-    /// The field of nothing at all.
+    /// A field without triangles.
     pub fn empty() -> Self {
         Self::unknown(0)
     }
 
-    /// Where the distance is largest; none if nothing was emitted.
+    /// The place with the largest distance; `None` if nothing was emitted.
     pub fn worst(&self) -> Option<WorstPoint> {
         self.worst
     }
@@ -207,8 +208,8 @@ impl Sums {
     }
 }
 
-/// The weights of a triangle's samples in their order, and which share of its area each stands for if what is between
-/// them is linear.
+/// The weights of a triangle's samples in their order, and the share of its area that each stands for, with linear
+/// interpolation between samples.
 fn grid(steps: u32) -> impl Iterator<Item = ([f64; 3], f64)> {
     let n = f64::from(steps);
     let at = move |i: u32, j: u32| {
@@ -216,7 +217,7 @@ fn grid(steps: u32) -> impl Iterator<Item = ([f64; 3], f64)> {
             return ([1.0 / 3.0; 3], 1.0);
         }
         let k = steps - i - j;
-        // Small triangles that meet here, of n^2 that share their area among three.
+        // The number of small triangles that meet here. There are n^2, and each gives a third of its area to each corner.
         let meet = match [i, j, k].iter().filter(|&&x| x == 0).count() {
             0 => 6.0,
             1 => 3.0,
@@ -249,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_of_a_grid_are_the_whole_and_its_middle_is_one_of_it() {
+    fn shares_of_a_grid_add_up_to_1_and_it_has_a_sample_in_the_middle() {
         for steps in STEPS {
             let all: Vec<_> = grid(steps).collect();
             assert_eq!(all.len(), samples_of(steps) as usize);
@@ -280,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_has_none_and_hides_nothing() {
+    fn a_triangle_with_nan_has_no_samples_and_does_not_count() {
         let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[f32::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         assert!(field.chunks[0].iter().all(|sample| sample.is_nan()));

@@ -6,16 +6,16 @@ use glam::{DVec3, Vec3};
 use crate::mesh::Topology;
 use crate::tessellate::Vertex;
 
-/// A triangle lower than this many units in the last place is a line as far as anyone can tell: it faces nowhere.
+/// A triangle with a height of fewer ULP counts as a line, which faces nowhere.
 const LEAST_HEIGHT_ULP: f64 = 8.0;
 
-/// Twice a triangle's area times the direction that it faces.
+/// The direction that a triangle faces, with twice its area as length.
 fn facing([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// Whether an emitted triangle faces away from `patch_facing`, clearly enough for rounding not to be the reason; `ulp`
-/// is one unit in the last place of the mesh's largest coordinate.
+/// Whether an emitted triangle faces away from `patch_facing` by more than rounding can cause. `ulp` is one unit in the last
+/// place of the mesh's largest coordinate.
 fn is_folded(patch_facing: DVec3, triangle: [DVec3; 3], ulp: f64) -> bool {
     let [a, b, c] = triangle;
     let own = facing(triangle);
@@ -23,17 +23,17 @@ fn is_folded(patch_facing: DVec3, triangle: [DVec3; 3], ulp: f64) -> bool {
     own.dot(patch_facing) < 0.0 && own.length() > LEAST_HEIGHT_ULP * ulp * longest
 }
 
-/// Twice the area of a triangle in the domain, in units of 2^-32; positive where it runs the way its patch does. In
-/// 16.16 fixed point the tessellator's rows run back by a few 2^-16 where a new point has just come up: such a triangle
-/// is turned over by the pattern, not by the surface.
+/// Twice the area of a triangle in the domain, in units of 2^-32; positive if its winding is that of its patch. In 16.16 fixed
+/// point, the tessellator's rows run back by a few 2^-16 where a new point has just appeared. The pattern turns such a triangle
+/// over, not the surface.
 fn domain_area([a, b, c]: [[u32; 2]; 3]) -> i64 {
     let from_a = |p: [u32; 2]| [0, 1].map(|k| i64::from(p[k]) - i64::from(a[k]));
     let (ab, ac) = (from_a(b), from_a(c));
     ab[0] * ac[1] - ab[1] * ac[0]
 }
 
-/// How many of these triangles (indices into `vertices`) are folded.
-pub(super) fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
+/// Counts the folded ones among triangles, which are indices into `vertices`.
+pub fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
     let at = |index: u32| Vec3::from(vertices[index as usize].position).as_dvec3();
     let (mut patch, mut patch_facing) = (u32::MAX, DVec3::ZERO);
     let folded = triangles.iter().filter(|triangle| {
@@ -63,19 +63,20 @@ mod tests {
     use glam::{Mat4, Vec2};
 
     #[test]
-    fn what_faces_away_is_folded_unless_it_is_a_line() {
+    fn triangles_that_face_away_are_folded_unless_they_are_lines() {
         let up = DVec3::Z;
         let [o, x, y] = [DVec3::ZERO, DVec3::X, DVec3::Y];
         assert!(!is_folded(up, [o, x, y], 1e-7));
         assert!(is_folded(up, [o, y, x], 1e-7));
         let flat = [o, 1e-7 * y, x];
-        assert!(is_folded(up, flat, 1e-9) && !is_folded(up, flat, 1e-7), "an ULP high");
+        assert!(is_folded(up, flat, 1e-9) && !is_folded(up, flat, 1e-7), "1 ULP high");
     }
+
     #[test]
-    fn what_the_pattern_turns_over_is_no_fold() {
+    fn a_triangle_that_the_pattern_turns_over_is_no_fold() {
         let mesh = Shape::Icosahedron.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
-        // Just above 21, the points that have just come up lie 2^-16 behind the ones that they come from.
+        // Just above 21, the points that have just appeared lie 2^-16 behind the ones that they come from.
         let factor = 21.0 + 3.0 / 65536.0;
         let settings = Settings::from(Tessellation {
             surface: Surface::Flat,
@@ -86,7 +87,7 @@ mod tests {
         let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
         let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
         let domains = out.triangles.iter().map(|triangle| triangle.map(|index| out.vertices[index as usize].domain()));
-        assert!(domains.map(domain_area).any(|area| area < 0), "the pattern turns nothing over at {factor}");
+        assert!(domains.map(domain_area).any(|area| area < 0), "the pattern should turn a triangle over at {factor}");
         assert_eq!(count(&topology, 1e-9, &out.vertices, &out.triangles), 0);
     }
 }

@@ -1,24 +1,24 @@
-//! PN-AEN indices that were given, against those of the mesh: which patches differ, where, and what that means.
+//! Compares PN-AEN indices that were given with the mesh's own: which patches differ, where, and what each difference means.
 
 use std::ops::Range;
 
 use crate::mesh::adjacency::{Layout, Part};
 use crate::mesh::{Mesh, Topology};
 
-/// What a difference means, the least harm first.
+/// What a difference means, the most harmless first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Meaning {
-    /// The same patch, begun at another of its corners.
+pub enum Meaning {
+    /// The same patch, starting at another corner.
     Turned,
-    /// Another corner of the point is the dominant one, for every patch around it.
+    /// All patches around a point name another of its corners as the dominant one.
     OtherDominant,
-    /// Other corners on the same points with the same normals: the same surface.
+    /// Other corners on the same points with the same normals. The surface is the same.
     SameNormals,
-    /// Corners on the same points with other normals.
+    /// Other corners on the same points with other normals.
     OtherNormals,
-    /// Dominant corners of the same points, but patches around a point name different ones.
+    /// Patches around a point name different corners of it as the dominant one.
     MixedDominant,
-    /// A side's two corners in the other direction.
+    /// The two corners of a side in the other order.
     Exchanged,
     /// Corners that lie on other points.
     OtherPoints,
@@ -29,17 +29,17 @@ pub(crate) enum Meaning {
 pub(crate) struct IndexDifference {
     pub patch: u32,
     pub part: Part,
-    /// Where it is among all indices.
+    /// Its range among all indices.
     pub places: Range<usize>,
     pub meaning: Meaning,
 }
 
 /// Every part of every patch in which `given` differs from `computed`, the mesh's own indices in the same layout; in the
-/// order of the patches. A patch that is only turned differs in its corners.
+/// order of the patches. A patch that only starts at another corner is reported as a difference in its corners.
 ///
 /// # Panics
-/// When there are fewer indices given than computed, or one is no corner of the mesh.
-pub(crate) fn index_differences(
+/// There are fewer indices given than computed, or one isn't a corner of the mesh.
+pub fn index_differences(
     mesh: &Mesh,
     topology: &Topology,
     layout: Layout,
@@ -75,7 +75,8 @@ pub(crate) fn index_differences(
     differences
 }
 
-/// Whether a patch is the computed one begun at another corner. Six indices without the corners that they are for can't be.
+/// Whether a patch is the computed one, starting at another corner. Six indices don't hold the patch's own corners, so their
+/// start is fixed.
 fn is_turned(layout: Layout, given: &[u32], computed: &[u32]) -> bool {
     if layout == Layout::Six {
         return false;
@@ -90,7 +91,7 @@ fn is_turned(layout: Layout, given: &[u32], computed: &[u32]) -> bool {
     turned(1) == given || turned(2) == given
 }
 
-/// What it means that a part has these corners and not those.
+/// What it means that a part has the given corners in place of the computed ones.
 fn same_corners(mesh: &Mesh, topology: &Topology, given: &[u32], computed: &[u32]) -> Meaning {
     let point = |&corner: &u32| topology.corner_points[corner as usize];
     let normal = |&corner: &u32| mesh.corners[corner as usize].normal;
@@ -104,7 +105,7 @@ fn same_corners(mesh: &Mesh, topology: &Topology, given: &[u32], computed: &[u32
     }
 }
 
-/// For each point, the lowest and the highest corner on it that is given as a dominant one.
+/// For each point, the lowest and the highest of its corners that the given indices name as dominant.
 #[derive(Default)]
 struct Dominants(Vec<[u32; 2]>);
 
@@ -119,7 +120,7 @@ impl Dominants {
         Self(named)
     }
 
-    /// Of dominant corners on the right points.
+    /// The meaning of a difference in dominant corners that lie on the right points.
     fn meaning(&self, topology: &Topology, given: &[u32]) -> Meaning {
         let is_one = |&corner: &u32| {
             let [lowest, highest] = self.0[topology.corner_points[corner as usize] as usize];
@@ -141,7 +142,7 @@ mod tests {
         (mesh, topology)
     }
 
-    /// What is found after a change to the computed indices.
+    /// The differences that are found after a change to the computed indices.
     fn found(layout: Layout, change: impl FnOnce(&Mesh, &Topology, &mut [u32])) -> Vec<(u32, Part, Meaning)> {
         let (mesh, topology) = cylinder();
         let computed = layout.indices(&topology);
@@ -154,7 +155,7 @@ mod tests {
         differences.into_iter().map(|found| (found.patch, found.part, found.meaning)).collect()
     }
 
-    /// Another corner on the same point, whose normal is the same or isn't.
+    /// Another corner on the same point, with the same normal or another one.
     fn other(mesh: &Mesh, topology: &Topology, corner: u32, same_normal: bool) -> Option<u32> {
         let point = |corner: u32| topology.corner_points[corner as usize];
         let normal = |corner: u32| mesh.corners[corner as usize].normal;
@@ -163,14 +164,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_computed_does_not_differ() {
+    fn computed_indices_do_not_differ() {
         for layout in Layout::ALL {
             assert_eq!(found(layout, |_, _, _| ()), []);
         }
     }
 
     #[test]
-    fn a_turned_patch_is_the_same_patch_unless_it_has_no_corners() {
+    fn a_patch_may_start_at_another_corner_unless_its_corners_are_not_given() {
         let turn = |count: usize, by: usize| {
             move |_: &Mesh, _: &Topology, given: &mut [u32]| {
                 let patch = &mut given[count..2 * count];
@@ -190,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_differ_in_direction_points_normals_or_nothing_that_shows() {
+    fn differences_of_sides_are_told_apart() {
         let exchanged = found(Layout::Six, |_, _, given| given.swap(2, 3));
         assert_eq!(exchanged, [(0, Part::Side(1), Meaning::Exchanged)]);
         let elsewhere = found(Layout::Nine, |_, _, given| given[9 + 7] = given[9 + 1]);
@@ -211,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn dominant_corners_are_a_choice_that_all_patches_make_alike() {
+    fn another_dominant_corner_is_harmless_only_if_all_patches_name_it() {
         let places = |given: &[u32]| (0..given.len()).filter(|place| place % 12 >= 9).collect::<Vec<_>>();
         let first = |mesh: &Mesh, topology: &Topology, given: &[u32]| {
             let choice = |&at: &usize| Some((given[at], other(mesh, topology, given[at], false)?));

@@ -1,4 +1,4 @@
-//! What a tessellation did, measured on what was emitted: edges, points and numbers. Nothing is drawn here.
+//! Measurements on what a tessellation emitted. They return edges, points and numbers, and draw nothing.
 
 mod accuracy;
 mod agreement;

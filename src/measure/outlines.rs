@@ -1,4 +1,4 @@
-//! The outline of every patch, gathered from what was emitted: which points each side of an edge has.
+//! The outlines of patches, gathered from what was emitted: the points that each side of an edge has.
 
 use glam::Vec3;
 
@@ -11,25 +11,25 @@ use crate::tessellate::{
 /// A vertex on a patch's outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OutlinePoint {
-    /// Object units.
+    /// In object units.
     pub position: [f32; 3],
     /// See [`crate::tessellate::pack_normal`].
     pub normal: u32,
 }
 
-/// The outer ring of every patch, and the factors it was emitted with.
+/// The outline of every patch, and the factors with which it was emitted.
 #[derive(Clone, Debug, Default)]
 pub struct Outlines {
     factors: Vec<PatchFactors>,
-    /// Ring of patch p: `points[starts[p]..starts[p + 1]]`, in the tessellator's order.
+    /// The outline of patch p is `points[starts[p]..starts[p + 1]]`, in the tessellator's order.
     starts: Vec<u32>,
     points: Vec<OutlinePoint>,
     asked: AskedFactors,
 }
 
-/// The edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut, point by point as they were
-/// emitted; straight where that isn't known, or nothing is emitted.
-pub(crate) fn patch_edges(
+/// The emitted points along the edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut. Without
+/// outlines, or if nothing was emitted, each edge has its two ends.
+pub fn patch_edges(
     topology: &Topology,
     patch: u32,
     outlines: Option<&Outlines>,
@@ -46,35 +46,36 @@ pub(crate) fn patch_edges(
     })
 }
 
-/// What one side has made of an edge.
+/// The points of one side of an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EdgeSide {
     /// Index into [`Topology::patches`].
     pub patch: u32,
     /// Index into the mesh's triangles.
     pub triangle: u32,
-    /// As LOD or a file gave it, before the tessellator clamped and rounded it; under a mistaken convention another edge's.
+    /// The factor that LOD or a file gave, before the tessellator clamped and rounded it. Under a wrong convention it is that of
+    /// another edge.
     pub factor: f32,
-    /// What the tessellator made of it: its word in [`PatchFactors`].
+    /// The factor after clamping and rounding: its word in [`PatchFactors`].
     pub word: u32,
-    /// In the edge's direction, ends included.
+    /// The points in the edge's direction, with both ends.
     pub points: Vec<OutlinePoint>,
 }
 
 impl EdgeSide {
-    /// Pieces that the side was cut into.
+    /// The number of segments that the side was cut into.
     pub fn segments(&self) -> u32 {
         segments(self.word)
     }
 
-    /// Where its points lie, in object units.
+    /// The positions of its points, in object units.
     pub fn positions(&self) -> impl Iterator<Item = Vec3> {
         self.points.iter().map(|point| Vec3::from(point.position))
     }
 }
 
 impl Outlines {
-    /// Room for the outlines of patches with these factors.
+    /// Makes room for the outlines of patches with these factors.
     pub fn new(factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
         let mut starts = vec![0];
         let mut end = 0;
@@ -85,7 +86,7 @@ impl Outlines {
         Self { factors, starts, points: vec![OutlinePoint::default(); end as usize], asked }
     }
 
-    /// Takes the vertices of patches from `first_patch` on; whole patches, in order.
+    /// Takes the vertices of whole patches in order, from `first_patch` on.
     pub fn take(&mut self, first_patch: u32, vertices: &[Vertex]) {
         let mut rest = vertices;
         for patch in first_patch as usize..self.factors.len() {
@@ -94,13 +95,16 @@ impl Outlines {
                 break;
             }
             let (own, later) = rest.split_at(count);
-            let ring = &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize];
-            ring.iter_mut().zip(own).for_each(|(to, v)| *to = OutlinePoint { position: v.position, normal: v.normal });
+            let outline = &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize];
+            outline
+                .iter_mut()
+                .zip(own)
+                .for_each(|(to, v)| *to = OutlinePoint { position: v.position, normal: v.normal });
             rest = later;
         }
     }
 
-    /// How many patches are drawn with a factor of 63 or more: they may have asked for more than there is.
+    /// The number of emitted patches with a factor of 63 or more, which may have asked for a larger one than there is.
     pub fn at_limit(&self) -> u32 {
         let is_last = |word: u32| segments(word) >= 63;
         let any = |factors: &&PatchFactors| {
@@ -109,24 +113,23 @@ impl Outlines {
         self.factors.iter().filter(any).count() as u32
     }
 
-    /// How many patches are drawn with factors that are all below 2.
+    /// The number of emitted patches whose factors are all below 2.
     pub fn low(&self) -> u32 {
         self.factors.iter().filter(|&&factors| patch_is_low(factors)).count() as u32
     }
 
-    /// What the sides of an edge (an index into [`Topology::edges`]) have made of it. Patches that emit nothing are left
-    /// out.
+    /// The sides of an edge (an index into [`Topology::edges`]). Patches that emit nothing are left out.
     pub fn edge(&self, topology: &Topology, edge: u32) -> Vec<EdgeSide> {
         topology.side_range(&topology.edges[edge as usize]).filter_map(|side| self.side(topology, side)).collect()
     }
 
-    /// What a patch (an index into [`Topology::patches`]) has made of its sides 0, 1 and 2; none if it emits nothing.
+    /// Sides 0, 1 and 2 of a patch (an index into [`Topology::patches`]); `None` if it emits nothing.
     pub fn patch(&self, topology: &Topology, patch: u32) -> Option<[EdgeSide; 3]> {
         let [a, b, c] = topology.patches[patch as usize].sides.map(|side| self.side(topology, side));
         Some([a?, b?, c?])
     }
 
-    /// The factors that a patch was emitted with.
+    /// The factors with which a patch was emitted.
     pub fn factors(&self, patch: u32) -> PatchFactors {
         self.factors[patch as usize]
     }
@@ -134,16 +137,16 @@ impl Outlines {
     fn side(&self, topology: &Topology, index: u32) -> Option<EdgeSide> {
         let side = topology.sides[index as usize];
         let patch = side.patch();
-        let ring = self.ring(patch);
-        if ring.is_empty() {
+        let outline = self.outline(patch);
+        if outline.is_empty() {
             return None;
         }
-        // The ring has the edges of factors 0, 1 and 2 one after another.
+        // The outline has the edges of factors 0, 1 and 2 one after another.
         let words = self.factors[patch as usize].outside;
         let factor = self.asked.index(side.index());
         let first: u32 = words[..factor].iter().map(|&word| segments(word)).sum();
         let last = first + segments(words[factor]);
-        let mut points: Vec<_> = (first..=last).map(|p| ring[p as usize % ring.len()]).collect();
+        let mut points: Vec<_> = (first..=last).map(|p| outline[p as usize % outline.len()]).collect();
         if side.reversed() {
             points.reverse();
         }
@@ -152,15 +155,15 @@ impl Outlines {
         Some(EdgeSide { patch, triangle, factor: asked, word: words[factor], points })
     }
 
-    /// A patch's ring, in the tessellator's order.
-    fn ring(&self, patch: u32) -> &[OutlinePoint] {
+    /// A patch's outline, in the tessellator's order.
+    fn outline(&self, patch: u32) -> &[OutlinePoint] {
         let patch = patch as usize;
         &self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
     }
 
-    /// For tests that break something: a point of a patch's ring.
+    /// A patch's outline, for tests that change it.
     #[cfg(test)]
-    pub fn ring_mut(&mut self, patch: u32) -> &mut [OutlinePoint] {
+    pub fn outline_mut(&mut self, patch: u32) -> &mut [OutlinePoint] {
         let patch = patch as usize;
         &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
     }
@@ -172,7 +175,7 @@ mod tests {
     use crate::tessellate::{Edges, Partitioning, process};
 
     #[test]
-    fn patches_at_the_limit_and_below_two_are_counted_and_culled_ones_are_neither() {
+    fn patches_at_the_limit_and_below_2_are_counted_without_culled_ones() {
         let of = |edges, inside| process(Partitioning::Integer, edges, inside);
         let factors = vec![
             of([64.0, 1.0, 1.0], 2.0),

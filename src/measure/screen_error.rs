@@ -1,4 +1,4 @@
-//! How far what was emitted is from the surface that it stands for, seen from a view.
+//! The error on screen: the distance in px between what was emitted and its limit surface.
 
 use std::thread;
 
@@ -8,12 +8,12 @@ use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Vertex};
 
-/// The largest distance on screen between a point of what was emitted and the surface's at the same place of its domain.
-/// That is no less than the distance to the nearest point of the surface, and is what bounds on the error speak of.
-pub(crate) struct ScreenErrorMeasurement<'a> {
+/// Measures the largest distance on screen between an emitted point and the point of the limit surface at the same place of the
+/// domain. It is at least the distance to the nearest point of that surface, and is the distance that LOD by error bounds.
+pub struct ScreenErrorMeasurement<'a> {
     limit: LimitSurface<'a>,
     screen: Screen,
-    /// Segments that each edge of a triangle is divided into for sampling.
+    /// The number of segments that each edge of a triangle is divided into for sampling.
     steps: u32,
     worst: Option<ScreenError>,
 }
@@ -24,23 +24,23 @@ pub(super) struct Screen {
     half_viewport: DVec2,
 }
 
-/// Where a distance on screen is largest.
+/// The place with the largest distance on screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenError {
     pub px: f64,
     pub patch: u32,
-    /// What was emitted and what it stands for, in object units.
+    /// The emitted point and that of the limit surface, in object units.
     pub emitted: DVec3,
     pub limit: DVec3,
 }
 
-/// Triangles up to which each is sampled at all points that divide its edges in 8; four times as many in 4; else 2.
+/// Up to this many triangles, edges are divided into 8 segments for sampling; up to ten times as many, into 4; else into 2.
 const FINE: u64 = 100_000;
 
 impl<'a> ScreenErrorMeasurement<'a> {
-    /// Nothing seen yet of a tessellation with these inputs, whose view is the one measured in. `triangles` is how many
-    /// will come in all chunks together: the more there are, the fewer samples each gets.
-    pub(crate) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
+    /// Starts to measure a tessellation with these inputs, in px of their view. `triangles` is the number in all chunks
+    /// together: the more there are, the fewer samples each gets.
+    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
         let steps = match triangles {
             0..=FINE => 8,
             triangles if triangles <= 10 * FINE => 4,
@@ -49,8 +49,8 @@ impl<'a> ScreenErrorMeasurement<'a> {
         Self { limit: LimitSurface::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), steps, worst: None }
     }
 
-    /// The worst so far; none if nothing was in view.
-    pub(crate) fn worst(&self) -> Option<ScreenError> {
+    /// The worst place so far; `None` if nothing was in view.
+    pub fn worst(&self) -> Option<ScreenError> {
         self.worst
     }
 
@@ -92,8 +92,8 @@ impl<'a> ScreenErrorMeasurement<'a> {
 }
 
 impl Visitor for ScreenErrorMeasurement<'_> {
-    /// Samples triangles with a grid that divides their edges. Corners of triangles lie on the surface but for rounding,
-    /// and are not sampled.
+    /// Samples triangles on a grid that divides their edges. Corners aren't sampled, since they lie on the surface except for
+    /// rounding.
     fn take(&mut self, chunk: &EmittedChunk) {
         let workers = thread::available_parallelism().map_or(1, |cores| cores.get());
         let share = chunk.triangles.len().div_ceil(workers).max(1);
@@ -115,7 +115,7 @@ impl Screen {
         Self { clip_from_object: view.clip_from_object.as_dmat4(), half_viewport: view.half_viewport.as_dvec2() }
     }
 
-    /// None where neither is in view, or one is cut off by the near plane.
+    /// The distance on screen between two points, in px; `None` if neither is in view, or the near plane cuts one off.
     pub(super) fn distance_px(&self, a: DVec3, b: DVec3) -> Option<f64> {
         let [a, b] = [a, b].map(|p| self.clip_from_object * p.extend(1.0));
         // Depth is reversed.

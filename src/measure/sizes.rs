@@ -1,10 +1,9 @@
 //! How large emitted triangles are on screen.
 //!
-//! The advice to keep triangles above a few px (McDonald, Tessellation on Any Budget, GDC 2011) is about what a GPU pays
-//! for a triangle however small it is: setup, and whole quads of 2 x 2 px. How often that is paid for a given piece of the
-//! screen depends on the triangles' area, so their size is taken from it: the side of the square that a triangle is half
-//! of. A grid of points 3 px apart is cut into triangles of 3 px. The least height would flag every sliver too, also long
-//! ones, of which few cover a lot.
+//! Triangles should be larger than a few px (McDonald, Tessellation on Any Budget, GDC 2011), since each costs a GPU setup and
+//! whole quads of 2 x 2 px, however small it is. How many triangles cover a part of the screen depends on their area, so a
+//! triangle's size is the side of the square that has twice its area. A grid of points 3 px apart is cut into triangles of 3
+//! px. The least height would be a worse measure: it is small for long slivers too, of which a few cover a large area.
 
 use glam::{Vec2, Vec3, Vec4};
 
@@ -12,16 +11,16 @@ use super::visitor::{EmittedChunk, Visitor};
 use crate::tessellate::{beyond_near, planes_outside};
 use crate::view::ScreenView;
 
-/// Triangles below this size cost more than they show, in px.
-pub(crate) const SMALL_PX: f64 = 3.0;
+/// The size in px below which triangles count as small: they cost more than they show.
+pub const SMALL_PX: f64 = 3.0;
 
 /// Counts of triangles by their size, seen from one view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sizes {
     pub view: ScreenView,
-    /// Triangles that are neither wholly outside one side of the view nor cut by its near plane.
+    /// The number of triangles that are neither wholly outside one side of the view nor cut by its near plane.
     pub in_view: u64,
-    /// Those of them that are below [`SMALL_PX`].
+    /// The number of these that are smaller than [`SMALL_PX`].
     pub small: u64,
 }
 
@@ -50,8 +49,8 @@ impl Visitor for Sizes {
     }
 }
 
-/// Side of the square that a triangle is half of, in px; none if the near plane cuts it. Corners in clip space.
-/// `size_px` in `shaders/draw_surface.wgsl` is the same.
+/// The side of the square with twice the area of a triangle, in px; `None` if the near plane cuts it. Corners are in clip
+/// space. `size_px` in `shaders/draw_surface.wgsl` is the same.
 fn size_px(corners: [Vec4; 3], viewport: Vec2) -> Option<f64> {
     if !corners.into_iter().all(|corner| corner.w > 0.0 && beyond_near(corner)) {
         return None;
@@ -66,7 +65,7 @@ mod tests {
     use crate::tessellate::Vertex;
     use glam::{Mat4, vec3};
 
-    /// Ten px a unit, the middle at the origin, 0 to 1 deep.
+    /// A view with 10 px per unit, the origin in the middle, and depths from 0 to 1.
     fn view() -> ScreenView {
         ScreenView { clip_from_object: Mat4::from_scale(vec3(0.1, 0.2, 1.0)), viewport: Vec2::new(200.0, 100.0) }
     }
@@ -80,13 +79,13 @@ mod tests {
         (sizes.in_view, sizes.small)
     }
 
-    /// Half a square of this many px, in the middle of the view.
+    /// Half of a square with sides of this many px, in the middle of the view.
     fn half_square(px: f32) -> [Vec3; 3] {
         [vec3(0.0, 0.0, 0.5), vec3(px / 10.0, 0.0, 0.5), vec3(0.0, px / 10.0, 0.5)]
     }
 
     #[test]
-    fn a_triangle_is_as_large_as_the_square_that_it_is_half_of() {
+    fn the_size_is_the_side_of_the_square_with_twice_the_area() {
         let ScreenView { clip_from_object, viewport } = view();
         let size = |triangle: [Vec3; 3]| size_px(triangle.map(|p| clip_from_object * p.extend(1.0)), viewport);
         for px in [0.5, 3.0, 40.0] {

@@ -1,4 +1,4 @@
-//! Everything that is measured on what was emitted, gathered chunk by chunk, wherever it was emitted.
+//! The survey: cracks, folds and counts, gathered chunk by chunk from what was emitted on the CPU or the device.
 
 use glam::Vec3;
 
@@ -11,8 +11,8 @@ use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, patch_is_culled};
 use crate::view::ulp;
 
-/// What has been seen so far.
-pub(crate) struct Survey<'a> {
+/// The measurements so far.
+pub struct Survey<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     ulp: f64,
@@ -23,12 +23,12 @@ pub(crate) struct Survey<'a> {
     extent: [Vec3; 2],
 }
 
-/// How many patches emitted nothing, and why.
+/// The numbers of patches that emitted nothing, for each reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Culled {
     pub out_of_view: u32,
     pub facing_away: u32,
-    /// A factor was not greater than zero.
+    /// A factor wasn't greater than zero.
     pub by_factors: u32,
 }
 
@@ -50,18 +50,18 @@ impl Culled {
     }
 }
 
-/// What was emitted, measured.
+/// The measurements of a survey.
 #[derive(Clone, Debug, Default)]
 pub struct Measured {
     pub culled: Culled,
-    /// Patches drawn with factors that are all below 2.
+    /// Emitted patches whose factors are all below 2.
     pub patches_low: u32,
-    /// Patches drawn with a factor that is the largest there is.
+    /// Emitted patches with a factor of 63 or more: see [`Outlines::at_limit`].
     pub patches_at_limit: u32,
     pub cracks: Cracks,
     /// Triangles that face away from the side that their patch faces.
     pub folds: u64,
-    /// Vertices with a position or uv that is no finite number.
+    /// Vertices with an infinite or NaN position or uv.
     pub not_finite: u64,
     /// Least and greatest coordinates of what was emitted, in object units.
     pub extent: [Vec3; 2],
@@ -77,8 +77,8 @@ impl<'a> Survey<'a> {
         Self { mesh, topology, ulp: ulp(topology), culled, outlines, folds: 0, not_finite: 0, extent }
     }
 
-    /// Compares the sides of every edge, once all is taken.
-    pub(crate) fn finish(self) -> Measured {
+    /// Compares the sides of every edge, after all chunks are taken.
+    pub fn finish(self) -> Measured {
         Measured {
             culled: self.culled,
             patches_low: self.outlines.low(),
@@ -109,7 +109,7 @@ impl Visitor for Survey<'_> {
 }
 
 impl Measured {
-    /// Measures what the CPU made.
+    /// Measures what the CPU emitted.
     pub fn of(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
         let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), asked);
         survey.take(&EmittedChunk::whole(&out.vertices, &out.triangles));

@@ -1,9 +1,9 @@
 //! Factor sweep: how far the surface jumps from one tessellation factor to the next.
 //!
-//! A surface point is a place (u, v) on a patch. At one factor it lies on the triangle that holds (u, v) in the domain, at
-//! the same weights. Its jump is the distance between where it lies before and after a step, in object units.
+//! A surface point is a place (u, v) on a patch. At each factor it lies on the emitted triangle that holds (u, v) in the domain,
+//! with the same weights. Its jump is the distance between its positions before and after a step, in object units.
 //!
-//! Every patch has the same factor, so that all share one division of the domain: a place is looked up once a factor.
+//! All patches have the same factor and so the same triangles in the domain. A place's triangle is found once per factor.
 
 use std::ops::RangeInclusive;
 use std::sync::Mutex;
@@ -17,53 +17,47 @@ use crate::tessellate::{
     round_pow2, tessellate,
 };
 
-/// The step that charts show.
-pub(crate) const SWEEP_STEP: f32 = 1.0 / 64.0;
+/// The step of the factor in charts.
+pub const SWEEP_STEP: f32 = 1.0 / 64.0;
 
-/// One partitioning, swept.
+/// The sweep of one partitioning.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sweep {
     pub partitioning: Partitioning,
-    /// From one factor to the next.
+    /// The difference between one factor and the next.
     pub step: f32,
     /// In the order of their factors.
     pub steps: Vec<SweepStep>,
 }
 
-/// From one factor to the next.
+/// One step of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SweepStep {
-    /// After the step.
+pub struct SweepStep {
+    /// The factor after the step.
     pub factor: f32,
     /// The largest distance that any surface point moved, in object units.
     pub jump: f64,
-    /// Where that was; patch 0 at (0, 0) if nothing moved.
+    /// The patch with this point; 0 if nothing moved.
     pub patch: u32,
-    /// U and V in 16.16 fixed point.
+    /// U and V of this point in 16.16 fixed point; 0 if nothing moved.
     pub place: [u32; 2],
 }
 
 impl Sweep {
-    /// The step of the largest jump, the first of them if there are several; `None` without steps.
-    pub(crate) fn largest(&self) -> Option<SweepStep> {
+    /// The step with the largest jump, the first one if there are several; `None` without steps.
+    pub fn largest(&self) -> Option<SweepStep> {
         self.steps.iter().copied().reduce(|best, step| if step.jump > best.jump { step } else { best })
     }
 }
 
-/// Sweeps the factor over a range, with the surface and partitioning of `inputs`; their factor, LOD, clipping and
-/// convention count for nothing. `step` is a positive power of two, so that every factor is exact.
+/// Sweeps the factor over a range, with the surface and partitioning of `inputs`. Their factor, LOD, clipping and convention
+/// are ignored. `step` must be a positive power of two, so that every factor is exact.
 ///
-/// Every patch is looked at in 7,225 places: corners, rim, centre and the rest of a grid of 48, and 6,000 more in
-/// between; at factor 64 it has 6,144 triangles. From 1 to 64 by [`SWEEP_STEP`], a dozen patches take seconds for each
-/// fractional partitioning and less for the others, whose steps mostly change nothing. Time and memory grow with the
-/// patches; memory is two tessellations of the mesh for each processor.
-pub(crate) fn sweep(
-    mesh: &Mesh,
-    topology: &Topology,
-    inputs: &Inputs,
-    factors: RangeInclusive<f32>,
-    step: f32,
-) -> Sweep {
+/// Every patch is measured at 7,225 places: a grid of 48 segments, which includes the corners, the outline and the centre, and
+/// 6,000 places between its points. (At factor 64 a patch has 6,144 triangles.) From 1 to 64 by [`SWEEP_STEP`], a dozen patches
+/// take seconds for each fractional partitioning, and less for the others, whose steps mostly change nothing. Time and memory
+/// grow with the number of patches; memory is two tessellations of the mesh for each processor.
+pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeInclusive<f32>, step: f32) -> Sweep {
     let (first, last) = factors.into_inner();
     let count = ((last - first) / step).floor().max(0.0) as u32;
     let still = |k: u32| SweepStep { factor: first + k as f32 * step, jump: 0.0, patch: 0, place: [0, 0] };
@@ -80,7 +74,7 @@ pub(crate) fn sweep(
     };
     let places = Places::new(places());
     let states = States { mesh, topology, inputs, places: &places };
-    // Small pieces, as high factors take far longer than low ones.
+    // Small pieces keep all threads busy, since high factors take far longer than low ones.
     let pieces = Mutex::new(steps.chunks_mut(32));
     let next = || pieces.lock().ok().and_then(|mut pieces| pieces.next());
     thread::scope(|scope| {
@@ -95,17 +89,17 @@ pub(crate) fn sweep(
     Sweep { partitioning: inputs.tessellation.partitioning, step, steps }
 }
 
-/// Segments of a patch's side in the grid of places: it has mid-edges and the centre, and is coarser than the finest
-/// tessellation, whose triangles the scattered places find.
+/// The segments of a patch's side in the grid of places. The grid includes the middles of edges and the centre. It is coarser
+/// than the finest tessellation; the scattered places reach the triangles between its points.
 const GRID: u32 = 48;
-/// Places between those of the grid.
+/// The number of places besides those of the grid.
 const SCATTERED: u32 = 6000;
 
-/// Where surface points are followed: (U, V) in 16.16 fixed point.
+/// The places of all surface points that are followed: (U, V) in 16.16 fixed point.
 fn places() -> Vec<[u32; 2]> {
     let on_grid = |i: u32| (i * FIXED_ONE + GRID / 2) / GRID;
     let grid = (0..=GRID).flat_map(|i| (0..=GRID - i).map(move |j| [on_grid(i), on_grid(j)]));
-    // Additive recurrence with the powers of the plastic number, 2^32 times: no two places close together.
+    // An additive recurrence with the inverse powers of the plastic number, times 2^32, which keeps places apart.
     let scattered = (1..=SCATTERED).map(|k| {
         let [u, v] = [3_242_174_889_u32, 2_447_445_414].map(|a| k.wrapping_mul(a) >> 16);
         if u + v > FIXED_ONE { [FIXED_ONE - u, FIXED_ONE - v] } else { [u, v] }
@@ -113,31 +107,31 @@ fn places() -> Vec<[u32; 2]> {
     grid.chain(scattered).collect()
 }
 
-/// A place's triangle and weights in it.
+/// The triangle that holds a place, and the place's weights in it.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
-    /// Numbers of the patch's points.
+    /// The indices of the patch's points.
     corners: [u32; 3],
     weights: [f64; 3],
 }
 
 impl Spot {
-    /// Where it lies on a patch with these vertices, in object units.
+    /// The position on a patch with these vertices, in object units.
     fn position(&self, vertices: &[Vertex]) -> DVec3 {
         let corner = |k: usize| Vec3::from(vertices[self.corners[k] as usize].position).as_dvec3() * self.weights[k];
         corner(0) + corner(1) + corner(2)
     }
 }
 
-/// Places in bins over the domain.
+/// Places, sorted into bins over the domain.
 struct Places {
-    /// Bin after bin.
+    /// All places, bin after bin.
     places: Vec<[u32; 2]>,
-    /// Places of bin b: `starts[b]..starts[b + 1]`.
+    /// The places of bin b are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
 }
 
-/// Bins along U and along V, a power of two.
+/// The number of bins along U and along V: a power of two.
 const BINS: u32 = 64;
 
 /// The bin of a coordinate.
@@ -154,7 +148,7 @@ impl Places {
         Self { places, starts }
     }
 
-    /// Finds every place's triangle. The triangles cover the domain, so that none is left without.
+    /// Finds the triangle of every place. The triangles cover the domain, so every place has one.
     fn locate(&self, points: &[[u32; 2]], triangles: &[[u32; 3]]) -> Vec<Option<Spot>> {
         let mut spots = vec![None; self.places.len()];
         for &corners in triangles {
@@ -177,8 +171,8 @@ impl Places {
     }
 }
 
-/// The weights of a triangle's corners at a place; `None` outside it, and everywhere if it has no area. Which side of an
-/// edge a place lies on is exact.
+/// The weights of a triangle's corners at a place; `None` outside the triangle, or if it has no area. The test of which side
+/// of an edge a place lies on is exact.
 fn weights(triangle: [[u32; 2]; 3], place: [u32; 2]) -> Option<[f64; 3]> {
     let [a, b, c] = triangle.map(|point| [0, 1].map(|k| i64::from(point[k]) - i64::from(place[k])));
     let doubled = |p: [i64; 2], q: [i64; 2]| p[0] * q[1] - p[1] * q[0];
@@ -191,12 +185,12 @@ fn weights(triangle: [[u32; 2]; 3], place: [u32; 2]) -> Option<[f64; 3]> {
 /// The surface at one factor.
 struct State {
     out: Tessellated,
-    /// Vertices of each patch.
+    /// The number of vertices in each patch.
     points: usize,
     spots: Vec<Option<Spot>>,
 }
 
-/// What makes the surface at any factor.
+/// Computes the surface at any factor.
 struct States<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
@@ -205,7 +199,7 @@ struct States<'a> {
 }
 
 impl States<'_> {
-    /// Fills in the jumps of neighbouring steps.
+    /// Measures the jumps of consecutive steps.
     fn measure(&self, steps: &mut [SweepStep], step: f32) {
         let Some(first) = steps.first() else { return };
         let mut factors = self.factors(first.factor - step);
@@ -220,7 +214,7 @@ impl States<'_> {
         }
     }
 
-    /// What every patch's factors become.
+    /// The processed factors of every patch.
     fn factors(&self, factor: f32) -> PatchFactors {
         let partitioning = self.inputs.tessellation.partitioning;
         let factor = if partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor };
@@ -241,7 +235,7 @@ impl States<'_> {
         State { out, points, spots }
     }
 
-    /// Finds the largest jump.
+    /// Finds the largest jump between two factors, and stores it in `step`.
     fn compare(&self, before: &State, after: &State, step: &mut SweepStep) {
         let [old, new] = [before, after].map(|state| state.out.vertices.chunks_exact(state.points.max(1)));
         for (patch, (old, new)) in old.zip(new).enumerate() {
@@ -283,15 +277,15 @@ mod tests {
         swept(Surface::PnAen, partitioning, factors, step).largest().expect("it has steps")
     }
 
-    /// Steps at which anything moved.
+    /// The steps at which anything moved.
     fn moves(sweep: &Sweep) -> Vec<SweepStep> {
         sweep.steps.iter().copied().filter(|step| step.jump > 0.0).collect()
     }
 
     #[test]
     fn a_flat_surface_never_jumps() {
-        // Weights are exact. A coordinate of a vertex is three rounded products of at most 0.6 in all and two rounded
-        // sums: off by 3 * 2^-24 * 0.6 at most. The distance is between two such positions in space.
+        // Weights are exact. A coordinate of a vertex is the sum of three rounded products of at most 0.6 in all, with two
+        // rounded sums: its error is at most 3 * 2^-24 * 0.6. The distance is between two such positions in space.
         let rounding = 2.0 * 3.0 * 3f64.sqrt() * 2f64.powi(-24) * 0.6;
         for partitioning in Partitioning::ALL {
             let largest = swept(Surface::Flat, partitioning, 1.0..=9.0, 0.25).largest().expect("it has steps");
@@ -310,13 +304,13 @@ mod tests {
         assert!(equal.iter().map(|step| step.factor).eq(pops.iter().map(|step| step.factor)));
         let pow2 = moves(&swept(Surface::PnAen, Pow2, 1.0..=9.0, 0.25));
         assert!(pow2.iter().map(|step| step.factor).eq([1.25, 2.25, 4.25, 8.25]));
-        // Half the step, the same pops.
+        // Half the step gives the same pops.
         let finer = moves(&swept(Surface::PnAen, Integer, 1.0..=9.0, 0.125));
         assert!(finer.iter().map(|step| step.jump).eq(pops.iter().map(|step| step.jump)));
     }
 
     #[test]
-    fn the_first_pop_is_that_of_the_diagonals_middle() {
+    fn the_first_pop_is_in_the_middle_of_the_diagonal() {
         // The cubic's middle lies 3/8 (ab + ba - a - b) = (n_a w_a + n_b w_b) / -8 from the chord's, w = edge . normal
         // (Vlachos et al. 2001, section 3.1). On a face's diagonal (1.2, 1.2, 0) between normals that are (-0.36, -0.36,
         // 1.36) and (0.36, 0.36, 1.36), each over its length, only the part along z stays.
@@ -330,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn fractional_factors_move_the_surface_by_less_the_smaller_the_step() {
+    fn under_fractional_partitioning_smaller_steps_move_the_surface_less() {
         let pop = largest(Integer, 1.0..=5.0, SWEEP_STEP).jump;
         for partitioning in [FractionalOdd, FractionalEven] {
             let [whole, half] = [1.0, 0.5].map(|part| largest(partitioning, 1.0..=5.0, SWEEP_STEP * part).jump);
@@ -340,9 +334,9 @@ mod tests {
     }
 
     #[test]
-    fn nothing_pops_where_points_appear() {
-        // After each of these factors rows have two more points and the patch one more ring. At 30 the new ring lies 7 /
-        // 65536 beyond the centre at first: the specification's 1 / 30, rounded, times 15 is more than a half.
+    fn under_fractional_partitioning_new_points_cause_no_pop() {
+        // After each of these factors rows have two more points, and the patch has one more ring of points. At 30 the new ring
+        // first lies 7 / 65536 beyond the centre, since the specification's 1 / 30, rounded, times 15 is more than a half.
         let appear = [(FractionalOdd, [1, 3, 7, 17, 31, 61]), (FractionalEven, [2, 4, 8, 16, 30, 62])];
         let step = 2f32.powi(-14);
         for (partitioning, factors) in appear {
@@ -358,7 +352,7 @@ mod tests {
     fn every_place_is_on_a_triangle() {
         let places = Places::new(places());
         for partitioning in Partitioning::ALL {
-            // Also where triangles have no area yet.
+            // Some of these factors have triangles without area.
             for factor in [1.0, 1.0001, 2.0, 3.00002, 5.3, 12.00002, 30.0001, 64.0] {
                 let factors = process(partitioning, [factor; 3], factor);
                 let plan = domain_plan(factors);

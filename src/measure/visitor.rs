@@ -1,11 +1,11 @@
-//! One walk over what was emitted feeds every measurement that was asked for: each of them is a visitor.
+//! Visitors of what was emitted. Each measurement is a visitor, so that one walk over all chunks feeds all measurements.
 
 use crate::tessellate::Vertex;
 
-/// What one chunk emitted: whole patches, in their order.
+/// The output of one chunk: whole patches, in order.
 #[derive(Clone, Copy, Debug)]
 pub struct EmittedChunk<'a> {
-    /// The first of its patches: an index into [`crate::mesh::Topology::patches`].
+    /// Its first patch: an index into [`crate::mesh::Topology::patches`].
     pub first_patch: u32,
     pub vertices: &'a [Vertex],
     /// Indices into `vertices`.
@@ -19,8 +19,9 @@ impl<'a> EmittedChunk<'a> {
     }
 }
 
-/// Something that looks at everything that was emitted, one chunk after another in the order of the patches.
+/// Visits all chunks that were emitted, in the order of the patches.
 pub trait Visitor {
+    /// Takes the next chunk.
     fn take(&mut self, chunk: &EmittedChunk);
 }
 

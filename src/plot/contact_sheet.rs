@@ -1,14 +1,14 @@
-//! Contact sheets: pictures in rows, each under its caption.
+//! Contact sheets: pictures in rows, each with a caption above it.
 
 use image::{Rgb, RgbImage, imageops};
 
 use super::{ChartError, write_text};
 
-/// Between pictures and around them, in px.
+/// The space between pictures and around them, in px.
 const GAP: u32 = 4;
 
-/// Puts pictures of one size in rows of `columns`, each under its caption, on white. `text` is the height of captions in px:
-/// it should be larger where the whole sheet is shown smaller.
+/// Puts pictures of one size in rows of `columns` on white, each with its caption above it. `text` is the height of captions
+/// in px.
 ///
 /// # Errors
 /// The font of the captions can't be used.
@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn parts_stand_in_rows_under_their_captions() {
+    fn pictures_stand_in_rows_under_their_captions() {
         let part = |shade: u8| RgbImage::from_pixel(40, 30, Rgb([shade; 3]));
         let parts = [("one", 10), ("two", 20), ("three", 30)].map(|(name, shade)| (name.to_owned(), part(shade)));
         let all = contact_sheet(&parts, 2, 18).expect("a font");

@@ -1,4 +1,4 @@
-//! What charts have in common: their font and colours. Charts are drawn at twice their size and then halved, which smooths
+//! What all charts share: their font, colours and sizes. Charts are drawn at twice their size and then halved, which smooths
 //! the edges that the plotting library leaves jagged.
 
 mod contact_sheet;
@@ -32,22 +32,22 @@ impl ChartError {
     }
 }
 
-/// How many px are drawn for one px of the chart, along each side.
-pub(crate) const DENSITY: u32 = 2;
-/// The font's name as the plotting library knows it. SVG files carry the name alone, so that they are shown in the reader's
-/// own font of that kind.
+/// Charts are drawn this many times as wide and as high, and then made smaller.
+pub const DENSITY: u32 = 2;
+/// The font's name in the plotting library. SVG files hold only this name, so a viewer shows them in its own sans-serif font.
 pub const FONT: &str = "sans-serif";
+/// The colour of text and axes.
 pub const INK: RGBColor = RGBColor(40, 40, 40);
 
-/// Colours that can be told apart by everybody (Okabe and Ito 2008).
-pub(crate) const VERMILION: RGBColor = RGBColor(213, 94, 0);
+/// Colours that people with any colour vision can tell apart (Okabe and Ito 2008).
+pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
 pub const BLUE: RGBColor = RGBColor(0, 114, 178);
 pub(crate) const BLUISH_GREEN: RGBColor = RGBColor(0, 158, 115);
 pub(crate) const REDDISH_PURPLE: RGBColor = RGBColor(204, 121, 167);
 pub(crate) const ORANGE: RGBColor = RGBColor(230, 159, 0);
 pub(crate) const SKY_BLUE: RGBColor = RGBColor(86, 180, 233);
 
-/// Makes a picture of this width and height in px; `draw` draws it at [`DENSITY`] times that size.
+/// Returns a picture of this width and height in px. `draw` draws it at [`DENSITY`] times that size.
 ///
 /// # Errors
 /// `draw` fails, or the font can't be used.
@@ -66,16 +66,16 @@ pub(crate) fn bitmap<E: Display>(
     Ok(imageops::resize(&drawn, width, height, FilterType::Triangle))
 }
 
-/// Makes the font known to the plotting library.
+/// Registers the font with the plotting library.
 ///
 /// # Errors
-/// It can't be used.
+/// The font can't be used.
 pub fn use_font() -> Result<(), ChartError> {
     register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
-        .map_err(|_| ChartError::failed(&"its font is bad"))
+        .map_err(|_| ChartError::failed(&"its font can't be used"))
 }
 
-/// Writes a line of text in dark ink, `size` px high, its top left at `at` (px), into a picture.
+/// Writes a line of text into a picture, in the colour [`INK`] and `size` px high, with its top left corner at `at` (px).
 ///
 /// # Errors
 /// The font can't be used.

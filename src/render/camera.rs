@@ -8,11 +8,11 @@ use crate::mesh::Bounds;
 use crate::tessellate::LodView;
 
 /// Vertical field of view, in degrees.
-pub(super) const FIELD_OF_VIEW: f32 = 40.0;
-/// Between the target and the eye, in object units.
+pub const FIELD_OF_VIEW: f32 = 40.0;
+/// The allowed distances between the target and the eye, in object units.
 const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
-/// Steeper than this, "up" would turn over.
-pub(super) const MAX_ELEVATION: f32 = 89.9;
+/// The steepest elevation, in degrees. At 90 the direction that is up on screen would be undefined.
+pub const MAX_ELEVATION: f32 = 89.9;
 
 /// A camera that looks at `target` from `distance` away.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,12 +22,12 @@ pub struct Camera {
     pub azimuth: f32,
     /// Degrees above the horizon.
     pub elevation: f32,
-    /// From the target to the eye, in object units.
+    /// The distance from the target to the eye, in object units.
     pub distance: f32,
     pub orthographic: bool,
 }
 
-/// Where one looks from along an axis.
+/// Directions of view along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Standpoint {
     Front,
@@ -36,7 +36,7 @@ pub enum Standpoint {
 }
 
 impl Camera {
-    /// Sees all of `bounds` in a viewport of this size, from the front, the right and a little above.
+    /// A camera that sees all of `bounds` in a viewport of this size (px), from the front, the right and a little above.
     pub fn framing(bounds: &Bounds, viewport: Vec2) -> Self {
         let mut camera =
             Self { target: Vec3::ZERO, azimuth: 30.0, elevation: 20.0, distance: 1.0, orthographic: false };
@@ -44,13 +44,13 @@ impl Camera {
         camera
     }
 
-    /// Whether it looks from somewhere to somewhere, as every camera does that was moved here.
+    /// Whether all values are finite and in their ranges, as they are after any movement. A saved camera may be damaged.
     pub fn is_sound(&self) -> bool {
         let turned = self.azimuth.is_finite() && (-MAX_ELEVATION..=MAX_ELEVATION).contains(&self.elevation);
         turned && self.target.is_finite() && DISTANCES.contains(&self.distance)
     }
 
-    /// Turns to look along an axis.
+    /// Turns the camera so that it looks along an axis.
     pub fn look_from(&mut self, standpoint: Standpoint) {
         (self.azimuth, self.elevation) = match standpoint {
             Standpoint::Front => (0.0, 0.0),
@@ -59,7 +59,7 @@ impl Camera {
         };
     }
 
-    /// Unit vectors to the right, up and back to the eye.
+    /// Unit vectors that point right, up, and back towards the eye.
     pub fn axes(&self) -> [Vec3; 3] {
         let (azimuth, elevation) = (self.azimuth.to_radians(), self.elevation.to_radians());
         let back = vec3(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos());
@@ -71,20 +71,20 @@ impl Camera {
         self.target + self.axes()[2] * self.distance
     }
 
-    /// Turns by `degrees` to the right and upwards.
+    /// Turns around the target by `degrees`, to the right and upwards.
     pub fn orbit(&mut self, degrees: Vec2) {
         self.azimuth = (self.azimuth + degrees.x).rem_euclid(360.0);
         self.elevation = (self.elevation + degrees.y).clamp(-MAX_ELEVATION, MAX_ELEVATION);
     }
 
-    /// Moves the target so that what was under the pointer follows it by `pixels` (x right, y down).
+    /// Moves the target so that the point under the pointer moves by `pixels` (x right, y down).
     pub fn pan(&mut self, pixels: Vec2, viewport: Vec2) {
         let [right, up, _] = self.axes();
         let unit = self.units_per_pixel(viewport.y);
         self.target += (up * pixels.y - right * pixels.x) * unit;
     }
 
-    /// Scales the distance by `ratio`; what lies under `pointer` (px from the top left) at the target's depth stays.
+    /// Multiplies the distance by `ratio`. The point under `pointer` (px from the top left) at the target's depth stays there.
     pub fn zoom(&mut self, ratio: f32, pointer: Vec2, viewport: Vec2) {
         let [right, up, _] = self.axes();
         let from_center = pointer - viewport * 0.5;
@@ -94,13 +94,13 @@ impl Camera {
         self.target += (right * from_center.x - up * from_center.y) * moved;
     }
 
-    /// Object units a px at the target's depth, in a viewport `height` px high.
+    /// Object units per px at the target's depth, in a viewport that is `height` px high.
     pub fn units_per_pixel(&self, height: f32) -> f32 {
         2.0 * self.distance * (0.5 * FIELD_OF_VIEW).to_radians().tan() / height.max(1.0)
     }
 
-    /// Object units to clip space, for a viewport of `viewport` px. `bounds` is what an orthographic view must hold in
-    /// depth.
+    /// The matrix from object units to clip space, for a viewport of `viewport` px. In an orthographic view, the depth range
+    /// holds `bounds`.
     pub fn clip_from_object(&self, viewport: Vec2, bounds: &Bounds) -> Mat4 {
         let [right, up, back] = self.axes();
         let eye = self.eye();
@@ -109,7 +109,7 @@ impl Camera {
         let aspect = viewport.x.max(1.0) / viewport.y.max(1.0);
         let projection = if self.orthographic {
             let half = 0.5 * self.units_per_pixel(viewport.y) * viewport.max(Vec2::ONE);
-            // Surfaces bulge over the corners, and heights lift them by a radius at most.
+            // Surfaces bulge beyond the corners, and heights lift them by at most a bounding radius.
             let radius = 2.0 * bounds.radius();
             let depth = radius + (bounds.center() - self.target).length() + self.distance;
             proj::orthographic(-half.x, half.x, -half.y, half.y, self.distance + depth, self.distance - depth)
@@ -119,7 +119,7 @@ impl Camera {
         projection * view
     }
 
-    /// The view that LOD and clipping are computed for.
+    /// The view for LOD and clipping.
     pub fn lod_view(&self, viewport: Vec2, bounds: &Bounds) -> LodView {
         let radius = bounds.radius().max(f32::MIN_POSITIVE);
         LodView { eye: self.eye(), radius, ..LodView::new(self.clip_from_object(viewport, bounds), viewport * 0.5) }
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn zooming_keeps_what_is_under_the_pointer() {
+    fn zooming_keeps_the_point_under_the_pointer() {
         let viewport = vec2(800.0, 600.0);
         let mut camera = Camera::framing(&unit_bounds(), viewport);
         let [right, up, _] = camera.axes();
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn depth_is_reversed_and_has_the_whole_mesh() {
+    fn depth_is_reversed_and_holds_the_whole_mesh() {
         let viewport = vec2(400.0, 400.0);
         for orthographic in [false, true] {
             let camera = Camera { orthographic, ..Camera::framing(&unit_bounds(), viewport) };
@@ -174,7 +174,7 @@ mod tests {
             let back = camera.axes()[2];
             let (near, far) = (depth(back), depth(-back));
             assert!((0.0..=1.0).contains(&far) && far < near && near <= 1.0, "{near} {far}");
-            // What heights lift by a radius, too.
+            // So are points that heights lift by a bounding radius.
             let lifted = 2.0 * unit_bounds().radius() * back;
             assert!((0.0..=1.0).contains(&depth(lifted)) && (0.0..=1.0).contains(&depth(-lifted)));
         }

@@ -16,8 +16,8 @@ use crate::tessellate::CoverageView;
 static COVERAGE: WgslFile = wgsl!("coverage");
 pub(super) static PASS_COVERAGE: WgslFile = wgsl!("pass_coverage", COVERAGE, TYPES, WORKGROUP_SCAN);
 
-/// How many triangles each workgroup looks at; `TILE` in `shaders/pass_coverage.wgsl`.
-pub(super) const TILE: u32 = 2048;
+/// How many triangles each workgroup tests; `TILE` in `shaders/pass_coverage.wgsl`.
+pub const TILE: u32 = 2048;
 
 /// What the passes over one chunk read as `sieve`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -65,8 +65,8 @@ impl Coverage {
     /// Buffers for as many triangles as this chunk has, or for up to twice as many if later chunks may have more.
     ///
     /// # Errors
-    /// More than the adapter binds.
-    pub(super) fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
+    /// The buffers are larger than the adapter can bind.
+    pub fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
         let most = (chunk.indices.size() / size_of::<[u32; 3]>() as u64) as u32;
         let capacity = chunk.chunk.triangle_count.next_power_of_two().min(most);
         let tiles = capacity.div_ceil(TILE) as usize;
@@ -79,15 +79,17 @@ impl Coverage {
         })
     }
 
-    pub(super) fn has_room(&self, chunk: &ChunkBuffers) -> bool {
+    /// Whether the buffers are large enough for a chunk.
+    pub fn has_room(&self, chunk: &ChunkBuffers) -> bool {
         chunk.chunk.triangle_count <= self.capacity
     }
 
-    pub(super) fn bytes(&self) -> u64 {
+    /// The size of all buffers.
+    pub fn bytes(&self) -> u64 {
         [&self.marks, &self.tile_starts, &self.indices, &self.draw_args].iter().map(|buffer| buffer.size()).sum()
     }
 
-    /// How many triangles were kept last time, waiting for that number.
+    /// How many triangles were kept last time. Waits for the device.
     ///
     /// # Errors
     /// The device was lost.
@@ -97,7 +99,7 @@ impl Coverage {
         Ok(draws.iter().map(|draw| u64::from(draw.index_count) / 3).sum())
     }
 
-    /// Records the passes that keep what may be seen of a chunk, which must fit: see [`Self::has_room`].
+    /// Records the passes that keep the triangles of a chunk that may be seen. The chunk must fit: see [`Self::has_room`].
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.

@@ -1,4 +1,4 @@
-//! Distances to the truth on the device, and the scales that they are read against.
+//! Deviation on the device: the distances to a reference surface, and the colour scales for them.
 
 use wgpu::util::DeviceExt;
 
@@ -8,19 +8,19 @@ use crate::gpu::Gpu;
 use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
 
-/// How far what is emitted is from the truth.
-pub(super) struct Deviations {
-    /// One a chunk: see `deviations` in `shaders/draw_surface.wgsl`.
+/// The distances from what is emitted to the reference surface.
+pub struct Deviations {
+    /// One buffer for each chunk: see `deviations` in `shaders/draw_surface.wgsl`.
     pub(super) chunks: Vec<wgpu::Buffer>,
-    /// In object units.
+    /// The colour scale, in object units.
     pub(super) scale: Scale,
-    /// Which tessellation it is about: see [`crate::gpu::Tessellator::generation`].
+    /// The tessellation that was measured: see [`crate::gpu::Tessellator::generation`].
     pub(super) of: u64,
 }
 
 impl Deviations {
-    pub(super) fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
-        // What is no number can't be told from others on every device.
+    pub fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
+        // Shaders can't detect NaN on every device, so -1 stands for it.
         let known = |sample: &f32| if sample.is_nan() { -1.0 } else { *sample };
         let buffer = |samples: &Vec<f32>| {
             let contents: Vec<f32> = [field.steps as f32].into_iter().chain(samples.iter().map(known)).collect();
@@ -29,8 +29,8 @@ impl Deviations {
         Self { chunks: field.chunks.iter().map(buffer).collect(), scale, of }
     }
 
-    /// What is bound where nothing is known: no samples.
-    pub(super) fn unknown(gpu: &Gpu) -> wgpu::Buffer {
+    /// The buffer that is bound where no distances are known: it has no samples.
+    pub fn unknown(gpu: &Gpu) -> wgpu::Buffer {
         buffer(gpu, &[0.0])
     }
 }
@@ -43,9 +43,10 @@ fn buffer(gpu: &Gpu, contents: &[f32]) -> wgpu::Buffer {
     })
 }
 
-/// Distances on screen in px. Plasma (Smith and van der Walt 2015, CC0) from 2 to 8 ninths: evenly lighter to the eye, in
-/// hues that neither factors nor sizes have, and without the end that lines couldn't be told from.
-pub(crate) const DEVIATION_PX_SCALE: Scale = Scale {
+/// The scale for distances on screen, in px. It is plasma (Smith and van der Walt 2015, CC0) from 2 to 8 ninths: its lightness
+/// grows evenly, its hues differ from those for factors and sizes, and the dark end is left out, since dark lines would vanish
+/// on it.
+pub const DEVIATION_PX_SCALE: Scale = Scale {
     least: 0.1,
     most: 10.0,
     colors: [
@@ -59,13 +60,13 @@ pub(crate) const DEVIATION_PX_SCALE: Scale = Scale {
     ],
 };
 
-/// From the least to the most, as a ratio: two decades. Most of a surface is within one of its worst place, and would be of
-/// one colour on a longer scale.
+/// The greatest value of a scale divided by the least: two decades. Most of a surface deviates by at least a tenth of the
+/// largest deviation, and would have a single colour on a longer scale.
 const SPAN: f64 = 100.0;
 
-/// The scale for distances in object units up to `largest`, which is rounded up; nothing below `ulp`, one unit in the last
-/// place, is worth a colour.
-pub(crate) fn deviation_scale(largest: f64, ulp: f32) -> Scale {
+/// The scale for distances in object units up to `largest`, which is rounded up. It starts at `ulp` (one unit in the last place
+/// of the mesh's largest coordinate) or above.
+pub fn deviation_scale(largest: f64, ulp: f32) -> Scale {
     const ROUND: [f64; 9] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
     let largest = largest.max(f64::from(ulp) * SPAN).max(f64::from(f32::MIN_POSITIVE) * SPAN * 10.0);
     let decade = 10.0_f64.powf(largest.log10().floor());
@@ -73,7 +74,7 @@ pub(crate) fn deviation_scale(largest: f64, ulp: f32) -> Scale {
     Scale { least: (most / SPAN) as f32, most: most as f32, ..DEVIATION_PX_SCALE }
 }
 
-/// The scale that a picture's numbers are read against; where its colours are none, any.
+/// The scale for the numbers that a picture's colours stand for; any scale if they stand for none.
 pub(super) fn scale_of(settings: &Settings, known: Option<&Deviations>) -> Scale {
     match (settings.overlays.colors, settings.deviation_in) {
         (Colors::Deviation, DeviationUnit::Units) => known.map_or(DEVIATION_PX_SCALE, |known| known.scale),
@@ -87,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scales_are_round_and_hold_the_largest() {
+    fn scales_end_at_round_numbers_and_hold_the_largest_distance() {
         let ends = |largest| {
             let Scale { least, most, .. } = deviation_scale(largest, 1e-7);
             (least, most)
@@ -96,7 +97,7 @@ mod tests {
         assert_eq!(ends(0.1), (0.001, 0.1));
         assert_eq!(ends(8.1), (0.1, 10.0));
         assert_eq!(ends(123.0), (1.5, 150.0));
-        assert_eq!(ends(0.0), ends(1e-5), "rounding alone is no deviation");
+        assert_eq!(ends(0.0), ends(1e-5), "no colour for rounding errors");
         assert!(deviation_scale(0.0, 0.0).least > 0.0);
     }
 }

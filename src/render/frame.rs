@@ -1,4 +1,4 @@
-//! How a picture sees a scene: what all its draws read.
+//! The constants that all draws of a picture read.
 
 use wgpu::util::DeviceExt;
 
@@ -8,13 +8,13 @@ use super::{Camera, Scene, Target};
 use crate::gpu::Gpu;
 use crate::settings::{DeviationUnit, Settings};
 
-/// How the picture sees a scene, on the device.
-pub(super) fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
+/// Uploads the constants of a picture of a scene.
+pub fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
     let scale = scale_of(settings, scene.known_deviation());
-    // W is 1 all over an orthographic view, and the distance from the eye in another.
+    // In clip space, w is 1 everywhere in an orthographic view, and the distance from the eye in a perspective view.
     let px_where_w_is_1 =
         (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
     let in_px = settings.deviation_in == DeviationUnit::Px;

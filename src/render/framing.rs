@@ -1,4 +1,4 @@
-//! Where a camera goes to see a mesh whole, or one edge or triangle of it.
+//! Moves a camera so that it shows a whole mesh, or one edge or triangle of it.
 
 use glam::{DVec2, DVec3, Vec2, Vec3, dvec3, vec2};
 
@@ -6,18 +6,18 @@ use super::Camera;
 use super::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
 use crate::mesh::Bounds;
 
-/// How far off a framed edge is looked at, in its lengths: it is two thirds of the view's height long then.
+/// The distance from which a framed edge is seen, in lengths of the edge. It then is two thirds of the view's height long.
 const FRAMED_EDGE: f32 = 2.06;
-/// How much of a viewport is filled by what is fitted into it; the rest is margin.
+/// The part of the viewport that fitted positions fill. The rest is margin.
 const FITTED: f64 = 0.93;
-/// How near the eye may come to what is fitted, in its largest extent: a line that is seen end on would reach it.
+/// The least distance between the eye and fitted positions, as a part of their largest extent. Without it, a line that is seen
+/// end on would reach the eye.
 const LEAST_CLEARANCE: f64 = 0.1;
-/// Steps towards slopes that touch what is fitted.
+/// The number of steps in which the slopes of planes that touch the fitted positions converge.
 const FIT_STEPS: usize = 16;
 
 impl Camera {
-    /// Moves the target and the distance so that the bounding sphere just fills the viewport's shorter side; the angles
-    /// stay.
+    /// Moves the target and the distance so that the bounding sphere just fills the viewport's shorter side. The angles stay.
     pub fn frame(&mut self, bounds: &Bounds, viewport: Vec2) {
         let radius = bounds.radius();
         let radius = if radius > 0.0 && radius.is_finite() { radius } else { 1.0 };
@@ -27,9 +27,9 @@ impl Camera {
         self.distance = radius / half_angle.sin();
     }
 
-    /// Moves the target and the distance so that these positions, and whatever is within `reach` (object units) of one, fill
-    /// the viewport but for a small margin; the angles stay. Positions that are no finite numbers count for nothing; where
-    /// nothing has a size, as [`Self::frame`] does.
+    /// Moves the target and the distance so that these positions, with `reach` (object units) around each, fill the viewport
+    /// except for a small margin. The angles stay. Positions that aren't finite are ignored. If the positions have no extent, it
+    /// does what [`Self::frame`] does.
     pub fn fit(&mut self, positions: impl Iterator<Item = Vec3>, reach: f32, viewport: Vec2) {
         let [right, up, back] = self.axes().map(Vec3::as_dvec3);
         let finite = positions.filter(|p| p.is_finite()).map(Vec3::as_dvec3);
@@ -49,17 +49,17 @@ impl Camera {
         let (_, half) = self.between(&places, reach, slopes);
         let clearance = 0.5 * (most.z - least.z) + reach + LEAST_CLEARANCE * extent;
         let distance = (half / slopes).max_element().max(clearance);
-        // The axis that isn't filled has planes less steep, which touch on both sides as well. No place is farther from the
-        // middle than the eye, so this converges.
+        // Along the axis that isn't filled, planes that are less steep touch on both sides. No place is farther from the middle
+        // than the eye, so this converges.
         let touching = (0..FIT_STEPS).fold(slopes, |slopes, _| self.between(&places, reach, slopes).1 / distance);
         let (center, _) = self.between(&places, reach, touching);
         self.target = self.at(center.extend(middle));
         self.distance = distance.clamp(1e-30, 1e30) as f32;
     }
 
-    /// Planes with these slopes around spheres of radius `reach` at `places` (to the right, up and back), on either side and
-    /// above and below: their middles at depth 0, and half of how far apart they are there. They meet in the eye that just
-    /// sees all; in an orthographic view they are upright.
+    /// The planes with these slopes that touch spheres of radius `reach` at `places` (right, up, back): left and right, and
+    /// below and above. Returns the middle between them at depth 0, and half of their distance there. They meet in the eye that
+    /// just sees all. In an orthographic view they are parallel.
     fn between(&self, places: &[DVec3], reach: f64, slopes: DVec2) -> (DVec2, DVec2) {
         let slopes = if self.orthographic { DVec2::ZERO } else { slopes };
         let farthest = |sign: f64| {
@@ -67,24 +67,24 @@ impl Camera {
             beside.fold(DVec2::NEG_INFINITY, DVec2::max)
         };
         let [above, below] = [1.0, -1.0].map(farthest);
-        // A sphere's outline lies farther out than its middle's depth says.
+        // From the eye, a sphere reaches farther out than its radius at the depth of its centre.
         let beside = (DVec2::ONE + slopes * slopes).map(f64::sqrt) * reach;
         ((above - below) * 0.5, (above + below) * 0.5 + beside)
     }
 
-    /// Where something lies that is so far to the right, up and back.
+    /// The position at these distances to the right, up and back.
     fn at(&self, place: DVec3) -> Vec3 {
         let [right, up, back] = self.axes().map(Vec3::as_dvec3);
         (right * place.x + up * place.y + back * place.z).as_vec3()
     }
 
-    /// Puts an edge in the middle, two thirds of the view's height long, seen from where it faces (or from where one is, if it
-    /// faces nowhere). `bounds` are the mesh's.
+    /// Puts an edge in the middle, two thirds of the view's height long, seen from the direction `facing`. If that is zero, the
+    /// direction stays. `bounds` are the mesh's.
     pub fn frame_edge(&mut self, [a, b]: [Vec3; 2], facing: Vec3, bounds: &Bounds) {
         self.frame_at(a * 0.5 + b * 0.5, a.distance(b), facing, bounds);
     }
 
-    /// The same for a triangle, whose longest edge then is that long.
+    /// Puts a triangle in the middle, seen from the front, with its longest edge two thirds of the view's height long.
     pub fn frame_triangle(&mut self, [a, b, c]: [Vec3; 3], bounds: &Bounds) {
         let facing = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -123,7 +123,7 @@ mod tests {
         }
     }
 
-    /// Where what is fitted touches the viewport, as parts of its half: the least and greatest x and y.
+    /// The least and greatest x and y of fitted positions on screen, from -1 to 1 in the viewport.
     fn filled(camera: &Camera, positions: &[Vec3], reach: f32, viewport: Vec2) -> [Vec2; 2] {
         let bounds = Bounds::of(positions.iter().copied());
         let clip = camera.clip_from_object(viewport, &bounds);
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_fitted_fills_one_side_and_is_in_the_middle() {
+    fn fitted_positions_fill_one_axis_and_are_in_the_middle() {
         let cloud: Vec<Vec3> = (0..40)
             .map(|i| vec3((i as f32 * 1.7).sin(), (i as f32 * 2.3).cos() * 0.4, (i as f32 * 0.9).sin() * 1.6))
             .collect();
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn fitting_is_nearer_than_framing() {
+    fn fitting_comes_nearer_than_framing() {
         let viewport = vec2(300.0, 240.0);
         let tall = [vec3(0.0, -1.0, 0.0), vec3(0.1, 1.0, 0.0), vec3(0.0, 0.0, 0.1)];
         let framed = Camera::framing(&Bounds::of(tall.into_iter()), viewport);
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_size_can_be_looked_at() {
+    fn positions_without_extent_give_a_valid_camera() {
         let viewport = vec2(300.0, 240.0);
         let end_on = [Vec3::Z, Vec3::NEG_Z, Vec3::ZERO];
         let bad = [Vec3::NAN, Vec3::INFINITY];

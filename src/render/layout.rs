@@ -7,7 +7,7 @@ use crate::gpu::layout::Vertex;
 use crate::mesh::EdgeKind;
 use crate::settings::{Colors, Overlays};
 
-/// One picture's view.
+/// The constants of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Frame {
@@ -23,12 +23,12 @@ pub(crate) struct Frame {
     pub overlays: u32,
     /// One unit in the last place of the mesh's largest coordinate, in object units.
     pub ulp: f32,
-    /// Which side each of a patch's factors lies on: a [`crate::tessellate::Convention`].
+    /// A [`crate::tessellate::Convention`]: which side each of a patch's factors is for.
     pub convention: u32,
     /// The ends of the colour scale, if the surface's colours stand for numbers.
     pub scale_least: f32,
     pub scale_most: f32,
-    /// Px of an object unit where w is 1, if deviations are shown in px; else 0.
+    /// If deviations are shown in px, the px per object unit where w is 1; else 0.
     pub px_per_unit: f32,
     /// The scale's colours in sRGB, 0 to 1; the fourth component is unused.
     pub scale: [[f32; 4]; Scale::STOPS],
@@ -42,27 +42,27 @@ pub(crate) struct Material {
     pub base_color: [f32; 4],
 }
 
-/// What is in front at a pixel.
+/// The result of picking: what is in front at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Pick {
-    /// As emitted; zero for an input triangle.
+pub struct Pick {
+    /// The triangle's vertices as they were emitted; zero for an input triangle.
     pub vertices: [Vertex; 3],
     /// [`FOUND_EMITTED`] for an emitted triangle, another number but 0 for an input triangle, 0 for nothing.
     pub found: u32,
     pub patch_index: u32,
-    /// Number of the emitted triangle within its patch.
+    /// The index of the emitted triangle in its patch.
     pub triangle: u32,
-    /// The weight (0 u, 1 v, 2 w) that is fewest px from 0.
+    /// The weight (0 u, 1 v, 2 w) of the nearest edge of the triangle on screen.
     pub weight: u32,
 }
 
-/// An emitted triangle; the same in `shaders/draw_types.wgsl`.
-pub(crate) const FOUND_EMITTED: u32 = 1;
+/// [`Pick::found`] for an emitted triangle; the same in `shaders/draw_types.wgsl`.
+pub const FOUND_EMITTED: u32 = 1;
 
-/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and
-/// normals are lines of their own.
-pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
+/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and normals are drawn as lines
+/// instead.
+pub fn overlay_bits(overlays: &Overlays) -> u32 {
     u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
         | u32::from(overlays.colors == Colors::Barycentric) << 2
@@ -76,8 +76,8 @@ pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
-/// Told apart by people with any colour vision (Okabe and Ito 2008), but for the quiet grey of smooth edges.
-pub(crate) fn edge_color(kind: EdgeKind) -> [u8; 3] {
+/// People with any colour vision can tell them apart (Okabe and Ito 2008). Smooth edges have an inconspicuous grey.
+pub fn edge_color(kind: EdgeKind) -> [u8; 3] {
     match kind {
         EdgeKind::Smooth => [170, 175, 183],
         EdgeKind::Split => [230, 159, 0],
@@ -101,27 +101,28 @@ pub(crate) const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 #[cfg(test)]
 pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
-/// sRGB colour of what tessellation is wasted on: triangles too small, patches whose factors are too low; `WASTE_COLOR` in
-/// `shaders/draw_surface.wgsl` has the same in linear light. Vermilion (Okabe and Ito 2008).
-pub(crate) const WASTE_COLOR: [u8; 3] = [213, 94, 0];
+/// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
+/// `shaders/draw_surface.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).
+pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
 
-/// sRGB colour of the place that is farthest from the truth: none of the scale's, and set off by [`OUTLINE_COLOR`].
-pub(crate) const WORST_COLOR: [u8; 3] = [120, 255, 245];
+/// sRGB colour of the place that is farthest from the reference surface. It isn't in the scale, and [`OUTLINE_COLOR`] sets it
+/// off.
+pub const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
 #[cfg(test)]
 pub(crate) const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
-/// sRGB colours of the sides of the edge that is looked at, by turns, and of the outline that sets them off.
-pub(crate) const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
-pub(crate) const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
+/// sRGB colours of the sides of the selected edge, in turn, and of the outline that sets them off.
+pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
+pub const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
 
-/// sRGB colours of the edges of a selected patch, by the factor that cuts them: those of u, v and w as barycentric colours
-/// have them, but paler.
-pub(crate) const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
+/// sRGB colours of the edges of a selected patch that factors 0, 1 and 2 cut: paler versions of the barycentric colours of u,
+/// v and w.
+pub const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
 
-/// sRGB bytes in linear light, 0 to 1.
-pub(crate) fn linear(srgb: [u8; 3]) -> [f32; 3] {
+/// Converts sRGB bytes to linear light, from 0 to 1.
+pub fn linear(srgb: [u8; 3]) -> [f32; 3] {
     srgb.map(|byte| {
         let x = f32::from(byte) / 255.0;
         if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }

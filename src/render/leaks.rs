@@ -1,4 +1,4 @@
-//! Leaks: pixels at which a crack lets the inside of a closed mesh show through.
+//! Leaks: pixels at which a crack shows the inside of a closed mesh.
 
 use glam::Mat4;
 use wgpu::util::DeviceExt;

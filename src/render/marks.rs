@@ -1,4 +1,4 @@
-//! Lines that mark what is found on a mesh.
+//! Lines that mark cracks, T-junctions, the largest deviation, and the selected patch.
 
 use glam::Vec3;
 
@@ -7,13 +7,13 @@ use super::layout::{CRACK_COLOR, FACTOR_COLORS, OUTLINE_COLOR, T_JUNCTION_COLOR,
 use crate::measure::{CrackedEdge, Measured};
 use crate::mesh::{TJunction, Topology};
 
-/// Every side of every cracked edge.
-pub(crate) fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
+/// The lines of every side of every cracked edge.
+pub fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
     crack_lines_in(measured, topology, |_| CRACK_COLOR)
 }
 
-/// Every side of every cracked edge, each edge in the colour (sRGB) that `color` gives it.
-pub(crate) fn crack_lines_in(
+/// The lines of every side of every cracked edge. `color` returns the sRGB colour of each edge.
+pub fn crack_lines_in(
     measured: &Measured,
     topology: &Topology,
     color: impl Fn(&CrackedEdge) -> [u8; 3],
@@ -29,8 +29,8 @@ pub(crate) fn crack_lines_in(
     lines
 }
 
-/// The open edges that T-junctions lie on, and a dot on each point.
-pub(crate) fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
+/// Lines along the open edges that T-junctions lie on, and a dot on each junction's point.
+pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
     let at = |point: u32| topology.points[point as usize];
     let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
     let marks = junctions.iter().flat_map(|junction| {
@@ -40,8 +40,8 @@ pub(crate) fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> 
     marks.collect()
 }
 
-/// The place that is farthest from the truth: a dot on it, and a line to the truth's point.
-pub(crate) fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
+/// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.
+pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
     let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
     let mark =
         |color, wider: f32| [line(emitted, truth, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)];

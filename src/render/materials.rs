@@ -9,7 +9,7 @@ use super::layout;
 use crate::gpu::Gpu;
 use crate::mesh::{Material, Texture};
 
-/// What the materials of all scenes share.
+/// What the materials of all scenes share: the layout, a sampler and a white texture.
 pub struct Materials {
     pub layout: wgpu::BindGroupLayout,
     /// For materials without a texture.
@@ -34,7 +34,7 @@ impl Materials {
         }
     }
 
-    /// A bind group for each material. A texture that several have is uploaded once.
+    /// Makes a bind group for each material. A texture that several materials use is uploaded once.
     pub fn groups(&self, gpu: &Gpu, materials: &[Material]) -> Vec<wgpu::BindGroup> {
         let mut uploaded: Vec<(*const Texture, wgpu::TextureView)> = Vec::new();
         let mut view = |texture: &Arc<Texture>| {

@@ -1,4 +1,4 @@
-//! Pictures: a camera, a scene on the device, and one indirect draw a material into an offscreen texture.
+//! Draws pictures of a scene on the device, as a camera sees it, with one indirect draw per material into an offscreen texture.
 
 pub(crate) mod camera;
 mod coverage;
@@ -31,7 +31,7 @@ pub(crate) use target::Target;
 #[cfg(test)]
 pub(crate) use target::samples;
 
-/// The files with the entry points of what draws and picks: one shader module each.
+/// The shader files with entry points for drawing and picking. Each makes one shader module.
 #[cfg(test)]
 static MODULES: [&crate::gpu::WgslFile; 6] = [
     &coverage::PASS_COVERAGE,

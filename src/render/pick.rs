@@ -1,4 +1,4 @@
-//! Picking: what a picture shows at one of its pixels.
+//! Picking: finds what a picture shows at a pixel.
 
 use std::sync::Arc;
 
@@ -16,23 +16,23 @@ use crate::gpu::{ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, R
 
 pub(super) static DRAW_PICK: WgslFile = wgsl!("draw_pick", DRAW_TYPES, FACTORS, SURFACE, TYPES);
 
-/// Two numbers are drawn, see `pick_fragment`. Every adapter can draw into four of 32 bits.
+/// `pick_fragment` draws two numbers. Every adapter can draw into this format, which has four.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
-/// A pixel of a picture, and how the mesh is seen in that picture.
+/// A pixel of a picture, and the picture's view of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     pub clip_from_object: Mat4,
     /// Width and height of the picture, in px.
     pub size: [u32; 2],
-    /// From the left and from the top.
+    /// The pixel's position in px from the left and from the top.
     pub at: [u32; 2],
-    /// Where the picture is split, as in [`crate::settings::Settings`]; 1 where input triangles are to be picked.
+    /// Where the picture is split, as in [`crate::settings::Settings`]. With 1, input triangles are picked everywhere.
     pub split: Option<f32>,
 }
 
 impl Pixel {
-    /// Whether it is left of the split.
+    /// Whether the pixel is left of the split.
     pub fn is_left(&self) -> bool {
         let [[.., width, _], _] = halves(self.size, self.split);
         self.at[0] < width
@@ -44,30 +44,30 @@ impl Pixel {
 pub struct Picked {
     /// Index into [`crate::mesh::Topology::patches`].
     pub patch: u32,
-    /// The weight (u, v, w) that is fewest px from 0 there: that of the nearest edge.
+    /// The weight (0 u, 1 v, 2 w) of the nearest edge on screen.
     pub weight: u32,
-    /// None left of the split, where input triangles are drawn.
+    /// `None` left of the split, where input triangles are drawn.
     pub triangle: Option<PickedTriangle>,
 }
 
 /// An emitted triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PickedTriangle {
-    /// Its number within its patch: see [`crate::tessellate::domain_triangle`].
+    /// Its index in its patch: see [`crate::tessellate::domain_triangle`].
     pub number: u32,
     pub vertices: [Vertex; 3],
 }
 
 /// Finds what is drawn at a pixel.
 ///
-/// Everything is drawn into a target that is that one pixel, with numbers in place of colours. The triangles of a chunk are
-/// looked up while the arena holds them, so what comes back is what was emitted.
+/// Everything is drawn into a target of one pixel, with numbers in place of colours. The triangles of a chunk are looked up
+/// while the arena holds them, so the result has the vertices as they were emitted.
 pub struct Picker {
     emitted: Search,
     source: Search,
 }
 
-/// A draw into the pixel, and the pass that takes its result; their pipelines are made when they are first needed.
+/// A draw into the pixel, and the pass that takes its result. Their pipelines are made when they are first needed.
 struct Search {
     module: Arc<ShaderModule>,
     vertex: &'static str,
@@ -110,7 +110,7 @@ impl Picker {
         }
     }
 
-    /// Asks what is drawn at a pixel of a picture of the scene, whose counts must be known.
+    /// Starts to look for what is drawn at a pixel of a picture of the scene. The scene must be counted.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
@@ -135,7 +135,7 @@ impl Picker {
 }
 
 impl Picking {
-    /// What was found, once it is here: nothing, where nothing is drawn.
+    /// The result, once it has arrived; `Some(None)` if nothing is drawn at the pixel.
     ///
     /// # Errors
     /// The device was lost.
@@ -143,7 +143,7 @@ impl Picking {
         if self.0.poll()? { Ok(Some(found(&self.0.bytes()?))) } else { Ok(None) }
     }
 
-    /// Waits for it.
+    /// Waits for the result; `None` if nothing is drawn at the pixel.
     ///
     /// # Errors
     /// The device was lost.
@@ -152,7 +152,7 @@ impl Picking {
     }
 }
 
-/// What the bytes of a [`Pick`] say.
+/// Decodes the bytes of a [`Pick`].
 fn found(bytes: &[u8]) -> Option<Picked> {
     let Pick { vertices, found, patch_index: patch, triangle: number, weight, .. } =
         bytemuck::pod_read_unaligned(bytes);
@@ -160,7 +160,7 @@ fn found(bytes: &[u8]) -> Option<Picked> {
     (found != 0).then_some(Picked { patch, weight, triangle })
 }
 
-/// What one search needs on the device.
+/// The resources of one search on the device.
 struct Run<'a> {
     gpu: &'a Gpu,
     pixel_from_object: wgpu::Buffer,
@@ -198,7 +198,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Draws so many corners, and takes the result if it is in front of all that was drawn before.
+    /// Draws a number of corners, and takes the result if it is in front of everything that was drawn before.
     fn record(
         &self,
         recorder: &mut Recorder,
@@ -257,12 +257,12 @@ impl<'a> Run<'a> {
     }
 }
 
-/// From object space to a clip space that holds the pixel alone. Computed in f64, since the pixel is about a thousandth of the
-/// picture that it is cut out of.
+/// The matrix from object space to a clip space that holds only this pixel. It is computed in f64, since the pixel is only
+/// about a thousandth of the picture's width.
 fn pixel_from_object(pixel: &Pixel) -> Mat4 {
     let size = dvec2(pixel.size[0].into(), pixel.size[1].into());
     let at = dvec2(pixel.at[0].into(), pixel.at[1].into());
-    // The pixel's middle, -1 to 1 and upwards.
+    // The pixel's middle, from -1 to 1, with y upwards.
     let middle = ((at + 0.5) / size * 2.0 - 1.0) * dvec2(1.0, -1.0);
     let narrow =
         DMat4::from_cols(DVec4::X * size.x, DVec4::Y * size.y, DVec4::Z, (-middle * size).extend(0.0).extend(1.0));

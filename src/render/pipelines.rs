@@ -19,10 +19,10 @@ pub(super) enum Draw {
     Plain(Faces),
     /// Emitted triangles with the material's colour and texture.
     Textured(Faces),
-    /// Emitted triangles with overlays that don't look at whole triangles.
+    /// Emitted triangles with overlays that need no data of whole triangles.
     Indexed(Faces),
-    /// Emitted triangles with any overlays. Each corner is pulled from the vertex buffer by the shader, so that a triangle knows
-    /// its own barycentric coordinates.
+    /// Emitted triangles with any overlays. The shader pulls each corner from the vertex buffer, so that it knows the barycentric
+    /// coordinates in the triangle.
     Pulled(Faces),
     /// The input triangles, with any overlays.
     Source,
@@ -42,10 +42,10 @@ pub(super) enum Faces {
 
 /// Which part of a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Occluded {
-    /// All of it, faintly, whatever is in front of it.
+pub enum Occluded {
+    /// All of it, faintly, even behind surfaces.
     Through,
-    /// What nothing is in front of.
+    /// The part that no surface hides.
     InSight,
 }
 
@@ -67,7 +67,7 @@ impl Draw {
         Self::Normals(Occluded::InSight),
     ];
 
-    /// Names of the vertex and the fragment shader.
+    /// The names of the vertex and the fragment shader.
     fn entry_points(self) -> (&'static str, &'static str) {
         let line = |part| match part {
             Occluded::Through => "hidden_line_fragment",
@@ -99,7 +99,7 @@ impl Draw {
         }
     }
 
-    /// Depth is reversed, so that what is nearer has the greater depth.
+    /// Depth is reversed, so that nearer surfaces have a greater depth.
     fn depth_compare(self) -> wgpu::CompareFunction {
         match self {
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => wgpu::CompareFunction::Always,
@@ -136,15 +136,15 @@ fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferL
     [Some(half(&PLACE)), Some(half(&DETAIL))]
 }
 
-/// The pipelines, by [`Draw`], and the layouts of what they are bound to.
-pub(super) struct DrawPipelines {
+/// The pipeline of each [`Draw`], and the layouts of their bind groups.
+pub struct DrawPipelines {
     /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, and the frame once more as a uniform.
     pub scene_layout: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, texture and sampler.
     pub material_layout: wgpu::BindGroupLayout,
     /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
     pub chunk_layout: wgpu::BindGroupLayout,
-    /// Group 3: how far a chunk's triangles are from the true surface.
+    /// Group 3: the distances from a chunk's triangles to the reference surface.
     pub deviation_layout: wgpu::BindGroupLayout,
     plain: ShaderModule,
     surface: ShaderModule,
@@ -167,7 +167,7 @@ impl DrawPipelines {
         }
     }
 
-    /// The pipeline on the device, which is the same at every call.
+    /// The pipeline of a draw. It is made at the first call.
     ///
     /// # Errors
     /// Out of memory, or a lost device.

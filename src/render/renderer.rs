@@ -1,4 +1,4 @@
-//! Draws pictures: the same way for the window, the commands and the tests.
+//! Draws pictures, in the same way for the window, the commands and the tests.
 
 use std::ops::Range;
 
@@ -16,25 +16,25 @@ use crate::gpu::{ChunkBuffers, Gpu, GpuError, Recorder, bind_group};
 use crate::settings::{Colors, Overlays, Settings, SplitSide};
 use crate::tessellate::CoverageView;
 
-/// What draws pictures of any scene on a device. Its pipelines are made when they are first needed.
+/// Draws pictures of any scene on a device. Its pipelines are made when they are first needed.
 pub struct Renderer {
     gpu: Gpu,
     materials: Materials,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
-    /// Bound where deviations aren't known.
+    /// The buffer that is bound where deviations aren't known.
     unknown: wgpu::Buffer,
     samples: u32,
-    /// From this many triangles a pixel on, those that cover no sample are removed before the others are drawn.
+    /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
     pub sift_from: f32,
 }
 
-/// With fewer triangles a pixel, a rasteriser draws all of them sooner than the passes could remove some.
+/// With fewer triangles per pixel, a GPU draws all of them in less time than it takes to remove some.
 const SIFT_FROM: f32 = 0.5;
-/// A rasteriser in software is always sooner: a small triangle takes it no longer than it takes those passes.
+/// A software rasteriser always draws all triangles in less time: it takes no longer for a small triangle than those passes do.
 const SIFT_FROM_IN_SOFTWARE: f32 = f32::INFINITY;
 
-/// Offset in a [`DrawArgs`] of the arguments for pulled drawing.
+/// The offset in [`DrawArgs`] of the arguments for draws that pull their vertices.
 const PULL_ARGS: u64 = std::mem::offset_of!(DrawArgs, pull_vertex_count) as u64;
 
 impl Renderer {
@@ -52,13 +52,13 @@ impl Renderer {
         }
     }
 
-    /// What the materials of scenes are made with.
+    /// What the materials of all scenes share.
     pub fn materials(&self) -> &Materials {
         &self.materials
     }
 
     /// Makes the pipelines that a picture of the scene with these settings needs, as far as that is known before the scene is
-    /// counted. May run on any thread: a picture that needs one of them meanwhile waits for it.
+    /// counted. It may run on any thread. A picture that needs one of these pipelines meanwhile waits for it.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
@@ -85,7 +85,7 @@ impl Renderer {
         draws.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
-    /// Makes the pipelines of all draws, also of those that no picture has needed yet: for whoever measures memory.
+    /// Makes the pipelines of all draws, also of those that no picture has needed yet. Measurements of memory use it.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
@@ -93,8 +93,8 @@ impl Renderer {
         Draw::ALL.into_iter().try_for_each(|draw| self.pipelines.get(&self.gpu, draw).map(|_| ()))
     }
 
-    /// Draws the scene, whose counts must be known, into the target: chunk after chunk, each emitted unless the arena still holds
-    /// it. Normals are drawn after all surfaces, since surfaces may hide them; for that the chunks are gone through once more.
+    /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still
+    /// holds it. Normals are drawn in a second walk over all chunks, since surfaces may hide them.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
@@ -115,7 +115,7 @@ impl Renderer {
         steps(scene, settings).len()
     }
 
-    /// Draws some of the steps of a picture. All of them, in order, make the picture, which the target shows after the last.
+    /// Draws some of the steps of a picture. The target shows the picture after all steps were drawn in order.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
@@ -187,12 +187,12 @@ impl Renderer {
         self.pipelines.get(&self.gpu, draw)
     }
 
-    /// What is faintly visible through everything, then what is in sight.
+    /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
     fn line_pipelines(&self, draw: fn(Occluded) -> Draw) -> Result<[&wgpu::RenderPipeline; 2], GpuError> {
         Ok([self.get(draw(Occluded::Through))?, self.get(draw(Occluded::InSight))?])
     }
 
-    /// How the emitted triangles are drawn.
+    /// Decides how the emitted triangles are drawn.
     fn surfaces(
         &self,
         scene: &Scene,
@@ -202,7 +202,7 @@ impl Renderer {
     ) -> Result<Surfaces<'_>, GpuError> {
         let Overlays { folds, back_faces, .. } = settings.overlays;
         let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
-        // These two overlays show backs.
+        // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (draws, pulled) = surface_draws(&settings.overlays, if fronts { Faces::Fronts } else { Faces::Both });
         let mut materials = [None; 2];
@@ -213,7 +213,8 @@ impl Renderer {
         Ok(Surfaces { materials, pulled, fronts, sifted: false })
     }
 
-    /// Keeps only what may be seen of a chunk that was emitted, if that is worth the time. False if all of it is to be drawn.
+    /// Removes triangles that cover no sample from an emitted chunk, if that saves time. Returns false if all of the chunk has to
+    /// be drawn.
     fn sift(
         &self,
         recorder: &mut Recorder,
@@ -282,7 +283,7 @@ impl Renderer {
             pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
         }
         for (material, own) in scene.materials.iter().zip(&scene.tessellator.mesh().materials) {
-            // `surfaces` has found one for every material.
+            // `surfaces` has a pipeline for every material.
             let Some(pipeline) = surfaces.materials[usize::from(own.texture.is_some())] else { continue };
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, material, &[]);
@@ -295,7 +296,7 @@ impl Renderer {
         }
     }
 
-    /// A line along the normal of every vertex of a chunk.
+    /// Draws a line along the normal of every vertex of a chunk.
     fn draw_normals<'a>(
         &self,
         pass: &mut wgpu::RenderPass,
@@ -336,7 +337,7 @@ impl Renderer {
 
 /// The pipelines for emitted triangles without and with a texture, and whether they pull their vertices.
 fn surface_draws(overlays: &Overlays, faces: Faces) -> ([Draw; 2], bool) {
-    // These overlays look at whole triangles.
+    // These overlays need data of whole triangles.
     let Overlays { wireframe, folds, colors, .. } = *overlays;
     let pulled = wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation);
     let draws = match pulled {
@@ -374,7 +375,7 @@ fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {
 
 /// How emitted triangles are drawn.
 struct Surfaces<'a> {
-    /// The pipelines of materials without a texture, and with one; none where no material is such.
+    /// The pipelines for materials without a texture, and with one; `None` if there is no such material.
     materials: [Option<&'a wgpu::RenderPipeline>; 2],
     /// Whether shaders pull the corners of triangles.
     pulled: bool,

@@ -1,9 +1,9 @@
-//! Scales of colours: what a number over the surface looks like, for shaders and legends alike.
+//! Colour scales: the colours of numbers over the surface, for shaders and legends.
 
 use crate::measure::SMALL_PX;
 use crate::settings::Colors;
 
-/// Colours from a least to a most, evenly spaced on a logarithmic scale. What lies beyond looks as the end does.
+/// A colour scale. Its colours are evenly spaced on a logarithmic scale. Numbers beyond an end have the colour of that end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     pub least: f32,
@@ -12,9 +12,10 @@ pub struct Scale {
     pub colors: [[u8; 3]; Scale::STOPS],
 }
 
-/// Tessellation factors, a colour each power of two. The upper six eighths of viridis (Smith and van der Walt 2015, CC0):
-/// evenly lighter to the eye with any colour vision, and without the end that lines couldn't be told from.
-pub(crate) const FACTOR_SCALE: Scale = Scale {
+/// The scale for tessellation factors, with a colour for each power of two. It is the upper six eighths of viridis (Smith and
+/// van der Walt 2015, CC0): its lightness grows evenly for any colour vision, and the dark end is left out, since dark lines
+/// would vanish on it.
+pub const FACTOR_SCALE: Scale = Scale {
     least: 1.0,
     most: 64.0,
     colors: [
@@ -28,8 +29,9 @@ pub(crate) const FACTOR_SCALE: Scale = Scale {
     ],
 };
 
-/// Sizes of triangles in px: blue, which nobody confuses with [`super::layout::WASTE_COLOR`], darker the larger.
-pub(crate) const SIZE_SCALE: Scale = Scale {
+/// The scale for sizes of triangles in px. It is blue, darker for larger triangles, and can't be confused with
+/// [`super::layout::WASTE_COLOR`].
+pub const SIZE_SCALE: Scale = Scale {
     least: SMALL_PX as f32,
     most: 64.0,
     colors: [
@@ -46,7 +48,7 @@ pub(crate) const SIZE_SCALE: Scale = Scale {
 impl Scale {
     pub const STOPS: usize = 7;
 
-    /// The scale that colours are read against, if they are numbers and it is always the same.
+    /// The scale of colours that stand for numbers, if it is always the same one.
     pub fn of(colors: Colors) -> Option<&'static Self> {
         match colors {
             Colors::Factors => Some(&FACTOR_SCALE),
@@ -55,12 +57,12 @@ impl Scale {
         }
     }
 
-    /// Where a number lies between the least (0) and the most (1).
+    /// The place of a number on the scale, from 0 for the least to 1 for the most.
     pub fn place(&self, number: f32) -> f32 {
         ((number / self.least).ln() / (self.most / self.least).ln()).clamp(0.0, 1.0)
     }
 
-    /// The sRGB colour at a place; `scale_color` in `shaders/draw_surface.wgsl` does the same.
+    /// The sRGB colour at a place from 0 to 1; `scale_color` in `shaders/draw_surface.wgsl` does the same.
     pub fn color(&self, place: f32) -> [u8; 3] {
         let at = place.clamp(0.0, 1.0) * (Self::STOPS - 1) as f32;
         let below = (at as usize).min(Self::STOPS - 2);

@@ -1,4 +1,4 @@
-//! A mesh ready to be tessellated and drawn: everything long-lived that belongs to it.
+//! A mesh that is ready to be tessellated and drawn, with all its resources on the device.
 
 use std::sync::Arc;
 
@@ -18,33 +18,33 @@ use crate::settings::{Settings, SplitSide};
 use crate::tessellate::bounds_through;
 use crate::view::{ulp, ulp_at};
 
-/// One mesh on the device, its materials, and the lines drawn over it.
+/// A mesh on the device, its materials, and the lines that are drawn over it.
 pub struct Scene {
     pub tessellator: Tessellator,
-    /// At rest, and all through the clip that is framed: see [`Self::frame_clip`].
+    /// The mesh's bounds at rest, or all through the clip that was framed: see [`Self::frame_clip`].
     pub bounds: Bounds,
     /// See [`ulp`].
     pub(super) ulp: f32,
     pub(super) materials: Vec<wgpu::BindGroup>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
-    /// Once a picture had triangles enough.
+    /// Made when a picture first has enough triangles.
     pub(super) coverage: Option<Coverage>,
-    /// How far what was emitted is from the truth, once that is known.
+    /// The distances from what was emitted to the reference surface, once they are known.
     deviation: Option<Deviations>,
-    /// The same mesh tessellated once more, for a picture with another surface left of its split.
+    /// The same mesh, tessellated with another surface for the left half of a split view.
     left: Option<Box<Scene>>,
 }
 
-/// A piece of a line drawn through everything; a dot where it starts and ends at one place.
+/// A line over the mesh, which is faintly visible through surfaces. If it starts and ends at the same place, it is a dot.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct LineSegment {
-    /// Object units.
+    /// Both ends, in object units.
     pub start: [f32; 3],
     pub end: [f32; 3],
     /// Linear RGB.
     pub color: [f32; 3],
-    /// Px to either side.
+    /// Half of the line's width in px.
     pub half_width: f32,
 }
 
@@ -56,10 +56,10 @@ impl LineSegment {
 }
 
 impl Scene {
-    /// Uploads a mesh. Needs no window and may run beside one.
+    /// Uploads a mesh. It needs no window, and may run on any thread.
     ///
     /// # Errors
-    /// The mesh is larger than the adapter binds.
+    /// The mesh needs larger buffers than the adapter can bind.
     pub fn new(
         gpu: &Gpu,
         materials: &Materials,
@@ -74,7 +74,7 @@ impl Scene {
         Ok(Self::at_rest(tessellator, mesh.bounds(), ulp, materials))
     }
 
-    /// Makes a scene of the same mesh for [`Self::set_left`], on whatever thread: it shares mesh, topology and images.
+    /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
     pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let tessellator = self.tessellator.beside(arena_bytes);
         let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
@@ -85,29 +85,29 @@ impl Scene {
         Self { tessellator, bounds, ulp, materials, lines: None, coverage: None, deviation: None, left: None }
     }
 
-    /// Takes what is drawn left of the split where settings have a surface there, in the pose of now; or none, for the mesh
-    /// as it came.
+    /// Sets what is drawn left of the split: another scene of the mesh, which takes the current pose, or `None` for the mesh
+    /// without tessellation.
     ///
     /// # Errors
-    /// The mesh's rig is larger than the adapter binds.
+    /// The mesh's rig needs larger buffers than the adapter can bind.
     pub fn set_left(&mut self, left: Option<Self>) -> Result<(), GpuError> {
         self.left = left.map(Box::new);
         self.follow()
     }
 
-    /// The left half shows what the right one does.
+    /// Gives the left half the bounds and pose of the right one.
     fn follow(&mut self) -> Result<(), GpuError> {
         let Some(left) = &mut self.left else { return Ok(()) };
         (left.bounds, left.ulp) = (self.bounds, self.ulp);
         left.tessellator.pose_as(self.tessellator.posed())
     }
 
-    /// Bytes of what the passes work with: see [`Tessellator::work_bytes`].
+    /// The size of the buffers that the passes work with: see [`Tessellator::work_bytes`].
     pub fn work_bytes(&self) -> u64 {
         self.tessellator.work_bytes() + self.coverage.as_ref().map_or(0, Coverage::bytes)
     }
 
-    /// How many triangles of the last chunk that was sifted were drawn; none if every one was.
+    /// How many triangles of the last chunk were drawn, if those that cover no sample were removed; else `None`.
     ///
     /// # Errors
     /// The device was lost.
@@ -115,7 +115,7 @@ impl Scene {
         self.coverage.as_ref().map(|coverage| coverage.kept(self.tessellator.gpu())).transpose()
     }
 
-    /// What a half draws; none left of a split that has the mesh there as it came.
+    /// The scene in a half of the picture; `None` on the left if that shows the mesh without tessellation.
     pub fn half(&self, half: SplitSide) -> Option<&Self> {
         match half {
             SplitSide::Left => self.left.as_deref(),
@@ -123,6 +123,7 @@ impl Scene {
         }
     }
 
+    /// See [`Self::half`].
     pub fn half_mut(&mut self, half: SplitSide) -> Option<&mut Self> {
         match half {
             SplitSide::Left => self.left.as_deref_mut(),
@@ -130,8 +131,8 @@ impl Scene {
         }
     }
 
-    /// Takes the bounds all through a clip, so that nothing that depends on them changes while it plays; those at rest
-    /// without one.
+    /// Sets the bounds to those all through a clip, so that nothing that depends on them changes while it plays; without a
+    /// clip, to those at rest.
     pub fn frame_clip(&mut self, clip: Option<usize>) {
         self.bounds = bounds_through(self.tessellator.mesh(), clip);
         let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
@@ -141,36 +142,36 @@ impl Scene {
         }
     }
 
-    /// The bounds with room for what heights do under these settings: what a picture of everything holds.
+    /// The bounds with room for displacement under these settings. A picture of everything must hold them.
     pub fn drawn_bounds(&self, settings: &Settings) -> Bounds {
         self.bounds.grown(settings.reach(self.tessellator.mesh()))
     }
 
-    /// Shows the mesh at a moment of one of its clips; at rest without one. Takes effect with the next tessellation.
+    /// Poses the mesh as at a moment of one of its clips, or at rest. It takes effect with the next tessellation.
     ///
     /// # Errors
-    /// The mesh's rig is larger than the adapter binds.
+    /// The mesh's rig needs larger buffers than the adapter can bind.
     pub fn set_moment(&mut self, moment: Option<Moment>) -> Result<(), GpuError> {
         let rig = self.tessellator.mesh().rig.clone();
         self.tessellator.set_pose(moment.zip(rig).map(|(moment, rig)| Arc::new(rig.pose(moment))))?;
         self.follow()
     }
 
-    /// Takes how far what is emitted now is from the truth, and the scale that it is read against in object units; none
-    /// when that is no longer so.
+    /// Sets the distances from what is emitted now to the reference surface, and their scale in object units; `None` forgets
+    /// them.
     pub fn set_deviation(&mut self, gpu: &Gpu, field: Option<(&DeviationField, Scale)>) {
         let of = self.tessellator.generation();
         self.deviation = field.map(|(field, scale)| Deviations::new(gpu, field, scale, of));
     }
 
-    /// Reads the distances that it has against another scale.
+    /// Replaces the scale of the distances.
     pub fn scale_deviation(&mut self, scale: Scale) {
         if let Some(deviation) = &mut self.deviation {
             deviation.scale = scale;
         }
     }
 
-    /// Whether it is known how far what is emitted now is from the truth.
+    /// Whether the distances from what is emitted now to the reference surface are known.
     pub fn knows_deviation(&self) -> bool {
         self.known_deviation().is_some()
     }
@@ -184,7 +185,7 @@ impl Scene {
         self.ulp
     }
 
-    /// Replaces the lines drawn over the mesh.
+    /// Replaces the lines that are drawn over the mesh.
     pub fn set_lines(&mut self, gpu: &Gpu, segments: &[LineSegment]) {
         self.lines = (!segments.is_empty()).then(|| {
             let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {

@@ -1,11 +1,11 @@
-//! A picture in steps: what each render pass adds, and to which half.
+//! The steps of a picture: what each render pass draws, and in which half.
 
 use super::Scene;
 use crate::settings::{Settings, SplitSide};
 
-/// What one render pass of a picture adds.
-pub(super) enum Step {
-    /// The background alone: nothing is emitted.
+/// What one render pass of a picture draws.
+pub enum Step {
+    /// Only the background, since nothing is emitted.
     Nothing,
     /// The triangles of a half's chunk.
     Surface(SplitSide, usize),
@@ -44,8 +44,8 @@ pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
     surfaces.chain(all[..with_normals].iter().map(|&(half, chunk)| Step::Normals(half, chunk))).collect()
 }
 
-/// The picture left and right of the split: x, y, width, height in px.
-pub(super) fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
+/// The rectangles left and right of the split: x, y, width and height in px.
+pub fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
     let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
     [[0, 0, at, height], [at, 0, width - at, height]]
 }

@@ -2,17 +2,17 @@
 
 use crate::gpu::{Gpu, GpuError, read_texture};
 
-/// How a picture's texture is drawn into and resolved: sRGB-encoded 8-bit RGBA.
-pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+/// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
+pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Samples a pixel that pictures are drawn with: 4 where the adapter has them, else 1.
+/// The number of samples per pixel in pictures: 4 if the adapter supports them, else 1.
 pub fn samples(gpu: &Gpu) -> u32 {
     gpu.samples(&[COLOR_FORMAT, DEPTH_FORMAT])
 }
 
-/// Colour and depth of one size. Drawn through an sRGB view, shown and read back through a plain one, so that the bytes
-/// are those of a PNG.
+/// Colour and depth textures of one size. They are drawn through an sRGB view, and shown and read back through a plain one, so
+/// that the bytes are those of a PNG.
 pub struct Target {
     pub size: [u32; 2],
     resolved: wgpu::Texture,
@@ -21,10 +21,12 @@ pub struct Target {
     depth: wgpu::TextureView,
 }
 
-/// What egui shows and a PNG holds: sRGB-encoded bytes, not decoded when sampled.
+/// The format that egui shows and a PNG holds: bytes encoded as sRGB, which sampling doesn't decode.
 const SHOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 impl Target {
+    /// Makes the textures, with this width and height in px.
+    ///
     /// # Errors
     /// The adapter has no textures of that size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, GpuError> {
@@ -58,7 +60,7 @@ impl Target {
         Ok(Self { size: [width, height], resolved, resolved_srgb, multisampled, depth })
     }
 
-    /// The view to show: sRGB-encoded values.
+    /// The view for showing the picture. Its values are encoded as sRGB.
     pub fn shown_view(&self) -> wgpu::TextureView {
         self.resolved.create_view(&wgpu::TextureViewDescriptor::default())
     }
@@ -68,7 +70,7 @@ impl Target {
         glam::vec2(self.size[0] as f32, self.size[1] as f32)
     }
 
-    /// The colour attachment of one pass of several: the first clears to `background` (linear), the last resolves.
+    /// The colour attachment for one of several passes. The first clears to `background` (linear light), and the last resolves.
     pub fn color(&self, background: wgpu::Color, first: bool, last: bool) -> wgpu::RenderPassColorAttachment<'_> {
         let (view, resolve_target) = match &self.multisampled {
             Some(view) => (view, last.then_some(&self.resolved_srgb)),
@@ -83,7 +85,7 @@ impl Target {
         }
     }
 
-    /// The depth attachment of one pass of several. Depth is reversed: the far end is 0.
+    /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
     pub fn depth(&self, first: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
         let load = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
         wgpu::RenderPassDepthStencilAttachment {
@@ -93,14 +95,14 @@ impl Target {
         }
     }
 
-    /// Bytes of all its textures.
+    /// The size of all its textures in bytes.
     pub fn bytes(&self) -> u64 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let samples = if self.multisampled.is_some() { 4 } else { 1 };
         pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 })
     }
 
-    /// The picture, waiting for it.
+    /// Reads the picture back. Waits for the device.
     ///
     /// # Errors
     /// The device was lost.

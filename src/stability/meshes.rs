@@ -1,4 +1,4 @@
-//! The meshes of the cases, all made in code: small, and each with one thing wrong with it.
+//! The meshes of the cases. They are made in code, small, and have one defect each.
 
 mod techniques;
 
@@ -10,7 +10,7 @@ use crate::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use crate::mesh::{Corner, Material, Mesh, Shape};
 use crate::progress::Progress;
 
-/// A mesh of loose triangles, made as a file's would be: normals repaired, equal corners merged.
+/// Makes a mesh of separate triangles as a loader does: normals are repaired, and equal corners merged.
 fn mesh(triangles: impl IntoIterator<Item = [InputCorner; 3]>) -> Mesh {
     let mut builder = MeshBuilder::new();
     let material = builder.material(Material::plain("default", [0.6, 0.6, 0.6, 1.0]));
@@ -25,13 +25,13 @@ fn corner(position: Vec3, normal: Vec3) -> InputCorner {
     InputCorner { position, normal: Some(normal), uv: Vec2::ZERO }
 }
 
-/// A shape's triangles, with their numbers.
+/// A shape's triangles, each with its index.
 fn triangles(shape: Shape) -> Vec<(usize, [Corner; 3])> {
     let mesh = shape.build();
     mesh.triangles.iter().map(|corners| corners.map(|c| mesh.corners[c as usize])).enumerate().collect()
 }
 
-/// A shape with every corner changed; `change` gets its triangle's number and its own number in it.
+/// A shape with every corner changed. `change` gets the index of the triangle, that of the corner in it, and the corner.
 fn changed(shape: Shape, change: impl Fn(usize, usize, Corner) -> Corner) -> Mesh {
     let triangles = triangles(shape).into_iter();
     mesh(triangles.map(|(t, corners)| [0, 1, 2].map(|k| InputCorner::from(change(t, k, corners[k])))))
@@ -45,8 +45,8 @@ fn with_normals(shape: Shape, normal: impl Fn(usize, usize, Corner) -> Vec3) -> 
     changed(shape, |t, k, corner| Corner { normal: normal(t, k, corner), ..corner })
 }
 
-/// Five half-planes around one edge, each of two triangles with normals of its own.
-pub(super) fn fins() -> Mesh {
+/// Five half-planes around one edge. Each has two triangles, and its own normals.
+pub fn fins() -> Mesh {
     let fin = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 5.0;
         let (out, normal) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.3, angle.cos()));
@@ -56,15 +56,15 @@ pub(super) fn fins() -> Mesh {
     mesh((0..5).flat_map(fin))
 }
 
-/// An icosphere of whose triangles every third is wound the other way.
-pub(super) fn reversed_neighbours() -> Mesh {
+/// An icosphere in which every third triangle is wound the other way.
+pub fn reversed_neighbours() -> Mesh {
     let turned = |(t, [a, b, c]): (usize, [Corner; 3])| if t % 3 == 0 { [a, c, b] } else { [a, b, c] };
     mesh(triangles(Shape::Icosphere).into_iter().map(|triangle| turned(triangle).map(InputCorner::from)))
 }
 
-/// A torus of whose triangles every second is there twice and every fifth once more the other way round, with triangles
-/// of two corners among them.
-pub(super) fn duplicates() -> Mesh {
+/// A torus in which every other triangle appears twice and every fifth once more with reversed winding, with degenerate
+/// triangles among them.
+pub fn duplicates() -> Mesh {
     let repeated = |(t, [a, b, c]): (usize, [Corner; 3])| {
         let mut all = vec![[a, b, c]];
         if t % 2 == 0 {
@@ -78,8 +78,8 @@ pub(super) fn duplicates() -> Mesh {
     mesh(triangles(Shape::Torus).into_iter().flat_map(repeated).map(|corners| corners.map(InputCorner::from)))
 }
 
-/// A cube drawn out to a needle: triangles a million times longer than wide.
-pub(super) fn slivers() -> Mesh {
+/// A cube stretched to a needle, whose triangles are a million times longer than wide.
+pub fn slivers() -> Mesh {
     scaled(Shape::CubeSplit, vec3(1.0, 1e-6, 1e-6), Vec3::ZERO)
 }
 
@@ -130,8 +130,8 @@ pub(super) fn long_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, k, c| c.normal * [1e-30, 0.5, 1e30, 1.0][(t + k) % 4])
 }
 
-/// An icosphere on which every other triangle has all its normals the other way: opposite across its edges.
-pub(super) fn opposite_normals() -> Mesh {
+/// An icosphere in which every other triangle has its normals the other way.
+pub fn opposite_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, _, c| if t % 2 == 0 { c.normal } else { -c.normal })
 }
 
@@ -166,8 +166,8 @@ pub(super) fn far_away() -> Mesh {
     scaled(Shape::Torus, Vec3::ONE, vec3(4000.0, -7000.0, 2500.0))
 }
 
-/// A saddle whose middle line holds numbers too small for many devices.
-pub(super) fn denormals() -> Mesh {
+/// A saddle whose middle line has denormal coordinates, which many devices take for zero.
+pub fn denormals() -> Mesh {
     changed(Shape::Saddle, |t, k, corner| {
         let least = f32::from_bits(1 + (3 * t + k) as u32);
         let small = |x: f32| if x.abs() < 1e-6 { least } else { x };
@@ -175,8 +175,8 @@ pub(super) fn denormals() -> Mesh {
     })
 }
 
-/// A torus cut through the middle, its right half moved by a millionth of its size.
-pub(super) fn near_seam() -> Mesh {
+/// A torus cut through the middle, with its right half moved by a millionth of its size.
+pub fn near_seam() -> Mesh {
     let moved = |corners: [Corner; 3]| {
         let right = corners.iter().map(|c| c.position.x).sum::<f32>() > 0.0;
         let offset = if right { vec3(2e-6, 1e-6, -1e-6) } else { Vec3::ZERO };
@@ -195,14 +195,14 @@ pub(super) fn roof() -> Mesh {
     mesh([side(1.0, ends), side(-1.0, [ends[1], ends[0]])])
 }
 
-/// How many T-junctions [`t_junction`] has: 3 on a straight edge, 4 beside edges that follow the sheet's curve.
-pub(super) const T_JUNCTIONS: u32 = 7;
+/// The number of T-junctions in [`t_junction`]: 3 on a straight edge, and 4 beside edges that follow the sheet's curve.
+pub const T_JUNCTIONS: u32 = 7;
 
-/// One large quad beside a column of four small ones, beside a column of eight: three points lie on the large quad's
-/// edge, and one beside each of the four. The sheet is curved.
-pub(super) fn t_junction() -> Mesh {
+/// A curved sheet: one large quad, beside it a column of four small ones, and beside that a column of eight. Three points
+/// lie on the large quad's edge, and one beside an edge of each of the four.
+pub fn t_junction() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.3 * (1.0 - z * z), z), vec3(0.3 * x, 1.0, 0.6 * z).normalize());
-    // The small quads' points lie on the straight edge, which the surface then leaves.
+    // The points of the four quads on this edge lie straight, although the sheet is curved there.
     let on_edge = |z: f32| corner(vec3(0.0, 0.0, z), vec3(0.0, 1.0, 0.6 * z).normalize());
     let quad = |a, b, c, d| [[a, b, c], [a, c, d]];
     let mut all = quad(at(-1.0, 1.0), on_edge(1.0), on_edge(-1.0), at(-1.0, -1.0)).to_vec();
@@ -217,8 +217,9 @@ pub(super) fn t_junction() -> Mesh {
     mesh(all)
 }
 
-/// A flat star, its tips' normals nearly in its plane and turned sideways, its notches' leaning inwards.
-pub(super) fn star() -> Mesh {
+/// A flat star. The normals at its tips lie nearly in its plane and are turned sideways, and those at its notches lean
+/// inwards.
+pub fn star() -> Mesh {
     let at = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 10.0;
         let (out, sideways) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.0, angle.cos()));
@@ -229,16 +230,16 @@ pub(super) fn star() -> Mesh {
     mesh((0..10).map(|k| [middle, at((k + 1) % 10), at(k)]))
 }
 
-/// A ground of two large triangles that rises towards its corners.
-pub(super) fn ground() -> Mesh {
+/// A ground of two large triangles, with normals of a surface that rises towards its corners.
+pub fn ground() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.0, z) * 10.0, vec3(-0.2 * x, 1.0, -0.2 * z).normalize());
     let [a, b, c, d] = [at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0), at(-1.0, -1.0)];
     mesh([[a, b, c], [a, c, d]])
 }
 
-/// Random triangles over few points: edges with many sides, wound either way, duplicates and lines among them; random
-/// normals, bad ones among them. `seed` picks one of 2^32.
-pub(crate) fn soup(seed: u32) -> Mesh {
+/// Random triangles over a few points, so that edges have many sides of either winding, some triangles are duplicates, and
+/// some are degenerate. The normals are random, some of them zero, NaN or long. Each `seed` gives another soup.
+pub fn soup(seed: u32) -> Mesh {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995);
     let points: Vec<Vec3> = (0..14).map(|_| random.vector()).collect();
     let triangles: Vec<_> =
@@ -246,7 +247,7 @@ pub(crate) fn soup(seed: u32) -> Mesh {
     mesh(triangles)
 }
 
-/// A small generator of random numbers (xorshift, Marsaglia 2003): the same numbers everywhere.
+/// A small generator of random numbers (xorshift, Marsaglia 2003), which gives the same numbers on every machine.
 struct Random(u32);
 
 impl Random {
@@ -287,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn every_mesh_has_what_it_is_for() {
+    fn every_mesh_has_its_defect() {
         let fins = fins();
         let fins = topology(&fins);
         assert_eq!(fins.edges.iter().map(|edge| fins.edge_sides(edge).len()).max(), Some(5));
@@ -312,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn suspicious_normals_are_found_by_what_they_are() {
+    fn each_fault_of_normals_is_counted() {
         let faults = |mesh: &Mesh| NormalFaults::of(mesh, &topology(mesh));
         assert!(faults(&opposite_normals()).opposite > 20);
         assert!(faults(&edge_normals()).along_edge > 20);
@@ -320,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn the_t_junctions_are_those_that_were_made() {
+    fn the_t_junctions_are_found_on_and_beside_edges() {
         let found = t_junctions(&topology(&t_junction()), &Progress::new()).expect("nobody cancels");
         assert_eq!(found.len() as u32, T_JUNCTIONS);
         let beside = found.iter().filter(|junction| junction.distance > 0.01).count();
@@ -328,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn soups_differ_and_repeat() {
+    fn a_seed_gives_the_same_soup_and_another_seed_another() {
         assert_eq!(soup(3).triangles, soup(3).triangles);
         assert_ne!(soup(3).corners.len(), 0);
         assert!(soup(3).corners != soup(4).corners);

@@ -1,5 +1,6 @@
-//! Cases that break tessellators, and what each method makes of them: run, measured, and held against what this program
-//! promises. Stands on [`crate::engine`] as the two faces do, since a case is tessellated and drawn like any mesh.
+//! Cases that break tessellators: every method is run on them and measured, and the results are compared with what this
+//! program promises. Like the window and the command line, it uses [`crate::engine`], since a case is tessellated and drawn
+//! like any mesh.
 
 pub(crate) mod cases;
 mod meshes;
@@ -9,14 +10,12 @@ mod run;
 mod sweep_chart;
 mod views;
 
-pub(crate) use cases::{CASES, Case, LOOK, Look, Probe};
-#[cfg(test)]
-pub(crate) use meshes::soup;
-pub(crate) use picture::{PictureError, picture};
-pub(crate) use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
-pub(crate) use run::{Effort, run};
-#[cfg(test)]
-pub(crate) use views::random as random_camera;
+pub use cases::{CASES, Case, CaseView, DEFAULT_VIEW, Probe};
+pub use meshes::soup;
+pub use picture::{PictureError, picture};
+pub use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
+pub use run::{Effort, run};
+pub use views::random as random_camera;
 
 use serde::Serialize;
 
@@ -24,27 +23,27 @@ use crate::mesh::Mesh;
 use crate::settings::Settings;
 use crate::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 
-/// What is run: a case, or any other mesh.
+/// A mesh that the methods are run on: a case's, or any other.
 #[derive(Clone, Debug)]
 pub(crate) struct Subject {
     pub name: String,
-    /// What it is, and what becomes of it; empty where nobody knows.
+    /// See [`Case::about`]; empty for other meshes.
     pub about: String,
     pub mesh: Mesh,
-    /// Within which part of the bounding diagonal points are welded.
+    /// The weld tolerance, as a part of the bounding diagonal.
     pub weld: f32,
     pub probe: Probe,
-    pub look: Look,
+    pub view: CaseView,
 }
 
 impl Subject {
-    /// A mesh of which no more is known.
-    pub(crate) fn new(name: String, mesh: Mesh, weld: f32) -> Self {
-        Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, look: LOOK }
+    /// A mesh that is no case: only the agreement of edges is measured.
+    pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
+        Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, view: DEFAULT_VIEW }
     }
 }
 
-/// A way to tessellate that cases are held against.
+/// A way to tessellate that is run on every case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Method {
     Flat,
@@ -86,8 +85,8 @@ impl Method {
         }
     }
 
-    /// The surface that it makes.
-    pub(crate) const fn surface(self) -> Surface {
+    /// The surface of this method.
+    pub const fn surface(self) -> Surface {
         match self {
             Self::Flat => Surface::Flat,
             Self::Pn => Surface::Pn,
@@ -100,14 +99,15 @@ impl Method {
         }
     }
 
-    /// The settings that mean this method, at one factor.
-    pub(crate) fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
+    /// The settings for this method with a uniform factor.
+    pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
         let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
         Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
     }
 
-    /// The same for a mesh that can be displaced: without cracks, or as published by dominance alone.
-    pub(crate) fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
+    /// The same settings with displacement, if the mesh has a height image: without cracks, or as published with dominance
+    /// alone.
+    pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
         let displacement = match self {
             _ if mesh.heights.is_none() => Displacement::Off,
             Self::PnAenAsPublished => Displacement::AsPublished,
@@ -116,9 +116,9 @@ impl Method {
         settings.with(Tessellation { displacement, height_scale: 0.15, ..settings.tessellation })
     }
 
-    /// The same with adaptive LOD and clipping: the paper's own for what is as published. Under subtriangulation, which is
-    /// uniform, clipping at one factor.
-    pub(crate) fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
+    /// The settings for this method with clipping and adaptive LOD, of about `pixels` px a segment. The method as published
+    /// uses the white paper's own. Subtriangulation, which is always uniform, has clipping at one factor.
+    pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
         let (lod, clip) = match self {
             Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
             _ => (Lod::EdgeLength, Clip::Frustum),
@@ -132,40 +132,39 @@ impl Method {
     }
 }
 
-/// What is measured. All are 0 where all is well, but for [`Self::Segment`], [`Self::Jump`] and
-/// [`Self::Pop`].
+/// What is measured. Each number is 0 if nothing is wrong, except for [`Self::Segment`], [`Self::Jump`] and [`Self::Pop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Quantity {
-    /// Points of edges whose positions differ in at least one bit.
+pub enum Quantity {
+    /// Points of edges whose positions differ between sides in at least one bit.
     Points,
     /// Edges for which LOD gave the sides different factors.
     Factors,
-    /// Points of edges whose normals differ though the source's agree.
+    /// Points of edges whose normals differ between sides although the mesh's normals agree.
     Normals,
-    /// Vertices that are no finite numbers.
+    /// Vertices with a coordinate that is infinite or NaN.
     NotFinite,
-    /// Pixels through which one looks into a closed mesh.
+    /// Pixels that show the inside of a closed mesh.
     Leaks,
     /// Triangles that face away from the side that their patch faces.
     Folds,
     /// Pixels that clipping changes.
     Missing,
-    /// The longest visible segment over the length asked for, on edges that could be cut finer.
+    /// The length of the longest visible segment, divided by the length asked for, on edges that could be cut finer.
     Segment,
-    /// T-junctions that were made and not found, or found and not made.
+    /// The difference between the number of T-junctions in the mesh and the number found.
     TJunctions,
     /// Open edges of a mesh that should be closed.
     OpenEdges,
-    /// The largest step of any surface point as the factor grows by 1/64, as a part of the mesh's diagonal, under
-    /// fractional partitioning.
+    /// The largest distance that any surface point moves as the factor grows by 1/64, as a part of the mesh's diagonal,
+    /// under fractional partitioning.
     Jump,
-    /// The same under integer, pow2 and subtriangulation.
+    /// The same under the other partitionings: integer, pow2 and subtriangulation.
     Pop,
 }
 
 impl Quantity {
-    /// What a number of it counts.
-    pub(crate) const fn unit(self) -> &'static str {
+    /// The text that follows a number of it.
+    pub const fn unit(self) -> &'static str {
         match self {
             Self::Points => "edge points that differ",
             Self::Factors => "edges whose factors differ",
@@ -182,19 +181,19 @@ impl Quantity {
         }
     }
 
-    /// The most that still holds.
-    pub(crate) const fn limit(self) -> f64 {
+    /// The largest number that still counts as holding.
+    pub const fn limit(self) -> f64 {
         match self {
-            // Segments are equal along the curve, not on screen: perspective makes the near ones longer.
+            // Segments are equally long along the curve, but perspective makes the near ones longer on screen.
             Self::Segment => 4.0,
-            // Several times what fractional modes were measured at, and far below what the others were.
+            // Several times what was measured under fractional partitioning, and far below the others.
             Self::Jump | Self::Pop => 0.004,
             _ => 0.0,
         }
     }
 }
 
-/// One measurement, the worst of its kind over factors and views.
+/// One measurement: the worst number of a quantity over factors and views.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Row {
     pub case: String,
@@ -204,8 +203,9 @@ pub(crate) struct Row {
     pub partitioning: &'static str,
     pub measured: f64,
     pub unit: &'static str,
-    /// Whether this program promises that it holds.
+    /// Whether this program promises that `holds` is true.
     pub promised: bool,
+    /// Whether `measured` is at most [`Quantity::limit`].
     pub holds: bool,
     #[serde(skip)]
     pub quantity: Quantity,

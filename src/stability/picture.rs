@@ -1,4 +1,4 @@
-//! A case's picture: every method side by side, or for a sweep the chart.
+//! The picture of a case: every method side by side, or the chart of a sweep.
 
 use std::sync::Arc;
 
@@ -27,15 +27,15 @@ pub(crate) enum PictureError {
     Chart(#[from] ChartError),
 }
 
-/// Width and height of one method's part, in px.
+/// The width and height of each method's picture, in px.
 const PART: [u32; 2] = [300, 240];
-/// Parts in a row.
+/// The pictures in a row.
 const COLUMNS: u32 = 3;
-/// Px that captions are high.
+/// The height of captions in px.
 const TEXT: u32 = 18;
 
-/// Draws the methods in rows of three, each under its name: 916 by 808 px. A sweep is its chart, 960 by 600 px, under
-/// PN-AEN.
+/// Draws the methods in rows of three, each under its name: 916 by 808 px. For a sweep, draws the chart of PN-AEN, with
+/// factors up to `sweep_to`: 960 by 600 px.
 ///
 /// # Errors
 /// The device fails.
@@ -55,19 +55,19 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
     let junctions = t_junctions(&topology, &Progress::new()).unwrap_or_default();
     let mut scene = engine.scene_of(mesh, topology.clone(), ARENA_BYTES)?;
     if let Some(rig) = &case.mesh.rig {
-        // Halfway through what it does first.
+        // At this time of its first clip the mesh is well out of its rest pose.
         let time = rig.clips.first().map_or(0.0, |clip| 0.4 * clip.duration);
         scene.tessellator.set_pose(Some(Arc::new(rig.pose(Moment { clip: 0, time }))))?;
     }
     let target = Target::new(&engine.gpu, PART)?;
     let viewport = Vec2::from(PART.map(|side| side as f32));
-    let camera = views::look(&scene.bounds, &case.look, viewport);
+    let camera = views::camera(&scene.bounds, &case.view, viewport);
     let overlays = Overlays { wireframe: true, cracks: true, folds: true, t_junctions: true, ..Overlays::default() };
     let part = |method: Method| {
         let settings = if case.probe == Probe::View {
             method.adaptive(Partitioning::FractionalOdd, 8.0)
         } else {
-            method.settings(Partitioning::FractionalOdd, case.look.factor)
+            method.settings(Partitioning::FractionalOdd, case.view.factor)
         };
         let settings = Settings { overlays, ..method.displacing(&case.mesh, settings) };
         let inputs = settings.inputs(camera.lod_view(viewport, &scene.bounds));

@@ -1,10 +1,10 @@
-//! What came out, for people: a table, and a page that explains each case.
+//! The results as text: a table for the terminal, and a page that explains each case.
 
 use std::fmt::Write;
 
 use super::{Quantity, Row};
 
-/// What one method made of one case: the worst over devices and partitionings of each quantity.
+/// The results of one method on one case: for each quantity, the worst number over devices and partitionings.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Line {
     pub case: String,
@@ -13,14 +13,14 @@ pub(crate) struct Line {
     pub verdict: Verdict,
 }
 
-/// How a method fared.
+/// The verdict on one method and case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Verdict {
     /// Everything measured holds.
     Holds,
-    /// Something does not that nobody promised: what is published fails there.
+    /// Something doesn't hold, but this program doesn't promise it: a published method fails there.
     Fails,
-    /// Something does not that this program promises.
+    /// Something doesn't hold that this program promises.
     BreaksPromise,
 }
 
@@ -42,8 +42,8 @@ impl Verdict {
     }
 }
 
-/// One line for each case and method, in the rows' order.
-pub(crate) fn lines(rows: &[Row]) -> Vec<Line> {
+/// Returns one line for each case and method, in the order of the rows.
+pub fn lines(rows: &[Row]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
         let known = lines.iter().position(|line| line.case == row.case && line.method == row.method);
@@ -62,7 +62,7 @@ pub(crate) fn lines(rows: &[Row]) -> Vec<Line> {
     lines
 }
 
-/// The quantities that every case has, which get columns.
+/// The quantities that are measured on every case, with the headings of their columns.
 const COLUMNS: [(Quantity, &str); 5] = [
     (Quantity::Points, "points"),
     (Quantity::Factors, "factors"),
@@ -77,22 +77,22 @@ impl Line {
         found.map_or_else(|| "-".to_owned(), |(_, worst)| number(*worst))
     }
 
-    /// What has no column.
+    /// The quantities that have no column, with their numbers.
     fn rest(&self) -> String {
         let rest = self.worst.iter().filter(|(quantity, _)| COLUMNS.iter().all(|(column, _)| column != quantity));
         rest.map(|(quantity, worst)| phrase(*quantity, *worst)).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// What was measured, in words.
+/// A quantity with its number, in words.
 fn phrase(quantity: Quantity, measured: f64) -> String {
     match quantity {
-        Quantity::Segment if measured == 0.0 => "what is in view is as fine as can be".to_owned(),
+        Quantity::Segment if measured == 0.0 => "all that is in view is cut as finely as possible".to_owned(),
         _ => format!("{} {}", number(measured), quantity.unit()),
     }
 }
 
-/// Whole numbers whole, others in three digits.
+/// A number as short text: whole numbers without decimals, others with two decimals or three digits.
 fn number(x: f64) -> String {
     if x.fract() == 0.0 && x.abs() < 1e15 {
         format!("{x}")
@@ -104,13 +104,13 @@ fn number(x: f64) -> String {
 }
 
 /// What the columns mean.
-pub(crate) const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
-     sides got different factors; normals: edge points whose normals differ though the source's agree; not finite: \
-     vertices; leaks: px through which one looks into a closed mesh. The worst over factors, views, partitionings and \
-     devices.";
+pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+     sides got different factors; normals: edge points whose normals differ although the mesh's normals agree; not finite: \
+     vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh. Each number is the worst \
+     over factors, views, partitionings and devices.";
 
-/// Lines as a table for a terminal.
-pub(crate) fn table(lines: &[Line]) -> String {
+/// Formats lines as a table for a terminal.
+pub fn table(lines: &[Line]) -> String {
     let mut text = format!("{:<20} {:<20}", "case", "method");
     for (_, column) in COLUMNS {
         let _ = write!(text, " {column:>11}");
@@ -131,29 +131,29 @@ pub(crate) fn table(lines: &[Line]) -> String {
     text
 }
 
-/// The page's name in its folder.
-pub(crate) const PAGE: &str = "stability.md";
+/// The page's file name.
+pub const PAGE: &str = "stability.md";
 
-/// What a page says of one subject, besides its numbers.
+/// What a page says about one subject, besides its numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct Section {
     pub name: String,
-    /// A paragraph, or nothing.
+    /// A paragraph; may be empty.
     pub about: String,
-    /// A file in the page's folder.
+    /// The picture's file name, in the page's folder.
     pub picture: Option<String>,
 }
 
-/// A page in Markdown: each subject with what it is about, its picture, and what the rows say of it.
-pub(crate) fn page(sections: &[Section], rows: &[Row]) -> String {
+/// Returns the page in Markdown. It has a section for each subject: the text about it, its picture, and a table of its rows.
+pub fn page(sections: &[Section], rows: &[Row]) -> String {
     let mut text = String::from("# Where tessellation breaks\n\n");
     let mut devices: Vec<_> = rows.iter().map(|row| row.device.as_str()).collect();
     devices.sort_unstable();
     devices.dedup();
     let _ = writeln!(
         text,
-        "Written by `pnaen stability -o DIR`, run on: {}. In each picture, from left to right: {}. Cracks are red, \
-         folded triangles violet, T-junctions yellow.\n\n{}\n",
+        "Written by `pnaen stability -o DIR`, run on: {}. Each picture shows, row by row: {}. Cracks are red, folded triangles \
+         violet, T-junctions yellow.\n\n{}\n",
         devices.join(", "),
         super::Method::ALL.map(super::Method::name).join(", "),
         capitalised(LEGEND)
@@ -170,7 +170,7 @@ pub(crate) fn page(sections: &[Section], rows: &[Row]) -> String {
         let header: Vec<_> = COLUMNS.iter().map(|(_, column)| *column).collect();
         let _ = writeln!(
             text,
-            "| method | {} | also | |\n| --- |{} --- | --- |",
+            "| method | {} | further | verdict |\n| --- |{} --- | --- |",
             header.join(" | "),
             " ---: |".repeat(header.len())
         );
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_the_worst_of_its_rows() {
+    fn a_line_has_the_worst_number_of_each_quantity() {
         let rows = [
             row("PN", Quantity::Points, 0.0, false),
             row("PN", Quantity::Points, 7.0, false),
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_shows_only_what_there_is() {
+    fn a_page_without_a_picture_or_text_leaves_them_out() {
         let section = |picture: Option<&str>| {
             [Section { name: "split".to_owned(), about: String::new(), picture: picture.map(str::to_owned) }]
         };

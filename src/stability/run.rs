@@ -1,4 +1,4 @@
-//! Runs a case: every method, in every partitioning, on every device asked for.
+//! Runs a case: every method with every partitioning, on every device asked for.
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -21,14 +21,14 @@ use crate::tessellate::{
     Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, PosedMesh, Tessellation, bounds_through, tessellate,
 };
 
-/// How much is tried, and where.
+/// How much is tried, and on which devices.
 #[derive(Clone, Debug)]
-pub(crate) struct Effort {
-    /// Uniform factors.
+pub struct Effort {
+    /// The uniform factors that are tried.
     pub factors: Vec<f32>,
-    /// Cameras for adaptive LOD and clipping; the first of one sequence.
+    /// How many cameras are tried for adaptive LOD and clipping: the first ones of a fixed sequence.
     pub cameras: u32,
-    /// Whether the reference on the CPU runs too.
+    /// Whether the reference implementation on the CPU runs as well.
     pub cpu: bool,
     /// The last factor of a sweep, which starts at 1.
     pub sweep_to: f32,
@@ -40,10 +40,10 @@ impl Default for Effort {
     }
 }
 
-/// Length of a segment that adaptive LOD is asked for, in px.
+/// The segment length that adaptive LOD is asked for, in px.
 const PIXELS: f32 = 8.0;
 
-/// The worst of each quantity over a method's factors and views.
+/// The worst number of each quantity over a method's factors and views.
 #[derive(Clone, Debug, Default)]
 struct Worst(BTreeMap<Quantity, f64>);
 
@@ -61,18 +61,18 @@ impl Worst {
     }
 }
 
-/// What is tried once.
+/// One tessellation that is tried.
 struct Trial {
-    /// Of meshes that move.
+    /// Only for meshes that move.
     pose: Option<Arc<Pose>>,
     settings: Settings,
-    /// Decides factors and what is clipped; leaks are looked for from here.
+    /// LOD and clipping are computed for this camera, and leaks are counted from it.
     camera: Camera,
-    /// And from here, where that changes nothing else.
+    /// Further cameras that leaks are counted from, if factors and clipping don't depend on the camera.
     also_from: Vec<Camera>,
 }
 
-/// A case on its way: its mesh, and the same on the device.
+/// A case that is being run: its mesh, and the same mesh on the device.
 struct Running<'a> {
     case: &'a Subject,
     mesh: Arc<Mesh>,
@@ -81,14 +81,14 @@ struct Running<'a> {
     device: Option<(&'a Engine, Scene, Target)>,
 }
 
-/// At most so many methods and partitionings of a case run at a time, each with an arena of its own on the device.
+/// The most pairs of method and partitioning that run at the same time. Each has an arena of its own on the device.
 const MOST_AT_A_TIME: usize = 8;
 
-/// Runs a case on the CPU (if the effort says so) and on the engine's device (if there is one).
+/// Runs a case on the CPU (if `effort` says so) and on the engine's device (if there is one).
 ///
 /// # Errors
-/// The device fails, or the mesh is larger than it binds.
-pub(crate) fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
+/// The device fails, or the mesh needs larger buffers than the adapter can bind.
+pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
     let mesh = Arc::new(case.mesh.clone());
     // Nobody else holds these handles, so nobody can cancel.
     let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());
@@ -132,7 +132,7 @@ impl<'a> Running<'a> {
         Ok(Self { case, mesh, topology, bounds, device })
     }
 
-    /// One method in one partitioning, on every device.
+    /// Runs one method with one partitioning, on every device.
     fn job(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Vec<Row>, GpuError> {
         let mut rows = Vec::new();
         if effort.cpu {
@@ -146,24 +146,24 @@ impl<'a> Running<'a> {
         Ok(rows)
     }
 
-    /// What a method is tried with: uniform factors, and then adaptive LOD.
+    /// The tessellations that a method is tried with: first uniform factors, then adaptive LOD.
     fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<Trial> {
-        let look = views::look(&self.bounds, &self.case.look, views::viewport());
+        let case_camera = views::camera(&self.bounds, &self.case.view, views::viewport());
         let random = |index| views::random(&self.bounds, index);
         let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| Trial {
             pose: None,
             settings: method.displacing(&self.mesh, method.settings(partitioning, factor)),
-            camera: look,
-            // The factors share the cameras out between them.
+            camera: case_camera,
+            // Each camera is used with one of the factors.
             also_from: (turn as u32..effort.cameras).step_by(effort.factors.len()).map(random).collect(),
         });
         let adaptive = method.displacing(&self.mesh, method.adaptive(partitioning, PIXELS));
         let unclipped = adaptive.with(Tessellation { clip: Clip::Off, ..adaptive.tessellation });
-        // The paper's clip test drops whole patches, beside which nothing else would be seen: it has cases of its own.
+        // The paper's clip test drops whole patches, which would hide every other fault. It has cases of its own.
         let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
         let seen = |settings, camera| Trial { pose: None, settings, camera, also_from: Vec::new() };
         let random = (0..effort.cameras).map(|index| seen(everywhere, random(index)));
-        let views = [seen(unclipped, look), seen(adaptive, look)];
+        let views = [seen(unclipped, case_camera), seen(adaptive, case_camera)];
         let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
         let mut trials: Vec<_> = uniform.chain(random).chain(views).collect();
         for (index, trial) in trials.iter_mut().enumerate() {
@@ -172,7 +172,8 @@ impl<'a> Running<'a> {
         trials
     }
 
-    /// A pose for a trial of a mesh that moves: at times of its clips in turn that never come close to each other.
+    /// A pose for a trial of a mesh that moves. Trials use its clips in turn, at times that are spread evenly by the golden
+    /// ratio.
     fn pose(&self, index: usize) -> Option<Arc<Pose>> {
         const GOLDEN: f64 = 0.618_033_988_749_895;
         let rig = self.mesh.rig.as_deref()?;
@@ -229,15 +230,15 @@ impl<'a> Running<'a> {
 
     fn take(&self, worst: &mut Worst, measured: &Measured, settings: &Settings, view: &LodView) {
         worst.take_all(measured);
-        let look = views::look(&self.bounds, &self.case.look, views::viewport());
-        let is_look = *view == look.lod_view(views::viewport(), &self.bounds);
+        let camera = views::camera(&self.bounds, &self.case.view, views::viewport());
+        let is_case_view = *view == camera.lod_view(views::viewport(), &self.bounds);
         match self.case.probe {
             Probe::Folds => worst.take(Quantity::Folds, measured.folds as f64),
-            // What is left out has no segments to measure, and a random view may be anywhere.
+            // Clipped patches have no segments to measure, and a random camera may be anywhere.
             Probe::View
                 if settings.tessellation.used_lod() != Lod::Uniform
                     && settings.tessellation.clip == Clip::Off
-                    && is_look =>
+                    && is_case_view =>
             {
                 worst.take(Quantity::Segment, longest_segment(&self.topology, measured, view) / f64::from(PIXELS));
             }
@@ -245,7 +246,7 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// Pixels that look different with and without clipping.
+    /// The number of pixels that differ between the pictures with and without clipping.
     fn missing(&mut self, settings: &Settings, camera: &Camera) -> Result<u64, GpuError> {
         let Some((engine, scene, target)) = &mut self.device else { return Ok(0) };
         let mut picture = |settings: &Settings| {
@@ -266,7 +267,7 @@ impl<'a> Running<'a> {
     }
 }
 
-/// What belongs to the mesh, whatever it becomes.
+/// The measurements on the mesh itself, which are the same for all methods.
 fn topology_rows(case: &Subject, mesh: &Mesh, topology: &Topology) -> Vec<Row> {
     let edges = |topology: &Topology| f64::from(topology.edge_counts().boundary);
     match case.probe {
@@ -310,22 +311,22 @@ fn is_fractional(partitioning: Partitioning) -> bool {
     matches!(partitioning, Partitioning::FractionalOdd | Partitioning::FractionalEven)
 }
 
-/// What this program promises of a method.
+/// Whether this program promises that a quantity holds under a method.
 fn promised(method: Method, quantity: Quantity) -> bool {
     match quantity {
         Quantity::NotFinite | Quantity::Jump => true,
         Quantity::Pop => false,
-        // A surface that bends may fold; only a flat one can't.
+        // Any curved surface may fold.
         Quantity::Folds => method == Method::Flat,
-        // Surfaces that go by each side's own normals tear where those are split: that is what they are.
+        // Surfaces that follow each side's own normals tear at split normals by design.
         Quantity::Points | Quantity::Leaks => method != Method::PnAenAsPublished && !method.surface().tears(),
         _ => method != Method::PnAenAsPublished,
     }
 }
 
-/// The longest piece of an edge on screen, in px, over edges that the tessellator could have cut finer.
+/// The length of the longest segment on screen, in px, over edges that the tessellator could have cut finer.
 fn longest_segment(topology: &Topology, measured: &Measured, view: &LodView) -> f64 {
-    // Fractional odd ends at 63 segments, the others at 64.
+    // Fractional odd partitioning makes at most 63 segments, the others 64.
     let most = 63 * FIXED_ONE;
     let mut longest = 0.0_f64;
     for edge in 0..topology.edges.len() as u32 {

@@ -18,24 +18,24 @@ use crate::tessellate::Partitioning;
 
 type Picture<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, BitMapBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
-/// In points of the chart, or in px.
+/// `C` are coordinates of the chart, or px.
 type Element<'b, C> = DynElement<'static, BitMapBackend<'b>, C>;
 type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingBackend>::ErrorType>>;
 
-/// Draws the largest jump of each step over the factor, both axes logarithmic. Partitionings that pop are stems, one a
-/// pop; fractional ones are lines. Jumps are parts of `diagonal`, the mesh's, in object units; a jump of 0 is at the
-/// bottom. `size` is width and height in px.
+/// Draws the largest jump of each step over the factor, on logarithmic axes. A partitioning that pops has a stem for each
+/// pop; fractional ones have lines. Jumps are shown as parts of `diagonal`, the mesh's in object units; a jump of 0 is at
+/// the bottom. The last argument is the width and height in px.
 ///
 /// # Errors
-/// Sizes outside [`CHART_RANGE`].
-pub(super) fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -> Result<RgbImage, ChartError> {
+/// The width or the height is outside [`CHART_RANGE`].
+pub fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -> Result<RgbImage, ChartError> {
     if !(CHART_RANGE.contains(&width) && CHART_RANGE.contains(&height)) {
         return Err(ChartError::Size(width, height));
     }
     plot::bitmap([width, height], |picture| draw(picture, sweeps, diagonal))
 }
 
-/// Px of the chart as px drawn.
+/// Converts px of the chart to px drawn.
 const fn px(length: i32) -> i32 {
     length * DENSITY as i32
 }
@@ -48,7 +48,7 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     picture.fill(&WHITE)?;
     let (low, high) = (f64::from(FACTOR_RANGE.least), f64::from(FACTOR_RANGE.most));
     let decades = decades(sweeps, diagonal);
-    // Room at the ends, so that rounding loses no tick.
+    // Some room at the ends, so that rounding doesn't drop the last ticks.
     let mut chart = ChartBuilder::on(picture)
         .margin(px(12))
         .x_label_area_size(px(42))
@@ -60,8 +60,8 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     axes(&mut chart, sweeps)?;
     for sweep in sweeps {
         let points = parts(sweep, diagonal, decades.start);
-        let look = Look::of(sweep.partitioning);
-        look.draw(&mut chart, &points, decades.start, legend_text(sweep, diagonal))?;
+        let style = CurveStyle::of(sweep.partitioning);
+        style.draw(&mut chart, &points, decades.start, legend_text(sweep, diagonal))?;
     }
     chart
         .configure_series_labels()
@@ -74,7 +74,7 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
         .draw()
 }
 
-/// The powers of ten around all jumps that aren't 0, none of which is quite at an end.
+/// The range between powers of ten that holds all jumps except 0, with some room at both ends.
 fn decades(sweeps: &[Sweep], diagonal: f64) -> Range<f64> {
     let jumps = sweeps.iter().flat_map(|sweep| &sweep.steps).map(|step| step.jump / diagonal);
     let [least, most] = jumps
@@ -112,7 +112,7 @@ fn axes(chart: &mut Chart, sweeps: &[Sweep]) -> Drawn {
         .draw()
 }
 
-/// The steps as points of the chart, factor and part of the diagonal.
+/// The points of the chart: for each step the factor, and the jump as a part of the diagonal.
 fn parts(sweep: &Sweep, diagonal: f64, bottom: f64) -> Vec<(f64, f64)> {
     let point = |step: &SweepStep| (f64::from(step.factor), (step.jump / diagonal).max(bottom));
     sweep.steps.iter().map(point).collect()
@@ -125,9 +125,9 @@ fn legend_text(sweep: &Sweep, diagonal: f64) -> String {
     }
 }
 
-/// How a partitioning is told from the others: by shape, and by colour.
+/// The colour and shape that tell a partitioning from the others.
 #[derive(Clone, Copy)]
-struct Look {
+struct CurveStyle {
     color: RGBColor,
     shape: Shape,
 }
@@ -144,7 +144,7 @@ enum Shape {
     Dashes,
 }
 
-impl Look {
+impl CurveStyle {
     fn of(partitioning: Partitioning) -> Self {
         let (color, shape) = match partitioning {
             Partitioning::Integer => (VERMILION, Shape::Discs),
@@ -156,7 +156,7 @@ impl Look {
         Self { color, shape }
     }
 
-    /// Draws points of the chart and enters them in the legend.
+    /// Draws points of the chart, and adds an entry to the legend.
     fn draw<'a, 'b: 'a>(self, chart: &mut Chart<'a, 'b>, points: &[(f64, f64)], bottom: f64, label: String) -> Drawn {
         let elements: Vec<Element<'b, _>> = match self.shape {
             Shape::Line | Shape::Dashes => vec![self.path(highest_of_columns(chart, points))],
@@ -172,7 +172,7 @@ impl Look {
         Ok(())
     }
 
-    /// A line along points, in px or of the chart. Stems are thin and pale, so that lines show before them.
+    /// A line along points, in px or in coordinates of the chart. Stems are thin and pale, so that lines stand out.
     fn path<'b, C: Clone + 'static>(self, points: Vec<C>) -> Element<'b, C> {
         let thick = self.color.stroke_width(DENSITY * 2);
         match self.shape {
@@ -184,7 +184,7 @@ impl Look {
         }
     }
 
-    /// What stands on a stem.
+    /// The marker at the top of a stem.
     fn marker<'b, C: Clone + 'static>(self, at: C) -> Element<'b, C> {
         match self.shape {
             Shape::Crosses => Cross::new(at, px(4), self.color.stroke_width(DENSITY * 2)).into_dyn(),
@@ -193,7 +193,7 @@ impl Look {
         }
     }
 
-    /// The entry in the legend, right of a px.
+    /// The sample for the legend, to the right of a px.
     fn sample<'b>(self, (x, y): (i32, i32)) -> Element<'b, (i32, i32)> {
         match self.shape {
             Shape::Line | Shape::Dashes => self.path(vec![(x, y), (x + px(32), y)]),
@@ -202,7 +202,7 @@ impl Look {
     }
 }
 
-/// For every column of px, its highest point: a line through all would smear where steps are narrower than a px.
+/// The highest point in each column of px. A line through all points would smear where steps are narrower than a px.
 fn highest_of_columns(chart: &Chart, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let column = |point: &(f64, f64)| chart.backend_coord(point).0 / DENSITY as i32;
     let columns = points.chunk_by(|a, b| column(a) == column(b));
@@ -223,9 +223,9 @@ mod tests {
         picture.pixels().any(|pixel| pixel.0 == [color.0, color.1, color.2])
     }
 
-    /// The middles of the discs left of the legend, in px from the upper left corner.
+    /// The centres of the discs to the left of the legend, in px from the upper left corner.
     fn discs(picture: &RgbImage) -> Vec<[f64; 2]> {
-        let RGBColor(r, g, b) = Look::of(Partitioning::Integer).color;
+        let RGBColor(r, g, b) = CurveStyle::of(Partitioning::Integer).color;
         let mut found: Vec<_> = picture.enumerate_pixels().filter(|(_, _, pixel)| pixel.0 == [r, g, b]).collect();
         found.retain(|(x, _, _)| *x < picture.width() * 6 / 10);
         found.sort_by_key(|(x, _, _)| *x);
@@ -245,7 +245,7 @@ mod tests {
         for size in [[640, 400], [960, 600]] {
             let picture = sweep_chart(std::slice::from_ref(&pops), 5.0, size).expect("it draws");
             assert_eq!(picture.dimensions(), size.into());
-            let [a, b, c] = discs(&picture).try_into().expect("three pops and not a fourth");
+            let [a, b, c] = discs(&picture).try_into().expect("three discs");
             for axis in 0..2 {
                 let [before, after] = [b[axis] - a[axis], c[axis] - b[axis]];
                 assert!(before > 30.0 && (before - after).abs() <= 1.0, "{a:?} {b:?} {c:?}");
@@ -259,13 +259,17 @@ mod tests {
         for shown in Partitioning::ALL {
             let picture = sweep_chart(&[sweep(shown, &jumps)], 1.0, [640, 400]).expect("it draws");
             for partitioning in Partitioning::ALL {
-                assert_eq!(has(&picture, Look::of(partitioning).color), partitioning == shown, "{partitioning:?}");
+                assert_eq!(
+                    has(&picture, CurveStyle::of(partitioning).color),
+                    partitioning == shown,
+                    "{partitioning:?}"
+                );
             }
         }
     }
 
     #[test]
-    fn nothing_to_show_is_a_chart_too() {
+    fn a_chart_without_any_jump_is_drawn() {
         let still = sweep(Partitioning::FractionalEven, &[(1.5, 0.0), (2.0, 0.0)]);
         for sweeps in [&[][..], &[still]] {
             let picture = sweep_chart(sweeps, 0.0, [320, 320]).expect("it draws");
@@ -274,9 +278,10 @@ mod tests {
     }
 
     #[test]
-    fn a_size_that_is_no_charts_is_refused() {
+    fn sizes_out_of_range_are_refused() {
         assert_eq!(sweep_chart(&[], 1.0, [319, 400]).err(), Some(ChartError::Size(319, 400)));
         let Err(error) = sweep_chart(&[], 1.0, [400, 9000]) else { panic!("9000 px are too many") };
-        assert_eq!(error.to_string(), "a chart of 400 x 9000 px: each side must be 320 to 4096 px");
+        let text = error.to_string();
+        assert!(["400 x 9000 px", "320 to 4096 px"].iter().all(|part| text.contains(part)), "{text}");
     }
 }

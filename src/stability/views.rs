@@ -1,23 +1,23 @@
-//! Where cases are looked at from.
+//! The cameras that cases are seen from.
 
 use glam::{Vec2, Vec3, vec2};
 
-use super::Look;
+use super::CaseView;
 use crate::mesh::Bounds;
 use crate::render::Camera;
 use crate::truth::radical_inverse;
 
-/// Width and height in px of what is measured on screen.
-pub(super) const SIZE: [u32; 2] = [320, 240];
+/// The size of the picture that screen measurements refer to: width and height in px.
+pub const SIZE: [u32; 2] = [320, 240];
 
-/// The same, as the cameras take it.
-pub(super) fn viewport() -> Vec2 {
+/// [`SIZE`] as a viewport for cameras.
+pub fn viewport() -> Vec2 {
     vec2(SIZE[0] as f32, SIZE[1] as f32)
 }
 
-/// Camera `index` of a sequence that goes all around the mesh, near and far, inside too, every eighth time without
-/// perspective: Halton's low-discrepancy sequence, so that the first few already differ much.
-pub(crate) fn random(bounds: &Bounds, index: u32) -> Camera {
+/// Camera `index` of a fixed sequence of cameras all around the mesh, near and far, and inside it. Every eighth one is
+/// orthographic. It uses Halton's low-discrepancy sequence, so that even the first few cameras differ much.
+pub fn random(bounds: &Bounds, index: u32) -> Camera {
     let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(base, index as usize + 1) as f32);
     let radius = bounds.radius();
     Camera {
@@ -30,12 +30,12 @@ pub(crate) fn random(bounds: &Bounds, index: u32) -> Camera {
 }
 
 /// The camera that a case's picture is taken with.
-pub(super) fn look(bounds: &Bounds, look: &Look, viewport: Vec2) -> Camera {
+pub fn camera(bounds: &Bounds, view: &CaseView, viewport: Vec2) -> Camera {
     let mut camera = Camera::framing(bounds, viewport);
-    (camera.azimuth, camera.elevation) = (look.azimuth, look.elevation);
-    if look.distance > 0.0 {
-        camera.distance = look.distance * bounds.radius();
-        camera.target = bounds.center() + bounds.radius() * Vec3::from(look.target);
+    (camera.azimuth, camera.elevation) = (view.azimuth, view.elevation);
+    if view.distance > 0.0 {
+        camera.distance = view.distance * bounds.radius();
+        camera.target = bounds.center() + bounds.radius() * Vec3::from(view.target);
     }
     camera
 }

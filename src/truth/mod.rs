@@ -58,7 +58,8 @@ impl Truth {
     /// Returns the reference surface of a source: the exact surface of a shape, or the mesh. `None` if that has no
     /// triangle.
     ///
-    /// # Errors The file can't be read as a mesh, or `progress` was cancelled.
+    /// # Errors
+    /// The file can't be read as a mesh, or `progress` was cancelled.
     pub fn load(source: &Source, limits: &Limits, progress: &Progress) -> Result<Option<Self>, LoadError> {
         match source.shape().and_then(Self::of_shape) {
             Some(exact) => Ok(Some(exact)),

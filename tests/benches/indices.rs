@@ -1,4 +1,4 @@
-//! Index buffers for PN-AEN, ours beside meshoptimizer's, on one core: `cargo bench --bench indices`.
+//! Compares the times in which we and meshoptimizer build index buffers for PN-AEN on one core: `cargo bench --bench indices`.
 
 use std::hint::black_box;
 use std::sync::Arc;
@@ -9,10 +9,10 @@ use pnaen::internals::Layout;
 use pnaen::mesh::{Corner, Mesh, Topology};
 use pnaen::progress::Progress;
 
-/// Runs of each, by turns.
+/// The number of runs of each, in turn.
 const RUNS: usize = 9;
 
-/// A torus of `n` by `2 n` quads, whose corners are shared but for a uv seam both ways round.
+/// A torus of `n` by `2 n` quads. Its corners are shared except at one uv seam in each direction.
 fn torus(n: u32) -> Mesh {
     let (rows, columns) = (n, 2 * n);
     let corner = |i: u32, j: u32| {
@@ -33,7 +33,7 @@ fn torus(n: u32) -> Mesh {
     }
 }
 
-/// The same with its triangles in no order, as files may have them.
+/// The mesh with its triangles in random order, as files may have them.
 fn shuffled(mut mesh: Mesh) -> Mesh {
     let mut state = 1_u64;
     let triangles = Arc::make_mut(&mut mesh.triangles);

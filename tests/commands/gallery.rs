@@ -19,7 +19,7 @@ fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
     let cells = |name: &str| row(name).split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
     assert!(page.contains("- `pn`: PN triangles (Vlachos et al. 2001)"));
     assert_eq!(cells("pn")[2..4], ["3", "156"], "12 patches of 13 triangles");
-    for whole in ["flat", "pn-aen", "pn-crease", "phong-aen", "nagata-aen", "on", "pn --rim 0.02"] {
+    for whole in ["flat", "pn-aen", "pn-crease", "phong-aen", "nagata-aen", "on", "pn --crease-band 0.02"] {
         assert_eq!(cells(whole)[5..8], ["0"; 3], "{whole}");
     }
     for torn in ["pn", "phong", "nagata", "as-published", "per-patch"] {

@@ -1,4 +1,4 @@
-//! An allocator that counts what a whole binary has taken from it.
+//! An allocator that counts the memory of a whole program.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -11,29 +11,29 @@ struct Counting;
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-// SAFETY: all is the system's own allocator; beside it, sizes are counted.
+// SAFETY: the system's allocator does all the work; this one only counts sizes.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         let taken = TAKEN.fetch_add(layout.size(), Relaxed) + layout.size();
         PEAK.fetch_max(taken, Relaxed);
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller keeps the contract of this function, which is that of the system's.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
         TAKEN.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller keeps the contract of this function, which is that of the system's.
         unsafe { System.dealloc(place, layout) }
     }
 }
 
-/// Bytes that are taken now.
+/// The number of bytes that are taken now.
 #[allow(dead_code, reason = "not every test asks for it")]
 pub fn taken() -> usize {
     TAKEN.load(Relaxed)
 }
 
-/// Bytes that `job` had taken at most, beyond those that were taken before it.
+/// Runs `job`. Returns its result, and the most bytes that were taken meanwhile, beyond those taken before.
 #[allow(dead_code, reason = "not every test asks for it")]
 pub fn peak_of<T>(job: impl FnOnce() -> T) -> (T, usize) {
     let before = taken();

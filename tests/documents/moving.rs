@@ -1,9 +1,9 @@
-//! A small document in which everything moves, written by the tests that read it: a square beam of split normals and uv
-//! seams, which two joints bend and two morph targets swell, and beside it an octahedron that flies.
+//! A small animated glTF document, which tests write and then read. It has a square beam with split normals and uv seams, which
+//! two joints bend and two morph targets swell, and beside it an octahedron that flies.
 
 use serde_json::{Value, json};
 
-/// The clips, by name.
+/// The names of the clips.
 #[allow(dead_code, reason = "not every test names them all")]
 pub(super) const CLIPS: [&str; 4] = ["Bend", "Swell", "Fly", "All"];
 
@@ -36,8 +36,8 @@ impl Writer {
     }
 }
 
-/// The whole file, as .glb.
-pub(super) fn moving() -> Vec<u8> {
+/// The whole document as a .glb file.
+pub fn moving() -> Vec<u8> {
     let mut writer = Writer::default();
     let meshes = json!([{ "primitives": [beam(&mut writer)] }, { "primitives": [octahedron(&mut writer)] }]);
     let animations = animations(&mut writer);
@@ -71,7 +71,7 @@ fn glb(root: &Value, bytes: Vec<u8>) -> Vec<u8> {
     [&header, &length(&json)[..], b"JSON", &json, &length(&bytes), b"BIN\0", &bytes].concat()
 }
 
-/// Four corners of every face, which share nothing.
+/// The four corners of every face, which faces don't share.
 fn faces() -> Vec<[[f32; 3]; 4]> {
     let ring = |y: f32| [[-0.5, y, -0.5], [0.5, y, -0.5], [0.5, y, 0.5], [-0.5, y, 0.5]];
     let mut faces = Vec::new();
@@ -115,7 +115,7 @@ fn beam(writer: &mut Writer) -> Value {
     })
 }
 
-/// Without normals, which are made.
+/// A primitive without normals, which loading makes.
 fn octahedron(writer: &mut Writer) -> Value {
     let axis = |i: usize, x: f32| std::array::from_fn(|k| if k == i { x } else { 0.0 });
     let positions: Vec<[f32; 3]> = [1.0, -1.0].into_iter().flat_map(|x| [axis(0, x), axis(1, x), axis(2, x)]).collect();
@@ -139,9 +139,9 @@ fn inverse_binds(writer: &mut Writer) -> usize {
 fn animations(writer: &mut Writer) -> Value {
     let about = |axis: glam::Vec3, degrees: f32| glam::Quat::from_axis_angle(axis, degrees.to_radians()).to_array();
     let bent = about(glam::Vec3::Z, 80.0);
-    // The last is the first with other signs: the same turn.
+    // The last quaternion is the first with its signs reversed, which is the same rotation.
     let bend = writer.floats("VEC4", &[about(glam::Vec3::Z, 0.0), bent, [0.0, 0.0, 0.0, -1.0]]);
-    // In-tangent, value and out-tangent of both targets, at two keys.
+    // The in-tangent, value and out-tangent of both targets at two keys.
     let swell = [[0.0, 0.0], [0.0, 0.0], [2.0, 0.0], [0.0, 0.0], [1.0, -1.0], [0.0, 0.0]].as_flattened().to_vec();
     let swell = writer.floats("SCALAR", &swell.into_iter().map(|x: f32| [x]).collect::<Vec<_>>());
     let hop = writer.floats("VEC3", &[[0.0; 3], [0.0, 1.5, 0.0], [-1.0, 0.0, 2.0]]);

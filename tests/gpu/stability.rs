@@ -11,7 +11,7 @@ use pnaen::mesh::{Material, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::Settings;
-use pnaen::stability::{CASES, Effort, Look, Method, Quantity, Row, Verdict, lines, run};
+use pnaen::stability::{CASES, CaseView, Effort, Method, Quantity, Row, Verdict, lines, run};
 use pnaen::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -39,7 +39,7 @@ pub(super) fn scene_of(mesh: Mesh, weld: f32) -> Scene {
 pub(super) fn case(name: &str) -> (Scene, Camera) {
     let case = CASES.iter().find(|case| case.name == name).expect("a case of this name");
     let scene = scene_of((case.mesh)(), case.weld);
-    let Look { azimuth, elevation, distance, target, .. } = case.look;
+    let CaseView { azimuth, elevation, distance, target, .. } = case.view;
     let mut camera = Camera { azimuth, elevation, ..Camera::framing(&scene.bounds, VIEWPORT) };
     if distance > 0.0 {
         camera.distance = distance * scene.bounds.radius();

@@ -1,4 +1,4 @@
-//! What one window has taken, after each thing that was done to it: as a table, as a picture, and whether it levels off.
+//! The memory that a window took after each step: checks that it levels off, and writes it as a table and a picture.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,39 +11,41 @@ use crate::counting::taken;
 
 const MIB: f64 = 1024.0 * 1024.0;
 
-/// What is looked at, and by which part its mean over a quarter may differ from an earlier one's. The device's depends on the
-/// settings. The process has pages that its allocators keep, and code that a software driver compiles; those settle only
-/// after hundreds of steps.
+/// The kinds of memory, and the part by which the mean over the last quarter of the steps may exceed that over the second. The
+/// device's memory depends on the settings. The process holds pages that its allocators keep, and code that a software driver
+/// compiles, so it levels off only after hundreds of steps.
 const KINDS: [(&str, f64); 3] = [("heap", 0.02), ("graphics device", 0.1), ("process", 0.1)];
-/// From so many steps on, the process is held to that as well.
+/// The memory of the process is checked from this number of steps on.
 const MANY: usize = 100;
 
-/// MiB of each of [`KINDS`], where the system tells.
+/// The MiB of each of [`KINDS`]; `None` if the system doesn't report it.
 pub type Taken = [Option<f64>; KINDS.len()];
 
-/// MiB that are taken now.
+/// The memory that is taken now, in MiB.
 pub fn now(app: &App) -> Taken {
     let report = app.engine().gpu.device.generate_allocator_report();
     let device = report.map(|report| report.total_allocated_bytes as f64 / MIB);
     [Some(taken() as f64 / MIB), device, resident()]
 }
 
-/// Of this process, if the system says so.
+/// The resident memory of this process in MiB; `None` if the system doesn't report it.
 fn resident() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<f64>().ok()? / 1024.0)
 }
 
-/// One part of the whole, in order.
+/// One part of the test: what was done, and the memory after each step.
 pub struct Part {
     pub what: &'static str,
     pub taken: Vec<Taken>,
 }
 
 impl Part {
+    /// Checks that the memory levels off.
+    ///
     /// # Panics
-    /// The last quarter takes more than the second.
+    /// The last quarter of the steps takes more than the second.
     pub fn levels_off(&self) {
         let quarter = self.taken.len() / 4;
         for (kind, (name, noise)) in KINDS.into_iter().enumerate() {

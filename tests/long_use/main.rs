@@ -1,8 +1,8 @@
-//! One window for long: meshes, settings and sizes, one after the other. What it takes levels off; nothing goes wrong; and it
-//! shows what a window shows that was opened just now. Alone in this binary, so that nothing else is counted.
+//! Uses one window for long: loads many meshes, changes many settings and sizes. Its memory must level off, nothing may go wrong,
+//! and it must show the same picture as a new window. This test is a program of its own, so that no other memory is counted.
 //!
-//! With `PNAEN_LONG_USE=FOLDER` that is 500 meshes, 2,000 settings and 100 sizes, and what was taken is written there, as a
-//! table and as a picture.
+//! With `PNAEN_LONG_USE=FOLDER` there are 500 meshes, 2,000 settings and 100 sizes, and the memory is written to that folder, as
+//! a table and as a picture.
 
 #[path = "../counting/mod.rs"]
 mod counting;
@@ -26,10 +26,10 @@ use figures::Part;
 
 /// Width and height of the window, in points.
 const SIZE: [f32; 2] = [1000.0, 700.0];
-/// Switches and lists that are bound to the mesh or the moment: a window that opens has them as they came.
+/// Controls that belong to the mesh or the moment. A new window has their defaults.
 const NOT_KEPT: [&str; 3] = ["Freeze LOD camera", "Weld", "Height map"];
 
-/// How often each is done, and how often a window is opened beside it to compare.
+/// The number of steps of each part, and after how many of them the window is compared with a new one.
 struct Effort {
     loads: usize,
     settings: usize,
@@ -37,7 +37,7 @@ struct Effort {
     compared: usize,
 }
 
-/// A folder of this test's own, gone when the test is.
+/// A temporary folder for this test, which is removed at its end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -60,7 +60,7 @@ impl Drop for Folder {
     }
 }
 
-/// Numbers without an order that one sees (Steele, Lea and Flood 2014), the same on every run.
+/// Pseudo-random numbers (Steele, Lea and Flood 2014), the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -88,8 +88,8 @@ fn picture(harness: &Harness<App>) -> RgbaImage {
     harness.state().read_picture().expect("a readback").expect("a picture")
 }
 
-/// Whether the window shows what one does that is opened just now with the same settings, on the same mesh, as large; both
-/// with the whole mesh in view.
+/// Checks that the window shows the same picture as a new window of the same size with the same settings and mesh, both with the
+/// whole mesh in view.
 fn shows_what_a_new_window_does(harness: &mut Harness<App>, kept: &Path, size: [f32; 2]) {
     eframe::App::on_exit(harness.state_mut());
     let source = harness.state().source().cloned();
@@ -131,7 +131,7 @@ fn loads(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
     part
 }
 
-/// What can be switched, chosen or slid now.
+/// All controls that can be used now.
 fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
     let kinds = [Role::CheckBox, Role::ComboBox, Role::Slider];
     let usable = By::new().predicate(|node| kinds.contains(&node.role()) && !node.is_disabled());
@@ -142,7 +142,7 @@ fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
     named.filter(|(_, name)| !NOT_KEPT.contains(&name.as_str())).collect()
 }
 
-/// Changes one setting that is there, to anything that it can be.
+/// Changes a random control to a random value.
 fn change(harness: &mut Harness<App>, random: &mut Random) {
     let all = controls(harness);
     let (role, name) = &all[random.below(all.len())];
@@ -169,7 +169,8 @@ fn change(harness: &mut Harness<App>, random: &mut Random) {
     settle(harness);
 }
 
-/// Makes every pipeline that the settings can need: they are made when they are first needed, and stay.
+/// Makes all pipelines that the settings can need, so that their memory doesn't count as growth. They are made when they are
+/// first needed, and are kept.
 fn need_every_pipeline(harness: &mut Harness<App>) {
     harness.state().engine().renderer.prepare_all().expect("pipelines");
     for normals in ["Quadratic normals", "Surface normals", "Linear normals"] {
@@ -199,7 +200,7 @@ fn settings(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Par
 fn sizes(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
     let mut part = Part { what: "sizes", taken: Vec::new() };
     for step in 0..effort.sizes {
-        // The same ones over and over, in no order.
+        // The same ten sizes again and again, large and small in turn.
         let size = [760 + 97 * (step % 10), 480 + 61 * (3 * step % 10)].map(|side| side as f32);
         harness.set_size(size.into());
         settle(harness);
@@ -212,7 +213,7 @@ fn sizes(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
 }
 
 #[test]
-fn a_window_used_for_long_levels_off_and_shows_no_stale_frame() {
+fn memory_of_a_window_used_for_long_levels_off_and_its_picture_stays_right() {
     let written = std::env::var_os("PNAEN_LONG_USE").map(PathBuf::from);
     let effort = match written {
         Some(_) => Effort { loads: 500, settings: 2000, sizes: 100, compared: 50 },

@@ -59,7 +59,7 @@ fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparat
 const TRIANGLES: usize = 57_000;
 
 #[test]
-fn edges_are_part_of_it() {
+fn the_limit_includes_edges() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let grid = Grid::of(TRIANGLES, 0.0);
     let plain = Preparation::default();
@@ -73,7 +73,7 @@ fn edges_are_part_of_it() {
 }
 
 #[test]
-fn welds_and_rims_are_part_of_it() {
+fn the_limit_includes_welds_and_crease_bands() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let welded = Preparation { weld: 1e-5, ..Preparation::default() };
     assert_bounded("welded.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &welded, 1.5);
@@ -84,7 +84,7 @@ fn welds_and_rims_are_part_of_it() {
 }
 
 #[test]
-fn heights_are_part_of_it() {
+fn the_limit_includes_heights() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let of = |heights| Preparation { heights: Some(heights), ..Preparation::default() };
     assert_bounded("materials.glb", &textures(3, 700), 0, &of(HeightSource::Materials), 1.1);
@@ -97,7 +97,7 @@ fn heights_are_part_of_it() {
 
 /// A small file with large images. Each is in memory twice, as a texture and as heights.
 #[test]
-fn many_materials_images_are_refused_as_heights() {
+fn images_of_many_materials_are_refused_as_heights() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let bytes = textures(14, 2048);
     let allowed = 4 * bytes.len() + (256 << 20);

@@ -1,4 +1,4 @@
-//! Height images: reading one takes its map, and at most one row of the image.
+//! Height images: reading one takes memory for its map, and at most one row of the image.
 
 use std::io::Cursor;
 use std::sync::PoisonError;
@@ -42,7 +42,7 @@ fn png(size: [u32; 2]) -> Vec<u8> {
 }
 
 #[test]
-fn a_large_png_takes_what_is_kept_of_it() {
+fn a_large_png_takes_little_more_than_its_map() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let side = if std::env::var_os("PNAEN_TRIANGLES").is_some() { 16384 } else { 1024 };
     let (result, took) = read("large.png", &png([8192.max(side), side]));
@@ -73,7 +73,7 @@ fn a_jpeg_fits_or_is_refused_with_both_numbers() {
     let refusal = |side: u16, marker: u8| {
         let (result, took) = read(&format!("{side}-{marker:x}.jpg"), &jpeg(side, marker));
         assert!(took < 4 << 20, "{took}");
-        result.expect_err("412 MB of px, or as many of coefficients").to_string()
+        result.expect_err("412 MB of pixels or coefficients").to_string()
     };
     assert!(read("small.jpg", &jpeg(600, 0xc0)).0.is_ok());
     let error = refusal(12000, 0xc0);
@@ -92,7 +92,7 @@ fn a_jpeg_fits_or_is_refused_with_both_numbers() {
 /// A colour profile that unpacks to a thousand times its size is never unpacked, neither in height images nor in
 /// textures.
 #[test]
-fn profiles_of_colours_are_not_unpacked() {
+fn colour_profiles_are_not_unpacked() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut info = png::Info::with_size(16, 16);
     info.icc_profile = Some(vec![0; 300 << 20].into());

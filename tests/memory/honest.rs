@@ -70,9 +70,9 @@ fn gltf() {
     assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
 }
 
-/// The work after a load, until a mesh can be shown: as docs/manual/files.md says, in bytes a triangle.
+/// The memory after a load until a mesh can be shown, in bytes per triangle, as docs/manual/files.md says.
 #[test]
-fn edges_and_what_welding_would_do() {
+fn edges_and_previews_of_welds() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for triangles in sizes() {
         let (mesh, _) = taken("edges.glb", indexed(Grid::of(triangles, 0.0), false));

@@ -79,7 +79,7 @@ fn sheet(grid: Grid, others: &[(String, u8)], apart: bool, speed: i32) -> Vec<u8
 }
 
 #[test]
-fn what_programs_pack_fits() {
+fn files_from_an_encoder_fit() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let others = |count: usize, width: u8| (0..count).map(|i| (format!("TEXCOORD_{i}"), width)).collect::<Vec<_>>();
     for speed in [0, 5, 10] {
@@ -101,7 +101,7 @@ fn what_programs_pack_fits() {
 /// A file is refused for the memory that decoding might take, not for what it does take; with --max-memory it can be
 /// read.
 #[test]
-fn larger_ones_are_read_with_more_memory() {
+fn larger_files_are_read_with_more_memory() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let grid = Grid::of(500_000, 0.0);
     let bytes = sheet(grid, &[("TEXCOORD_0".to_owned(), 2)], false, 5);
@@ -128,7 +128,7 @@ fn table(length: usize, symbols: usize, rest: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn tables_that_take_most_are_counted() {
+fn tables_that_take_most_memory_are_counted() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     // A table that ends too early.
     let length = 400 << 10;

@@ -4,7 +4,9 @@ use egui::{Color32, Pos2, Stroke, vec2};
 use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
 use crate::app::jobs::chart_job::Charted;
-use crate::chart::{Axis, Cost, Fill, Look, Method, RADIUS, Row, Setting, Shape, Tick, looks, tick_text};
+use crate::chart::{
+    Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles, tick_text,
+};
 use crate::plot::INK;
 
 /// What is drawn.
@@ -155,16 +157,16 @@ impl<'a> Diagram<'a> {
             }
             canvas.painter.line(places, Stroke::new(9.0, inks.front));
         }
-        let looks = looks(subject);
+        let styles = method_styles(subject);
         let of = |method: Method| {
             let own = move |spot: &Spot| matches!(spot, Spot::Row(row) if row.setting.method == method);
             spots.iter().filter(move |(spot, _)| own(spot)).map(|(_, at)| canvas.place(*at))
         };
-        for (method, look) in &looks {
-            line(&canvas.painter, &of(*method).collect::<Vec<_>>(), Stroke::new(1.4, inks.of(look)), look.dash);
+        for (method, style) in &styles {
+            line(&canvas.painter, &of(*method).collect::<Vec<_>>(), Stroke::new(1.4, inks.of(style)), style.dash);
         }
-        for (method, look) in &looks {
-            of(*method).for_each(|place| marker(&canvas.painter, place, look, &inks));
+        for (method, style) in &styles {
+            of(*method).for_each(|place| marker(&canvas.painter, place, style, &inks));
         }
         for (spot, at) in spots {
             let place = canvas.place(*at);
@@ -173,7 +175,7 @@ impl<'a> Diagram<'a> {
                 Spot::Row(_) => {}
                 Spot::Current => {
                     let Some((settings, _)) = &self.charted.current else { continue };
-                    marker(&canvas.painter, place, &Look::of_surface(settings.tessellation.surface), &inks);
+                    marker(&canvas.painter, place, &MethodStyle::of_surface(settings.tessellation.surface), &inks);
                     self.ring(ui, canvas, place);
                 }
             }
@@ -235,9 +237,9 @@ impl Inks {
         self.text
     }
 
-    /// The colour of a method. The chart's ink is replaced by the theme's text colour.
-    fn of(&self, look: &Look) -> Color32 {
-        let color = look.color;
+    /// The chart's ink is the theme's.
+    fn of(&self, style: &MethodStyle) -> Color32 {
+        let color = style.color;
         let own = if color == INK { self.text } else { Color32::from_rgb(color.0, color.1, color.2) };
         self.stale.unwrap_or(own)
     }
@@ -255,21 +257,21 @@ pub fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Opti
     }
 }
 
-/// Draws a method's point.
-pub fn marker(painter: &egui::Painter, at: Pos2, look: &Look, inks: &Inks) {
-    let color = inks.of(look);
+/// A method's point.
+pub fn marker(painter: &egui::Painter, at: Pos2, style: &MethodStyle, inks: &Inks) {
+    let color = inks.of(style);
     let shape = |radius: f64, color: Color32| {
-        if look.shape == Shape::Disc {
+        if style.shape == Shape::Disc {
             painter.circle_filled(at, radius as f32, color);
         }
-        for piece in look.shape.pieces(radius) {
+        for piece in style.shape.pieces(radius) {
             let corners = piece.into_iter().map(|[x, y]| at + vec2(x as f32, y as f32)).collect();
             painter.add(egui::Shape::convex_polygon(corners, color, Stroke::NONE));
         }
     };
     shape(RADIUS + 1.2, inks.halo);
     shape(RADIUS, color);
-    match look.fill {
+    match style.fill {
         Fill::Full => {}
         Fill::Hollow => shape(RADIUS - 1.6, inks.halo),
         Fill::Pale => shape(RADIUS - 1.2, inks.halo.lerp_to_gamma(color, 0.4)),

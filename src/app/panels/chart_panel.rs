@@ -7,7 +7,7 @@ use crate::app::App;
 use crate::app::jobs::chart_job::Charted;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{columns, list};
-use crate::chart::{Cost, LodKind, Look, Probe, Row, Setting, dash, looks};
+use crate::chart::{Cost, LodKind, MethodStyle, Probe, Row, Setting, dash, method_styles};
 use crate::settings::Choice;
 use crate::tessellate::Surface;
 
@@ -220,9 +220,9 @@ fn facts(charted: &Charted, probe: &Probe) -> String {
 /// The legend of points and lines.
 fn legend(ui: &mut egui::Ui, charted: &Charted, is_stale: bool) {
     let inks = Inks::new(ui, is_stale);
-    let looks = looks(&charted.subject);
+    let styles = method_styles(&charted.subject);
     let (mut surfaces, mut lods): (Vec<Surface>, Vec<LodKind>) = Default::default();
-    for (method, _) in &looks {
+    for (method, _) in &styles {
         surfaces.extend((!surfaces.contains(&method.surface)).then_some(method.surface));
         lods.extend((!lods.contains(&method.lod)).then_some(method.lod));
     }
@@ -231,7 +231,7 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, is_stale: bool) {
             |ui: &mut egui::Ui, width: f32| ui.allocate_exact_size(egui::vec2(width, 14.0), egui::Sense::hover()).0;
         for surface in surfaces {
             let rect = sample(ui, 10.0);
-            marker(ui.painter(), rect.center(), &Look::of_surface(surface), &inks);
+            marker(ui.painter(), rect.center(), &MethodStyle::of_surface(surface), &inks);
             ui.label(surface.name());
         }
         for lod in lods {

@@ -1,4 +1,4 @@
-//! Which method to use when, in sentences.
+//! The report's advice: sentences that say which method to use when.
 
 use super::answers::{Answer, PARTS, answer, winners};
 use super::lods::{Saving, saving};
@@ -8,11 +8,11 @@ use crate::chart::{Cost, LodKind};
 use crate::markdown;
 use crate::numbers::short;
 
-/// How many winners are named; others are counted.
+/// The most methods that are named in a list. Others are counted.
 const NAMED: usize = 3;
 
-/// Everything that is said of all meshes together.
-pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
+/// The sentences about all meshes together.
+pub fn sentences(parts: &[Part]) -> Vec<String> {
     let mut all: Vec<String> = PARTS.iter().filter_map(|error| reaching(parts, *error)).collect();
     all.extend(fronts::sentences(parts));
     all.extend([LodKind::Uniform, LodKind::Paper].into_iter().filter_map(|other| saved(parts, other)));
@@ -22,13 +22,14 @@ pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
     if !own.is_empty() {
         let names = markdown::listed(&own);
         all.push(format!(
-            "{names}: no truth is known, so that each surface is held against its own limit, in px, and surfaces can't be compared."
+            "{names}: no reference surface is known. Each surface is compared with its own limit, in px, so surfaces can't be \
+             compared with each other."
         ));
     }
     all
 }
 
-/// Who reaches an error with the fewest triangles, and who the fastest.
+/// Names the methods that reach an error with the fewest triangles, and those that reach it fastest.
 fn reaching(parts: &[Part], error: f64) -> Option<String> {
     let raced: Vec<_> = parts.iter().filter_map(|part| Some((part, part.race()?))).collect();
     if raced.is_empty() {
@@ -38,13 +39,13 @@ fn reaching(parts: &[Part], error: f64) -> Option<String> {
         raced.iter().filter_map(|(part, race)| Some((*part, answer(part, race, error, cost)?))).collect()
     };
     let [by_triangles, by_ms] = [Cost::Triangles, Cost::Ms].map(asked);
-    let mut text = format!("**Off by no more than {} % of the diagonal:**", plain(100.0 * error));
+    let mut text = format!("**Error of at most {} % of the diagonal:**", plain(100.0 * error));
     let by_triangles_alone: Vec<_> = by_triangles.iter().map(|(_, answer)| answer.clone()).collect();
     let by_ms: Vec<_> = by_ms.into_iter().map(|(_, answer)| answer).collect();
     let reached = by_triangles_alone.iter().filter(|answer| matches!(answer, Answer::By(_))).count();
     if reached > 0 {
         let [fewest, fastest] = [&by_triangles_alone, &by_ms].map(|answers| named(parts, answers, reached));
-        text += &format!(" fewest triangles: {fewest}; fastest, or within 5 % of it: {fastest}.");
+        text += &format!(" fewest triangles: {fewest}; fastest, or at most 5 % slower: {fastest}.");
     }
     let titles = |is_meant: &dyn Fn(&Answer) -> bool| -> Vec<String> {
         let meant = by_triangles.iter().filter(|(_, answer)| is_meant(answer));
@@ -60,12 +61,12 @@ fn reaching(parts: &[Part], error: f64) -> Option<String> {
             true => "any mesh".to_owned(),
             false => markdown::listed(&nobody),
         };
-        text += &format!(" Nothing gets there on {on}.");
+        text += &format!(" No setting reaches it on {on}.");
     }
     Some(text)
 }
 
-/// Winners with the number of meshes on which they are that.
+/// The names of the best methods, with the number of meshes on which each is best.
 fn named(parts: &[Part], answers: &[Answer], reached: usize) -> String {
     let winners = winners(answers);
     let mut words: Vec<String> = Vec::new();
@@ -80,7 +81,7 @@ fn named(parts: &[Part], answers: &[Answer], reached: usize) -> String {
     markdown::listed(&words)
 }
 
-/// What LOD by error saves against another, at equal error.
+/// Says what LOD by error saves compared with another LOD, at equal error.
 fn saved(parts: &[Part], other: LodKind) -> Option<String> {
     let name = match other {
         LodKind::Uniform => "a uniform factor",
@@ -92,7 +93,9 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
         1 => format!("{name} (one comparison)"),
         _ => {
             let [least, most] = [times.least, times.most].map(short);
-            format!("{name} (geometric mean of {count} comparisons: of surfaces, meshes and errors; {least} to {most})")
+            format!(
+                "{name} (geometric mean of {count} comparisons over surfaces, meshes and errors; {least} to {most} times fewer)"
+            )
         }
     };
     let triangles = compared(times.mean, ["fewer triangles than", "as many triangles as"]);
@@ -112,7 +115,7 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
     Some(text)
 }
 
-/// A ratio above 1 as so many times less, one below as so many times as much.
+/// A ratio in words: above 1 as "times less", below 1 as "times as much".
 fn compared(ratio: f64, [less, as_much]: [&str; 2]) -> String {
     match ratio {
         _ if ratio >= 1.05 => format!("{} times {less}", short(ratio)),

@@ -1,4 +1,4 @@
-//! Who reaches an error at the least cost, on one mesh after another.
+//! The methods that reach an error at the least cost, for each mesh.
 
 use std::fmt::Write;
 
@@ -8,26 +8,27 @@ use crate::chart::{Cost, Method, Race, Row};
 use crate::markdown;
 use crate::numbers::{grouped, short};
 
-/// Errors that are asked for, as parts of the diagonal; in px where there is no truth.
-pub(super) const PARTS: [f64; 4] = [0.01, 0.005, 0.001, 0.0001];
-pub(super) const PX: [f64; 3] = [1.0, 0.5, 0.1];
+/// The errors that the report asks for: as parts of the diagonal, and in px for meshes without a reference surface.
+pub const PARTS: [f64; 4] = [0.01, 0.005, 0.001, 0.0001];
+pub const PX: [f64; 3] = [1.0, 0.5, 0.1];
 
-/// Methods that take less than this times the ms of the fastest are as fast: so much differs from run to run.
+/// Methods that take up to this many times as long as the fastest count as equally fast, since times differ that much between
+/// runs.
 const AS_FAST: f64 = 1.05;
 
-/// What came of asking for an error.
+/// The answer to which methods reach an error at the least cost.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Answer<'a> {
-    /// The mesh has it without tessellation.
+pub enum Answer<'a> {
+    /// The mesh without tessellation reaches it.
     AsItIs(&'a Row),
-    /// The cheapest row of each method that does with the least, or about as much; the cheapest of all first.
+    /// The cheapest row of each method that has the least cost, or about the least; the cheapest of all is the first.
     By(Vec<&'a Row>),
-    /// Nothing does; what comes closest, and how close.
+    /// No row reaches it. Holds the row that comes closest, and its error.
     Nobody(&'a Row, f64),
 }
 
-/// Who reaches an error at the least cost; none if nothing was measured.
-pub(super) fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Option<Answer<'a>> {
+/// Returns which methods reach an error at the least cost, or `None` if nothing was measured.
+pub fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Option<Answer<'a>> {
     let Some(best) = race.cheapest(error, cost, |_| true) else {
         let closest = race.entries.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         return closest.map(|(row, error)| Answer::Nobody(row, *error));
@@ -44,8 +45,8 @@ pub(super) fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -
     Some(Answer::By(rows))
 }
 
-/// On how many meshes each method is among the best, the most first.
-pub(super) fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
+/// The number of meshes on which each method is among the best, the largest number first.
+pub fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
     let mut all: Vec<(Method, usize)> = Vec::new();
     let rows = answers.iter().filter_map(|answer| if let Answer::By(rows) = answer { Some(rows) } else { None });
     for row in rows.flatten() {
@@ -58,8 +59,8 @@ pub(super) fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
     all
 }
 
-/// A table for each error that anything reaches: who reaches it on which mesh.
-pub(super) fn tables(parts: &[Part]) -> String {
+/// A table for each error that any row reaches: the methods that reach it on each mesh.
+pub fn tables(parts: &[Part]) -> String {
     const COLUMNS: [&str; 5] = ["mesh", "fewest triangles by", "triangles", "fastest by", "ms"];
     let mut text = String::new();
     for error in PARTS {
@@ -74,14 +75,14 @@ pub(super) fn tables(parts: &[Part]) -> String {
         let reached =
             |part: &Part| part.race().is_some_and(|race| race.cheapest(error, Cost::Triangles, |_| true).is_some());
         if parts.iter().any(reached) {
-            let _ = write!(text, "\n### Off by no more than {} %\n\n", plain(100.0 * error));
+            let _ = write!(text, "\n### Error of at most {} %\n\n", plain(100.0 * error));
             text += &markdown::table(&COLUMNS, &[0, 1, 3], &rows);
         }
     }
     text
 }
 
-/// Who it is, and what it costs.
+/// The text for an answer: the method, and its cost.
 fn cell(part: &Part, (cost, answer): (Cost, Answer)) -> (String, String) {
     match answer {
         Answer::AsItIs(row) => ("the mesh as it is".to_owned(), amount(cost, cost.of(row))),
@@ -94,8 +95,8 @@ fn cell(part: &Part, (cost, answer): (Cost, Answer)) -> (String, String) {
             (format!("{}{more}", part.subject.named(best)), amount(cost, cost.of(best)))
         }
         Answer::Nobody(row, error) => {
-            let closest = format!("nothing; {} comes to {} %", part.subject.named(row), short(100.0 * error));
-            (if cost == Cost::Triangles { closest } else { "nothing".to_owned() }, "-".to_owned())
+            let closest = format!("none; closest is {} with {} %", part.subject.named(row), short(100.0 * error));
+            (if cost == Cost::Triangles { closest } else { "none".to_owned() }, "-".to_owned())
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How often each method is on the front: has a setting that no other beats.
+//! How often each method is on the front, that is, has settings that no other setting beats.
 
 use super::Part;
 use crate::chart::{Cost, Method, Row};
@@ -6,23 +6,23 @@ use crate::markdown;
 use crate::numbers::grouped;
 use crate::settings::Choice;
 
-/// Where a method is on the front.
+/// How often a method is on the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Standing {
     pub method: Method,
-    /// Meshes that it was tried on.
+    /// The number of meshes that it was tried on.
     pub tried: usize,
-    /// Meshes, and settings on all of them, on the front by triangles and by ms.
+    /// The number of meshes on whose fronts it is, and of its settings on these fronts: by triangles, and by ms.
     pub meshes: [usize; 2],
     pub settings: [usize; 2],
 }
 
-/// By which cost, in the order of a standing's numbers.
-pub(super) const COSTS: [Cost; 2] = [Cost::Triangles, Cost::Ms];
+/// The costs, in the order of a standing's numbers.
+pub const COSTS: [Cost; 2] = [Cost::Triangles, Cost::Ms];
 
-/// The standing of every method on meshes that have a truth, those on most fronts first. The mesh as it is counts for none:
-/// all methods have it.
-pub(super) fn standings(parts: &[Part]) -> Vec<Standing> {
+/// The standing of every method on meshes with a reference surface, those on most fronts first. The mesh without tessellation
+/// doesn't count, since all methods have it.
+pub fn standings(parts: &[Part]) -> Vec<Standing> {
     let mut all: Vec<Standing> = Vec::new();
     for (part, race) in parts.iter().filter_map(|part| Some((part, part.race()?))) {
         for method in part.subject.methods() {
@@ -45,8 +45,8 @@ pub(super) fn standings(parts: &[Part]) -> Vec<Standing> {
     all
 }
 
-/// The standings, as a table.
-pub(super) fn table_of(parts: &[Part]) -> String {
+/// The table of standings.
+pub fn table_of(parts: &[Part]) -> String {
     const COLUMNS: [&str; 6] =
         ["method", "meshes", "on the front by triangles", "settings there", "on the front by ms", "settings there"];
     let rows: Vec<_> = standings(parts)
@@ -63,25 +63,26 @@ pub(super) fn table_of(parts: &[Part]) -> String {
         return String::new();
     }
     format!(
-        "\n### How often each method is on the front\n\nOn how many meshes it has settings that no other beats, in triangles \
-         or in ms, and how many; without the mesh as it is.\n\n{}",
+        "\n### How often each method is on the front\n\nThe number of meshes on which a method has settings that no other \
+         setting beats, in triangles or in ms, and the number of these settings. The mesh without tessellation doesn't \
+         count.\n\n{}",
         markdown::table(&COLUMNS, &[0], &rows)
     )
 }
 
-/// So many meshes.
-pub(super) fn meshes(count: usize) -> String {
+/// A number of meshes in words.
+pub fn meshes(count: usize) -> String {
     format!("{count} {}", if count == 1 { "mesh" } else { "meshes" })
 }
 
-/// What a method is called, where it was tried.
-pub(super) fn name(parts: &[Part], method: Method) -> String {
+/// A method's name, as on the first mesh that it was tried on.
+pub fn name(parts: &[Part], method: Method) -> String {
     let part = parts.iter().find(|part| part.subject.methods().contains(&method));
     part.map_or_else(|| method.to_string(), |part| part.subject.name(method))
 }
 
-/// Methods by their names; those of a surface that are all of it that was tried by that surface's.
-pub(super) fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
+/// The names of methods. If all tried methods of a surface are among them, they get one name.
+pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     let tried: Vec<Method> = parts.iter().flat_map(|part| part.subject.methods()).collect();
     let mut names = Vec::new();
     for method in methods {
@@ -97,8 +98,8 @@ pub(super) fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     names
 }
 
-/// Who is on most fronts, and who on none.
-pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
+/// The sentences that name the methods on most fronts, and those on none.
+pub fn sentences(parts: &[Part]) -> Vec<String> {
     let standings = standings(parts);
     let mut all = Vec::new();
     for (index, cost) in COSTS.into_iter().enumerate() {

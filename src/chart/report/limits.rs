@@ -1,4 +1,4 @@
-//! How close each surface gets, whatever it costs.
+//! How close each surface gets to the reference surface, at any cost.
 
 use super::Part;
 use super::fronts::meshes;
@@ -11,15 +11,15 @@ use crate::tessellate::Surface;
 
 /// How close a surface gets on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Limit {
-    /// A part of the diagonal.
+pub struct Limit {
+    /// The least largest error, as a part of the diagonal.
     pub error: f64,
-    /// Whether finer settings come no closer, or might.
+    /// Whether it is known that finer settings come no closer.
     pub is_reached: bool,
 }
 
-/// How close a surface gets; none if it wasn't tried.
-pub(super) fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit> {
+/// How close a surface gets; `None` if it wasn't tried.
+pub fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit> {
     let own = race.entries.iter().filter(|(row, _)| row.setting.method.surface == surface);
     let error = own.map(|(_, error)| *error).reduce(f64::min)?;
     let mut methods = part.subject.methods().into_iter().filter(|method| method.surface == surface);
@@ -27,8 +27,8 @@ pub(super) fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit>
     Some(Limit { error, is_reached })
 }
 
-/// Every surface that was tried, in the order of rows.
-pub(super) fn surfaces(parts: &[Part]) -> Vec<Surface> {
+/// All surfaces that were tried, in the order of rows.
+pub fn surfaces(parts: &[Part]) -> Vec<Surface> {
     let mut all = Vec::new();
     for method in parts.iter().flat_map(|part| part.subject.methods()) {
         if !all.contains(&method.surface) {
@@ -38,8 +38,8 @@ pub(super) fn surfaces(parts: &[Part]) -> Vec<Surface> {
     all
 }
 
-/// How close every surface gets on every mesh that has a truth.
-pub(super) fn table_of(parts: &[Part]) -> String {
+/// A table of how close every surface gets on every mesh with a reference surface.
+pub fn table_of(parts: &[Part]) -> String {
     let surfaces = surfaces(parts);
     let row = |part: &Part| -> Option<Vec<String>> {
         let race = part.race()?;
@@ -59,14 +59,14 @@ pub(super) fn table_of(parts: &[Part]) -> String {
     let columns: Vec<String> = ["mesh".to_owned()].into_iter().chain(names).collect();
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     format!(
-        "\n### How close each surface gets\n\nThe least largest error of any setting; \"or less\" where finer ones would come \
-         closer still.\n\n{}",
+        "\n### How close each surface gets\n\nThe smallest value that the largest error has at any setting; \"or less\" \
+         where finer settings might come closer still.\n\n{}",
         markdown::table(&columns, &[0], &rows)
     )
 }
 
-/// What is said of how close surfaces get.
-pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
+/// The sentences about how close surfaces get.
+pub fn sentences(parts: &[Part]) -> Vec<String> {
     let all = surfaces(parts);
     all.iter()
         .filter_map(|surface| stops(parts, *surface))
@@ -74,7 +74,7 @@ pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
         .collect()
 }
 
-/// Where a surface stops, and why that is known; none if it stops nowhere.
+/// Says how close a surface gets however fine it is, and why; `None` if that isn't known on any mesh.
 fn stops(parts: &[Part], surface: Surface) -> Option<String> {
     let (mut reached, mut ratios, mut tried) = (Vec::new(), Vec::new(), 0);
     for part in parts {
@@ -98,25 +98,26 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
     };
     let name = surface.name();
     let against =
-        Range::of(&ratios).map_or_else(String::new, |range| format!(" That is {} flat.", closer(&range, ratios.len())));
+        Range::of(&ratios).map_or_else(String::new, |range| format!(" It is {}.", closer(&range, ratios.len())));
     let on = reached.len();
     Some(format!(
-        "However fine, `{name}` stops at {range}, on {on} of {}: {}.{against}",
+        "However fine, `{name}` comes no closer than {range}, on {on} of {}: {}.{against}",
         meshes(tried),
         reason(surface)
     ))
 }
 
+/// Compares a surface's error with that of flat triangles, in words.
 fn closer(range: &Range, meshes: usize) -> String {
     let Range { mean, least, most } = *range;
-    let (times, word) = if mean >= 1.0 { (mean, "closer") } else { (1.0 / mean, "farther off") };
+    let (times, word) = if mean >= 1.0 { (mean, "closer") } else { (1.0 / mean, "farther away") };
     match meshes {
-        1 => format!("{} times {word} than", short(times)),
+        1 => format!("{} times {word} than `flat`", short(times)),
         _ if mean >= 1.0 => {
-            format!("{} times {word} (geometric mean; {} to {}) than", short(times), short(least), short(most))
+            format!("{} times {word} than `flat` (geometric mean; {} to {})", short(times), short(least), short(most))
         }
         _ => format!(
-            "{} times {word} (geometric mean; {} to {}) than",
+            "{} times {word} than `flat` (geometric mean; {} to {})",
             short(times),
             short(1.0 / most),
             short(1.0 / least)
@@ -124,35 +125,35 @@ fn closer(range: &Range, meshes: usize) -> String {
     }
 }
 
-/// Why a surface has a limit of its own.
+/// The reason why a surface comes no closer.
 fn reason(surface: Surface) -> String {
     match surface {
         Surface::Flat => {
-            "its points lie on the mesh's own triangles, so that no factor moves anything or turns a normal".into()
+            "its points lie on the mesh's own triangles, so no factor moves a point or turns a normal".into()
         }
         Surface::Pn | Surface::PnAen | Surface::PnCrease => {
-            "a cubic patch knows where its corners are and how they are turned, \
-            which gives smooth surfaces their curvature; the rest only a finer mesh brings nearer"
+            "a cubic patch follows the positions and normals of its corners, \
+            which gives it the curvature of a smooth surface; only a finer mesh comes closer"
                 .into()
         }
         Surface::Phong | Surface::PhongAen => {
             let alpha = Settings::default().tessellation.alpha;
             let rises = 2.0 * alpha;
             format!(
-                "to the second order it rises 2 alpha times as high over its triangles as a smooth surface does, which at {alpha} \
-                 is {rises} times: on a fine mesh it is off by {} of what flat is",
+                "to second order it rises 2 alpha times as high above its triangles as a smooth surface does, which is \
+                 {rises} times for an alpha of {alpha}, so on a fine mesh its error is {} times that of `flat`",
                 (rises - 1.0).abs()
             )
         }
         Surface::Nagata | Surface::NagataAen => {
-            "a quadratic patch has the slopes at its edges' ends, which gives smooth \
-            surfaces their curvature; the rest only a finer mesh brings nearer"
+            "a quadratic patch has the right slopes at the ends of its edges, which gives it \
+            the curvature of a smooth surface; only a finer mesh comes closer"
                 .into()
         }
     }
 }
 
-/// Where flat triangles are closer than a surface that goes by means of normals, and why, if creases are.
+/// Names the meshes on which flat triangles come closer than a surface that averages over sides, if that is because of creases.
 fn rounds(parts: &[Part], surface: Surface) -> Option<String> {
     if !matches!(surface, Surface::PnAen | Surface::PhongAen | Surface::NagataAen) {
         return None;
@@ -167,8 +168,8 @@ fn rounds(parts: &[Part], surface: Surface) -> Option<String> {
         return None;
     }
     Some(format!(
-        "On {} `flat` comes closer than `{}`: creases are there (edges whose sides' normals differ), and the mean of both \
-         sides rounds them.",
+        "On {} `flat` comes closer than `{}`: there are creases (edges whose sides have different normals), which the mean of \
+         both sides rounds.",
         markdown::listed(&meshes),
         surface.name()
     ))

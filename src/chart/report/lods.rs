@@ -1,24 +1,25 @@
-//! What one LOD saves against another, at equal error.
+//! What LOD by error saves compared with another LOD, at equal error.
 
 use super::Part;
 use crate::chart::{Cost, LodKind, Race, Row};
 
-/// What LOD by error costs less than another, over surfaces, meshes and errors.
+/// How much less LOD by error costs than another LOD, over surfaces, meshes and errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Saving {
-    /// How many times less.
+pub struct Saving {
+    /// The cost of the other LOD divided by that of LOD by error.
     pub times: Range,
-    /// Pairs that were compared.
+    /// The number of comparisons.
     pub count: usize,
-    /// Errors that LOD by error reached and the other didn't, and the other way round.
+    /// The number of errors that only LOD by error reached, and of those that only the other LOD reached.
     pub alone: [usize; 2],
 }
 
-/// What it saves in `cost` against `other`; none if nowhere both were needed.
+/// What LOD by error saves in `cost` compared with `other`; `None` if they can't be compared on any mesh.
 ///
-/// They are compared at 1, 2 and 5 times powers of ten, for each surface, with the cheapest setting of each. Where a mesh needs
-/// no tessellation nothing is to be saved; and where the coarsest setting does, one that wasn't tried might have been cheaper.
-pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
+/// For each surface, the cheapest settings of both are compared at errors of 1, 2 and 5 times powers of ten. An error that the
+/// mesh reaches without tessellation doesn't count, since nothing can be saved there; nor does one that the coarsest setting
+/// reaches, since a setting that wasn't tried might have been cheaper.
+pub fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
     let (mut ratios, mut alone) = (Vec::new(), [0, 0]);
     for part in parts {
         for race in part.subject.races() {
@@ -41,12 +42,12 @@ pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Savin
     Some(Saving { times: Range::of(&ratios)?, count: ratios.len(), alone })
 }
 
-/// Whether nothing coarser of its method was tried.
+/// Whether a row is the coarsest of its method.
 fn is_coarsest(part: &Part, row: &Row) -> bool {
     !part.subject.rows.iter().any(|other| row.setting.is_finer(&other.setting))
 }
 
-/// Every surface with every error that is asked for.
+/// Each surface with each error at which it is compared.
 fn cases(part: &Part, race: &Race) -> Vec<(crate::tessellate::Surface, f64)> {
     let mut surfaces = Vec::new();
     for (row, _) in &race.entries {
@@ -58,7 +59,7 @@ fn cases(part: &Part, race: &Race) -> Vec<(crate::tessellate::Surface, f64)> {
     surfaces.iter().flat_map(|surface| levels.iter().map(move |level| (*surface, *level))).collect()
 }
 
-/// Ratios: their geometric mean, the least and the most.
+/// The geometric mean, the least and the greatest of some ratios.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     pub mean: f64,
@@ -67,8 +68,8 @@ pub(super) struct Range {
 }
 
 impl Range {
-    /// None of none.
-    pub(super) fn of(ratios: &[f64]) -> Option<Self> {
+    /// Returns `None` if there are no ratios.
+    pub fn of(ratios: &[f64]) -> Option<Self> {
         let least = ratios.iter().copied().reduce(f64::min)?;
         let most = ratios.iter().copied().fold(least, f64::max);
         let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();

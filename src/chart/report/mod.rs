@@ -1,4 +1,5 @@
-//! A page about what charts found: which method to use when, and a section for each mesh. All it says is computed from rows.
+//! The report on charts: a page that says which method to use when, with a section for each mesh. All of its text is computed
+//! from rows.
 
 mod advice;
 mod answers;
@@ -14,17 +15,17 @@ use crate::markdown::plain;
 use answers::tables;
 use section::section;
 
-/// The page's file, and that of its table, in their folder.
-pub(crate) const PAGE: &str = "results.md";
-pub(crate) const TABLE: &str = "results.csv";
+/// The file names of the page and of its table.
+pub const PAGE: &str = "results.md";
+pub const TABLE: &str = "results.csv";
 
-/// What it all ran on, and when.
+/// Where and when the measurements were made.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Occasion {
     pub adapter: String,
-    /// The driver and the interface that it was asked through.
+    /// The driver, and the graphics API.
     pub driver: String,
-    /// Whether that runs on the CPU.
+    /// Whether the driver runs on the CPU.
     pub is_software: bool,
     /// Day and minute, in UTC.
     pub date: String,
@@ -32,11 +33,11 @@ pub(crate) struct Occasion {
     pub command: String,
 }
 
-/// A mesh with what was measured of it, and what wasn't.
+/// A mesh with its measurements, and the number of settings that weren't measured.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Part {
     pub subject: Subject,
-    /// Patches that the mesh has, and edges whose sides have different normals.
+    /// The number of the mesh's patches, and of its edges whose sides have different normals.
     pub patches: u64,
     pub split_edges: u64,
     /// The picture's file, in the page's folder.
@@ -44,50 +45,51 @@ pub(crate) struct Part {
     pub left_out: LeftOut,
 }
 
-/// How many settings are not in a part, by why.
+/// The number of settings that were left out, for each reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct LeftOut {
-    /// They had more triangles than were allowed, and how many those were.
+pub struct LeftOut {
+    /// They had more than `most_triangles` triangles.
     pub too_large: usize,
+    /// The most triangles that were allowed.
     pub most_triangles: u64,
-    /// A coarser one of the method had come as close: see [`super::has_converged`].
+    /// A coarser setting of the method came as close: see [`super::has_converged`].
     pub converged: usize,
-    /// Somebody had seen enough.
+    /// The user interrupted the measurement.
     pub interrupted: usize,
 }
 
 impl LeftOut {
-    /// Whatever is left out, in words; nothing if nothing is.
-    pub(crate) fn words(&self) -> Vec<String> {
+    /// The numbers with their reasons, in words; empty if nothing was left out.
+    pub fn words(&self) -> Vec<String> {
         let most = crate::numbers::grouped(self.most_triangles);
         let reasons = [
-            (self.too_large, format!("of more than {most} triangles")),
-            (self.converged, "finer than a method takes to come as close as it gets".to_owned()),
-            (self.interrupted, "not tried, since it was interrupted".to_owned()),
+            (self.too_large, format!("with more than {most} triangles")),
+            (self.converged, "whose method came as close as it gets with a coarser one".to_owned()),
+            (self.interrupted, "not tried, since the measurement was interrupted".to_owned()),
         ];
         reasons.into_iter().filter(|(count, _)| *count > 0).map(|(count, why)| format!("{count} {why}")).collect()
     }
 }
 
 impl Part {
-    /// Whether it was held against a truth, so that all its rows can be compared, also with those of others.
+    /// Whether it was compared with a reference surface. Then all its rows can be compared, also with those of other meshes.
     fn has_truth(&self) -> bool {
         self.subject.truth.is_some()
     }
 
-    /// Its rows, if they were held against one truth.
+    /// Its rows, if they were compared with a reference surface.
     fn race(&self) -> Option<Race<'_>> {
         self.subject.races().into_iter().next().filter(|_| self.has_truth())
     }
 
-    /// Whether a row is the mesh as it is: its patches are triangles.
+    /// Whether a row is the mesh without tessellation: one triangle for each patch.
     fn is_plain(&self, row: &super::Row) -> bool {
         row.triangles == self.patches
     }
 }
 
-/// The page, in Markdown.
-pub(crate) fn page(occasion: &Occasion, parts: &[Part]) -> String {
+/// Returns the page in Markdown.
+pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
     let Occasion { adapter, driver, date, command, .. } = occasion;
     let mut text = String::from("# Speed against accuracy\n\n");
     let _ = writeln!(text, "Measured on {} ({}), {date}, by\n\n    {command}\n", plain(adapter), plain(driver));
@@ -102,15 +104,17 @@ pub(crate) fn page(occasion: &Occasion, parts: &[Part]) -> String {
     text
 }
 
-/// What numbers mean.
-const ABOUT: &str = "A method is a surface and a level of detail (LOD): a uniform factor, px a segment on screen (the white paper's), \
-     or the error on screen in px. Its settings go from coarse to fine. ms are those of tessellation and drawing, of all of a \
-     mesh. The largest error is the largest distance between what is drawn and the truth, both ways; the RMS error is the root \
-     of its mean square over the area; both in percent of the truth's bounding diagonal. Normals: the largest angle between a \
-     shading normal and the truth's. All rows are in [results.csv](results.csv).";
+/// Explains the numbers.
+const ABOUT: &str = "A method is a surface with a level of detail (LOD): a uniform factor, px per segment on screen (the white \
+     paper's LOD), or the error on screen in px. Its settings go from coarse to fine. The ms are the time of tessellating and \
+     drawing the whole mesh. The largest error is the largest distance between what is drawn and the reference surface, in both \
+     directions. The RMS error is the root of the mean square of these distances over the area. Both are in percent of the \
+     reference surface's bounding diagonal. Normals: the largest angle between a shading normal and the normal of the reference \
+     surface. All rows are in [results.csv](results.csv).";
 
-/// Where ms say little.
-const SOFTWARE: &str = "This adapter is software: triangles and errors are those of any other, but ms are a CPU's, and say nothing about GPUs. ";
+/// Warns about times on software adapters.
+const SOFTWARE: &str = "This adapter is software. Its triangles and errors are those of any other adapter, but its times \
+     are those of a CPU, and say nothing about GPUs. ";
 
 #[cfg(test)]
 mod tests;

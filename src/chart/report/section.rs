@@ -1,4 +1,4 @@
-//! What a page says of one mesh.
+//! The report's section on one mesh.
 
 use std::fmt::Write;
 
@@ -11,18 +11,23 @@ use crate::markdown;
 use crate::numbers::{grouped, short};
 use crate::settings::Choice;
 
-/// A section with its picture and tables.
-pub(super) fn section(part: &Part) -> String {
+/// Returns the section, with its picture and tables.
+pub fn section(part: &Part) -> String {
     let title = markdown::plain(&part.subject.title);
     let mut text = format!("\n## {title}\n\n{}\n\n", facts(part));
     let _ = writeln!(text, "![Largest error of {title} over ms and over triangles]({})", part.picture);
     for race in part.subject.races() {
-        let of =
-            race.surface.map_or_else(String::new, |surface| format!(" (`{}`, against its own limit)", surface.name()));
-        let _ = write!(text, "\nWhat nothing beats, in triangles or in ms{of}:\n\n{}", front(part, &race));
+        let of = race
+            .surface
+            .map_or_else(String::new, |surface| format!(" (`{}`, compared with its own limit)", surface.name()));
+        let _ = write!(
+            text,
+            "\nSettings that no other setting beats, in triangles or in ms{of}:\n\n{}",
+            front(part, &race)
+        );
         let (table, missing) = best(part, &race);
         if !table.is_empty() {
-            let _ = write!(text, "\nThe fewest triangles that each method takes{of}:\n\n{table}");
+            let _ = write!(text, "\nThe fewest triangles with which each method reaches an error{of}:\n\n{table}");
         }
         text.extend(missing.iter().map(|said| format!("\n{said}\n")));
     }
@@ -35,14 +40,14 @@ pub(super) fn section(part: &Part) -> String {
 
 fn facts(part: &Part) -> String {
     let against = match &part.subject.truth {
-        Some(truth) => format!("held against {}", markdown::plain(truth)),
-        None => "each surface held against its own limit, as no truth is known".to_owned(),
+        Some(truth) => format!("compared with {}", markdown::plain(truth)),
+        None => "each surface compared with its own limit, since no reference surface is known".to_owned(),
     };
     let [width, height] = part.subject.size;
     format!("{} triangles; {against}; seen at {width} x {height} px.", grouped(part.patches))
 }
 
-/// The columns that a row has after its name.
+/// The columns after a row's name.
 fn columns(part: &Part) -> &'static [&'static str] {
     match part.has_truth() {
         true => &["triangles", "ms", "largest error, %", "RMS error, %", "largest error, px", "normals, degrees"],
@@ -65,7 +70,7 @@ fn cells(part: &Part, row: &Row) -> Vec<String> {
     cells
 }
 
-/// The rows that nothing beats, in triangles or in ms.
+/// A table of the rows that no other row beats, in triangles or in ms.
 fn front(part: &Part, race: &Race) -> String {
     let fronts = [Cost::Triangles, Cost::Ms].map(|cost| race.front(|row| cost.of(row)));
     let is_in = |row: &Row, front: &[(&Row, f64)]| front.iter().any(|(other, _)| std::ptr::eq(*other, row));
@@ -86,7 +91,7 @@ fn front(part: &Part, race: &Race) -> String {
     markdown::table(&columns, &[0, 1, 2], &rows.iter().map(line).collect::<Vec<_>>())
 }
 
-/// For each error what each method takes to reach it; and who doesn't, in sentences.
+/// A table of the cheapest row of each method for each error, and sentences about the methods that don't reach it.
 fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
     let (mut rows, mut said) = (Vec::new(), Vec::new());
     let (errors, unit) = if part.has_truth() { (&PARTS[..], "%") } else { (&PX[..], "px") };
@@ -97,7 +102,7 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
     for &error in errors {
         let level = format!("{} {unit}", plain(part.subject.unit() * error));
         if race.cheapest(error, Cost::Triangles, |row| part.is_plain(row)).is_some() {
-            said.push(format!("{level}: the mesh as it is does."));
+            said.push(format!("{level}: the mesh reaches it without tessellation."));
             continue;
         }
         let cheapest = |method| race.cheapest(error, Cost::Triangles, |row| row.setting.method == method);
@@ -109,7 +114,7 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
         }
         let missing = methods().filter(|method| cheapest(*method).is_none());
         match brief(std::slice::from_ref(part), &missing.collect::<Vec<_>>()) {
-            _ if reached.is_empty() => said.push(format!("{level}: nothing gets there.")),
+            _ if reached.is_empty() => said.push(format!("{level}: no setting reaches it.")),
             names if names.is_empty() => {}
             names => said.push(format!("{level}: not reached by {}.", markdown::listed(&names))),
         }
@@ -117,7 +122,7 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
     if rows.is_empty() {
         return (String::new(), said);
     }
-    let names = ["off by no more than", "method", "setting"];
+    let names = ["error of at most", "method", "setting"];
     let columns: Vec<&str> = names.iter().chain(columns(part)).copied().collect();
     (markdown::table(&columns, &[0, 1, 2], &rows), said)
 }

@@ -28,7 +28,7 @@ fn measured(truth: &Truth, out: &Tessellated, samples: usize) -> Accuracy {
     measurement.finish().unwrap()
 }
 
-/// A mesh's own corners and triangles, each a patch.
+/// A mesh without tessellation: each triangle is a patch.
 fn as_it_is(mesh: &Mesh) -> Tessellated {
     emitted(mesh, Surface::Flat, 1.0)
 }
@@ -64,11 +64,11 @@ fn the_icosahedron_is_a_fifth_of_the_radius_off_the_sphere() {
     let truth = Truth::of_shape(Shape::Icosahedron).unwrap();
     let accuracy = measured(&truth, &as_it_is(&Shape::Icosahedron.build()), 20_000);
     let inradius = ((5.0 + 2.0 * 5.0_f64.sqrt()) / 15.0).sqrt();
-    // Corners are f32's. That of the samples which is nearest to a face's middle is not quite there.
+    // Corners are f32 numbers, and no sample lies exactly opposite a face's middle.
     near(accuracy.to_truth.largest, 1.0 - inradius, 1e-7);
     near(accuracy.from_truth.largest, 1.0 - inradius, 1e-4);
     near(accuracy.relative(accuracy.to_truth).largest, (1.0 - inradius) / 12.0_f64.sqrt(), 1e-7);
-    // From a face's middle to its corners, the mean of the squares of the radius short of 1.
+    // The farthest place is the middle of a face.
     let face = accuracy.worst_to_truth;
     near(face.emitted.length(), inradius, 1e-7);
     near(face.truth.length(), 1.0, 1e-12);
@@ -77,7 +77,7 @@ fn the_icosahedron_is_a_fifth_of_the_radius_off_the_sphere() {
     assert!(accuracy.normals.rms < accuracy.normals.largest && accuracy.normals.largest < 3.0, "{accuracy:?}");
 }
 
-/// The root mean square of what a face of a polyhedron of radius 1 is short of the sphere, by brute force.
+/// The root mean square of the distance between a face of a polyhedron of radius 1 and the sphere, by sampling.
 fn rms_of_a_face(inradius: f64) -> f64 {
     let circumradius = (1.0 - inradius * inradius).sqrt();
     let corners = [0.0_f64, 120.0, 240.0].map(|turn| DVec3::new(turn.to_radians().cos(), turn.to_radians().sin(), 0.0));
@@ -90,7 +90,7 @@ fn rms_of_a_face(inradius: f64) -> f64 {
 }
 
 #[test]
-fn parallel_squares_are_as_far_both_ways() {
+fn parallel_squares_are_equally_far_in_both_directions() {
     let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
     let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
@@ -105,14 +105,14 @@ fn parallel_squares_are_as_far_both_ways() {
 }
 
 #[test]
-fn what_is_missing_shows_from_the_truth_alone() {
+fn missing_parts_count_from_the_reference_surface() {
     let (truth, (vertices, triangles)) = (square_truth(1.0), square(0.5, 0.0));
     let mut measurement = AccuracyMeasurement::new(&truth, None, options(50_000));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     assert!(accuracy.to_truth.largest < 1e-12, "{accuracy:?}");
     near(accuracy.from_truth.largest, 0.5_f64.sqrt(), 0.01);
-    // Three parts: inside nothing, along sides the distance t, in corners the hypotenuse of two of them.
+    // The distance is 0 inside, t along the sides, and the hypotenuse of two such distances in the corners.
     let squares = 4.0 * (0.125 / 3.0) + 4.0 * (0.25 * 0.5 / 3.0);
     near(accuracy.from_truth.rms, (squares / 4.0_f64).sqrt(), 2e-3);
     near(accuracy.both_ways().rms, accuracy.from_truth.rms / 2.0_f64.sqrt(), 1e-12);
@@ -124,7 +124,7 @@ fn a_shifted_sphere_is_off_by_the_shift() {
     let mut out = as_it_is(&Shape::Icosphere.build_at(4));
     out.vertices.iter_mut().for_each(|vertex| vertex.position[0] += 0.01);
     let accuracy = measured(&truth, &out, 5000);
-    // Along the normal it is the shift's cosine, whose mean square over the sphere is a third.
+    // The distance is the shift times the cosine between it and the normal, whose mean square over the sphere is a third.
     near(accuracy.to_truth.largest, 0.01, 7e-4);
     near(accuracy.from_truth.largest, 0.01, 7e-4);
     near(accuracy.both_ways().rms, 0.01 / 3.0_f64.sqrt(), 2e-4);
@@ -158,7 +158,7 @@ fn distances_on_screen_are_in_px_of_what_is_in_view() {
 }
 
 #[test]
-fn nothing_and_what_is_no_number_give_nothing() {
+fn nothing_emitted_gives_no_result_and_nan_is_left_out() {
     let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
     assert_eq!(AccuracyMeasurement::new(&truth, None, options(10)).finish(), None);
     let mut flat = AccuracyMeasurement::new(&truth, None, options(10));
@@ -174,7 +174,7 @@ fn nothing_and_what_is_no_number_give_nothing() {
 }
 
 #[test]
-fn threads_change_no_bit_and_chunks_nothing_else() {
+fn results_depend_neither_on_threads_nor_on_chunks() {
     let truth = Truth::of_shape(Shape::Bicubic).unwrap();
     let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
     let measure = |threads, chunks: usize| {
@@ -194,7 +194,7 @@ fn threads_change_no_bit_and_chunks_nothing_else() {
     near(chunked.normals.rms, once.normals.rms, 1e-9);
 }
 
-/// Halving the segments divides the distance by 2 to the order.
+/// With half as long segments, the distance is divided by 2 to the power of the order.
 #[test]
 fn distances_fall_with_the_level() {
     for (surface, orders) in [(Surface::Flat, 1.7..2.3), (Surface::PnAen, 2.7..4.6)] {

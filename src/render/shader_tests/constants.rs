@@ -1,4 +1,4 @@
-//! Every constant that stands in Rust and in WGSL has the same value in both.
+//! Tests that every constant in both Rust and WGSL has the same value in both.
 
 use std::collections::BTreeMap;
 
@@ -22,11 +22,11 @@ use crate::tessellate::shared_constants::{
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
-/// Constants that WGSL alone has, and why.
+/// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED"], "in Rust, an enum without numbers"),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
-    (&["FOUND_SOURCE"], "Rust takes any other number than 0 and FOUND_EMITTED for it"),
+    (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
     (&["ALL_MAPS", "NO_PATCH"], "markers within one pass"),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
@@ -36,10 +36,10 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING"], "how lines look"),
 ];
 
-/// The values of a constant, component by component, and by how much they may differ.
+/// The components of a constant, and by how much each may differ.
 struct Expected(Vec<f64>, f64);
 
-/// One number.
+/// A single number, without tolerance.
 fn number(value: impl Into<f64>) -> Expected {
     Expected(vec![value.into()], 0.0)
 }
@@ -48,7 +48,7 @@ fn numbers<T: Into<f64>>(values: impl IntoIterator<Item = T>) -> Expected {
     Expected(values.into_iter().map(Into::into).collect(), 0.0)
 }
 
-/// An sRGB colour, which WGSL has in linear light with three decimals.
+/// An sRGB colour. WGSL has it in linear light with three decimals.
 fn color(srgb: [u8; 3]) -> Expected {
     Expected(linear(srgb).map(f64::from).to_vec(), 0.0006)
 }
@@ -61,7 +61,7 @@ fn colors(colors: Colors) -> Expected {
     overlay(Overlays { colors, ..Overlays::default() })
 }
 
-/// Every constant of both languages: its name in WGSL, and its value in Rust.
+/// Every constant of both languages, with its name in WGSL and its value in Rust.
 fn table() -> Vec<(&'static str, Expected)> {
     let none = Overlays::default();
     let mut table = of_the_mathematics();
@@ -92,7 +92,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
         ("WASTE_COLOR", color(WASTE_COLOR)),
         ("NORMAL_COLOR", color(NORMAL_COLOR)),
-        // This grey has two decimals.
+        // WGSL has this grey with two decimals.
         ("SMOOTH_EDGE_COLOR", Expected(color(edge_color(EdgeKind::Smooth)).0, 0.005)),
         ("SPLIT_EDGE_COLOR", color(edge_color(EdgeKind::Split))),
         ("SEAM_EDGE_COLOR", color(edge_color(EdgeKind::Seam))),
@@ -183,7 +183,7 @@ fn of_enums() -> Vec<(&'static str, Expected)> {
     ]
 }
 
-/// The components of a constant expression, as naga has evaluated it.
+/// Collects the components of a constant expression that naga has evaluated.
 fn components(module: &naga::Module, value: naga::Handle<naga::Expression>, out: &mut Vec<f64>) {
     match &module.global_expressions[value] {
         naga::Expression::Literal(naga::Literal::F32(value)) => out.push((*value).into()),
@@ -197,7 +197,7 @@ fn components(module: &naga::Module, value: naga::Handle<naga::Expression>, out:
     }
 }
 
-/// Every constant of the shaders.
+/// The constants of all shaders, by name.
 fn wgsl_constants() -> BTreeMap<String, Vec<f64>> {
     let mut all = BTreeMap::new();
     for (file, module) in modules() {
@@ -224,13 +224,13 @@ fn constants_of_both_languages_are_equal() {
 }
 
 #[test]
-fn every_constant_of_the_shaders_is_compared_or_wgsls_alone() {
+fn every_constant_of_the_shaders_is_compared_or_listed() {
     let (wgsl, table) = (wgsl_constants(), table());
     let alone: Vec<_> = WGSL_ALONE.iter().flat_map(|(names, _)| names.iter().copied()).collect();
     for name in wgsl.keys() {
         let compared = table.iter().filter(|(known, _)| known == name).count();
         let listed = alone.iter().filter(|known| *known == name).count();
-        assert_eq!(compared + listed, 1, "{name} must be in the table or listed as WGSL's alone, once");
+        assert_eq!(compared + listed, 1, "{name} must be either in the table or in WGSL_ALONE, once");
     }
     for name in alone {
         assert!(wgsl.contains_key(name), "no shader has {name}");

@@ -1,4 +1,4 @@
-//! What Rust and the shaders must agree on, and how shader modules are put together. No test here needs a device.
+//! Tests what Rust and the shaders must agree on, and how shader modules are put together. No test here needs a device.
 
 mod constants;
 mod structs;
@@ -23,7 +23,7 @@ fn modules() -> &'static [(&'static WgslFile, naga::Module)] {
 }
 
 #[test]
-fn every_module_is_valid_with_what_webgpu_has_by_default() {
+fn every_module_is_valid_with_the_default_features_of_webgpu() {
     for (file, module) in modules() {
         let flags = naga::valid::ValidationFlags::all();
         let mut validator = naga::valid::Validator::new(flags, naga::valid::Capabilities::default());
@@ -34,18 +34,18 @@ fn every_module_is_valid_with_what_webgpu_has_by_default() {
 }
 
 #[test]
-fn a_module_needs_each_of_its_files() {
+fn a_module_does_not_compile_without_any_of_its_files() {
     for (file, _) in modules() {
         let files = file.module_files();
         for left_out in files.iter().filter(|left_out| left_out.name != file.name) {
             let others: Vec<_> = files.iter().copied().filter(|other| other.name != left_out.name).collect();
             let parsed = naga::front::wgsl::parse_str(&joined(&others));
-            assert!(parsed.is_err(), "{} does without {}", file.name, left_out.name);
+            assert!(parsed.is_err(), "{} compiles without {}", file.name, left_out.name);
         }
     }
 }
 
-/// The names that a file declares for the others: at the start of a line, as everything in `shaders/` does.
+/// The names that a file declares for others. Every declaration in `shaders/` starts a line.
 fn declared(file: &WgslFile) -> Vec<&'static str> {
     let name = |line: &'static str| {
         let rest = ["fn ", "struct ", "const ", "var<workgroup> "].iter().find_map(|start| line.strip_prefix(start));
@@ -56,7 +56,7 @@ fn declared(file: &WgslFile) -> Vec<&'static str> {
 }
 
 #[test]
-fn a_file_names_only_files_that_it_needs() {
+fn a_file_lists_only_files_that_it_uses() {
     let files = modules().iter().flat_map(|(file, _)| file.module_files());
     for file in files {
         let code: Vec<_> = file.text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
@@ -64,7 +64,7 @@ fn a_file_names_only_files_that_it_needs() {
             code.iter().any(|line| line.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name))
         };
         for needed in file.needs {
-            // What another file of the module needs may be chosen by the file with the entry points.
+            // The file with the entry points may list a file that only other files of the module use.
             let mut rest = Vec::new();
             file.needs
                 .iter()
@@ -96,9 +96,9 @@ fn every_file_is_part_of_a_module() {
 }
 
 #[test]
-fn a_files_name_is_used_once() {
+fn every_file_name_is_used_once() {
     let mut files: Vec<_> = modules().iter().flat_map(|(file, _)| file.module_files()).collect();
     files.sort_by_key(|file| file.name);
     files.dedup_by(|a, b| std::ptr::eq(*a, *b));
-    assert!(files.windows(2).all(|pair| pair[0].name != pair[1].name), "two statics have one file");
+    assert!(files.windows(2).all(|pair| pair[0].name != pair[1].name), "two statics have the same file");
 }

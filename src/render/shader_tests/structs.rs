@@ -1,4 +1,4 @@
-//! Every struct that Rust and WGSL share has the same size and the same fields at the same offsets.
+//! Tests that every struct in both Rust and WGSL has the same size, and the same fields at the same offsets.
 
 use std::mem::{offset_of, size_of};
 
@@ -12,7 +12,7 @@ use crate::render::coverage::Sieve;
 use crate::render::layout::{Frame, Material, Pick};
 use crate::tessellate::CoverageView;
 
-/// Size and (name, offset) of a struct's members, as the shader has it.
+/// The size of a struct in WGSL, and the name and offset of each member.
 fn wgsl_struct(name: &str) -> (usize, Vec<(String, usize)>) {
     let found = modules().iter().find_map(|(_, module)| {
         module.types.iter().find_map(|(_, ty)| match &ty.inner {
@@ -37,7 +37,7 @@ macro_rules! same {
 }
 
 #[test]
-fn shared_structs_have_one_layout() {
+fn shared_structs_have_the_same_layout() {
     same!(Binding { position, first_delta, normal, delta_count, joints, weights });
     same!(Delta { position, weight, normal });
     same!(JointMatrix { x, y, z });
@@ -109,8 +109,8 @@ fn shared_structs_have_one_layout() {
 }
 
 #[test]
-fn uniforms_may_be_longer_in_rust_by_padding_alone() {
-    // A uniform buffer's size is a multiple of 16; the shader's own struct ends with its last member.
+fn uniforms_in_rust_differ_only_by_padding_at_the_end() {
+    // The size of a uniform buffer is a multiple of 16, but the shader's struct ends with its last member.
     let (size, members) = wgsl_struct("Slab");
     let rust = [
         ("first_patch", offset_of!(Slab, first_patch)),
@@ -126,7 +126,7 @@ fn uniforms_may_be_longer_in_rust_by_padding_alone() {
 
 #[test]
 fn a_vertex_is_eight_words() {
-    // A WGSL vector of three starts at a multiple of 16, so position and key are scalars there.
+    // In WGSL a vector of three would start at a multiple of 16, so position and key are scalars there.
     let (size, members) = wgsl_struct("Vertex");
     assert_eq!(size, size_of::<Vertex>());
     let [position, key] = [offset_of!(Vertex, position), offset_of!(Vertex, key)];

@@ -1,4 +1,4 @@
-//! What some techniques alone fail on: creases that end, normals that lean, height images and poses.
+//! Meshes that only some techniques fail on: creases that end, normals that lean, height images and poses.
 
 use std::sync::Arc;
 
@@ -11,9 +11,9 @@ use crate::mesh::rig::{
 };
 use crate::mesh::{Corner, HeightMap, Heights, Mesh, Rig, Shape};
 
-/// A level sheet whose normals all lean one way, each a little more or less than the next: along every edge that runs that
-/// way, both ends' tangents rise, and their planes are nearly parallel.
-pub(crate) fn inflection() -> Mesh {
+/// A level sheet whose normals all lean one way, each a little more or less than the next. Along an edge in that direction
+/// the tangents at both ends rise, and the tangent planes are nearly parallel.
+pub fn inflection() -> Mesh {
     let at = |x: i32, z: i32| {
         let lean = vec3(0.6 + 0.02 * (x * x - z) as f32, 1.0, 0.01 * (x * z) as f32);
         corner(vec3(x as f32, 0.0, z as f32) * 0.5, lean.normalize())
@@ -25,9 +25,9 @@ pub(crate) fn inflection() -> Mesh {
     }))
 }
 
-/// A crease that ends within the sheet: along the first of two edges that follow one another the sides' normals differ at
-/// both ends, along the second at one, and beyond it nowhere.
-pub(crate) fn dart() -> Mesh {
+/// A sheet with a crease of two edges that ends within it. The sides' normals differ at both ends of the first edge, at one
+/// end of the second, and nowhere beyond it.
+pub fn dart() -> Mesh {
     let normal = |x: f32, z: f32| vec3(0.3 * x, 1.0, 0.3 * z).normalize();
     let at = |x: i32, z: i32, side: f32| {
         let (x, z) = (x as f32, z as f32);
@@ -42,7 +42,7 @@ pub(crate) fn dart() -> Mesh {
     }))
 }
 
-/// A height image of waves that repeat with it, 32 px wide and high.
+/// A height image of waves, 32 px wide and high, that can be repeated without a seam.
 fn waves() -> HeightMap {
     let height = |i: u32| {
         let [x, y] = [i % 32, i / 32].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / 32.0);
@@ -56,8 +56,9 @@ fn displaced(mut mesh: Mesh) -> Mesh {
     mesh
 }
 
-/// A torus under waves, every other quarter of which has its texture elsewhere: seams with nothing in common.
-pub(crate) fn height_seams() -> Mesh {
+/// A torus displaced by waves. Every other quarter of it reads another part of the height image, so that the heights on
+/// both sides of a seam have nothing in common.
+pub fn height_seams() -> Mesh {
     let quarter = |c: &Corner| (c.uv.x * 4.0 - 0.01).floor() as i32;
     let triangles = triangles(Shape::Torus).into_iter().map(|(_, corners)| {
         let shift =
@@ -67,14 +68,15 @@ pub(crate) fn height_seams() -> Mesh {
     displaced(mesh(triangles))
 }
 
-/// A cube with split normals under waves.
-pub(crate) fn height_splits() -> Mesh {
+/// A cube with split normals, displaced by waves.
+pub fn height_splits() -> Mesh {
     displaced(Shape::CubeSplit.build())
 }
 
-/// A cylinder that bends about its middle and swells, a clip of two seconds: two joints, whose shares change along it, and
-/// a morph target that a joint then moves. Its caps' normals are split from its side's, and its side has a seam.
-pub(crate) fn moving() -> Mesh {
+/// A cylinder that bends about its middle and swells in a clip of two seconds. It has two joints, whose weights change along
+/// it, and a morph target, which applies before the joints. Normals are split between its caps and its side, and its side
+/// has a seam.
+pub fn moving() -> Mesh {
     let mut mesh = Shape::Cylinder.build();
     let bounds = mesh.bounds();
     let mut rig = Rig { joints: Vec::new(), ..Rig::default() };

@@ -1,4 +1,4 @@
-//! What the device's memory does at best: the measure that our passes' bytes are held against.
+//! Measures the bandwidth of the device's memory, which our passes are compared with.
 
 use std::rc::Rc;
 
@@ -10,16 +10,18 @@ use super::ours::Effort;
 use super::pipelines::{COPY, Layout, module};
 use super::vulkan::{Took, Vulkan, VulkanError};
 
-/// Bytes a second, read and written, of one large buffer into another.
+/// The bandwidth of copying one large buffer into another, in bytes per second, read and written.
 pub struct Copies {
     pub bytes: u64,
-    /// By the command for it.
+    /// With the copy command.
     pub command: f64,
-    /// By a compute shader, 16 bytes an invocation.
+    /// With a compute shader, 16 bytes per invocation.
     pub shader: f64,
 }
 
 impl Copies {
+    /// Measures with buffers of this size.
+    ///
     /// # Errors
     /// No memory, or a lost device.
     pub fn measure(vulkan: &Rc<Vulkan>, bytes: u64, effort: Effort) -> Result<Self, VulkanError> {
@@ -44,7 +46,7 @@ impl Copies {
         Ok(Self { bytes, command, shader })
     }
 
-    /// The better of the two.
+    /// The larger of the two.
     pub fn best(&self) -> f64 {
         self.command.max(self.shader)
     }

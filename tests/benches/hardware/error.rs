@@ -1,4 +1,4 @@
-//! Equal error on screen: our LOD by error and our culling against the peer with the white paper's LOD and clipping.
+//! Equal error on screen: our LOD by error with culling, compared with the peer with the white paper's LOD and clipping.
 
 use pnaen::embed::GpuError;
 use pnaen::internals::Settings;
@@ -14,38 +14,38 @@ use super::peer::Peer;
 use super::subjects::{subject, tori};
 use super::versus::{BenchError, PeerTimes, Versus};
 
-/// Px a segment that the white paper's LOD is asked for: coarse, as fine as pictures without visible edges need, and
-/// micropolygons.
+/// The px per segment that the white paper's LOD is asked for: coarse, fine enough that no edges are visible, and micropolygons.
 pub const PAPER_PIXELS: [f32; 3] = [8.0, 2.0, 1.0];
-/// Halvings of the range of tolerances, in ratios.
+/// How often the range of tolerances is halved, on a logarithmic scale.
 const TRIES: u32 = 12;
 
-/// One scene by both.
+/// The measurements of one scene.
 pub struct EqualError {
     pub scene: String,
-    /// A segment, by the white paper's LOD.
+    /// The px per segment of the white paper's LOD.
     pub paper_pixels: f32,
-    /// Triangles and the largest error in px: the white paper's, then ours.
+    /// The triangles, and the largest errors in px: the white paper's, then ours.
     pub triangles: [u64; 2],
     pub px: [f64; 2],
+    /// Our tolerance in px.
     pub tolerance: f32,
     pub ours: OurTimes,
-    /// Ms of the same picture of the mesh as it came: what clearing, resolving and shading take, whatever is tessellated.
+    /// The time of drawing the mesh without tessellation, in ms: the least that clearing, shading and resolving take.
     pub least: f64,
-    /// Ours with the white paper's LOD, for comparison.
+    /// Our times with the white paper's LOD, for comparison.
     pub ours_paper: OurTimes,
     pub peer: Option<PeerTimes>,
 }
 
 impl EqualError {
-    /// Theirs by ours in what a frame takes beyond the mesh as it came.
+    /// Their time divided by ours, each minus [`Self::least`].
     fn faster_beyond(&self) -> Option<f64> {
         let peer = self.peer.as_ref()?;
         let [theirs, ours] = [peer.frame.median, self.ours.frame.median].map(|ms| ms - self.least);
         (ours > 0.0).then_some(theirs / ours)
     }
 
-    /// Theirs by ours, by the GPU's clock and by the host's.
+    /// Their time divided by ours, by the GPU's clock and by the host's.
     pub fn faster(&self) -> Option<[f64; 2]> {
         let ratios =
             |peer: &PeerTimes| [peer.frame.median / self.ours.frame.median, peer.wall.median / self.ours.wall.median];
@@ -53,6 +53,7 @@ impl EqualError {
     }
 }
 
+/// Returns the table of all scenes.
 pub fn table_of(scenes: &[EqualError]) -> String {
     let row = |scene: &EqualError| {
         let (ours, theirs) = (&scene.ours, scene.peer.as_ref());
@@ -75,11 +76,14 @@ pub fn table_of(scenes: &[EqualError]) -> String {
             or_none(theirs.map(|peer| ratio(peer.wall.median, ours.wall.median))),
         ]
     };
-    let head = "scene | theirs, px a segment | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px | theirs, GPU \
-                | ours with their LOD, GPU | ours, GPU | theirs / ours | the mesh as it came, GPU | theirs / ours beyond that | theirs, host | ours, host | theirs / ours";
+    let head = "scene | theirs, px per segment | theirs, triangles | ours, triangles | theirs, px | ours, px | our tolerance, px \
+                | theirs, GPU | ours with their LOD, GPU | ours, GPU | theirs / ours | without tessellation, GPU \
+                | theirs / ours beyond that | theirs, host | ours, host | theirs / ours";
     table(head, &scenes.iter().map(row).collect::<Vec<_>>())
 }
 
+/// Measures all scenes.
+///
 /// # Errors
 /// A device was lost, or has no memory.
 pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Vec<EqualError>, BenchError> {
@@ -140,8 +144,8 @@ fn equal(
     })
 }
 
-/// The largest tolerance whose largest error is no more than `most` px, with that error; the subject then has it. (Errors
-/// need not grow with every step of the tolerance: this is one that holds, not certainly the largest that does.)
+/// Finds a tolerance with a largest error of at most `most` px, and sets it. Returns the tolerance and its error. It may not be
+/// the largest such tolerance, since errors don't grow with every step of the tolerance.
 fn largest_tolerance(engine: &Engine, subject: &mut Subject, most: f64) -> Result<(f32, f64), GpuError> {
     let (mut low, mut high) = (TOLERANCE_RANGE.least, TOLERANCE_RANGE.most);
     for _ in 0..TRIES {

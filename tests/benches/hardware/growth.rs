@@ -1,4 +1,4 @@
-//! How cost grows: twice the patches, twice the factors, twice the output.
+//! How cost grows with twice the patches, twice the factors, or twice the output.
 
 use pnaen::internals::Engine;
 use pnaen::tessellate::Partitioning::FractionalOdd;
@@ -10,7 +10,7 @@ use super::subjects::{self, Factors};
 use super::versus::{BenchError, Versus};
 use super::{Scale, TRIANGLES_A_PATCH};
 
-/// The smaller size that is compared, and then one thing doubled at a time.
+/// Measures the smaller of the two sizes, and then each with one quantity doubled.
 ///
 /// # Errors
 /// A device was lost, or has no memory.
@@ -30,7 +30,7 @@ pub fn measure(engine: &Engine, peer: Option<&Peer>, scale: &Scale) -> Result<Ve
         all.push((name.to_owned(), versus));
         Ok::<_, BenchError>(())
     };
-    time("as it is", &mut base)?;
+    time("base", &mut base)?;
     let mut finer = subject(more_columns)?;
     factors.take(engine, &mut finer, greatest)?;
     time("patches x 2", &mut finer)?;

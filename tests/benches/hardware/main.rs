@@ -1,8 +1,8 @@
-//! Our passes against the driver's tessellation stages, in one run on one device: `cargo bench`.
+//! Compares our passes with the driver's tessellation stages, in one run on one device: `cargo bench`.
 //!
-//! The peer draws the same patches: the control nets that our nets pass computed and the factors that our counts pass
-//! took, by a hull shader, the fixed-function tessellator and a domain shader, through Vulkan. Times are medians; on
-//! software drivers, whose timestamps are wrong, of whole submissions. It says what it finds and fails for none of it.
+//! The peer draws the same patches with Vulkan's hull shader, fixed-function tessellator and domain shader. It gets the control
+//! nets that our nets pass computed, and the factors that our counts pass used. Times are medians. On software drivers, whose
+//! timestamps are wrong, they are times of whole submissions. The bench reports its results, and no result makes it fail.
 
 mod copy;
 mod error;
@@ -32,18 +32,18 @@ use report::Report;
 use subjects::Factors;
 use versus::{BenchError, Versus};
 
-/// How much is asked of a device.
+/// The amount of work for a device.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale {
-    /// Triangles of the two sizes that are compared.
+    /// The numbers of triangles of the two sizes that are measured.
     pub triangles: [u64; 2],
-    /// Of the picture, in px.
+    /// The width and height of the picture, in px.
     pub size: [u32; 2],
-    /// Room for our output: all of it at once.
+    /// The size of our arena: all output fits at once.
     pub arena_bytes: u64,
-    /// Of each of the two buffers of a copy.
+    /// The size of each of the two buffers of a copy.
     pub copy_bytes: u64,
-    /// Tori along each axis of the field that LODs are compared in.
+    /// The number of tori along each axis of the field in which LODs are compared.
     pub field: usize,
     pub effort: Effort,
 }
@@ -60,10 +60,10 @@ impl Scale {
     }
 }
 
-/// Triangles of a patch, about, where factors are 5 to 20, and where they are 10 to 40.
+/// About the number of triangles in a patch with factors from 5 to 20, and from 10 to 40.
 const TRIANGLES_A_PATCH: u64 = 300;
 const MORE_TRIANGLES_A_PATCH: u64 = 1_100;
-/// And where they are all 63.
+/// About the number of triangles in a patch with factors of 63.
 const MOST_TRIANGLES_A_PATCH: u64 = 6_000;
 
 const UNIFORM: Factors = Factors::Uniform(FractionalOdd);
@@ -112,7 +112,7 @@ fn run(engine: &Engine) -> Result<(), BenchError> {
     Ok(())
 }
 
-/// One torus of about so many patches, tessellated to about so many triangles.
+/// Measures one torus of about this many patches, tessellated to about this many triangles.
 fn compare(
     engine: &Engine,
     peer: Option<&Peer>,

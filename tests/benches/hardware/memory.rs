@@ -1,4 +1,4 @@
-//! Buffers and pictures in the peer's device memory.
+//! The peer's buffers and pictures on the device.
 
 use std::rc::Rc;
 
@@ -15,7 +15,7 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// On the device, for storage and copies.
+    /// Makes a buffer on the device, for storage and copies.
     ///
     /// # Errors
     /// No memory.
@@ -23,7 +23,7 @@ impl Buffer {
         Self::new(vulkan, bytes, vk::MemoryPropertyFlags::DEVICE_LOCAL, "a buffer")
     }
 
-    /// On the device, holding `items`.
+    /// Makes a buffer on the device that holds `items`.
     ///
     /// # Errors
     /// No memory, or a lost device.
@@ -36,7 +36,7 @@ impl Buffer {
         Ok(buffer)
     }
 
-    /// Where the host reads and writes it.
+    /// Makes a buffer that the host can read and write.
     ///
     /// # Errors
     /// No memory.
@@ -74,10 +74,10 @@ impl Buffer {
         })
     }
 
-    /// The bytes of a buffer that the host sees.
+    /// Calls `look` with the bytes of a buffer that the host can access.
     ///
     /// # Errors
-    /// It isn't one.
+    /// The host can't access the buffer.
     pub fn with_host<R>(&self, look: impl FnOnce(&mut [u8]) -> R) -> Result<R, VulkanError> {
         unsafe {
             let device = &self.vulkan.device;
@@ -98,7 +98,7 @@ impl Drop for Buffer {
     }
 }
 
-/// A picture that is drawn into, with memory and a view of its own.
+/// A picture to draw into, with its own memory and view.
 pub struct Picture {
     vulkan: Rc<Vulkan>,
     pub image: vk::Image,
@@ -107,6 +107,8 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Makes a picture of this width and height in px.
+    ///
     /// # Errors
     /// No memory.
     pub fn new(
@@ -153,7 +155,7 @@ impl Drop for Picture {
     }
 }
 
-/// Any other handle of the device, and what ends it.
+/// Any other handle of the device, with the function that destroys it.
 pub struct Owned<T: Copy> {
     vulkan: Rc<Vulkan>,
     pub handle: T,

@@ -1,8 +1,8 @@
-//! Medians, and how numbers are written.
+//! Medians, and the format of numbers and tables.
 
 use std::fmt;
 
-/// A median with the least and the greatest.
+/// A median, with the least and the greatest number.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spread {
     pub median: f64,
@@ -25,7 +25,7 @@ impl fmt::Display for Spread {
     }
 }
 
-/// Ms in four digits.
+/// Formats ms with three or four digits.
 pub fn ms(number: f64) -> String {
     let digits = if number < 1.0 {
         4
@@ -39,7 +39,7 @@ pub fn ms(number: f64) -> String {
     format!("{number:.digits$}")
 }
 
-/// Whole numbers in groups of three.
+/// Formats a whole number in groups of three digits.
 pub fn whole(number: u64) -> String {
     let digits = number.to_string();
     let head = digits.len() % 3;
@@ -50,13 +50,14 @@ pub fn whole(number: u64) -> String {
     groups.join(",")
 }
 
-/// How often `part` goes into `whole`.
+/// Formats `whole` divided by `part`.
 pub fn ratio(whole: f64, part: f64) -> String {
     let ratio = whole / part;
     if ratio < 10.0 { format!("{ratio:.2}") } else { format!("{ratio:.1}") }
 }
 
-/// A table in Markdown, its columns' names divided as there; the first column is text, the others are numbers.
+/// Returns a table in Markdown. `head` has the names of the columns, separated by ` | `. The first column is text, and the
+/// others are numbers.
 pub fn table(head: &str, rows: &[Vec<String>]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let columns = head.split(" | ").count();
@@ -64,7 +65,7 @@ pub fn table(head: &str, rows: &[Vec<String>]) -> String {
     format!("| {head} |\n") + &line(&rule) + &rows.iter().map(|row| line(row)).collect::<String>()
 }
 
-/// What stands where there is nothing to say.
+/// Returns `none` in place of a missing text.
 pub fn or_none(text: Option<String>) -> String {
     text.unwrap_or_else(|| "none".to_owned())
 }

@@ -1,4 +1,4 @@
-//! Our side: the passes timed many times over, and what the peer is given of them.
+//! Our side: times of our passes, and the data that the peer gets from them.
 
 use std::time::{Duration, Instant};
 
@@ -13,9 +13,9 @@ use pnaen::tessellate::Vertex;
 use pnaen::tessellate::{Clip, Tessellation};
 
 use super::numbers::Spread;
-use super::peer::{Frame, NetCorner};
+use super::peer::{NetCorner, PeerFrame};
 
-/// Runs that medians are of, and how long a warm-up takes at least.
+/// The number of runs for a median, and the least time of the warm-up before them.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     pub runs: usize,
@@ -23,7 +23,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Ours: as much as numbers need, and what a software driver can be asked for.
+    /// The effort for an engine's device: less on software drivers.
     pub fn on(engine: &Engine) -> Self {
         if engine.gpu.is_software() {
             return Self { runs: 15, warm_up: Duration::ZERO };
@@ -31,10 +31,10 @@ impl Effort {
         Self { runs: 31, warm_up: Duration::from_millis(300) }
     }
 
-    /// What `once` gives, after warming up.
+    /// Calls `once` to warm up, and then for each run. Returns the results of the runs.
     ///
     /// # Errors
-    /// As soon as `once` fails.
+    /// The first error of `once`.
     pub fn repeat<T, E>(self, mut once: impl FnMut(usize) -> Result<T, E>) -> Result<Vec<T>, E> {
         let start = Instant::now();
         let mut warm = 0;
@@ -46,10 +46,10 @@ impl Effort {
     }
 }
 
-/// Passes that run whenever the view changes, but for the drawing.
+/// The passes that run whenever the view changes, without drawing.
 const TESSELLATING: [&str; 5] = ["factors", "counts", "scan", "chunks", "emit"];
 
-/// One run's times in ms.
+/// The times of one run in ms.
 #[derive(Clone, Debug)]
 struct Run {
     passes: Vec<PassTime>,
@@ -65,20 +65,20 @@ impl Run {
     }
 }
 
-/// What tessellating and drawing took, in ms.
+/// The times of our passes in ms.
 pub struct OurTimes {
-    /// All passes between the nets and the drawing.
+    /// All passes between the nets and drawing.
     pub tessellation: Spread,
     pub draw: Spread,
-    /// Both.
+    /// Tessellation and drawing together.
     pub frame: Spread,
-    /// From the first call to the last pixel, with the host's waiting for the counts.
+    /// From the first call to the last pixel on the host's clock, which includes waiting for the counts.
     pub wall: Spread,
-    /// Each pass's median.
+    /// The median of each pass.
     pub passes: Vec<PassTime>,
 }
 
-/// What a picture is of, and how it is tessellated.
+/// A scene with a target, a camera, and the settings of its tessellation.
 pub struct Subject {
     pub scene: Scene,
     pub target: Target,
@@ -87,7 +87,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Runs the passes up to the counts.
+    /// Runs the passes up to the counts. Returns the numbers of vertices and triangles.
     ///
     /// # Errors
     /// The device was lost.
@@ -97,9 +97,10 @@ impl Subject {
         Ok(self.scene.tessellator.totals())
     }
 
-    /// Draws once more as if the view had just changed: nets stay, all other passes run.
+    /// Draws again as if the view had just changed: nets stay, and all other passes run.
     fn again(&mut self, engine: &Engine, run: usize, timing: &mut Timing) -> Result<(), GpuError> {
-        // No picture differs by this, but every parameter of the view does. Given factors know no view.
+        // This doesn't change the picture, but it changes every parameter of the view. Given and uniform factors don't depend
+        // on the view, so the tessellation is forgotten.
         let nudge = if run.is_multiple_of(2) { 0.0 } else { 1e-3 };
         if self.scene.tessellator.given().is_some()
             || self.settings.tessellation.used_lod() == pnaen::tessellate::Lod::Uniform
@@ -112,6 +113,8 @@ impl Subject {
         Ok(())
     }
 
+    /// Times all passes.
+    ///
     /// # Errors
     /// The device was lost.
     pub fn time(&mut self, engine: &Engine, effort: Effort) -> Result<OurTimes, GpuError> {
@@ -120,7 +123,7 @@ impl Subject {
             self.again(engine, run, &mut timing)?;
             Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
         })?;
-        // A driver that withheld a timestamp would make a sum too small.
+        // If a driver doesn't return a timestamp, the sum is too small, and the run doesn't count.
         let runs: Vec<Run> = runs.into_iter().filter(Run::is_whole).collect();
         let wall = effort.repeat(|run| {
             let start = Instant::now();
@@ -140,7 +143,7 @@ impl Subject {
         })
     }
 
-    /// Ms that a picture of nothing takes: clearing and resolving, which is part of every frame.
+    /// The time of an empty picture in ms: clearing and resolving, which are part of every frame.
     ///
     /// # Errors
     /// The device was lost.
@@ -157,9 +160,9 @@ impl Subject {
         Ok(Spread::of(runs.iter().map(|run| run.sum(&["draw"])).filter(|ms| *ms > 0.0)))
     }
 
-    /// Bytes that our tessellation passes can't do without: what they emit; everything of the mesh that they read, once; and
-    /// what they hand from one to another, factors and offsets of patches and factors of edges, once written and once read.
-    /// What is read again, and what finds an invocation its patch, isn't counted.
+    /// The least number of bytes that our tessellation passes must move: their output; all data of the mesh that they read, once;
+    /// and the factors and offsets of patches and factors of edges, which pass from one to the next, written once and read once.
+    /// Repeated reads, and the data by which an invocation finds its patch, don't count.
     pub fn compulsory_bytes(&self) -> u64 {
         let (vertices, triangles) = self.scene.tessellator.totals();
         let b = self.scene.tessellator.buffers();
@@ -173,7 +176,7 @@ impl Subject {
             + 2 * u64::from(b.patch_count) * handed as u64
     }
 
-    /// The control nets as the nets pass left them, with what else the peer's domain shader needs.
+    /// The control nets that the nets pass made, with the other data that the peer's domain shader needs.
     ///
     /// # Errors
     /// The device was lost.
@@ -202,11 +205,11 @@ impl Subject {
         Ok(corners.collect())
     }
 
-    /// The picture's constants, as src/render/renderer.rs has them.
-    pub fn frame(&self) -> Frame {
+    /// The picture's constants, as in src/render/frame.rs.
+    pub fn frame(&self) -> PeerFrame {
         let [right, up, back] = self.camera.axes();
         let base_color = self.scene.tessellator.mesh().materials.first().map_or([1.0; 4], |first| first.base_color);
-        Frame {
+        PeerFrame {
             clip_from_object: self.clip_from_object().to_cols_array_2d(),
             key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
             fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
@@ -215,7 +218,7 @@ impl Subject {
         }
     }
 
-    /// Whether our draw leaves out what faces away.
+    /// Whether our draw leaves out triangles that face away.
     pub fn fronts_only(&self) -> bool {
         self.scene.tessellator.shows_fronts_only(self.clip_from_object())
     }

@@ -1,4 +1,4 @@
-//! The peer: the same patches with the same factors through the driver's tessellation stages, drawn as ours are.
+//! The peer: draws the same patches with the same factors with the driver's tessellation stages, in the same way as our draw.
 
 use std::rc::Rc;
 
@@ -23,28 +23,28 @@ pub struct NetCorner {
     pub far: [f32; 4],
 }
 
-/// One picture's view and material. Twin of Frame in shaders/frame.glsl.
+/// The constants of a picture: its view and material. Twin of Frame in shaders/frame.glsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
-pub struct Frame {
+pub struct PeerFrame {
     pub clip_from_object: [[f32; 4]; 4],
     pub key_light: [f32; 4],
     pub fill_light: [f32; 4],
-    /// Width and height in px, then nothing.
+    /// Width and height in px; the rest is unused.
     pub viewport: [f32; 4],
     pub base_color: [f32; 4],
 }
 
-/// What the peer draws with, whatever it draws.
+/// What the peer draws with.
 pub struct Peer {
     pub vulkan: Rc<Vulkan>,
     layout: Layout,
     target: Target,
-    /// For what is not rasterised.
+    /// The pass for pipelines that don't rasterise.
     nowhere: Pass,
 }
 
-/// Patches in the peer's memory.
+/// Patches on the peer's device.
 pub struct Patches {
     _nets: Buffer,
     _factors: Buffer,
@@ -52,17 +52,17 @@ pub struct Patches {
     count: u32,
 }
 
-/// A pipeline and what it is.
+/// A pipeline, and its kind.
 pub struct Pipeline {
     kind: Kind,
     handle: Owned<vk::Pipeline>,
 }
 
 impl Peer {
-    /// On the device that wgpu's is, with a target of the same size and samples as ours.
+    /// Opens wgpu's device once more, with a target of the same size and samples as ours.
     ///
     /// # Errors
-    /// There is no Vulkan here, or it has no tessellation stages for that device.
+    /// There is no Vulkan here, or the device has no tessellation stages.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<Self, VulkanError> {
         let vulkan = Vulkan::new(&gpu.info)?;
         let stages = vk::ShaderStageFlags::VERTEX
@@ -87,31 +87,38 @@ impl Peer {
         Ok(Patches { _nets: nets, _factors: uploaded, bound, count: factors.len() as u32 })
     }
 
+    /// Makes a pipeline.
+    ///
     /// # Errors
-    /// The driver refuses it.
+    /// The driver can't make it.
     pub fn pipeline(&self, kind: Kind) -> Result<Pipeline, VulkanError> {
         let pass = if kind.rasterises { &self.target.pass } else { &self.nowhere };
         let handle = tessellating(&self.vulkan, &self.layout, pass.handle(), self.target.samples, kind)?;
         Ok(Pipeline { kind, handle })
     }
 
-    /// Draws, and says how long it took.
+    /// Draws, and returns how long it took.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn draw(&self, pipeline: &Pipeline, patches: &Patches, frame: &Frame) -> Result<Took, VulkanError> {
+    pub fn draw(&self, pipeline: &Pipeline, patches: &Patches, frame: &PeerFrame) -> Result<Took, VulkanError> {
         self.vulkan.run(|commands| self.record(commands, pipeline, patches, frame))
     }
 
-    /// Draws, and says what was drawn; none where the driver doesn't count.
+    /// Draws, and returns what the pipeline counted; `None` if the driver doesn't count.
     ///
     /// # Errors
     /// The device was lost.
-    pub fn count(&self, pipeline: &Pipeline, patches: &Patches, frame: &Frame) -> Result<Option<Counted>, VulkanError> {
+    pub fn count(
+        &self,
+        pipeline: &Pipeline,
+        patches: &Patches,
+        frame: &PeerFrame,
+    ) -> Result<Option<Counted>, VulkanError> {
         self.vulkan.count(|commands| self.record(commands, pipeline, patches, frame))
     }
 
-    /// What was drawn last.
+    /// Reads the last picture back.
     ///
     /// # Errors
     /// The device was lost.
@@ -119,11 +126,11 @@ impl Peer {
         self.target.read(&self.vulkan)
     }
 
-    fn record(&self, commands: vk::CommandBuffer, pipeline: &Pipeline, patches: &Patches, frame: &Frame) {
+    fn record(&self, commands: vk::CommandBuffer, pipeline: &Pipeline, patches: &Patches, frame: &PeerFrame) {
         let device = &self.vulkan.device;
         let pass = if pipeline.kind.rasterises { &self.target.pass } else { &self.nowhere };
         let [width, height] = self.target.size.map(|side| side as f32);
-        // Upside down, as wgpu has it: +Y is up in clip space.
+        // The negative height makes +Y point up in clip space, as in wgpu.
         let viewport = vk::Viewport { x: 0.0, y: height, width, height: -height, min_depth: 0.0, max_depth: 1.0 };
         let [width, height] = self.target.size;
         let scissor = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };

@@ -1,4 +1,4 @@
-//! What the peer's stages are made of: shaders, layouts, and pipelines.
+//! The peer's shaders, layouts and pipelines.
 
 use std::io::Cursor;
 use std::rc::Rc;
@@ -7,22 +7,22 @@ use ash::vk;
 use pnaen::tessellate::Partitioning;
 
 use super::memory::{Buffer, Owned};
-use super::peer::Frame;
+use super::peer::PeerFrame;
 use super::vulkan::{Vulkan, VulkanError};
 
-/// How a patch's control net comes to the domain shader.
+/// How the domain shader gets a patch's control net.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Nets {
-    /// As three control points that vertex and hull shader hand on.
+    /// As the attributes of three control points, which the vertex and hull shader pass on.
     Handed,
-    /// From memory; the patch is one point without attributes.
+    /// From memory. The patch is one point without attributes.
     InMemory,
 }
 
 impl Nets {
     pub const ALL: [Self; 2] = [Self::Handed, Self::InMemory];
 
-    /// Points a patch is drawn from.
+    /// The number of points that are drawn for a patch.
     pub fn points(self) -> u32 {
         match self {
             Self::Handed => 3,
@@ -31,26 +31,26 @@ impl Nets {
     }
 }
 
-/// What a pipeline of the peer is.
+/// The kind of a pipeline of the peer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kind {
     pub nets: Nets,
     /// Fractional-odd or integer.
     pub partitioning: Partitioning,
-    /// Whether what faces away is left out by the rasteriser, as our draw does of solids.
+    /// Whether the rasteriser culls triangles that face away, as our draw does for solids.
     pub fronts_only: bool,
-    /// False for all stages up to the rasteriser and none from there on.
+    /// False if only the stages before the rasteriser run.
     pub rasterises: bool,
 }
 
-/// Made by shaders/compile.sh.
+/// A shader that shaders/compile.sh has compiled.
 macro_rules! spirv {
     ($name:literal) => {
         include_bytes!(concat!("shaders/", $name, ".spv"))
     };
 }
 
-/// A shader's code as the device takes it.
+/// Makes a shader module from SPIR-V.
 pub fn module(vulkan: &Rc<Vulkan>, code: &[u8]) -> Result<Owned<vk::ShaderModule>, VulkanError> {
     let words = ash::util::read_spv(&mut Cursor::new(code))?;
     let info = vk::ShaderModuleCreateInfo::default().code(&words);
@@ -60,19 +60,19 @@ pub fn module(vulkan: &Rc<Vulkan>, code: &[u8]) -> Result<Owned<vk::ShaderModule
 
 pub const COPY: &[u8] = spirv!("copy.comp");
 
-/// Two storage buffers, and a picture's constants where there are any.
+/// The layout of two storage buffers and, except for compute, a picture's constants.
 pub struct Layout {
     pub set: Owned<vk::DescriptorSetLayout>,
     pub pipeline: Owned<vk::PipelineLayout>,
 }
 
-/// Who reads [`Frame`].
+/// The stages that read [`PeerFrame`].
 pub const FRAME_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
     vk::ShaderStageFlags::TESSELLATION_EVALUATION.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
 );
 
 impl Layout {
-    /// For buffers that `stages` read or write.
+    /// Makes the layout for buffers that `stages` read or write.
     ///
     /// # Errors
     /// The device was lost.
@@ -84,7 +84,7 @@ impl Layout {
                 .descriptor_count(1)
                 .stage_flags(stages)
         };
-        let frame = [vk::PushConstantRange::default().stage_flags(FRAME_STAGES).size(size_of::<Frame>() as u32)];
+        let frame = [vk::PushConstantRange::default().stage_flags(FRAME_STAGES).size(size_of::<PeerFrame>() as u32)];
         let constants = if stages == vk::ShaderStageFlags::COMPUTE { &[][..] } else { &frame };
         unsafe {
             let bindings = [binding(0), binding(1)];
@@ -99,7 +99,7 @@ impl Layout {
         }
     }
 
-    /// Binds two buffers; the set goes with its pool.
+    /// Binds two buffers. The set is freed with its pool.
     ///
     /// # Errors
     /// No memory.
@@ -133,10 +133,10 @@ pub struct Bound {
     pub set: vk::DescriptorSet,
 }
 
-/// A pipeline of the peer, for one subpass of `pass`.
+/// Makes a pipeline of the peer for the only subpass of `pass`.
 ///
 /// # Errors
-/// The driver refuses it.
+/// The driver can't make it.
 pub fn tessellating(
     vulkan: &Rc<Vulkan>,
     layout: &Layout,
@@ -167,7 +167,8 @@ pub fn tessellating(
     create(vulkan, layout, pass, samples, kind, &stages)
 }
 
-/// As our own draw has it (src/render/pipelines.rs): depth reversed, counter-clockwise fronts, as many samples.
+/// Makes a pipeline with the state of our own draw (src/render/pipelines.rs): reversed depth, counter-clockwise front faces, and
+/// the same number of samples.
 fn create(
     vulkan: &Rc<Vulkan>,
     layout: &Layout,

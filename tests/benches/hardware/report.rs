@@ -1,4 +1,4 @@
-//! What is printed, in Markdown.
+//! Prints the report in Markdown.
 
 use pnaen::internals::Engine;
 
@@ -10,76 +10,78 @@ use super::rows::{self, Named, rate_of};
 use super::versus::Versus;
 use super::vulkan::VulkanError;
 
-/// Triangles by which the peer's count may differ from ours before it is said: a part of all.
+/// The part by which the peer's number of triangles may differ from ours without a warning.
 const SAME_TRIANGLES: f64 = 0.001;
-/// And pictures.
+/// The difference between pictures that causes no warning: see [`super::versus::PeerTimes::difference`].
 const SAME_PICTURE: f64 = 0.01;
 
-/// Prints section by section, and keeps what goals are held against.
+/// Prints section by section, and keeps the numbers that are compared with goals at the end.
 #[derive(Default)]
 pub struct Report {
     copies: Option<Copies>,
     rows: Vec<Named>,
-    /// Theirs by ours, by the GPU's clock and by the host's.
+    /// The px per segment, and their time divided by ours, by the GPU's clock and by the host's.
     equal_error: Vec<(f32, [f64; 2])>,
 }
 
 impl Report {
-    /// The adapter, what is measured, and why there is no peer if there is none.
+    /// Prints the adapter, what is measured, and if there is no peer, why.
     pub fn begin(engine: &Engine, scale: &Scale, missing: Option<&VulkanError>) -> Self {
         let info = &engine.gpu.info;
         let clock = if engine.gpu.has_timestamps() {
             "the GPU's timestamps"
         } else {
-            "whole submissions on the host's clock, as this adapter has no timestamps that can be trusted"
+            "the host's clock for whole submissions, since this adapter has no reliable timestamps"
         };
         let [width, height] = scale.size;
         let (samples, runs) = (pnaen::internals::samples(&engine.gpu), scale.effort.runs);
         println!("# Tessellation in compute passes against the driver's tessellation stages\n");
         println!("- adapter: {} ({:?}, {:?})", info.name, info.device_type, info.backend);
         println!("- driver: {} {}", info.driver, info.driver_info);
-        println!("- date: {}", pnaen::internals::utc(std::time::SystemTime::now()));
-        println!("- pictures: {width} x {height} px, {samples} samples a px, cleared and resolved by both");
+        println!("- date: {}", pnaen::numbers::utc(std::time::SystemTime::now()));
+        println!("- pictures: {width} x {height} px, {samples} samples per px, cleared and resolved by both");
         println!("- times: ms, medians of {runs} runs after warm-up (least..most), by {clock}");
         println!("{METHOD}");
         if let Some(error) = missing {
-            println!("\n**No peer here: {error}.** What follows is ours alone.");
+            println!("\n**There is no peer here: {error}.** All numbers are ours.");
         }
         Self::default()
     }
 
+    /// Prints the bandwidth of memory.
     pub fn copies(&mut self, copies: Copies) {
         let row = |name: &str, rate: f64| vec![name.to_owned(), format!("{:.1}", rate * 1e-9)];
-        let rows = [row("copy command", copies.command), row("compute shader, 16 bytes an invocation", copies.shader)];
+        let rows = [row("copy command", copies.command), row("compute shader, 16 bytes per invocation", copies.shader)];
         let head = format!("copying {} bytes | GB/s, read and written", whole(copies.bytes));
         println!("\n## Memory\n\n{}", table(&head, &rows));
         self.copies = Some(copies);
     }
 
-    /// One comparison, printed once all are there.
+    /// Takes one comparison. All are printed at the end.
     pub fn versus(&mut self, name: &str, versus: Versus) {
         eprintln!("measured: {name}, {} triangles", whole(versus.triangles));
         self.rows.push((name.to_owned(), versus));
     }
 
-    /// `nothing` is what a picture of nothing takes.
+    /// Prints all comparisons. `nothing` is the time of an empty picture.
     pub fn end_versus(&self, nothing: &Spread) {
         println!("## Tessellation alone\n\n{}", rows::tessellation(&self.rows, self.copies.as_ref()));
         println!("{BYTES}\n");
         println!("## Whole frames\n\n{}", rows::frames(&self.rows));
-        println!("Host: from the first call to the last pixel; ours waits for its counts on the way.");
-        println!("Clearing and resolving a picture of nothing, which is part of every frame: {nothing} ms.\n");
+        println!("Host times go from the first call to the last pixel. Ours include waiting for the counts.");
+        println!("Clearing and resolving an empty picture, which is part of every frame, takes {nothing} ms.\n");
         println!("## What was drawn\n\n{}", rows::drawn(&self.rows));
         self.rows.iter().for_each(warn);
         println!("## Our passes\n\n{}", rows::passes(&self.rows));
     }
 
-    /// How cost grows.
+    /// Prints how cost grows.
     pub fn growth(&self, steps: &[Named]) {
         println!("## Growth\n\n{}", rows::growth(steps));
         steps.iter().for_each(warn);
     }
 
+    /// Prints the comparisons at equal error.
     pub fn equal_error(&mut self, scenes: &[EqualError]) {
         println!("## Equal error on screen\n");
         println!("Theirs: the white paper's LOD.{EQUAL}\n");
@@ -87,7 +89,7 @@ impl Report {
         self.equal_error = scenes.iter().filter_map(|scene| Some((scene.paper_pixels, scene.faster()?))).collect();
     }
 
-    /// Whether what this bench is for was reached here.
+    /// Prints which goals were reached.
     pub fn goals(&self) {
         println!("## Goals\n");
         let fractional = || self.rows.iter().filter(|(name, _)| name.starts_with("fractional")).map(|(_, row)| row);
@@ -105,7 +107,7 @@ impl Report {
             for (index, clock) in ["GPU", "host"].into_iter().enumerate() {
                 let there = self.equal_error.iter().filter(|(of, _)| *of == px).map(|(_, faster)| faster[index]);
                 goal(
-                    &format!("whole frames at equal error, theirs at {px} px a segment, {clock}: theirs / ours"),
+                    &format!("whole frames at equal error, theirs at {px} px per segment, {clock}: theirs / ours"),
                     4.0,
                     there,
                 );
@@ -115,30 +117,30 @@ impl Report {
 }
 
 const METHOD: &str = "\
-- ours: factors (but where they are hashed: those are given), counts, scan, chunks and emit, added up; control nets are
-  made once a mesh and pose, and are in neither
-- theirs: hull shader, tessellator and domain shader, without rasteriser; control nets and factors are read from memory,
-  where ours have computed them; the faster of two ways to read nets, each time";
+- ours: the sum of our passes factors (except where factors are hashed, which are given), counts, scan, chunks and emit;
+  control nets are made once for each mesh and pose, and count for neither side
+- theirs: the driver's hull shader, tessellator and domain shader, without rasterisation; control nets and factors are
+  read from memory, where our passes have put them; nets are read in two ways, of which the faster counts each time";
 
 const BYTES: &str = "\
-Bytes are those that the passes can't do without: what they emit, their inputs once, and what one hands to another once
-written and once read.";
+Bytes are the least that the passes must move: their output, their input read once, and what passes from one to the next,
+written once and read once.";
 
 const EQUAL: &str = " Its clipping and fractional-odd factors
-are ready in memory. Ours: LOD by error, clipping and culling of backs, all in the frame, at the largest tolerance found
-whose largest error is no more.";
+are computed before and read from memory. Ours: LOD by error with clipping and back-face culling, all computed in the
+frame, at the largest tolerance found whose largest error is at most theirs.";
 
 fn goal(name: &str, asked: f64, found: impl Iterator<Item = f64>) {
     match found.reduce(f64::min) {
         Some(least) => {
             let word = if least >= asked { "reached" } else { "not reached" };
-            println!("- {name}: {least:.2} in the worst row, {asked} asked: {word}");
+            println!("- {name}: {least:.2} in the worst row, the goal is {asked}: {word}");
         }
-        None => println!("- {name}: not measured here, {asked} asked"),
+        None => println!("- {name}: not measured here, the goal is {asked}"),
     }
 }
 
-/// Says where the two don't draw the same.
+/// Prints a warning if the two draw different triangles or pictures.
 fn warn((name, row): &Named) {
     let Some(peer) = &row.peer else { return };
     if let Some(counted) = peer.counted {

@@ -1,13 +1,13 @@
-//! Tables that have one row a comparison.
+//! The tables with one row for each comparison.
 
 use super::copy::Copies;
 use super::numbers::{ms, or_none, ratio, table, whole};
 use super::versus::Versus;
 
-/// What was compared, and what came of it.
+/// The name of a comparison, and its measurements.
 pub type Named = (String, Versus);
 
-/// Bytes a second of our tessellation.
+/// The rate of our tessellation, in bytes per second.
 pub fn rate_of(row: &Versus) -> f64 {
     row.bytes as f64 / (row.ours.tessellation.median * 1e-3)
 }
@@ -54,7 +54,7 @@ pub fn frames(rows: &[Named]) -> String {
     table(head, &rows.iter().map(row).collect::<Vec<_>>())
 }
 
-/// What was drawn, and by which way of the peer's.
+/// What was drawn, and the times of both ways in which the peer reads nets.
 pub fn drawn(rows: &[Named]) -> String {
     let row = |(name, row): &Named| {
         let peer = row.peer.as_ref();
@@ -74,7 +74,8 @@ pub fn drawn(rows: &[Named]) -> String {
         ]
     };
     let head = "factors | ours, triangles | theirs, triangles | ours, vertices | theirs, evaluations | ours, chunks \
-                | of ours, covering a sample | pictures differ by | nets handed on: alone, frame | nets in memory: alone, frame";
+                | ours that cover a sample | pictures differ by | theirs, nets in attributes: tessellation, frame \
+                | theirs, nets in memory: tessellation, frame";
     table(head, &rows.iter().map(row).collect::<Vec<_>>())
 }
 
@@ -90,7 +91,7 @@ pub fn passes(rows: &[Named]) -> String {
     table(&format!("factors | triangles | {}", PASSES.join(" | ")), &rows.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Against the first of them.
+/// Compares each row with the first.
 pub fn growth(steps: &[Named]) -> String {
     let Some((_, base)) = steps.first() else { return String::new() };
     let row = |(name, step): &Named| {
@@ -106,6 +107,6 @@ pub fn growth(steps: &[Named]) -> String {
             or_none(theirs(step).zip(theirs(base)).map(|(step, base)| ratio(step, base))),
         ]
     };
-    let head = "fractional, by distance | patches | triangles | times | ours | times | theirs | times";
+    let head = "fractional, by distance | patches | triangles | times base | ours | times base | theirs | times base";
     table(head, &steps.iter().map(row).collect::<Vec<_>>())
 }

@@ -1,4 +1,4 @@
-//! What is measured: meshes made here, and settings that give as many triangles as asked for.
+//! What is measured: meshes made in code, and settings that give the number of triangles asked for.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use pnaen::tessellate::{Lod, Partitioning, Tessellation};
 
 use super::ours::Subject;
 
-/// Tori of `columns` by `columns / 2` quads, a row of `side` along each axis.
+/// A cube of `side` by `side` by `side` tori, each of `columns` by `columns / 2` quads.
 pub fn tori(columns: usize, side: usize) -> Mesh {
     let mut builder = MeshBuilder::new();
     let material = builder.material(Material::plain("grey", [0.6, 0.6, 0.6, 1.0]));
@@ -31,7 +31,7 @@ pub fn tori(columns: usize, side: usize) -> Mesh {
         Corner { position: center + out * 0.7 + normal * 0.3, normal, uv }
     };
     for place in 0..side * side * side {
-        // Far enough apart that none meets another.
+        // The tori are far enough apart not to touch.
         let at = [place % side, place / side % side, place / (side * side)].map(|k| 2.5 * k as f32);
         for cell in 0..columns * rows {
             let (i, j) = (cell / rows, cell % rows);
@@ -45,15 +45,15 @@ pub fn tori(columns: usize, side: usize) -> Mesh {
     builder.finish("tori".to_owned(), &Progress::new()).unwrap_or_default()
 }
 
-/// Columns of one torus of about so many patches.
+/// The number of columns for a torus of about this many patches.
 pub fn columns(patches: u64) -> usize {
     ((patches as f64).sqrt().round() as usize).next_multiple_of(2).max(6)
 }
 
-/// Puts a mesh in front of a camera that sees all of it.
+/// Uploads a mesh, with a camera that sees all of it.
 ///
 /// # Errors
-/// It is larger than the adapter binds.
+/// The mesh needs larger buffers than the adapter can bind.
 pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) -> Result<Subject, GpuError> {
     let mesh = Arc::new(mesh);
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).unwrap_or_default());
@@ -63,14 +63,14 @@ pub fn subject(engine: &Engine, mesh: Mesh, size: [u32; 2], arena_bytes: u64) ->
     Ok(Subject { scene, target, camera, settings: Settings::default() })
 }
 
-/// How factors come about.
+/// Where factors come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Factors {
-    /// From the eye's distance: the nearest patches have about four times the farthest's.
+    /// From the distance to the eye. The nearest patches have about four times the factors of the farthest.
     ByDistance(Partitioning),
-    /// A hash of each edge, from a quarter of the greatest factor up to it.
+    /// From a hash of each edge, between a quarter of the greatest factor and the factor itself.
     Hashed(Partitioning),
-    /// One everywhere.
+    /// One factor everywhere.
     Uniform(Partitioning),
 }
 
@@ -91,7 +91,7 @@ impl Factors {
         }
     }
 
-    /// Tessellates a subject with such factors, up to `greatest`; gives the triangles.
+    /// Tessellates a subject with such factors, up to `greatest`. Returns the number of triangles.
     ///
     /// # Errors
     /// The device was lost.
@@ -104,7 +104,7 @@ impl Factors {
             factor: greatest,
             partitioning: self.partitioning(),
             near: middle - 1.0,
-            // One third beyond what is farthest: there, a quarter is left.
+            // A third of the mesh's depth beyond the farthest patches, which then get a quarter of the greatest factor.
             far: middle + 1.0 + 2.0 / 3.0,
             ..Tessellation::default()
         });
@@ -113,7 +113,7 @@ impl Factors {
         subject.count(engine).map(|(_, triangles)| triangles)
     }
 
-    /// The same for the factors that give `triangles`, to within half a percent where factors are fractional.
+    /// Tessellates a subject with factors that give `triangles`, to within half a percent under fractional partitioning.
     ///
     /// # Errors
     /// The device was lost.
@@ -131,7 +131,7 @@ impl Factors {
     }
 }
 
-/// What a hull shader would write that hashed its edges: the same for all sides of an edge.
+/// Factors that are a hash of each edge, and so the same for all sides of an edge.
 fn hashed(topology: &Topology, greatest: f32) -> Vec<HullFactors> {
     let factor = |edge: u32| {
         let mixed = edge.wrapping_mul(0x9e37_79b9);

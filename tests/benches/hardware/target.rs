@@ -1,4 +1,4 @@
-//! What the peer draws into: colour and depth of as many samples as ours, resolved, or nothing at all.
+//! What the peer draws into: colour and depth with the same number of samples as ours, resolved, or nothing.
 
 use std::rc::Rc;
 
@@ -8,7 +8,7 @@ use image::RgbaImage;
 use super::memory::{Buffer, Owned, Picture};
 use super::vulkan::{Vulkan, VulkanError};
 
-/// A render pass with what it draws into.
+/// A render pass with its framebuffer.
 pub struct Pass {
     pass: Owned<vk::RenderPass>,
     framebuffer: Owned<vk::Framebuffer>,
@@ -17,7 +17,7 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Without any picture: for what ends before the rasteriser.
+    /// Makes a pass without any picture, for pipelines that don't rasterise.
     ///
     /// # Errors
     /// The device was lost.
@@ -53,7 +53,7 @@ impl Pass {
         self.pass.handle
     }
 
-    /// Starts it, cleared.
+    /// Begins the pass and clears its pictures.
     ///
     /// # Safety
     /// `commands` is being recorded, on this pass's device.
@@ -68,20 +68,22 @@ impl Pass {
     }
 }
 
-/// The formats of ours (src/gpu/device.rs).
+/// The formats of our target (src/render/target.rs).
 const COLOR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
-/// Colour, depth and what colour is resolved to.
+/// The pictures for colour, depth, and resolved colour.
 pub struct Target {
     pub size: [u32; 2],
     pub samples: vk::SampleCountFlags,
     pub pass: Pass,
-    /// The last is what is read back.
+    /// The last one is read back.
     pictures: Vec<Picture>,
 }
 
 impl Target {
+    /// Makes a target of this width and height in px.
+    ///
     /// # Errors
     /// No memory.
     pub fn new(vulkan: &Rc<Vulkan>, size: [u32; 2], samples: u32) -> Result<Self, VulkanError> {
@@ -101,7 +103,7 @@ impl Target {
         Ok(Self { size, samples, pass, pictures })
     }
 
-    /// What was drawn last.
+    /// Reads the last picture back.
     ///
     /// # Errors
     /// The device was lost.
@@ -123,7 +125,7 @@ impl Target {
     }
 }
 
-/// Clears and keeps depth and colour, as our draw does, and resolves where there are several samples.
+/// Makes the pass that draws: it clears and stores depth and colour, as our draw does, and resolves several samples.
 fn drawing(
     vulkan: &Rc<Vulkan>,
     size: [u32; 2],
@@ -167,7 +169,7 @@ fn drawing(
     Pass::new(vulkan, &info, views, size, vec![depth, color])
 }
 
-/// An sRGB byte as the linear number that a clear takes.
+/// Converts an sRGB byte to linear light, which a clear takes.
 fn linear(byte: u8) -> f32 {
     let x = f32::from(byte) / 255.0;
     if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }

@@ -1,4 +1,4 @@
-//! One subject, by our passes and by the peer.
+//! Measures one subject with our passes and with the peer.
 
 use pnaen::embed::GpuError;
 use pnaen::internals::Engine;
@@ -13,7 +13,7 @@ use super::peer::{Peer, Pipeline};
 use super::pipelines::{Kind, Nets};
 use super::vulkan::{Counted, Took, VulkanError};
 
-/// What ends a bench.
+/// Why a bench ended.
 #[derive(Debug, Error)]
 pub enum BenchError {
     #[error(transparent)]
@@ -24,28 +24,28 @@ pub enum BenchError {
     Compare(#[from] CompareError),
 }
 
-/// What the peer took for a subject, in ms; of its two ways to read control nets the faster one, each time.
+/// The peer's times for a subject in ms. For each, the faster of its two ways to read control nets counts.
 pub struct PeerTimes {
-    /// Without the rasteriser.
+    /// The stages before the rasteriser.
     pub tessellation: Spread,
     /// The whole picture.
     pub frame: Spread,
     pub wall: Spread,
-    /// Medians of both ways, in the order of [`Nets::ALL`]: tessellation, then the picture.
+    /// The medians of both ways, in the order of [`Nets::ALL`]: tessellation, and the whole picture.
     pub ways: [[f64; 2]; 2],
     pub counted: Option<Counted>,
-    /// How far its picture is from ours: 0 for the same, 1 for nothing in common.
+    /// The difference between its picture and ours: 0 if they are equal, 1 if they have nothing in common.
     pub difference: f64,
 }
 
-/// Both.
+/// The measurements of one subject, ours and the peer's.
 pub struct Versus {
     pub patches: u32,
     pub vertices: u64,
     pub triangles: u64,
-    /// That our output took to go through the arena.
+    /// The number of chunks of our output.
     pub chunks: usize,
-    /// Of the last chunk, those that cover a sample and were drawn, if the others were left out.
+    /// The number of triangles of the last chunk that cover a sample, if the others were removed before drawing.
     pub covering: Option<u64>,
     /// See [`Subject::compulsory_bytes`].
     pub bytes: u64,
@@ -54,7 +54,7 @@ pub struct Versus {
 }
 
 impl Versus {
-    /// Times a subject that was counted.
+    /// Counts and times a subject.
     ///
     /// # Errors
     /// A device was lost, or has no memory.

@@ -1,9 +1,8 @@
-//! Vulkan as the peer needs it: the device that the engine runs on, opened once more with tessellation stages, its
-//! memory, and timed submissions.
+//! Vulkan for the peer: the engine's device, opened once more with tessellation stages, its memory, and timed submissions.
 //!
-//! `unsafe`, here and in the rooms beside it, is what ash's functions ask for: that handles live, come from this device
-//! and are used by one thread. All of them do: they are made from one [`Vulkan`], which whatever owns any of them keeps
-//! alive, and every submission is waited for before anything else happens.
+//! `unsafe`, here and in the files beside it: ash's functions require that handles are alive, come from this device and are used
+//! by one thread. That holds, since all handles are made from one [`Vulkan`], their owners keep it alive, and every submission is
+//! waited for before anything else happens.
 
 use std::ffi::CStr;
 use std::rc::Rc;
@@ -29,15 +28,15 @@ pub enum VulkanError {
     Refused(#[from] vk::Result),
 }
 
-/// How long one submission took, in ms: by the GPU's clock where it can be trusted (else as `wall`), and from its
-/// recording to its end.
+/// The time of one submission in ms: by the GPU's clock if that is reliable (else the same as `wall`), and by the host's clock
+/// from recording to completion.
 #[derive(Clone, Copy, Debug)]
 pub struct Took {
     pub gpu: f64,
     pub wall: f64,
 }
 
-/// What the pipeline counted: evaluations of the domain shader, and triangles that it handed on.
+/// What the pipeline counted: invocations of the domain shader, and triangles that left the tessellation stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Counted {
     pub evaluations: u64,
@@ -57,17 +56,17 @@ pub struct Vulkan {
     command_buffer: vk::CommandBuffer,
     done: vk::Fence,
     timestamps: vk::QueryPool,
-    /// Where the driver counts at all.
+    /// `None` if the driver doesn't count.
     statistics: Option<vk::QueryPool>,
-    /// Ns a tick; none where timestamps can't be trusted.
+    /// The ns per tick; `None` if timestamps aren't reliable.
     tick_ns: Option<f64>,
 }
 
 impl Vulkan {
-    /// The device that wgpu's adapter is.
+    /// Opens the device of wgpu's adapter.
     ///
     /// # Errors
-    /// There is no Vulkan, no such device, or it doesn't tessellate.
+    /// There is no Vulkan, no such device, or it has no tessellation stages.
     pub fn new(adapter: &wgpu::AdapterInfo) -> Result<Rc<Self>, VulkanError> {
         unsafe {
             let entry = ash::Entry::load()?;
@@ -136,7 +135,7 @@ impl Vulkan {
         }
     }
 
-    /// Records a submission, and waits for it.
+    /// Records commands, submits them, and waits for them.
     ///
     /// # Errors
     /// The device was lost.
@@ -164,7 +163,7 @@ impl Vulkan {
         }
     }
 
-    /// Runs a submission once and counts what its pipelines did; none where the driver doesn't count.
+    /// Runs a submission once and returns what its pipelines counted; `None` if the driver doesn't count.
     ///
     /// # Errors
     /// The device was lost.
@@ -177,21 +176,23 @@ impl Vulkan {
             record(commands);
             device.cmd_end_query(commands, pool, 0);
         })?;
-        // By the order of the flags' bits: what reaches clipping, then evaluations.
+        // Results are in the order of the flags' bits: triangles that reach clipping, then domain shader invocations.
         let mut counted = [[0u64; 2]];
         let wait = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WAIT;
         unsafe { device.get_query_pool_results(pool, 0, &mut counted, wait)? };
         Ok(Some(Counted { triangles: counted[0][0], evaluations: counted[0][1] }))
     }
 
-    /// A type of memory that a resource can lie in.
+    /// The index of a memory type for a resource.
     fn memory_type(&self, bits: u32, flags: vk::MemoryPropertyFlags) -> Option<u32> {
         let types = self.memory.memory_types_as_slice();
         (0..).zip(types).find(|(i, own)| bits & 1 << i != 0 && own.property_flags.contains(flags)).map(|(i, _)| i)
     }
 
+    /// Allocates memory; `what` names its use in messages.
+    ///
     /// # Errors
-    /// There is no such memory, or no more of it.
+    /// The device has no such memory, or not enough.
     pub fn allocate(
         &self,
         needs: vk::MemoryRequirements,
@@ -208,7 +209,7 @@ impl Vulkan {
 impl Drop for Vulkan {
     fn drop(&mut self) {
         unsafe {
-            // A lost device can't be waited for, and goes all the same.
+            // Waiting for a lost device fails, but it is destroyed all the same.
             let _ = self.device.device_wait_idle();
             self.device.destroy_query_pool(self.timestamps, None);
             if let Some(pool) = self.statistics {
@@ -222,13 +223,13 @@ impl Drop for Vulkan {
     }
 }
 
-/// What [`Vulkan::count`] asks for.
+/// The statistics that [`Vulkan::count`] reads.
 const COUNTED: vk::QueryPipelineStatisticFlags = vk::QueryPipelineStatisticFlags::from_raw(
     vk::QueryPipelineStatisticFlags::CLIPPING_INVOCATIONS.as_raw()
         | vk::QueryPipelineStatisticFlags::TESSELLATION_EVALUATION_SHADER_INVOCATIONS.as_raw(),
 );
 
-/// The physical device that wgpu's adapter is: of the same maker, kind and name.
+/// Finds the physical device of wgpu's adapter, by vendor, device and name.
 unsafe fn find(instance: &ash::Instance, adapter: &wgpu::AdapterInfo) -> Result<vk::PhysicalDevice, VulkanError> {
     let is_it = |physical: &vk::PhysicalDevice| {
         let own = unsafe { instance.get_physical_device_properties(*physical) };
@@ -239,7 +240,7 @@ unsafe fn find(instance: &ash::Instance, adapter: &wgpu::AdapterInfo) -> Result<
     found.ok_or_else(|| VulkanError::NoDevice(adapter.name.clone()))
 }
 
-/// A family of queues that draws and computes.
+/// Finds a queue family that can draw and compute.
 unsafe fn family(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Option<u32> {
     let both = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
     let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };

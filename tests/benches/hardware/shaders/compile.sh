@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes every .spv beside its source, with glslangValidator (Debian: glslang-tools); `compile.sh --check` says instead
-# whether those that are here are what the sources give.
+# Compiles every shader to a .spv beside its source, with glslangValidator (Debian: glslang-tools). `compile.sh --check`
+# compares the .spv files that are here with what the sources give.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 out=$here

@@ -1,5 +1,5 @@
 #version 450
-// Copies 16 bytes an invocation.
+// Copies 16 bytes per invocation.
 
 layout(local_size_x = 256) in;
 

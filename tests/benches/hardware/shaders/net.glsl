@@ -1,13 +1,13 @@
-// A patch's control net as the peer has it: three of these. Twin of NetCorner in ../peer.rs.
+// A corner of a patch's control net, which has three of these. Twin of NetCorner in ../peer.rs.
 
 struct NetCorner {
     // The corner's position, and its texture coordinate's u.
     vec4 position_u;
     // Its normal, and its texture coordinate's v.
     vec4 normal_v;
-    // The control point of the side that starts here near its start, and this one of the centre's coordinates.
+    // The control point near the start of the side that starts here; w has x, y or z of the centre for corner 0, 1 or 2.
     vec4 near_center;
-    // The same side's control point near its end; w is nothing.
+    // The same side's control point near its end; w is unused.
     vec4 far;
 };
 

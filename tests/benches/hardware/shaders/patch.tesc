@@ -1,8 +1,8 @@
 #version 450
-// The hull shader: a patch's corners as they come, and the factors that our passes took for it.
+// The hull shader: passes on a patch's corners, and sets the factors that our passes used for it.
 
 layout(std430, set = 0, binding = 1) readonly buffer Factors {
-    // On the edges opposite corners 0, 1, 2, then inside.
+    // The edges opposite corners 0, 1 and 2, then the inside.
     vec4 factors[];
 };
 

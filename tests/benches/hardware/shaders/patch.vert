@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Hands a corner of a patch on to the hull shader. Where the domain shader reads control nets from memory itself, a patch
-// is one point without attributes.
+// Passes a corner of a patch on to the hull shader. If the domain shader reads control nets from memory, a patch is one point
+// without attributes.
 
 #ifndef NETS_IN_MEMORY
 #include "net.glsl"

@@ -1,4 +1,4 @@
-//! How methods are told apart, also without colours: surfaces by their points, LODs by their lines.
+//! The styles that tell methods apart, also without colours: each surface has its own markers, and each LOD its own lines.
 
 use std::f64::consts::TAU;
 
@@ -8,25 +8,25 @@ use super::{LodKind, Method};
 use crate::plot::{BLUE, BLUISH_GREEN, INK, ORANGE, REDDISH_PURPLE, SKY_BLUE, VERMILION};
 use crate::tessellate::Surface;
 
-/// What a method's points and lines look like.
+/// How a method's points and lines are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Look {
+pub struct MethodStyle {
     pub color: RGBColor,
     pub shape: Shape,
     pub fill: Fill,
-    /// Px drawn and px left out of a line; none for an unbroken one.
+    /// The lengths of a dash and of the gap after it, in px; `None` for a solid line.
     pub dash: Option<[f64; 2]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shape {
     Disc,
-    /// So many corners, the first this many degrees from the top, to the right.
+    /// The number of corners, and the angle of the first one, in degrees clockwise from the top.
     Polygon(u32, u32),
     Star,
 }
 
-/// What tells partitionings and normals apart, where there are several of them.
+/// How a marker is filled. This tells partitionings and normals apart, if there are several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Fill {
     Full,
@@ -35,8 +35,9 @@ pub(crate) enum Fill {
 }
 
 impl Shape {
-    /// Convex pieces that make it up, as corners around its middle, so large that all shapes look alike; none of a disc.
-    pub(crate) fn pieces(self, radius: f64) -> Vec<Vec<[f64; 2]>> {
+    /// The convex polygons that make up the shape, as corners in px around its middle; none for a disc. Sizes are such that all
+    /// shapes look equally large as a disc of this radius.
+    pub fn pieces(self, radius: f64) -> Vec<Vec<[f64; 2]>> {
         let around = |degrees: f64, radius: f64| {
             let (sin, cos) = (TAU * degrees / 360.0).sin_cos();
             [radius * sin, -radius * cos]
@@ -58,15 +59,15 @@ impl Shape {
     }
 }
 
-impl Look {
-    /// `variant` counts methods of the same surface and LOD.
-    pub(crate) fn of(method: Method, variant: usize) -> Self {
+impl MethodStyle {
+    /// The style of a method. `variant` is its index among methods with the same surface and LOD.
+    pub fn of(method: Method, variant: usize) -> Self {
         let fill = [Fill::Full, Fill::Hollow, Fill::Pale][variant % 3];
         Self { fill, dash: dash(method.lod), ..Self::of_surface(method.surface) }
     }
 
-    /// What a surface's points look like, and its lines under uniform LOD.
-    pub(crate) fn of_surface(surface: Surface) -> Self {
+    /// The style of a surface under uniform LOD.
+    pub fn of_surface(surface: Surface) -> Self {
         let (color, shape) = match surface {
             Surface::Flat => (INK, Shape::Disc),
             Surface::PnAen => (BLUE, Shape::Polygon(4, 45)),
@@ -81,7 +82,8 @@ impl Look {
     }
 }
 
-pub(crate) fn dash(lod: LodKind) -> Option<[f64; 2]> {
+/// The dashes of an LOD's lines: see [`MethodStyle::dash`].
+pub fn dash(lod: LodKind) -> Option<[f64; 2]> {
     match lod {
         LodKind::Uniform => None,
         LodKind::Paper => Some([7.0, 4.0]),
