@@ -38,7 +38,7 @@ fn ends_in(path: &Path, ending: &str) -> bool {
 
 /// Why a file isn't an index buffer of the mesh.
 #[derive(Debug, PartialEq, Eq, Error)]
-pub enum IndicesFault {
+pub(crate) enum IndicesFault {
     #[error("this is not JSON as the adjacency command writes it ({0})")]
     Json(String),
     #[error("it has {given} indices per patch, but --indices asks for {computed}")]
@@ -149,7 +149,7 @@ pub(crate) fn to_bin(indices: &[u32]) -> Vec<u8> {
 /// starts with a brace, otherwise bare indices.
 ///
 /// # Errors The file doesn't hold the indices of this mesh's patches in this layout.
-pub fn read(
+pub(crate) fn read(
     path: &Path,
     bytes: &[u8],
     mesh: &Mesh,

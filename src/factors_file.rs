@@ -21,7 +21,7 @@ pub(crate) struct FactorsError {
 
 /// What is wrong with a line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum LineFault {
+pub(crate) enum LineFault {
     #[error("expected the header patch,e0,e1,e2,inside")]
     Header,
     #[error("expected five values, patch,e0,e1,e2,inside, but the number of values is {0}")]

@@ -35,7 +35,7 @@ pub(crate) fn exact(number: f32) -> String {
 
 /// Formats a number that isn't negative with two decimals, for columns of px or ms. Returns "0" for 0 and "< 0.01" for
 /// any smaller number.
-pub fn hundredths(number: f64) -> String {
+pub(crate) fn hundredths(number: f64) -> String {
     if number == 0.0 {
         "0".into()
     } else if number < 0.01 {

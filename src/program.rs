@@ -30,7 +30,7 @@ pub fn run() -> ExitCode {
         return cli::fail(&error);
     }
     // A closed standard output is no failure.
-    let _ = writeln!(std::io::stdout(), "{reason}; the picture it would have shown is in {PREVIEW}.");
+    let _ = writeln!(std::io::stdout(), "{reason}; the picture that the window would have shown is in {PREVIEW}.");
     ExitCode::SUCCESS
 }
 
@@ -49,8 +49,8 @@ fn open_window(_: &Cli) -> Result<String, ExitCode> {
     Ok("This program was built without a window".to_owned())
 }
 
-/// Silences a complaint: without a session, Mesa's device selection asks for a Wayland display and reports on standard error
-/// that there is none. Commands need none, and choose their adapter themselves.
+/// Turns Mesa's device selection off where there is no desktop session: it would look for a Wayland display and complain
+/// on standard error. Commands need no display and choose their adapter themselves.
 fn quiet_driver() {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         // SAFETY: no other thread runs yet that could read the environment at the same time.

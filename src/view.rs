@@ -13,7 +13,7 @@ pub struct ScreenView {
 }
 
 /// Projects a position to px from the viewport's top left. Returns `None` for a position behind the eye.
-pub fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
+pub(crate) fn project(clip_from_object: Mat4, viewport: Vec2, position: Vec3) -> Option<Vec2> {
     let clip = clip_from_object * position.extend(1.0);
     (clip.w > 0.0).then(|| (vec2(clip.x, -clip.y) / clip.w * 0.5 + 0.5) * viewport)
 }

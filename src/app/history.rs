@@ -11,7 +11,7 @@ const MOST: usize = 200;
 
 /// The settings before and after the present ones.
 #[derive(Default)]
-pub struct History {
+pub(super) struct History {
     /// None before the first frame.
     now: Option<Settings>,
     past: VecDeque<Settings>,

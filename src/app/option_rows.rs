@@ -4,7 +4,7 @@ use super::widgets::{chooser, fixed};
 use crate::settings::{Declaration, Range, Settings, Value};
 
 /// A row that changes an option, greyed out where the option has no effect. `key` names the key that changes it too.
-pub fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
+pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
     option_row_with(ui, option, settings, &option_hover(option, key));
 }
 
@@ -20,7 +20,7 @@ pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings:
 }
 
 /// The hover text of an option: its text, its key and its name on the command line.
-pub fn option_hover(option: &Declaration, key: &str) -> String {
+pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
     let name = format!("--{}", option.name);
     with_note(option.text, &if key.is_empty() { name } else { format!("{key}; {name}") })
 }

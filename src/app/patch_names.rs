@@ -12,12 +12,12 @@ pub(super) fn letter(convention: Convention, k: u32) -> char {
 }
 
 /// The name of a side: the corners that it runs between.
-pub fn ends_text(k: u32) -> String {
+pub(super) fn ends_text(k: u32) -> String {
     format!("{k}-{}", (k + 1) % 3)
 }
 
 /// Says what goes wrong with factor `i` under a wrong convention.
-pub fn mistake(convention: Convention, i: u32) -> Option<String> {
+pub(super) fn mistake(convention: Convention, i: u32) -> Option<String> {
     let (of, cuts) = (factor_side(convention, i), domain_side(convention, i));
     (of != cuts)
         .then(|| format!("TessFactor[{i}] is computed for edge {} but cuts edge {}.", ends_text(of), ends_text(cuts)))

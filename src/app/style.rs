@@ -1,7 +1,7 @@
 //! Spacing and colours of the window.
 
 /// Sets the spacing of both themes, and replaces those of egui's colours that are too pale.
-pub fn style(context: &egui::Context) {
+pub(super) fn style(context: &egui::Context) {
     // The table of commands has the keys for zoom.
     context.options_mut(|options| options.zoom_with_keyboard = false);
     context.all_styles_mut(|style| {

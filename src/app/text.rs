@@ -4,18 +4,18 @@ pub(super) use crate::names::shortened;
 pub(super) use crate::numbers::{grouped, short};
 
 /// Formats a number and its share of all, in percent.
-pub fn part(number: u64, all: u64) -> String {
+pub(super) fn part(number: u64, all: u64) -> String {
     let percent = 100.0 * number as f64 / all.max(1) as f64;
     format!("{} ({percent:.1} %)", grouped(number))
 }
 
 /// Formats bytes in MiB.
-pub fn mebibytes(bytes: u64) -> String {
+pub(super) fn mebibytes(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
 /// Formats a factor with this many decimals. Some kinds of LOD ask for huge factors, which are shortened.
-pub fn factor(number: f64, decimals: usize) -> String {
+pub(super) fn factor(number: f64, decimals: usize) -> String {
     if number.abs() < 1000.0 { format!("{number:.decimals$}") } else { short(number) }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn chooser<T: Copy + PartialEq>(
 }
 
 /// The same row, disabled; `why` is its hover text.
-pub fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
+pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
     let label = ui.label(name).on_hover_text(why);
     let combo = egui::ComboBox::from_id_salt(name).selected_text(shown);
     let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
@@ -46,12 +46,12 @@ pub(super) fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
 }
 
 /// A right-aligned number, monospaced.
-pub fn number(ui: &mut egui::Ui, text: &str) {
+pub(super) fn number(ui: &mut egui::Ui, text: &str) {
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(RichText::new(text).monospace()));
 }
 
 /// A row of text in columns that can't be clicked, aligned with rows that can. Headers are weak.
-pub fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
+pub(super) fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
     let text = RichText::new(text).monospace();
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 0.0;
@@ -65,7 +65,12 @@ pub fn columns(ui: &mut egui::Ui, text: &str, is_weak: bool) -> egui::Response {
 const LIST_ROWS: f32 = 6.0;
 
 /// A list of many rows. Only the visible ones are made. The keys Up, Down, Home and End go from row to row.
-pub fn list(ui: &mut egui::Ui, name: &str, count: usize, mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response) {
+pub(super) fn list(
+    ui: &mut egui::Ui,
+    name: &str,
+    count: usize,
+    mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response,
+) {
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
     let pitch = height + ui.spacing().item_spacing.y;
     let shown = LIST_ROWS.min(count as f32) * pitch;
@@ -123,13 +128,13 @@ pub(super) fn rgb([r, g, b]: [u8; 3]) -> egui::Color32 {
 }
 
 /// A small rectangle of a colour.
-pub fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
+pub(super) fn swatch(ui: &mut egui::Ui, color: [u8; 3]) {
     let (rect, _) = ui.allocate_exact_size(SWATCH, egui::Sense::hover());
     ui.painter().rect_filled(rect, 2.0, rgb(color));
 }
 
 /// A field of the status line. Its width doesn't depend on its text.
-pub fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
+pub(super) fn status(ui: &mut egui::Ui, width: f32, text: impl Into<egui::WidgetText>, hover: &str) {
     let height = ui.spacing().interact_size.y;
     ui.allocate_ui_with_layout(egui::vec2(width, height), egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.set_min_width(width);

@@ -4,7 +4,7 @@ use crate::numbers::grouped;
 
 /// A logarithmic axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// The least and the greatest value.
     pub values: [f64; 2],
     /// Where the axis starts and ends, in px of the chart.
@@ -26,7 +26,7 @@ const SLACK: f64 = 1.25;
 
 impl Axis {
     /// An axis that holds all values above `floor`. Smaller ones count as 0.
-    pub fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
+    pub(crate) fn around(values: impl Iterator<Item = f64>, floor: f64, px: [f64; 2]) -> Self {
         let (mut least, mut most, mut has_zero) = (f64::INFINITY, 0.0_f64, false);
         for value in values {
             if value > floor {
@@ -41,7 +41,7 @@ impl Axis {
     }
 
     /// The position of a value in px. Values below the axis are at its zero.
-    pub fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         let [from, to] = self.px;
         let zero = from + self.zero_px * (to - from).signum();
         if value < self.values[0] {
@@ -52,7 +52,7 @@ impl Axis {
     }
 
     /// The ticks. Powers of ten are named; on short axes, digits between them are named too.
-    pub fn ticks(&self) -> Vec<Tick> {
+    pub(crate) fn ticks(&self) -> Vec<Tick> {
         let [low, high] = self.values;
         let decades = (high / low).log10();
         let named: &[u32] = match decades {
@@ -74,7 +74,7 @@ impl Axis {
 }
 
 /// A tick's value as short text.
-pub fn tick_text(value: f64) -> String {
+pub(crate) fn tick_text(value: f64) -> String {
     if value >= 0.999e6 {
         format!("{} M", grouped((value / 1e6).round() as u64))
     } else if value >= 0.999 {

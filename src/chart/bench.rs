@@ -28,7 +28,7 @@ impl Default for Effort {
 }
 
 /// A mesh on the device with one camera, and the reference surface that it is compared with.
-pub struct Bench<'a> {
+pub(crate) struct Bench<'a> {
     pub engine: &'a Engine,
     /// The mesh's name in rows.
     pub mesh: String,
@@ -62,7 +62,7 @@ impl Bench<'_> {
     }
 
     /// The row for a setting and its measurements.
-    pub fn row(&self, setting: &Setting, probe: Probe) -> Row {
+    pub(crate) fn row(&self, setting: &Setting, probe: Probe) -> Row {
         let Probe { triangles, vertices, time, errors, max_error_px } = probe;
         let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
         Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px }
@@ -104,7 +104,7 @@ impl Bench<'_> {
 
 /// The settings that are measured in place of these: without clipping, culling, overlays and split, so that all of the
 /// surface is drawn, and nothing else.
-pub fn whole(settings: &Settings) -> Settings {
+pub(crate) fn whole(settings: &Settings) -> Settings {
     let Settings { overlays, deviation_in, split, background, .. } = Settings::default();
     Settings {
         tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },

@@ -16,7 +16,7 @@ impl Cost {
     }
 
     /// Returns `ms` or `triangles`, whichever this cost is.
-    pub fn either(self, ms: f64, triangles: u64) -> f64 {
+    pub(crate) fn either(self, ms: f64, triangles: u64) -> f64 {
         match self {
             Self::Ms => ms,
             Self::Triangles => triangles as f64,

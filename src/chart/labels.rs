@@ -50,7 +50,12 @@ const GAP: f64 = 6.0;
 
 /// Places labels inside `bounds` so that they cover no point, line or other label. Earlier labels have the first choice. A
 /// label that fits nowhere gets `None`.
-pub fn place(wanted: &[Wanted], points: &[[f64; 2]], lines: &[[[f64; 2]; 2]], bounds: Rect) -> Vec<Option<Rect>> {
+pub(super) fn place(
+    wanted: &[Wanted],
+    points: &[[f64; 2]],
+    lines: &[[[f64; 2]; 2]],
+    bounds: Rect,
+) -> Vec<Option<Rect>> {
     let markers: Vec<Rect> = points.iter().map(|&point| Rect::around(point, 4.0)).collect();
     let mut placed: Vec<Option<Rect>> = Vec::new();
     for wish in wanted {

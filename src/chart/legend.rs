@@ -9,7 +9,7 @@ use crate::plot::INK;
 use crate::settings::Choice;
 
 /// An entry of the legend: a sample and its name.
-pub struct Entry {
+pub(super) struct Entry {
     sample: Sample,
     name: String,
 }
@@ -24,7 +24,7 @@ enum Sample {
 const IN_A_LINE: usize = 3;
 
 /// Every method of a subject, with its style.
-pub fn method_styles(subject: &Subject) -> Vec<(Method, MethodStyle)> {
+pub(crate) fn method_styles(subject: &Subject) -> Vec<(Method, MethodStyle)> {
     let methods = subject.methods();
     let variants = variants(&methods);
     let variant = |method: &Method| variants.iter().position(|other| same(other, method)).unwrap_or(0);
@@ -49,7 +49,7 @@ fn same(a: &Method, b: &Method) -> bool {
 }
 
 /// The lines of the legend: one for surfaces, one for LODs, and more for partitionings and normals if there are several.
-pub fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
+pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
     let Some(subject) = subjects.iter().max_by_key(|subject| subject.methods().len()) else { return Vec::new() };
     let variants = variants(&subject.methods());
     let (mut surfaces, mut lods) = (Vec::new(), Vec::new());
@@ -86,7 +86,7 @@ fn add(entries: &mut Vec<Entry>, sample: Sample, name: String) {
 }
 
 /// Draws a line of entries from `at` on. `size` is the height of their text in px.
-pub fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], at: [f64; 2], size: i32) -> Drawn<DB> {
+pub(super) fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], at: [f64; 2], size: i32) -> Drawn<DB> {
     let [mut x, y] = at;
     for Entry { sample, name } in entries {
         let long = match sample {

@@ -10,7 +10,7 @@ use crate::tessellate::Surface;
 
 /// How a method's points and lines are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MethodStyle {
+pub(crate) struct MethodStyle {
     pub color: RGBColor,
     pub shape: Shape,
     pub fill: Fill,
@@ -37,7 +37,7 @@ pub(crate) enum Fill {
 impl Shape {
     /// The convex polygons that make up the shape, as corners in px around its middle; none for a disc. Sizes are such that all
     /// shapes look equally large as a disc of this radius.
-    pub fn pieces(self, radius: f64) -> Vec<Vec<[f64; 2]>> {
+    pub(crate) fn pieces(self, radius: f64) -> Vec<Vec<[f64; 2]>> {
         let around = |degrees: f64, radius: f64| {
             let (sin, cos) = (TAU * degrees / 360.0).sin_cos();
             [radius * sin, -radius * cos]
@@ -61,13 +61,13 @@ impl Shape {
 
 impl MethodStyle {
     /// The style of a method. `variant` is its index among methods with the same surface and LOD.
-    pub fn of(method: Method, variant: usize) -> Self {
+    pub(crate) fn of(method: Method, variant: usize) -> Self {
         let fill = [Fill::Full, Fill::Hollow, Fill::Pale][variant % 3];
         Self { fill, dash: dash(method.lod), ..Self::of_surface(method.surface) }
     }
 
     /// The style of a surface under uniform LOD.
-    pub fn of_surface(surface: Surface) -> Self {
+    pub(crate) fn of_surface(surface: Surface) -> Self {
         let (color, shape) = match surface {
             Surface::Flat => (INK, Shape::Disc),
             Surface::PnAen => (BLUE, Shape::Polygon(4, 45)),
@@ -83,7 +83,7 @@ impl MethodStyle {
 }
 
 /// The dashes of an LOD's lines: see [`MethodStyle::dash`].
-pub fn dash(lod: LodKind) -> Option<[f64; 2]> {
+pub(crate) fn dash(lod: LodKind) -> Option<[f64; 2]> {
     match lod {
         LodKind::Uniform => None,
         LodKind::Paper => Some([7.0, 4.0]),

@@ -15,16 +15,18 @@ mod save;
 mod setting;
 mod words;
 
-pub use axis::{Axis, Tick, tick_text};
-pub use bench::{Bench, Effort, Probe, whole};
-pub use cost::Cost;
-pub use legend::method_styles;
-pub use method_style::{Fill, MethodStyle, Shape, dash};
-pub use pen::RADIUS;
-pub use picture::{bitmap, svg};
-pub use race::{Race, Win, front, has_converged};
-pub use save::{SaveError, save};
-pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
+pub(crate) use axis::{Axis, Tick, tick_text};
+pub(crate) use bench::{Bench, Effort, Probe, whole};
+pub(crate) use cost::Cost;
+pub(crate) use legend::method_styles;
+pub(crate) use method_style::{Fill, MethodStyle, Shape, dash};
+pub(crate) use pen::RADIUS;
+pub(crate) use picture::{bitmap, svg};
+#[cfg(test)]
+pub(crate) use race::front;
+pub(crate) use race::{Race, Win, has_converged};
+pub(crate) use save::{SaveError, save};
+pub(crate) use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use crate::gpu::{DRAWING, PassTime};
 use crate::settings::Choice;
@@ -135,7 +137,7 @@ impl Row {
 
 /// A mesh with its measurements.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Subject {
+pub(crate) struct Subject {
     /// The mesh's name in pictures and reports.
     pub title: String,
     /// The reference surface that it was compared with, in words; `None` if each surface was compared with its own limit.
@@ -148,12 +150,12 @@ pub struct Subject {
 
 impl Subject {
     /// The largest error of a row: a part of the reference surface's diagonal, or px without a reference surface.
-    pub fn error(&self, row: &Row) -> Option<f64> {
+    pub(crate) fn error(&self, row: &Row) -> Option<f64> {
         self.error_of(row.errors, row.max_error_px)
     }
 
     /// The largest error of any measurements: see [`Self::error`].
-    pub fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
+    pub(crate) fn error_of(&self, errors: Option<Errors>, max_error_px: Option<f64>) -> Option<f64> {
         let error = match self.truth {
             Some(_) => errors.map(|errors| errors.largest),
             None => max_error_px,

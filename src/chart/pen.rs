@@ -9,20 +9,20 @@ use super::method_style::{Fill, MethodStyle, Shape};
 use crate::plot::{self, DENSITY, INK};
 
 /// Draws into an area, in px of the chart.
-pub struct Pen<'a, DB: DrawingBackend>(pub &'a DrawingArea<DB, Shift>);
+pub(super) struct Pen<'a, DB: DrawingBackend>(pub &'a DrawingArea<DB, Shift>);
 
 pub(super) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
 
 /// Text starts at its place, is centred on it, or ends there.
-pub const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
-pub const MIDDLE: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
-pub const RIGHT: Pos = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
+pub(super) const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
+pub(super) const MIDDLE: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
+pub(super) const RIGHT: Pos = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
 
 /// The colour under the front: the points that no other point beats.
-pub const FRONT: RGBColor = RGBColor(214, 214, 214);
+pub(super) const FRONT: RGBColor = RGBColor(214, 214, 214);
 
 /// The radius of a marker in px.
-pub const RADIUS: f64 = 3.6;
+pub(crate) const RADIUS: f64 = 3.6;
 
 fn px([x, y]: [f64; 2]) -> (i32, i32) {
     let density = f64::from(DENSITY);
@@ -50,23 +50,23 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     }
 
     /// Draws text at a place. `size` is its height in px.
-    pub fn text(&self, text: &str, at: [f64; 2], size: i32, pos: Pos) -> Drawn<DB> {
+    pub(super) fn text(&self, text: &str, at: [f64; 2], size: i32, pos: Pos) -> Drawn<DB> {
         self.0.draw_text(text, &font(size).pos(pos), px(at))
     }
 
     /// Draws text that runs upwards, centred on a place.
-    pub fn text_upwards(&self, text: &str, at: [f64; 2], size: i32) -> Drawn<DB> {
+    pub(super) fn text_upwards(&self, text: &str, at: [f64; 2], size: i32) -> Drawn<DB> {
         self.0.draw_text(text, &font(size).pos(MIDDLE).transform(FontTransform::Rotate270), px(at))
     }
 
     /// The width of text in px. In an SVG file it is an estimate, since the viewer's font may be wider.
-    pub fn text_width(&self, text: &str, size: i32) -> f64 {
+    pub(super) fn text_width(&self, text: &str, size: i32) -> f64 {
         let letters = 0.55 * f64::from(size) * text.chars().count() as f64;
         self.0.estimate_text_size(text, &font(size)).map_or(letters, |(px, _)| f64::from(px) / f64::from(DENSITY))
     }
 
     /// Draws a method's marker, with a white outline that sets it off from others.
-    pub fn marker(&self, at: [f64; 2], style: &MethodStyle) -> Drawn<DB> {
+    pub(super) fn marker(&self, at: [f64; 2], style: &MethodStyle) -> Drawn<DB> {
         self.shape(at, style.shape, RADIUS + 1.2, WHITE.filled())?;
         self.shape(at, style.shape, RADIUS, style.color.filled())?;
         match style.fill {

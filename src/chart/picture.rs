@@ -33,7 +33,7 @@ const GRID: RGBColor = RGBColor(236, 236, 236);
 ///
 /// # Errors
 /// The font can't be used.
-pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
+pub(crate) fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
     let layout = Layout::of(subjects);
     plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))
 }
@@ -42,7 +42,7 @@ pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
 ///
 /// # Errors
 /// The font can't be used.
-pub fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
+pub(crate) fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
     plot::use_font()?;
     let layout = Layout::of(subjects);
     let (size, drawn) = ([WIDTH, layout.height()], [WIDTH, layout.height()].map(|side| side * DENSITY));

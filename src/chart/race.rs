@@ -6,7 +6,7 @@ use crate::tessellate::Surface;
 /// The rows of a mesh that can be compared, with their errors. With a reference surface these are all rows. Without one they
 /// are the rows of one surface, since each surface is compared with its own limit.
 #[derive(Clone, Debug)]
-pub struct Race<'a> {
+pub(crate) struct Race<'a> {
     /// The surface of all rows; `None` with a reference surface.
     pub surface: Option<Surface>,
     pub entries: Vec<(&'a Row, f64)>,
@@ -23,7 +23,7 @@ pub(crate) struct Win<'a> {
 
 /// Returns the front of points with a cost and an error: the indices of the points that no other one beats, by growing cost.
 /// Each has less error than all points that cost as much or less. Of equal points the front has the first.
-pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+pub(crate) fn front(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| {
         let ((cost_a, error_a), (cost_b, error_b)) = (points[a], points[b]);
@@ -48,7 +48,7 @@ const CLOSER: f64 = 0.05;
 /// coarse to fine, the last must have three times the triangles of another, and each of its errors must be less by at most a
 /// twentieth. The distance between triangles and their surface falls at least as fast as their number grows, so finer settings
 /// can gain at most half of that twentieth.
-pub fn has_converged(rows: &[Row], method: Method) -> bool {
+pub(crate) fn has_converged(rows: &[Row], method: Method) -> bool {
     let mut own = rows.iter().rev().filter(|row| row.setting.method == method);
     let Some(last) = own.next() else { return false };
     let errors = |row: &Row| {
@@ -65,7 +65,7 @@ pub fn has_converged(rows: &[Row], method: Method) -> bool {
 
 impl Subject {
     /// The rows whose errors are known, grouped so that those of a group can be compared.
-    pub fn races(&self) -> Vec<Race<'_>> {
+    pub(crate) fn races(&self) -> Vec<Race<'_>> {
         let mut races: Vec<Race> = Vec::new();
         for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
             let surface = self.truth.is_none().then_some(row.setting.method.surface);
@@ -78,7 +78,7 @@ impl Subject {
     }
 
     /// All methods, in the order of their first rows.
-    pub fn methods(&self) -> Vec<Method> {
+    pub(crate) fn methods(&self) -> Vec<Method> {
         let mut methods = Vec::new();
         for row in &self.rows {
             if !methods.contains(&row.setting.method) {
@@ -91,14 +91,14 @@ impl Subject {
 
 impl<'a> Race<'a> {
     /// The rows that no other one beats, with their errors. `cost` returns the cost of a row.
-    pub fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
+    pub(crate) fn front(&self, cost: impl Fn(&Row) -> f64) -> Vec<(&'a Row, f64)> {
         let points: Vec<_> = self.entries.iter().map(|(row, error)| (cost(row), *error)).collect();
         front(&points).into_iter().map(|index| self.entries[index]).collect()
     }
 
     /// Errors that some rows reach and others don't, the largest first: up to `count` numbers that are 1, 2 or 5 times a power
     /// of ten, and not smaller than `floor`.
-    pub fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
+    pub(crate) fn levels(&self, count: usize, floor: f64) -> Vec<f64> {
         let errors = self.entries.iter().map(|(_, error)| error.max(floor));
         let [least, most] = errors.fold([f64::INFINITY, 0.0], |[a, b], error| [a.min(error), b.max(error)]);
         if least >= most {
@@ -117,13 +117,13 @@ impl<'a> Race<'a> {
     }
 
     /// The cheapest row that `of` accepts, with an error of at most `error`.
-    pub fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
+    pub(crate) fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
         let reached = self.entries.iter().filter(|(row, own)| *own <= error && of(row)).map(|(row, _)| *row);
         reached.min_by(|a, b| cost.of(a).total_cmp(&cost.of(b)))
     }
 
     /// The fastest row with an error of at most `error`; `None` if there is none.
-    pub fn win(&self, error: f64) -> Option<Win<'a>> {
+    pub(crate) fn win(&self, error: f64) -> Option<Win<'a>> {
         let fastest = self.cheapest(error, Cost::Ms, |_| true)?;
         let next = self.cheapest(error, Cost::Ms, |row| row.setting.method != fastest.setting.method);
         Some(Win { error, fastest, next })

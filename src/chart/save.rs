@@ -27,7 +27,7 @@ pub enum SaveError {
 ///
 /// # Errors
 /// The ending is another one, or the file can't be written.
-pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
+pub(crate) fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
     let failed = |reason: String| SaveError::Write { path: path.to_owned(), reason };
     let subjects = std::slice::from_ref(subject);
     let bytes = match crate::export::ending(path).as_str() {

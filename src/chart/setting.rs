@@ -163,7 +163,7 @@ impl Default for Plan {
 }
 
 /// Reorders settings: the coarsest of every method first, then the next finer ones, so that all lines of a chart grow together.
-pub fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
+pub(crate) fn coarse_first(settings: Vec<Setting>) -> Vec<Setting> {
     let place =
         |index: usize| settings[..index].iter().filter(|earlier| earlier.method == settings[index].method).count();
     let mut placed: Vec<_> = (0..settings.len()).map(|index| (place(index), settings[index])).collect();

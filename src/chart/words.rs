@@ -13,17 +13,17 @@ const LEAST_PX: f64 = 1e-3;
 
 impl Subject {
     /// Errors up to this count as 0.
-    pub fn floor(&self) -> f64 {
+    pub(crate) fn floor(&self) -> f64 {
         if self.truth.is_some() { LEAST_PART } else { LEAST_PX }
     }
 
     /// The factor by which errors are multiplied to be shown: 100 for percent, or 1 for px.
-    pub fn unit(&self) -> f64 {
+    pub(crate) fn unit(&self) -> f64 {
         if self.truth.is_some() { 100.0 } else { 1.0 }
     }
 
     /// The label of the error axis, with its unit.
-    pub fn error_name(&self) -> &'static str {
+    pub(crate) fn error_name(&self) -> &'static str {
         match self.truth {
             Some(_) => "Largest error, % of the diagonal",
             None => "Largest error, px",
@@ -31,7 +31,7 @@ impl Subject {
     }
 
     /// The facts above the panels: the reference surface, the size of the view, and the adapter.
-    pub fn facts(&self) -> String {
+    pub(crate) fn facts(&self) -> String {
         let against = match &self.truth {
             Some(truth) => format!("against {truth}"),
             None => "against each surface's own limit".to_owned(),
@@ -41,7 +41,7 @@ impl Subject {
     }
 
     /// The sentences below the panels: which method is fastest at which error, and how close the closest comes.
-    pub fn sentences(&self) -> Vec<String> {
+    pub(crate) fn sentences(&self) -> Vec<String> {
         let mut all = Vec::new();
         for race in self.races() {
             let levels = race.levels(LEVELS, self.floor());
@@ -75,12 +75,12 @@ impl Subject {
     }
 
     /// The name of a row's method, and its setting.
-    pub fn named(&self, row: &Row) -> String {
+    pub(crate) fn named(&self, row: &Row) -> String {
         format!("{} ({})", self.name(row.setting.method), row.setting.label())
     }
 
     /// A method's name, with the partitioning and normals where other methods of the subject differ in them.
-    pub fn name(&self, method: Method) -> String {
+    pub(crate) fn name(&self, method: Method) -> String {
         let mut name = method.to_string();
         let others = self.methods();
         if others.iter().any(|other| other.lod == method.lod && other.partitioning != method.partitioning) {
@@ -102,7 +102,7 @@ impl Subject {
 }
 
 /// Formats a number with one significant digit.
-pub fn plain(number: f64) -> String {
+pub(super) fn plain(number: f64) -> String {
     let digit = (number.log10() + 1e-9).floor();
     if !(-6.0..6.0).contains(&digit) {
         return format!("{number:.0e}");

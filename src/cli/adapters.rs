@@ -9,7 +9,7 @@ use crate::gpu::{AdapterChoice, GpuError, adapters, best_adapter, kind};
 pub(crate) struct Args {}
 
 /// Prints a line for each adapter.
-pub fn run(_: &Args) -> Result<(), CliError> {
+pub(super) fn run(_: &Args) -> Result<(), CliError> {
     let all = adapters();
     if all.is_empty() {
         return Err(GpuError::NoAdapter.into());
@@ -53,7 +53,7 @@ impl AdapterOption {
     ///
     /// # Errors
     /// An adapter was named, and `is_cpu` is set.
-    pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
+    pub(crate) fn check(&self, is_cpu: bool) -> Result<(), CliError> {
         match is_cpu && self.adapter.is_some() {
             true => Err(CliError::Usage(
                 "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out",

@@ -10,7 +10,7 @@ use crate::mesh::Moment;
 
 /// The options that choose a pose.
 #[derive(Clone, Debug, Default, Args)]
-pub struct AnimationOption {
+pub(crate) struct AnimationOption {
     /// Show the mesh in a pose of this animation; `pnaen info` lists the animations
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,

@@ -92,7 +92,7 @@ pub(crate) struct Args {
 }
 
 /// The exit code after Ctrl-C: 128 + SIGINT, as shells return it.
-pub const INTERRUPTED: u8 = 130;
+pub(super) const INTERRUPTED: u8 = 130;
 
 /// Parses the path of a picture, whose ending gives its format.
 fn picture() -> impl TypedValueParser<Value = PathBuf> {

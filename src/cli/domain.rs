@@ -12,7 +12,7 @@ use crate::tessellate::{
 };
 
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// How factors become segments; subtriangulation takes four equal factors
     #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]
     pub partitioning: Partitioning,

@@ -27,7 +27,7 @@ pub(crate) struct FactorsOption {
 }
 
 /// Factors from a file, checked against the mesh.
-pub struct Given {
+pub(crate) struct Given {
     /// One for each patch.
     pub factors: Vec<HullFactors>,
     pub stats: FactorsFile,
@@ -43,7 +43,7 @@ impl FactorsOption {
     ///
     /// # Errors
     /// The file can't be read, isn't for this mesh, or has factors that the partitioning doesn't take.
-    pub fn read(
+    pub(crate) fn read(
         &self,
         mesh: &Mesh,
         topology: &Topology,

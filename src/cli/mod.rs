@@ -164,7 +164,7 @@ pub(crate) enum CliError {
 }
 
 /// Runs a command. A closed pipe is no failure: the reader wants no more.
-pub fn run(command: Command) -> ExitCode {
+pub(crate) fn run(command: Command) -> ExitCode {
     let result = match command {
         Command::Render(args) => render::run(&args),
         Command::Tessellate(args) => tessellate::run(&args),
@@ -193,7 +193,7 @@ pub fn run(command: Command) -> ExitCode {
 }
 
 /// Prints an error on standard error, and returns the exit code of a failure.
-pub fn fail(error: &dyn std::fmt::Display) -> ExitCode {
+pub(crate) fn fail(error: &dyn std::fmt::Display) -> ExitCode {
     // Standard error may be closed too; then nobody reads it.
     let _ = writeln!(std::io::stderr(), "pnaen: {}", on_one_line(&error.to_string()));
     ExitCode::FAILURE

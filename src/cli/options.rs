@@ -19,8 +19,8 @@ use crate::settings::options::TOLERANCE_RANGE;
 use crate::settings::{ARENA_BYTES, Settings};
 use crate::tessellate::{Displacement, Lod, Partitioning, Surface, Tessellation, tolerance_within_budget};
 
-pub use declared::{PictureOptions, TessellationOptions, choice, number_of};
-pub use values::{CameraOption, Position, Size, model, picture, source, threshold};
+pub(crate) use declared::{PictureOptions, TessellationOptions, choice, number_of};
+pub(crate) use values::{CameraOption, Position, Size, model, picture, source, threshold};
 
 use values::{bytes, crease_band, weld};
 
@@ -130,7 +130,7 @@ impl SurfaceOptions {
     }
 
     /// Settings with these options and no overlays.
-    pub fn settings(&self) -> Settings {
+    pub(crate) fn settings(&self) -> Settings {
         self.tessellation().into()
     }
 
@@ -140,7 +140,7 @@ impl SurfaceOptions {
     ///
     /// # Errors
     /// There are too many triangles at any tolerance, or `count` fails.
-    pub fn within_budget(
+    pub(crate) fn within_budget(
         &self,
         mut count: impl FnMut(&Settings) -> Result<u64, CliError>,
     ) -> Result<Settings, CliError> {
@@ -163,12 +163,12 @@ impl SurfaceOptions {
     }
 
     /// Memory for output on the device, in bytes.
-    pub fn arena_bytes(&self) -> u64 {
+    pub(crate) fn arena_bytes(&self) -> u64 {
         self.arena << 20
     }
 
     /// Returns the camera of these options for a mesh with these bounds. Without a distance it shows everything that is drawn.
-    pub fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
+    pub(crate) fn camera(&self, mesh: &Mesh, bounds: &Bounds) -> Camera {
         let mut camera = Camera::framing(&bounds.grown(self.settings().reach(mesh)), self.viewport());
         (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-89.9, 89.9));
         if let Some(radii) = self.camera.distance {

@@ -11,7 +11,7 @@ use crate::names::shown_path;
 ///
 /// # Errors
 /// A file to be written is read or written already, or there is no folder for it.
-pub fn keep_apart<'a>(
+pub(super) fn keep_apart<'a>(
     read: impl IntoIterator<Item = Option<&'a Path>>,
     written: impl IntoIterator<Item = Option<&'a Path>>,
 ) -> Result<(), CliError> {
@@ -39,7 +39,7 @@ pub(super) fn file_of(source: &Source) -> Option<&Path> {
 }
 
 /// The file of a height map that has one.
-pub fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
+pub(super) fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
     match heights? {
         HeightSource::File(path) => Some(path),
         HeightSource::Materials => None,

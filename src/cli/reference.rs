@@ -29,7 +29,7 @@ pub(super) fn read(path: &Path) -> Result<image::RgbaImage, CliError> {
 ///
 /// # Errors
 /// It differs, or is of another size.
-pub fn compare_with(
+pub(super) fn compare_with(
     output: &Path,
     picture: &image::RgbaImage,
     path: &Path,

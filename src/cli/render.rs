@@ -60,7 +60,7 @@ pub(crate) struct Args {
 
 impl Args {
     /// The arguments that draw what the window shows when it opens.
-    pub fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
+    pub(crate) fn preview(file: Source, limit: LimitOption, adapter: AdapterOption, output: &Path) -> Self {
         let opening = Settings::opening();
         let tessellation = TessellationOptions { tessellation: opening.tessellation, displacement: None };
         let weld = WeldOption { limit, ..WeldOption::default() };
@@ -99,7 +99,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 ///
 /// # Errors
 /// Those of the command.
-pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let PictureOptions(Settings { overlays, split_surface, .. }) = args.picture;
     args.surface.check_with(split_surface)?;
     args.keep_apart()?;

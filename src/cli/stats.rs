@@ -161,7 +161,7 @@ impl CrackStats {
 
 impl Stats {
     /// The stats that every picture has, seen from `view`. The others are left empty.
-    pub fn new(
+    pub(super) fn new(
         engine: &Engine,
         loaded: &Loaded,
         scene: &Scene,
@@ -227,7 +227,7 @@ pub(super) struct LeftStats {
 
 impl LeftStats {
     /// The stats of a scene that is tessellated with these settings and seen from `view`.
-    pub fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
+    pub(super) fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         Self {
             surface: settings.tessellation.surface.name(),

@@ -48,7 +48,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 ///
 /// # Errors
 /// Those of the command.
-pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
+pub(crate) fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.surface.check()?;
     args.adapter.check(args.device == Device::Cpu)?;
     Exported::check(&args.output, 0, 0)?;

@@ -25,7 +25,7 @@ pub(crate) struct TruthOption {
 }
 
 /// The surface that a picture is compared with.
-pub enum ReferenceSurface {
+pub(crate) enum ReferenceSurface {
     /// A given or exact surface, with its name.
     Truth(String, Arc<Truth>),
     /// The limit surface of the tessellation.
@@ -37,7 +37,7 @@ impl TruthOption {
     ///
     /// # Errors
     /// The mesh of `--truth` can't be read, or the compared mesh is in a pose.
-    pub fn reference_surface(
+    pub(crate) fn reference_surface(
         &self,
         loaded: &Loaded,
         surface: &SurfaceOptions,
@@ -66,7 +66,7 @@ impl TruthOption {
 
 impl ReferenceSurface {
     /// The surface to compare with what was emitted with these inputs.
-    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
+    pub(crate) fn target(&self, inputs: &Inputs) -> DeviationTarget {
         match self {
             Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
             Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
@@ -74,7 +74,7 @@ impl ReferenceSurface {
     }
 
     /// The given or exact surface and its name; none for the limit surface.
-    pub fn truth(&self) -> Option<(&str, &Truth)> {
+    pub(crate) fn truth(&self) -> Option<(&str, &Truth)> {
         match self {
             Self::Truth(name, truth) => Some((name, truth)),
             Self::Limit => None,

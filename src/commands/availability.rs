@@ -127,7 +127,7 @@ pub(super) fn split(now: &Availability) -> Option<&'static str> {
     unless(now.is_split, "Only a split view has a left half.")
 }
 
-pub fn deviation(now: &Availability) -> Option<&'static str> {
+pub(super) fn deviation(now: &Availability) -> Option<&'static str> {
     unless(now.shows_deviation, "Only the deviation overlay colours distances.")
 }
 

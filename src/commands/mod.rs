@@ -240,7 +240,7 @@ pub(crate) fn key_name(action: &Action) -> &'static str {
 }
 
 /// Appends the keys of an action, if it has some, to a sentence.
-pub fn with_key(sentence: &str, action: &Action) -> String {
+pub(crate) fn with_key(sentence: &str, action: &Action) -> String {
     match key_name(action) {
         "" => sentence.to_owned(),
         keys => format!("{} ({keys}).", sentence.trim_end_matches('.')),
@@ -248,7 +248,7 @@ pub fn with_key(sentence: &str, action: &Action) -> String {
 }
 
 /// The names of keys as on a PC, on any platform.
-pub fn key_names(keys: &[KeyboardShortcut]) -> String {
+pub(crate) fn key_names(keys: &[KeyboardShortcut]) -> String {
     let name = |key: &KeyboardShortcut| key.format(&egui::ModifierNames::NAMES, false);
     keys.iter().map(name).collect::<Vec<_>>().join(", ")
 }
@@ -264,7 +264,7 @@ pub(crate) fn all(now: &Availability) -> Vec<Command> {
 pub(crate) const QUIT: KeyboardShortcut = ctrl(Key::Q);
 
 /// What the pointer does in the picture. These aren't commands, but they are listed with the keys.
-pub const GESTURES: [(&str, &str); 4] = [
+pub(crate) const GESTURES: [(&str, &str); 4] = [
     ("Click", "Selects the triangle, its patch and its nearest edge."),
     ("Left drag", "Orbits."),
     ("Middle drag, Shift+left drag", "Pans."),

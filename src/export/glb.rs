@@ -11,10 +11,10 @@ use super::{ExportError, Exported};
 use crate::mesh::Texture;
 
 /// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
-pub const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
+pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
 
 /// Returns the size of a mesh's attributes and indices in bytes.
-pub fn bytes(vertices: u64, triangles: u64) -> u64 {
+pub(super) fn bytes(vertices: u64, triangles: u64) -> u64 {
     vertices * 32 + triangles * 12
 }
 
@@ -22,7 +22,7 @@ pub fn bytes(vertices: u64, triangles: u64) -> u64 {
 ///
 /// # Errors
 /// The file would be larger than 4 GiB, or a texture can't be encoded.
-pub fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
+pub(super) fn encode(mesh: &Exported, path: &str) -> Result<Vec<u8>, ExportError> {
     let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
     let bytes = bytes(mesh.positions.len() as u64, triangles as u64);
     if bytes > MAX_BYTES {

@@ -14,7 +14,7 @@ use crate::names::shown_path;
 use crate::tessellate::{Tessellated, linear_normal, linear_uv};
 
 /// A tessellated mesh: the attributes of each vertex, and a list of triangles for each material.
-pub struct Exported<'a> {
+pub(crate) struct Exported<'a> {
     /// The mesh that was tessellated: its name and materials are written.
     pub mesh: &'a Mesh,
     /// In object units.
@@ -43,7 +43,7 @@ pub(crate) enum ExportError {
 impl<'a> Exported<'a> {
     /// Collects the attributes of every emitted vertex. Positions are those that were emitted. Normals and uvs are interpolated
     /// once more, since emitted normals are packed, which is precise enough only for drawing.
-    pub fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, topology: &Topology, tessellated: &Tessellated) -> Self {
         let corners = |patch: u32| topology.patch_corners(patch).map(|c| &mesh.corners[c as usize]);
         let vertices = &tessellated.vertices;
         let attributes = vertices.iter().map(|vertex| {
@@ -65,7 +65,7 @@ impl<'a> Exported<'a> {
     ///
     /// # Errors
     /// The ending is neither .glb nor .obj, or the format can't hold that many.
-    pub fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
+    pub(crate) fn check(path: &Path, vertices: u64, triangles: u64) -> Result<(), ExportError> {
         let shown = shown_path(path);
         match ending(path).as_str() {
             // This program writes 32-bit indices in both formats.
@@ -81,7 +81,7 @@ impl<'a> Exported<'a> {
     ///
     /// # Errors
     /// The ending is another one, the file can't be written, or the format can't hold that many triangles.
-    pub fn write(&self, path: &Path) -> Result<(), ExportError> {
+    pub(crate) fn write(&self, path: &Path) -> Result<(), ExportError> {
         let shown = shown_path(path);
         let bytes = match ending(path).as_str() {
             "glb" => glb::encode(self, &shown)?,
@@ -93,6 +93,6 @@ impl<'a> Exported<'a> {
 }
 
 /// Returns the ending of a file's name without its dot, in lower case; empty if there is none.
-pub fn ending(path: &Path) -> String {
+pub(crate) fn ending(path: &Path) -> String {
     path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase()
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::Exported;
 
 /// Returns the text of a file.
-pub fn encode(mesh: &Exported) -> Vec<u8> {
+pub(super) fn encode(mesh: &Exported) -> Vec<u8> {
     let mut text = format!("# {} tessellated by pnaen\n", mesh.mesh.name.replace(char::is_control, " "));
     // Writing into a String can't fail. Rust prints the shortest decimal that parses to the same f32.
     for p in &mesh.positions {

@@ -6,7 +6,7 @@ use crate::tessellate::{Displacement, Normals, Partitioning, Surface, Tessellati
 
 /// One aspect of tessellation, with a tile for each technique.
 #[derive(Clone, Debug)]
-pub struct Exhibit {
+pub(crate) struct Exhibit {
     /// The name of its picture's file, without the ending.
     pub name: &'static str,
     pub title: &'static str,
@@ -19,7 +19,7 @@ pub struct Exhibit {
 
 /// One technique of an exhibit.
 #[derive(Clone, Debug)]
-pub struct Tile {
+pub(crate) struct Tile {
     /// The name on the command line.
     pub name: String,
     /// A sentence that says what the technique is, and where it was published.
@@ -50,7 +50,7 @@ impl Tile {
 }
 
 /// All exhibits, in the order of the steps in which a patch is made: surface, creases, normals, pattern, heights.
-pub fn exhibits() -> [Exhibit; 5] {
+pub(crate) fn exhibits() -> [Exhibit; 5] {
     [surfaces(), creases(), normals(), patterns(), heights()]
 }
 
@@ -138,7 +138,7 @@ fn heights() -> Exhibit {
 }
 
 /// A height image of waves for shapes made in code. It can be repeated without a seam.
-pub fn waves(mesh: &Mesh) -> Heights {
+pub(super) fn waves(mesh: &Mesh) -> Heights {
     const SIZE: u32 = 128;
     let height = |i: u32| {
         let [x, y] = [i % SIZE, i / SIZE].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / SIZE as f32);

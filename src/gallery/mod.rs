@@ -11,9 +11,9 @@ use glam::Vec3;
 use image::RgbImage;
 use thiserror::Error;
 
-pub use exhibits::{Exhibit, Tile, exhibits};
-pub use page::{PAGE, page};
-pub use tile::TileResults;
+pub(crate) use exhibits::{Exhibit, Tile, exhibits};
+pub(crate) use page::{PAGE, page};
+pub(crate) use tile::TileResults;
 
 use crate::engine::{Engine, Loaded, Preparation, load};
 use crate::gpu::{GpuError, Timing};
@@ -52,7 +52,7 @@ const FARTHEST: f32 = 1.1;
 
 /// What the gallery shows, and how.
 #[derive(Clone, Debug)]
-pub struct GalleryOptions {
+pub(crate) struct GalleryOptions {
     /// The mesh; `None` for the shape that suits each exhibit.
     pub source: Option<Source>,
     pub preparation: Preparation,
@@ -67,7 +67,7 @@ pub struct GalleryOptions {
 }
 
 /// Draws exhibits on one device.
-pub struct Gallery<'a> {
+pub(crate) struct Gallery<'a> {
     options: GalleryOptions,
     engine: &'a Engine,
     /// The meshes that were loaded already. A mesh that the user names is in every exhibit.
@@ -75,7 +75,7 @@ pub struct Gallery<'a> {
 }
 
 impl<'a> Gallery<'a> {
-    pub fn new(options: GalleryOptions, engine: &'a Engine) -> Self {
+    pub(crate) fn new(options: GalleryOptions, engine: &'a Engine) -> Self {
         Self { options, engine, loaded: Vec::new() }
     }
 
@@ -116,7 +116,7 @@ impl<'a> Gallery<'a> {
     ///
     /// # Errors
     /// The mesh can't be loaded.
-    pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
+    pub(crate) fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
         match self.options.source.clone() {
             Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),
             None => Ok(Vec::new()),

@@ -34,7 +34,7 @@ const COLUMNS: [&str; 11] = [
 
 /// Returns the page in Markdown: every exhibit with its picture, and a line for each of its tiles. `subject` is the mesh, if
 /// the user named one, and `adapter` the name of the device.
-pub fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<TileResults>)]) -> String {
+pub(crate) fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<TileResults>)]) -> String {
     let on = subject.map_or("shapes made in code".to_owned(), ToOwned::to_owned);
     let mut text = format!(
         "# Every technique, side by side\n\nWritten by `pnaen gallery -o DIR`: {on}, drawn and timed on {adapter}.\n\n{LEGEND}"

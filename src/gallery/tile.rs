@@ -23,7 +23,7 @@ const NARROW_COLOR: [u8; 3] = [120, 160, 205];
 const HALF_WIDTHS: [f32; 2] = [1.25, 0.75];
 
 /// What all tiles of an exhibit are drawn with.
-pub struct TileContext<'a> {
+pub(super) struct TileContext<'a> {
     pub engine: &'a Engine,
     pub target: &'a Target,
     pub camera: &'a Camera,
@@ -32,7 +32,7 @@ pub struct TileContext<'a> {
 
 /// The measurements of one tile.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TileResults {
+pub(crate) struct TileResults {
     pub factor: f32,
     pub triangles: u64,
     /// The largest distance on screen between what was drawn and the surface that it approximates, in px; `None` if nothing is
@@ -51,7 +51,7 @@ pub struct TileResults {
 }
 
 /// The inputs with a factor at which the mesh makes no more than about [`MOST_TRIANGLES`]. A lowered factor is whole.
-pub fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
+pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     // The tessellator makes about 1.5 times the square of the factor triangles in a patch.
     let most = (MOST_TRIANGLES / (1.5 * scene.tessellator.topology().patches.len().max(1) as f32)).sqrt();
     debug_assert!(inputs.tessellation.lod == Lod::Uniform);
@@ -68,7 +68,7 @@ pub fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
 ///
 /// # Errors
 /// The device fails.
-pub fn draw_tile(
+pub(super) fn draw_tile(
     context: &TileContext,
     settings: Settings,
     loaded: &Loaded,

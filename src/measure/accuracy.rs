@@ -30,7 +30,7 @@ impl Default for AccuracyOptions {
 /// Compares what was emitted, on the CPU or the device, with a reference surface, chunk by chunk.
 ///
 /// All of the mesh must be emitted: parts that are clipped or culled count as distance from the reference surface.
-pub struct AccuracyMeasurement<'a> {
+pub(crate) struct AccuracyMeasurement<'a> {
     truth: &'a Truth,
     options: AccuracyOptions,
     screen: Option<Screen>,
@@ -112,7 +112,7 @@ const MAX_STEPS: u32 = 200;
 
 impl<'a> AccuracyMeasurement<'a> {
     /// Starts a measurement. With a view, distances are also measured in px.
-    pub fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
+    pub(crate) fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
         let samples = truth.samples(options.samples).into_iter().map(|sample| (sample, None)).collect();
         Self { truth, options, screen: view.map(Screen::new), samples, sums: Sums::default() }
     }
@@ -171,7 +171,7 @@ impl<'a> AccuracyMeasurement<'a> {
     }
 
     /// The results; `None` if nothing with an area was emitted.
-    pub fn finish(self) -> Option<Accuracy> {
+    pub(crate) fn finish(self) -> Option<Accuracy> {
         let Sums { area, squares, angles, worst, worst_px, worst_normal, not_finite } = self.sums;
         let (worst_to_truth, worst_normal) = (worst?, worst_normal?);
         if area <= 0.0 {

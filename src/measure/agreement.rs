@@ -51,7 +51,7 @@ pub(crate) struct Order {
 
 impl Order {
     /// The first convention that writes factors in this order.
-    pub fn convention(&self) -> Option<Convention> {
+    pub(crate) fn convention(&self) -> Option<Convention> {
         Convention::ALL.into_iter().find(|&convention| order(convention, factor_side) == self.sides)
     }
 }
@@ -64,7 +64,7 @@ fn order(convention: Convention, side: fn(Convention, u32) -> u32) -> [u32; 3] {
 
 impl Agreement {
     /// Compares the sides of every edge as they are cut under a convention.
-    pub fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
+    pub(crate) fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
         let culled: Vec<bool> = given.iter().map(|patch| patch.culls()).collect();
         let shown = order(convention, domain_side);
         let mut agreement = Self {

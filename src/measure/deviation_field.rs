@@ -46,7 +46,7 @@ const STEPS: [u32; 5] = [24, 12, 6, 3, 0];
 /// The most samples that are taken, as long as triangles can have fewer each.
 const SAMPLES: u64 = 1_000_000;
 /// The most triangles that are measured: any adapter can bind a number for each.
-pub const MOST_TRIANGLES: u64 = 1 << 24;
+pub(crate) const MOST_TRIANGLES: u64 = 1 << 24;
 
 /// Distances in object units. Samples of a triangle lie on a grid that cuts its edges into equal segments: row i has the
 /// weight i / steps of corner 1, and in it sample j the weight j / steps of corner 2.
@@ -64,7 +64,7 @@ pub struct DeviationField {
 }
 
 /// The number of samples in a triangle.
-pub fn samples_of(steps: u32) -> u32 {
+pub(super) fn samples_of(steps: u32) -> u32 {
     (steps + 1) * (steps + 2) / 2
 }
 
@@ -83,7 +83,7 @@ pub(crate) struct DeviationMeasurement<'a> {
 
 impl<'a> DeviationMeasurement<'a> {
     /// Starts to measure a tessellation of this mesh with this number of triangles.
-    pub fn new(
+    pub(crate) fn new(
         target: &'a DeviationTarget,
         mesh: &'a Mesh,
         topology: &'a Topology,

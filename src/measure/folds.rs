@@ -33,7 +33,7 @@ fn domain_area([a, b, c]: [[u32; 2]; 3]) -> i64 {
 }
 
 /// Counts the folded ones among triangles, which are indices into `vertices`.
-pub fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
+pub(super) fn count(topology: &Topology, ulp: f64, vertices: &[Vertex], triangles: &[[u32; 3]]) -> u64 {
     let at = |index: u32| Vec3::from(vertices[index as usize].position).as_dvec3();
     let (mut patch, mut patch_facing) = (u32::MAX, DVec3::ZERO);
     let folded = triangles.iter().filter(|triangle| {

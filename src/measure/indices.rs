@@ -7,7 +7,7 @@ use crate::mesh::{Mesh, Topology};
 
 /// What a difference means, the most harmless first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Meaning {
+pub(crate) enum Meaning {
     /// The same patch, starting at another corner.
     Turned,
     /// All patches around a point name another of its corners as the dominant one.
@@ -39,7 +39,7 @@ pub(crate) struct IndexDifference {
 ///
 /// # Panics
 /// There are fewer indices given than computed, or one isn't a corner of the mesh.
-pub fn index_differences(
+pub(crate) fn index_differences(
     mesh: &Mesh,
     topology: &Topology,
     layout: Layout,

@@ -29,7 +29,7 @@ pub struct Outlines {
 
 /// The emitted points along the edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut. Without
 /// outlines, or if nothing was emitted, each edge has its two ends.
-pub fn patch_edges(
+pub(crate) fn patch_edges(
     topology: &Topology,
     patch: u32,
     outlines: Option<&Outlines>,

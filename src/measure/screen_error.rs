@@ -10,7 +10,7 @@ use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Ve
 
 /// Measures the largest distance on screen between an emitted point and the point of the limit surface at the same place of the
 /// domain. It is at least the distance to the nearest point of that surface, and is the distance that LOD by error bounds.
-pub struct ScreenErrorMeasurement<'a> {
+pub(crate) struct ScreenErrorMeasurement<'a> {
     limit: LimitSurface<'a>,
     screen: Screen,
     /// The number of segments that each edge of a triangle is divided into for sampling.
@@ -40,7 +40,7 @@ const FINE: u64 = 100_000;
 impl<'a> ScreenErrorMeasurement<'a> {
     /// Starts to measure a tessellation with these inputs, in px of their view. `triangles` is the number in all chunks
     /// together: the more there are, the fewer samples each gets.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
+    pub(crate) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs, triangles: u64) -> Self {
         let steps = match triangles {
             0..=FINE => 8,
             triangles if triangles <= 10 * FINE => 4,
@@ -50,7 +50,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
     }
 
     /// The worst place so far; `None` if nothing was in view.
-    pub fn worst(&self) -> Option<ScreenError> {
+    pub(crate) fn worst(&self) -> Option<ScreenError> {
         self.worst
     }
 

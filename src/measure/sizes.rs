@@ -12,7 +12,7 @@ use crate::tessellate::{beyond_near, planes_outside};
 use crate::view::ScreenView;
 
 /// The size in px below which triangles count as small: they cost more than they show.
-pub const SMALL_PX: f64 = 3.0;
+pub(crate) const SMALL_PX: f64 = 3.0;
 
 /// Counts of triangles by their size, seen from one view.
 #[derive(Clone, Copy, Debug, PartialEq)]

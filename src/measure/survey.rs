@@ -12,7 +12,7 @@ use crate::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, pat
 use crate::view::ulp;
 
 /// The measurements so far.
-pub struct Survey<'a> {
+pub(crate) struct Survey<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     ulp: f64,
@@ -78,7 +78,7 @@ impl<'a> Survey<'a> {
     }
 
     /// Compares the sides of every edge, after all chunks are taken.
-    pub fn finish(self) -> Measured {
+    pub(crate) fn finish(self) -> Measured {
         Measured {
             culled: self.culled,
             patches_low: self.outlines.low(),

@@ -18,7 +18,7 @@ use crate::tessellate::{
 };
 
 /// The step of the factor in charts.
-pub const SWEEP_STEP: f32 = 1.0 / 64.0;
+pub(crate) const SWEEP_STEP: f32 = 1.0 / 64.0;
 
 /// The sweep of one partitioning.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,7 +32,7 @@ pub(crate) struct Sweep {
 
 /// One step of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SweepStep {
+pub(crate) struct SweepStep {
     /// The factor after the step.
     pub factor: f32,
     /// The largest distance that any surface point moved, in object units.
@@ -45,7 +45,7 @@ pub struct SweepStep {
 
 impl Sweep {
     /// The step with the largest jump, the first one if there are several; `None` without steps.
-    pub fn largest(&self) -> Option<SweepStep> {
+    pub(crate) fn largest(&self) -> Option<SweepStep> {
         self.steps.iter().copied().reduce(|best, step| if step.jump > best.jump { step } else { best })
     }
 }
@@ -57,7 +57,13 @@ impl Sweep {
 /// 6,000 places between its points. (At factor 64 a patch has 6,144 triangles.) From 1 to 64 by [`SWEEP_STEP`], a dozen patches
 /// take seconds for each fractional partitioning, and less for the others, whose steps mostly change nothing. Time and memory
 /// grow with the number of patches; memory is two tessellations of the mesh for each processor.
-pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeInclusive<f32>, step: f32) -> Sweep {
+pub(crate) fn sweep(
+    mesh: &Mesh,
+    topology: &Topology,
+    inputs: &Inputs,
+    factors: RangeInclusive<f32>,
+    step: f32,
+) -> Sweep {
     let (first, last) = factors.into_inner();
     let count = ((last - first) / step).floor().max(0.0) as u32;
     let still = |k: u32| SweepStep { factor: first + k as f32 * step, jump: 0.0, patch: 0, place: [0, 0] };

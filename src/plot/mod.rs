@@ -33,14 +33,14 @@ impl ChartError {
 }
 
 /// Charts are drawn this many times as wide and as high, and then made smaller.
-pub const DENSITY: u32 = 2;
+pub(crate) const DENSITY: u32 = 2;
 /// The font's name in the plotting library. SVG files hold only this name, so a viewer shows them in its own sans-serif font.
 pub const FONT: &str = "sans-serif";
 /// The colour of text and axes.
 pub const INK: RGBColor = RGBColor(40, 40, 40);
 
 /// Colours that people with any colour vision can tell apart (Okabe and Ito 2008).
-pub const VERMILION: RGBColor = RGBColor(213, 94, 0);
+pub(crate) const VERMILION: RGBColor = RGBColor(213, 94, 0);
 pub const BLUE: RGBColor = RGBColor(0, 114, 178);
 pub(crate) const BLUISH_GREEN: RGBColor = RGBColor(0, 158, 115);
 pub(crate) const REDDISH_PURPLE: RGBColor = RGBColor(204, 121, 167);

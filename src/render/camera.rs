@@ -8,11 +8,11 @@ use crate::mesh::Bounds;
 use crate::tessellate::LodView;
 
 /// Vertical field of view, in degrees.
-pub const FIELD_OF_VIEW: f32 = 40.0;
+pub(crate) const FIELD_OF_VIEW: f32 = 40.0;
 /// The allowed distances between the target and the eye, in object units.
 const DISTANCES: std::ops::RangeInclusive<f32> = 1e-30..=1e30;
 /// The steepest elevation, in degrees. At 90 the direction that is up on screen would be undefined.
-pub const MAX_ELEVATION: f32 = 89.9;
+pub(crate) const MAX_ELEVATION: f32 = 89.9;
 
 /// A camera that looks at `target` from `distance` away.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -17,7 +17,7 @@ static COVERAGE: WgslFile = wgsl!("coverage");
 pub(super) static PASS_COVERAGE: WgslFile = wgsl!("pass_coverage", COVERAGE, TYPES, WORKGROUP_SCAN);
 
 /// How many triangles each workgroup tests; `TILE` in `shaders/pass_coverage.wgsl`.
-pub const TILE: u32 = 2048;
+pub(super) const TILE: u32 = 2048;
 
 /// What the passes over one chunk read as `sieve`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -66,7 +66,7 @@ impl Coverage {
     ///
     /// # Errors
     /// The buffers are larger than the adapter can bind.
-    pub fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
+    pub(super) fn new(gpu: &Gpu, chunk: &ChunkBuffers, material_count: u32) -> Result<Self, GpuError> {
         let most = (chunk.indices.size() / size_of::<[u32; 3]>() as u64) as u32;
         let capacity = chunk.chunk.triangle_count.next_power_of_two().min(most);
         let tiles = capacity.div_ceil(TILE) as usize;
@@ -80,12 +80,12 @@ impl Coverage {
     }
 
     /// Whether the buffers are large enough for a chunk.
-    pub fn has_room(&self, chunk: &ChunkBuffers) -> bool {
+    pub(super) fn has_room(&self, chunk: &ChunkBuffers) -> bool {
         chunk.chunk.triangle_count <= self.capacity
     }
 
     /// The size of all buffers.
-    pub fn bytes(&self) -> u64 {
+    pub(super) fn bytes(&self) -> u64 {
         [&self.marks, &self.tile_starts, &self.indices, &self.draw_args].iter().map(|buffer| buffer.size()).sum()
     }
 

@@ -9,7 +9,7 @@ use crate::measure::DeviationField;
 use crate::settings::{Colors, DeviationUnit, Settings};
 
 /// The distances from what is emitted to the reference surface.
-pub struct Deviations {
+pub(super) struct Deviations {
     /// One buffer for each chunk: see `deviations` in `shaders/draw_surface.wgsl`.
     pub(super) chunks: Vec<wgpu::Buffer>,
     /// The colour scale, in object units.
@@ -19,7 +19,7 @@ pub struct Deviations {
 }
 
 impl Deviations {
-    pub fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
+    pub(super) fn new(gpu: &Gpu, field: &DeviationField, scale: Scale, of: u64) -> Self {
         // Shaders can't detect NaN on every device, so -1 stands for it.
         let known = |sample: &f32| if sample.is_nan() { -1.0 } else { *sample };
         let buffer = |samples: &Vec<f32>| {
@@ -30,7 +30,7 @@ impl Deviations {
     }
 
     /// The buffer that is bound where no distances are known: it has no samples.
-    pub fn unknown(gpu: &Gpu) -> wgpu::Buffer {
+    pub(super) fn unknown(gpu: &Gpu) -> wgpu::Buffer {
         buffer(gpu, &[0.0])
     }
 }
@@ -46,7 +46,7 @@ fn buffer(gpu: &Gpu, contents: &[f32]) -> wgpu::Buffer {
 /// The scale for distances on screen, in px. It is plasma (Smith and van der Walt 2015, CC0) from 2 to 8 ninths: its lightness
 /// grows evenly, its hues differ from those for factors and sizes, and the dark end is left out, since dark lines would vanish
 /// on it.
-pub const DEVIATION_PX_SCALE: Scale = Scale {
+pub(crate) const DEVIATION_PX_SCALE: Scale = Scale {
     least: 0.1,
     most: 10.0,
     colors: [
@@ -66,7 +66,7 @@ const SPAN: f64 = 100.0;
 
 /// The scale for distances in object units up to `largest`, which is rounded up. It starts at `ulp` (one unit in the last place
 /// of the mesh's largest coordinate) or above.
-pub fn deviation_scale(largest: f64, ulp: f32) -> Scale {
+pub(crate) fn deviation_scale(largest: f64, ulp: f32) -> Scale {
     const ROUND: [f64; 9] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
     let largest = largest.max(f64::from(ulp) * SPAN).max(f64::from(f32::MIN_POSITIVE) * SPAN * 10.0);
     let decade = 10.0_f64.powf(largest.log10().floor());

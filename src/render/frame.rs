@@ -9,7 +9,7 @@ use crate::gpu::Gpu;
 use crate::settings::{DeviationUnit, Settings};
 
 /// Uploads the constants of a picture of a scene.
-pub fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
+pub(super) fn frame(gpu: &Gpu, scene: &Scene, target: &Target, camera: &Camera, settings: &Settings) -> wgpu::Buffer {
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };

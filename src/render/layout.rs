@@ -45,7 +45,7 @@ pub(crate) struct Material {
 /// The result of picking: what is in front at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Pick {
+pub(crate) struct Pick {
     /// The triangle's vertices as they were emitted; zero for an input triangle.
     pub vertices: [Vertex; 3],
     /// [`FOUND_EMITTED`] for an emitted triangle, another number but 0 for an input triangle, 0 for nothing.
@@ -58,11 +58,11 @@ pub struct Pick {
 }
 
 /// [`Pick::found`] for an emitted triangle; the same in `shaders/draw_types.wgsl`.
-pub const FOUND_EMITTED: u32 = 1;
+pub(crate) const FOUND_EMITTED: u32 = 1;
 
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and normals are drawn as lines
 /// instead.
-pub fn overlay_bits(overlays: &Overlays) -> u32 {
+pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
     u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
         | u32::from(overlays.colors == Colors::Barycentric) << 2
@@ -77,7 +77,7 @@ pub fn overlay_bits(overlays: &Overlays) -> u32 {
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.
 /// People with any colour vision can tell them apart (Okabe and Ito 2008). Smooth edges have an inconspicuous grey.
-pub fn edge_color(kind: EdgeKind) -> [u8; 3] {
+pub(crate) fn edge_color(kind: EdgeKind) -> [u8; 3] {
     match kind {
         EdgeKind::Smooth => [170, 175, 183],
         EdgeKind::Split => [230, 159, 0],
@@ -103,26 +103,26 @@ pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
 /// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
 /// `shaders/draw_surface.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).
-pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
+pub(crate) const WASTE_COLOR: [u8; 3] = [213, 94, 0];
 
 /// sRGB colour of the place that is farthest from the reference surface. It isn't in the scale, and [`OUTLINE_COLOR`] sets it
 /// off.
-pub const WORST_COLOR: [u8; 3] = [120, 255, 245];
+pub(crate) const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
 #[cfg(test)]
 pub(crate) const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
 
 /// sRGB colours of the sides of the selected edge, in turn, and of the outline that sets them off.
-pub const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
-pub const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
+pub(crate) const SIDE_COLORS: [[u8; 3]; 2] = [[255, 255, 255], [0, 235, 255]];
+pub(crate) const OUTLINE_COLOR: [u8; 3] = [15, 15, 18];
 
 /// sRGB colours of the edges of a selected patch that factors 0, 1 and 2 cut: paler versions of the barycentric colours of u,
 /// v and w.
-pub const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
+pub(crate) const FACTOR_COLORS: [[u8; 3]; 3] = [[240, 90, 130], [120, 185, 40], [90, 125, 255]];
 
 /// Converts sRGB bytes to linear light, from 0 to 1.
-pub fn linear(srgb: [u8; 3]) -> [f32; 3] {
+pub(crate) fn linear(srgb: [u8; 3]) -> [f32; 3] {
     srgb.map(|byte| {
         let x = f32::from(byte) / 255.0;
         if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }

@@ -8,12 +8,12 @@ use crate::measure::{CrackedEdge, Measured};
 use crate::mesh::{TJunction, Topology};
 
 /// The lines of every side of every cracked edge.
-pub fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
+pub(crate) fn crack_lines(measured: &Measured, topology: &Topology) -> Vec<LineSegment> {
     crack_lines_in(measured, topology, |_| CRACK_COLOR)
 }
 
 /// The lines of every side of every cracked edge. `color` returns the sRGB colour of each edge.
-pub fn crack_lines_in(
+pub(crate) fn crack_lines_in(
     measured: &Measured,
     topology: &Topology,
     color: impl Fn(&CrackedEdge) -> [u8; 3],
@@ -30,7 +30,7 @@ pub fn crack_lines_in(
 }
 
 /// Lines along the open edges that T-junctions lie on, and a dot on each junction's point.
-pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
+pub(crate) fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<LineSegment> {
     let at = |point: u32| topology.points[point as usize];
     let dot = |place: Vec3| LineSegment { half_width: 4.0, ..LineSegment::new(place, place, T_JUNCTION_COLOR) };
     let marks = junctions.iter().flat_map(|junction| {
@@ -41,7 +41,7 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
 }
 
 /// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.
-pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
+pub(crate) fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
     let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
     let mark =
         |color, wider: f32| [line(emitted, truth, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)];

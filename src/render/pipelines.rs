@@ -42,7 +42,7 @@ pub(super) enum Faces {
 
 /// Which part of a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Occluded {
+pub(super) enum Occluded {
     /// All of it, faintly, even behind surfaces.
     Through,
     /// The part that no surface hides.
@@ -137,7 +137,7 @@ fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferL
 }
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups.
-pub struct DrawPipelines {
+pub(super) struct DrawPipelines {
     /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, and the frame once more as a uniform.
     pub scene_layout: wgpu::BindGroupLayout,
     /// Group 1: a material's constants, texture and sampler.

@@ -15,7 +15,7 @@ pub struct Scale {
 /// The scale for tessellation factors, with a colour for each power of two. It is the upper six eighths of viridis (Smith and
 /// van der Walt 2015, CC0): its lightness grows evenly for any colour vision, and the dark end is left out, since dark lines
 /// would vanish on it.
-pub const FACTOR_SCALE: Scale = Scale {
+pub(crate) const FACTOR_SCALE: Scale = Scale {
     least: 1.0,
     most: 64.0,
     colors: [
@@ -31,7 +31,7 @@ pub const FACTOR_SCALE: Scale = Scale {
 
 /// The scale for sizes of triangles in px. It is blue, darker for larger triangles, and can't be confused with
 /// [`super::layout::WASTE_COLOR`].
-pub const SIZE_SCALE: Scale = Scale {
+pub(crate) const SIZE_SCALE: Scale = Scale {
     least: SMALL_PX as f32,
     most: 64.0,
     colors: [

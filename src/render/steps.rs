@@ -4,7 +4,7 @@ use super::Scene;
 use crate::settings::{Settings, SplitSide};
 
 /// What one render pass of a picture draws.
-pub enum Step {
+pub(super) enum Step {
     /// Only the background, since nothing is emitted.
     Nothing,
     /// The triangles of a half's chunk.
@@ -45,7 +45,7 @@ pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
 }
 
 /// The rectangles left and right of the split: x, y, width and height in px.
-pub fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
+pub(super) fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
     let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
     [[0, 0, at, height], [at, 0, width - at, height]]
 }

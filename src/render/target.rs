@@ -3,8 +3,8 @@
 use crate::gpu::{Gpu, GpuError, read_texture};
 
 /// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
-pub const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// The number of samples per pixel in pictures: 4 if the adapter supports them, else 1.
 pub fn samples(gpu: &Gpu) -> u32 {

@@ -10,7 +10,7 @@ use super::{
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
 
 /// The options of every command that tessellates.
-pub static TESSELLATION: [&Declaration; 16] = [
+pub(crate) static TESSELLATION: [&Declaration; 16] = [
     &SURFACE,
     &ALPHA,
     &NORMALS,
@@ -30,7 +30,7 @@ pub static TESSELLATION: [&Declaration; 16] = [
 ];
 
 /// The options of commands that draw a picture.
-pub static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
+pub(crate) static PICTURE: [&Declaration; 5] = [&OVERLAY, &DEVIATION_IN, &SPLIT, &SPLIT_SURFACE, &BACKGROUND];
 
 /// Tessellation factors, as Direct3D 11 has them.
 pub(crate) const FACTOR_RANGE: Range = Range::new(1.0, 64.0, "").decimals(3).logarithmic();

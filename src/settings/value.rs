@@ -61,7 +61,7 @@ pub struct Range {
 
 /// A value of any option.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Value {
+pub(crate) enum Value {
     /// The option has no value.
     Unset,
     Name(&'static str),
@@ -84,12 +84,12 @@ impl Declaration {
     }
 
     /// The default value.
-    pub fn default(&self) -> Value {
+    pub(crate) fn default(&self) -> Value {
         self.get(&Settings::default())
     }
 
     /// The range of its numbers; none if its values aren't numbers.
-    pub fn range(&self) -> Option<&Range> {
+    pub(crate) fn range(&self) -> Option<&Range> {
         match &self.kind {
             Kind::Number(range) | Kind::Pair(range) => Some(range),
             _ => None,
@@ -140,7 +140,7 @@ impl Kind {
     }
 
     /// The name of the value that a text names, which may be in HLSL's spelling.
-    pub fn named(&self, text: &str) -> Option<&'static str> {
+    pub(crate) fn named(&self, text: &str) -> Option<&'static str> {
         self.descriptions().iter().find(|value| value.is_named(text)).map(|value| value.name)
     }
 

@@ -19,7 +19,7 @@ pub(crate) struct Case {
 
 impl Case {
     /// The case, ready to run.
-    pub fn subject(&self) -> Subject {
+    pub(crate) fn subject(&self) -> Subject {
         let Self { name, about, mesh, weld, probe, view } = *self;
         Subject { name: name.to_owned(), about: about.to_owned(), mesh: mesh(), weld, probe, view }
     }
@@ -27,7 +27,7 @@ impl Case {
 
 /// What is measured besides the agreement of edges, which is measured on every case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Probe {
+pub(crate) enum Probe {
     /// Nothing else.
     Edges,
     /// Folds: triangles that face away from the side that their patch faces.
@@ -44,7 +44,7 @@ pub enum Probe {
 
 /// The camera and the factor for the picture of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CaseView {
+pub(crate) struct CaseView {
     /// In degrees, as in [`crate::render::Camera`].
     pub azimuth: f32,
     pub elevation: f32,
@@ -57,7 +57,7 @@ pub struct CaseView {
 }
 
 /// From the front, the right and above, as the window opens a mesh.
-pub const DEFAULT_VIEW: CaseView =
+pub(crate) const DEFAULT_VIEW: CaseView =
     CaseView { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
 
 const CASE: Case =

@@ -46,7 +46,7 @@ fn with_normals(shape: Shape, normal: impl Fn(usize, usize, Corner) -> Vec3) -> 
 }
 
 /// Five half-planes around one edge. Each has two triangles, and its own normals.
-pub fn fins() -> Mesh {
+pub(super) fn fins() -> Mesh {
     let fin = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 5.0;
         let (out, normal) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.3, angle.cos()));
@@ -57,14 +57,14 @@ pub fn fins() -> Mesh {
 }
 
 /// An icosphere in which every third triangle is wound the other way.
-pub fn reversed_neighbours() -> Mesh {
+pub(super) fn reversed_neighbours() -> Mesh {
     let turned = |(t, [a, b, c]): (usize, [Corner; 3])| if t % 3 == 0 { [a, c, b] } else { [a, b, c] };
     mesh(triangles(Shape::Icosphere).into_iter().map(|triangle| turned(triangle).map(InputCorner::from)))
 }
 
 /// A torus in which every other triangle appears twice and every fifth once more with reversed winding, with degenerate
 /// triangles among them.
-pub fn duplicates() -> Mesh {
+pub(super) fn duplicates() -> Mesh {
     let repeated = |(t, [a, b, c]): (usize, [Corner; 3])| {
         let mut all = vec![[a, b, c]];
         if t % 2 == 0 {
@@ -79,7 +79,7 @@ pub fn duplicates() -> Mesh {
 }
 
 /// A cube stretched to a needle, whose triangles are a million times longer than wide.
-pub fn slivers() -> Mesh {
+pub(super) fn slivers() -> Mesh {
     scaled(Shape::CubeSplit, vec3(1.0, 1e-6, 1e-6), Vec3::ZERO)
 }
 
@@ -131,7 +131,7 @@ pub(super) fn long_normals() -> Mesh {
 }
 
 /// An icosphere in which every other triangle has its normals the other way.
-pub fn opposite_normals() -> Mesh {
+pub(super) fn opposite_normals() -> Mesh {
     with_normals(Shape::Icosphere, |t, _, c| if t % 2 == 0 { c.normal } else { -c.normal })
 }
 
@@ -167,7 +167,7 @@ pub(super) fn far_away() -> Mesh {
 }
 
 /// A saddle whose middle line has denormal coordinates, which many devices take for zero.
-pub fn denormals() -> Mesh {
+pub(super) fn denormals() -> Mesh {
     changed(Shape::Saddle, |t, k, corner| {
         let least = f32::from_bits(1 + (3 * t + k) as u32);
         let small = |x: f32| if x.abs() < 1e-6 { least } else { x };
@@ -176,7 +176,7 @@ pub fn denormals() -> Mesh {
 }
 
 /// A torus cut through the middle, with its right half moved by a millionth of its size.
-pub fn near_seam() -> Mesh {
+pub(super) fn near_seam() -> Mesh {
     let moved = |corners: [Corner; 3]| {
         let right = corners.iter().map(|c| c.position.x).sum::<f32>() > 0.0;
         let offset = if right { vec3(2e-6, 1e-6, -1e-6) } else { Vec3::ZERO };
@@ -196,11 +196,11 @@ pub(super) fn roof() -> Mesh {
 }
 
 /// The number of T-junctions in [`t_junction`]: 3 on a straight edge, and 4 beside edges that follow the sheet's curve.
-pub const T_JUNCTIONS: u32 = 7;
+pub(super) const T_JUNCTIONS: u32 = 7;
 
 /// A curved sheet: one large quad, beside it a column of four small ones, and beside that a column of eight. Three points
 /// lie on the large quad's edge, and one beside an edge of each of the four.
-pub fn t_junction() -> Mesh {
+pub(super) fn t_junction() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.3 * (1.0 - z * z), z), vec3(0.3 * x, 1.0, 0.6 * z).normalize());
     // The points of the four quads on this edge lie straight, although the sheet is curved there.
     let on_edge = |z: f32| corner(vec3(0.0, 0.0, z), vec3(0.0, 1.0, 0.6 * z).normalize());
@@ -219,7 +219,7 @@ pub fn t_junction() -> Mesh {
 
 /// A flat star. The normals at its tips lie nearly in its plane and are turned sideways, and those at its notches lean
 /// inwards.
-pub fn star() -> Mesh {
+pub(super) fn star() -> Mesh {
     let at = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 10.0;
         let (out, sideways) = (vec3(angle.cos(), 0.0, angle.sin()), vec3(-angle.sin(), 0.0, angle.cos()));
@@ -231,7 +231,7 @@ pub fn star() -> Mesh {
 }
 
 /// A ground of two large triangles, with normals of a surface that rises towards its corners.
-pub fn ground() -> Mesh {
+pub(super) fn ground() -> Mesh {
     let at = |x: f32, z: f32| corner(vec3(x, 0.0, z) * 10.0, vec3(-0.2 * x, 1.0, -0.2 * z).normalize());
     let [a, b, c, d] = [at(-1.0, 1.0), at(1.0, 1.0), at(1.0, -1.0), at(-1.0, -1.0)];
     mesh([[a, b, c], [a, c, d]])
@@ -239,7 +239,7 @@ pub fn ground() -> Mesh {
 
 /// Random triangles over a few points, so that edges have many sides of either winding, some triangles are duplicates, and
 /// some are degenerate. The normals are random, some of them zero, NaN or long. Each `seed` gives another soup.
-pub fn soup(seed: u32) -> Mesh {
+pub(crate) fn soup(seed: u32) -> Mesh {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9) ^ 0x5bd1_e995);
     let points: Vec<Vec3> = (0..14).map(|_| random.vector()).collect();
     let triangles: Vec<_> =

@@ -10,12 +10,14 @@ mod run;
 mod sweep_chart;
 mod views;
 
-pub use cases::{CASES, Case, CaseView, DEFAULT_VIEW, Probe};
-pub use meshes::soup;
-pub use picture::{PictureError, picture};
-pub use report::{LEGEND, Line, PAGE, Section, Verdict, lines, page, table};
-pub use run::{Effort, run};
-pub use views::random as random_camera;
+pub(crate) use cases::{CASES, Case, CaseView, DEFAULT_VIEW, Probe};
+#[cfg(test)]
+pub(crate) use meshes::soup;
+pub(crate) use picture::{PictureError, picture};
+pub(crate) use report::{LEGEND, PAGE, Section, Verdict, lines, page, table};
+pub(crate) use run::{Effort, run};
+#[cfg(test)]
+pub(crate) use views::random as random_camera;
 
 use serde::Serialize;
 
@@ -38,7 +40,7 @@ pub(crate) struct Subject {
 
 impl Subject {
     /// A mesh that is no case: only the agreement of edges is measured.
-    pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
+    pub(crate) fn new(name: String, mesh: Mesh, weld: f32) -> Self {
         Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, view: DEFAULT_VIEW }
     }
 }
@@ -86,7 +88,7 @@ impl Method {
     }
 
     /// The surface of this method.
-    pub const fn surface(self) -> Surface {
+    pub(crate) const fn surface(self) -> Surface {
         match self {
             Self::Flat => Surface::Flat,
             Self::Pn => Surface::Pn,
@@ -100,14 +102,14 @@ impl Method {
     }
 
     /// The settings for this method with a uniform factor.
-    pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
+    pub(crate) fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
         let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
         Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
     }
 
     /// The same settings with displacement, if the mesh has a height image: without cracks, or as published with dominance
     /// alone.
-    pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
+    pub(crate) fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
         let displacement = match self {
             _ if mesh.heights.is_none() => Displacement::Off,
             Self::PnAenAsPublished => Displacement::AsPublished,
@@ -118,7 +120,7 @@ impl Method {
 
     /// The settings for this method with clipping and adaptive LOD, of about `pixels` px a segment. The method as published
     /// uses the white paper's own. Subtriangulation, which is always uniform, has clipping at one factor.
-    pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
+    pub(crate) fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
         let (lod, clip) = match self {
             Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
             _ => (Lod::EdgeLength, Clip::Frustum),
@@ -134,7 +136,7 @@ impl Method {
 
 /// What is measured. Each number is 0 if nothing is wrong, except for [`Self::Segment`], [`Self::Jump`] and [`Self::Pop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Quantity {
+pub(crate) enum Quantity {
     /// Points of edges whose positions differ between sides in at least one bit.
     Points,
     /// Edges for which LOD gave the sides different factors.
@@ -164,7 +166,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// The text that follows a number of it.
-    pub const fn unit(self) -> &'static str {
+    pub(crate) const fn unit(self) -> &'static str {
         match self {
             Self::Points => "edge points that differ",
             Self::Factors => "edges whose factors differ",
@@ -182,7 +184,7 @@ impl Quantity {
     }
 
     /// The largest number that still counts as holding.
-    pub const fn limit(self) -> f64 {
+    pub(crate) const fn limit(self) -> f64 {
         match self {
             // Segments are equally long along the curve, but perspective makes the near ones longer on screen.
             Self::Segment => 4.0,

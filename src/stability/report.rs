@@ -43,7 +43,7 @@ impl Verdict {
 }
 
 /// Returns one line for each case and method, in the order of the rows.
-pub fn lines(rows: &[Row]) -> Vec<Line> {
+pub(crate) fn lines(rows: &[Row]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for row in rows {
         let known = lines.iter().position(|line| line.case == row.case && line.method == row.method);
@@ -104,13 +104,13 @@ fn number(x: f64) -> String {
 }
 
 /// What the columns mean.
-pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+pub(crate) const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
      sides got different factors; normals: edge points whose normals differ although the mesh's normals agree; not finite: \
      vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh. Each number is the worst \
      over factors, views, partitionings and devices.";
 
 /// Formats lines as a table for a terminal.
-pub fn table(lines: &[Line]) -> String {
+pub(crate) fn table(lines: &[Line]) -> String {
     let mut text = format!("{:<20} {:<20}", "case", "method");
     for (_, column) in COLUMNS {
         let _ = write!(text, " {column:>11}");
@@ -132,7 +132,7 @@ pub fn table(lines: &[Line]) -> String {
 }
 
 /// The page's file name.
-pub const PAGE: &str = "stability.md";
+pub(crate) const PAGE: &str = "stability.md";
 
 /// What a page says about one subject, besides its numbers.
 #[derive(Clone, Debug)]
@@ -145,7 +145,7 @@ pub(crate) struct Section {
 }
 
 /// Returns the page in Markdown. It has a section for each subject: the text about it, its picture, and a table of its rows.
-pub fn page(sections: &[Section], rows: &[Row]) -> String {
+pub(crate) fn page(sections: &[Section], rows: &[Row]) -> String {
     let mut text = String::from("# Where tessellation breaks\n\n");
     let mut devices: Vec<_> = rows.iter().map(|row| row.device.as_str()).collect();
     devices.sort_unstable();

@@ -23,7 +23,7 @@ use crate::tessellate::{
 
 /// How much is tried, and on which devices.
 #[derive(Clone, Debug)]
-pub struct Effort {
+pub(crate) struct Effort {
     /// The uniform factors that are tried.
     pub factors: Vec<f32>,
     /// How many cameras are tried for adaptive LOD and clipping: the first ones of a fixed sequence.
@@ -88,7 +88,7 @@ const MOST_AT_A_TIME: usize = 8;
 ///
 /// # Errors
 /// The device fails, or the mesh needs larger buffers than the adapter can bind.
-pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
+pub(crate) fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<Vec<Row>, GpuError> {
     let mesh = Arc::new(case.mesh.clone());
     // Nobody else holds these handles, so nobody can cancel.
     let topology = Arc::new(Topology::build_within(&mesh, case.weld, &Progress::new()).unwrap_or_default());

@@ -28,7 +28,7 @@ type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingB
 ///
 /// # Errors
 /// The width or the height is outside [`CHART_RANGE`].
-pub fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -> Result<RgbImage, ChartError> {
+pub(super) fn sweep_chart(sweeps: &[Sweep], diagonal: f64, [width, height]: [u32; 2]) -> Result<RgbImage, ChartError> {
     if !(CHART_RANGE.contains(&width) && CHART_RANGE.contains(&height)) {
         return Err(ChartError::Size(width, height));
     }

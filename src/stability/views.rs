@@ -8,16 +8,16 @@ use crate::render::Camera;
 use crate::truth::radical_inverse;
 
 /// The size of the picture that screen measurements refer to: width and height in px.
-pub const SIZE: [u32; 2] = [320, 240];
+pub(super) const SIZE: [u32; 2] = [320, 240];
 
 /// [`SIZE`] as a viewport for cameras.
-pub fn viewport() -> Vec2 {
+pub(super) fn viewport() -> Vec2 {
     vec2(SIZE[0] as f32, SIZE[1] as f32)
 }
 
 /// Camera `index` of a fixed sequence of cameras all around the mesh, near and far, and inside it. Every eighth one is
 /// orthographic. It uses Halton's low-discrepancy sequence, so that even the first few cameras differ much.
-pub fn random(bounds: &Bounds, index: u32) -> Camera {
+pub(crate) fn random(bounds: &Bounds, index: u32) -> Camera {
     let [turn, height, depth, x, y] = [2, 3, 5, 7, 11].map(|base| radical_inverse(base, index as usize + 1) as f32);
     let radius = bounds.radius();
     Camera {
@@ -30,7 +30,7 @@ pub fn random(bounds: &Bounds, index: u32) -> Camera {
 }
 
 /// The camera that a case's picture is taken with.
-pub fn camera(bounds: &Bounds, view: &CaseView, viewport: Vec2) -> Camera {
+pub(super) fn camera(bounds: &Bounds, view: &CaseView, viewport: Vec2) -> Camera {
     let mut camera = Camera::framing(bounds, viewport);
     (camera.azimuth, camera.elevation) = (view.azimuth, view.elevation);
     if view.distance > 0.0 {

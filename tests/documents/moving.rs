@@ -37,7 +37,7 @@ impl Writer {
 }
 
 /// The whole document as a .glb file.
-pub fn moving() -> Vec<u8> {
+pub(super) fn moving() -> Vec<u8> {
     let mut writer = Writer::default();
     let meshes = json!([{ "primitives": [beam(&mut writer)] }, { "primitives": [octahedron(&mut writer)] }]);
     let animations = animations(&mut writer);

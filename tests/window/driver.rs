@@ -6,10 +6,10 @@ use egui_kittest::Harness;
 use pnaen::internals::App;
 
 /// How long the tests wait at most: longer than anything here takes on two slow cores.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Runs frames until everything is loaded, drawn and measured.
-pub fn settle(harness: &mut Harness<App>) {
+pub(super) fn settle(harness: &mut Harness<App>) {
     let start = Instant::now();
     // A key or click takes effect within two frames.
     harness.run_steps(3);

@@ -15,7 +15,7 @@ use pnaen::tessellate::{Displacement, Surface};
 use crate::window_tests::{choose, click, press, settle, vase};
 
 /// A temporary folder, which is removed at the end of the test.
-pub struct Folder(PathBuf);
+pub(super) struct Folder(PathBuf);
 
 impl Folder {
     pub(super) fn new(name: &str) -> Self {

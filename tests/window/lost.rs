@@ -23,7 +23,7 @@ fn lose(harness: &mut Harness<App>) {
     harness.state().gpu().device.destroy();
     let start = std::time::Instant::now();
     while !harness.state().is_lost() {
-        assert!(start.elapsed() < crate::PATIENCE, "the window hasn't noticed the loss");
+        assert!(start.elapsed() < crate::window_tests::PATIENCE, "the window hasn't noticed the loss");
         let _ = harness.state().gpu().device.poll(wgpu::PollType::wait_indefinitely());
         harness.step();
     }
@@ -117,7 +117,7 @@ fn jobs_that_were_under_way_go_on_without_further_messages() {
 
 #[test]
 fn the_pose_stays() {
-    let folder = crate::lasting::Folder::new("lost-clip");
+    let folder = crate::window_tests::lasting::Folder::new("lost-clip");
     let path = folder.path("moving.glb");
     std::fs::write(&path, crate::window_tests::moving::moving()).expect("a writable folder");
     let mut harness = window(Some(Source::File(path)));
@@ -139,7 +139,7 @@ fn the_pose_stays() {
 
 #[test]
 fn after_a_second_loss_the_window_offers_to_save_and_to_try_again() {
-    let folder = crate::lasting::Folder::new("lost-again");
+    let folder = crate::window_tests::lasting::Folder::new("lost-again");
     let path = folder.path("saved.obj");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (totals, loaded) = (harness.state().totals(), harness.state().loaded().cloned().expect("a torus"));

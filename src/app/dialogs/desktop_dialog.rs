@@ -16,7 +16,7 @@ pub(crate) enum Asked {
 }
 
 /// Shows a dialog, and waits for its answer.
-pub fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
+pub(super) fn ask(dialog: impl FnOnce() -> Option<PathBuf>) -> Asked {
     static LISTENS: Once = Once::new();
     LISTENS.call_once(|| {
         // If another logger is set already, a missing dialog looks like a cancelled one.

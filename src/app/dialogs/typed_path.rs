@@ -105,7 +105,7 @@ pub(crate) fn absolute(name: &str) -> String {
 }
 
 /// The name of a file that is made from a mesh with this title: the title's ending is replaced by `ending`.
-pub fn name_beside(title: &str, ending: &str) -> String {
+pub(crate) fn name_beside(title: &str, ending: &str) -> String {
     let stem = Path::new(title).file_stem().unwrap_or_default().to_string_lossy();
     // A shape's title has a colon, which some systems forbid in file names.
     stem.replace([':', '@', ' '], "-") + ending

@@ -23,7 +23,7 @@ pub(crate) struct BackgroundJob<T>(Receiver<Result<T, Stopped>>);
 
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Starts a job. The window is repainted when it ends, even if it panics.
-    pub fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
+    pub(crate) fn start(context: &egui::Context, job: impl FnOnce() -> T + Send + 'static) -> Self {
         let (sender, done) = channel();
         let context = context.clone();
         spawn(move || {
@@ -35,7 +35,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
     }
 
     /// Returns the result once the job has ended. Must not be called again after that.
-    pub fn take(&self) -> Option<Result<T, Stopped>> {
+    pub(crate) fn take(&self) -> Option<Result<T, Stopped>> {
         match self.0.try_recv() {
             Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
@@ -47,7 +47,7 @@ impl<T: Send + 'static> BackgroundJob<T> {
 
 impl<T: Send + 'static> BackgroundJob<T> {
     /// Returns the same job, which repaints another window when it ends.
-    pub fn waking(self, context: &egui::Context) -> Self {
+    pub(crate) fn waking(self, context: &egui::Context) -> Self {
         let (sender, done) = channel();
         let context = context.clone();
         spawn(move || {
@@ -70,7 +70,7 @@ impl<T> BackgroundJob<T> {
 }
 
 /// Starts a thread. Returns none if the system refuses.
-pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
+pub(crate) fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
     std::thread::Builder::new().spawn(job).ok()
 }
 
@@ -78,7 +78,7 @@ pub fn spawn(job: impl FnOnce() + Send + 'static) -> Option<JoinHandle<()>> {
 ///
 /// # Errors
 /// The panic's message.
-pub fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
+pub(crate) fn caught<T>(job: impl FnOnce() -> T) -> Result<T, Stopped> {
     // A panic can't leave shared state half changed: jobs share nothing with the window but what they send.
     catch_unwind(AssertUnwindSafe(job)).map_err(|panic| Stopped(words(panic.as_ref())))
 }

@@ -12,7 +12,7 @@ use crate::tessellate::{PosedMesh, Surface};
 
 /// The measurement of the distance to the reference surface, and its last result.
 #[derive(Default)]
-pub struct DeviationJob {
+pub(crate) struct DeviationJob {
     /// What the last measurement that was started is about.
     of: Option<DeviationBasis>,
     /// Declared before `copying`, so that it is dropped first: its thread must not take a closed channel for the last part.
@@ -25,7 +25,7 @@ pub struct DeviationJob {
 
 /// What a result depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DeviationBasis {
+pub(crate) struct DeviationBasis {
     pub document: u64,
     pub tessellation: u64,
     /// Counts reference surfaces.
@@ -36,7 +36,7 @@ pub struct DeviationBasis {
 
 /// A result. The scene has the samples themselves.
 #[derive(Clone, Copy)]
-pub struct DeviationResult {
+pub(crate) struct DeviationResult {
     of: DeviationBasis,
     /// None if nothing was emitted.
     pub worst: Option<WorstPoint>,
@@ -67,12 +67,12 @@ impl Drop for Comparing {
 
 impl DeviationJob {
     /// The last result. While a new measurement is under way, it is about something else.
-    pub fn found(&self) -> Option<&DeviationResult> {
+    pub(crate) fn found(&self) -> Option<&DeviationResult> {
         self.found.as_ref()
     }
 
     /// The result, if it is about this.
-    pub fn found_of(&self, of: DeviationBasis) -> Option<&DeviationResult> {
+    pub(crate) fn found_of(&self, of: DeviationBasis) -> Option<&DeviationResult> {
         self.found.as_ref().filter(|found| found.of == of)
     }
 
@@ -81,12 +81,12 @@ impl DeviationJob {
     }
 
     /// The progress of the measurement, 0 to 1; none if none is under way.
-    pub fn fraction(&self) -> Option<f32> {
+    pub(crate) fn fraction(&self) -> Option<f32> {
         self.comparing.as_ref().map(|comparing| comparing.wanted.fraction())
     }
 
     /// Stops the measurement. The last result stays.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         if self.comparing.take().is_some() {
             self.copying = None;
             self.of = None;
@@ -94,12 +94,12 @@ impl DeviationJob {
     }
 
     /// Stops copying, so that the measurement ends without a result. It isn't started again by itself.
-    pub fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         self.copying = None;
     }
 
     /// Stops the measurement and forgets the last result.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
@@ -108,7 +108,7 @@ impl DeviationJob {
     ///
     /// # Errors
     /// The device was lost, or the measurement's thread panicked.
-    pub fn go_on(
+    pub(crate) fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,

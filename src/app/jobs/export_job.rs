@@ -27,7 +27,13 @@ pub(crate) struct ExportJob {
 
 impl ExportJob {
     /// Starts to tessellate the document with these inputs, in the pose that is shown, and to write a .glb or .obj file.
-    pub fn start(context: &egui::Context, engine: &Engine, document: &Document, inputs: Inputs, path: PathBuf) -> Self {
+    pub(crate) fn start(
+        context: &egui::Context,
+        engine: &Engine,
+        document: &Document,
+        inputs: Inputs,
+        path: PathBuf,
+    ) -> Self {
         let progress = Progress::new();
         let export = Export {
             engine: engine.clone(),
@@ -47,14 +53,14 @@ impl ExportJob {
     }
 
     /// Returns a sentence once the export has ended: what was written, or as an error why nothing was.
-    pub fn take(&self) -> Option<Result<String, String>> {
+    pub(crate) fn take(&self) -> Option<Result<String, String>> {
         let stopped = |stopped: Stopped| Err(format!("exporting the mesh {stopped}"));
         let ended = self.job.as_ref()?.take()?.unwrap_or_else(stopped);
         Some(ended.map(|()| format!("{} is written.", shown_path(&self.path))))
     }
 
     /// Lets the job repaint another window when it ends.
-    pub fn wake(&mut self, context: &egui::Context) {
+    pub(crate) fn wake(&mut self, context: &egui::Context) {
         self.job = self.job.take().map(|job| job.waking(context));
     }
 }

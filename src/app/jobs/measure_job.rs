@@ -27,7 +27,7 @@ pub(crate) enum Trouble {
 
 /// The measurement of the tessellation that is shown, and its results.
 #[derive(Default)]
-pub struct MeasureJob {
+pub(crate) struct MeasureJob {
     /// The document and tessellation that the last measurement is about.
     of: Option<(u64, u64)>,
     /// The view that sizes on screen were last measured for.
@@ -78,7 +78,7 @@ pub(in crate::app) struct Part(pub PartKind, pub Readback);
 
 impl MeasureJob {
     /// The results for what is shown, once measured.
-    pub fn found(&self) -> Option<&Measured> {
+    pub(crate) fn found(&self) -> Option<&Measured> {
         self.found.as_ref()
     }
 
@@ -88,7 +88,7 @@ impl MeasureJob {
     }
 
     /// Sizes of the triangles shown, once measured, with the view that they were measured for.
-    pub fn sizes(&self) -> Option<&Sizes> {
+    pub(crate) fn sizes(&self) -> Option<&Sizes> {
         self.sizes.as_ref()
     }
 
@@ -97,19 +97,19 @@ impl MeasureJob {
     }
 
     /// Forgets results that are about another document or tessellation.
-    pub fn keep_only(&mut self, document: u64, tessellation: u64) {
+    pub(crate) fn keep_only(&mut self, document: u64, tessellation: u64) {
         if self.of.is_some_and(|of| of != (document, tessellation)) {
             self.forget();
         }
     }
 
     /// Stops the measurement. It isn't started again by itself.
-    pub fn give_up(&mut self) {
+    pub(crate) fn give_up(&mut self) {
         (self.comparing, self.copying) = (None, None);
     }
 
     /// Stops the measurement and forgets its results.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { generation: self.generation + 1, ..Self::default() };
     }
 
@@ -118,7 +118,7 @@ impl MeasureJob {
     ///
     /// # Errors
     /// The device was lost, or the measurement's thread panicked.
-    pub fn go_on(
+    pub(crate) fn go_on(
         &mut self,
         gpu: &Gpu,
         scene: &mut Scene,
@@ -159,7 +159,7 @@ impl MeasureJob {
     }
 
     /// The part of all chunks that has been copied, 0 to 1; none if none are being copied.
-    pub fn fraction(&self, chunks: usize) -> Option<f32> {
+    pub(crate) fn fraction(&self, chunks: usize) -> Option<f32> {
         self.copying.as_ref().map(|copying| copying.next_chunk as f32 / chunks.max(1) as f32)
     }
 

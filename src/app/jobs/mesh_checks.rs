@@ -9,7 +9,7 @@ use crate::progress::Progress;
 
 /// The checks of a mesh and their results. Dropping them stops them.
 #[derive(Default)]
-pub struct Checks {
+pub(crate) struct Checks {
     found: Arc<CheckResults>,
     wanted: Progress,
     /// None once it has ended.
@@ -25,7 +25,7 @@ struct CheckResults {
 
 impl Checks {
     /// Starts the checks on a thread of their own. Each result repaints the window.
-    pub fn start(context: &egui::Context, loaded: &Loaded) -> Self {
+    pub(crate) fn start(context: &egui::Context, loaded: &Loaded) -> Self {
         let mut checks = Self::default();
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
         let weld = loaded.preparation.weld;
@@ -55,7 +55,7 @@ impl Checks {
     }
 
     /// What each weld tolerance would join, once known.
-    pub fn joins(&self) -> Option<&[WeldPreview]> {
+    pub(crate) fn joins(&self) -> Option<&[WeldPreview]> {
         self.found.joins.get().map(Vec::as_slice)
     }
 
@@ -64,7 +64,7 @@ impl Checks {
     }
 
     /// Notices the end of the checks. Returns the reason, only once, if they stopped before they were done.
-    pub fn take_stopped(&mut self) -> Option<Stopped> {
+    pub(crate) fn take_stopped(&mut self) -> Option<Stopped> {
         let ended = self.job.as_ref()?.take()?;
         self.job = None;
         ended.err()

@@ -12,7 +12,7 @@ use crate::tessellate::Displacement;
 use crate::truth::Truth;
 
 /// A reference surface that was chosen for the mesh.
-pub struct ChosenTruth {
+pub(crate) struct ChosenTruth {
     pub source: Source,
     truth: Arc<Truth>,
     /// A number of its own for each one, from 2 on: see [`App::yardstick`].
@@ -20,7 +20,7 @@ pub struct ChosenTruth {
 }
 
 /// The load of a reference surface. Dropping it cancels it.
-pub struct TruthLoad {
+pub(crate) struct TruthLoad {
     pub source: Source,
     pub progress: Progress,
     /// None only for a moment, inside [`Self::wake`].

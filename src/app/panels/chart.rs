@@ -29,7 +29,7 @@ const STILL: f64 = 0.4;
 
 impl Chart {
     /// Stops measuring; the results so far stay.
-    pub fn stop(&mut self) {
+    pub(crate) fn stop(&mut self) {
         self.charting.stop();
     }
 

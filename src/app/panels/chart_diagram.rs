@@ -93,7 +93,7 @@ impl Logs {
 
 impl<'a> Diagram<'a> {
     /// Draws the diagram as large as there is room. Returns the point under the pointer and whether it was clicked.
-    pub fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
+    pub(super) fn show(&self, ui: &mut egui::Ui) -> Option<(Spot<'a>, bool)> {
         let subject = &self.charted.subject;
         let spots = self.spots();
         let x = Logs::around(spots.iter().map(|(_, [cost, _])| *cost), 0.0);
@@ -212,7 +212,7 @@ impl Canvas {
 }
 
 /// Colours of this theme.
-pub struct Inks {
+pub(super) struct Inks {
     /// Drawn around points, to set them off from what is under them.
     halo: Color32,
     front: Color32,
@@ -246,7 +246,7 @@ impl Inks {
 }
 
 /// Draws a method's line, dashed or not.
-pub fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
+pub(super) fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Option<[f64; 2]>) {
     match dash {
         None => {
             painter.line(points.to_vec(), stroke);
@@ -258,7 +258,7 @@ pub fn line(painter: &egui::Painter, points: &[Pos2], stroke: Stroke, dash: Opti
 }
 
 /// A method's point.
-pub fn marker(painter: &egui::Painter, at: Pos2, style: &MethodStyle, inks: &Inks) {
+pub(super) fn marker(painter: &egui::Painter, at: Pos2, style: &MethodStyle, inks: &Inks) {
     let color = inks.of(style);
     let shape = |radius: f64, color: Color32| {
         if style.shape == Shape::Disc {

@@ -26,7 +26,7 @@ pub(super) fn weights_text([u, v]: [u32; 2]) -> [String; 2] {
 
 /// Draws the pattern, or an empty one until the factors are known. `letters` are written where u, v and w are 1. Triangle
 /// `hit` is filled. `empty` is the text that is shown if there are no points.
-pub fn pattern_plot(
+pub(super) fn pattern_plot(
     ui: &mut Ui,
     factors: Option<PatchFactors>,
     hit: Option<u32>,

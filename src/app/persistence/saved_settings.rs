@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json, json};
 use crate::settings::{Declaration, Kind, Settings, Value, options};
 
 /// Returns all settings as a JSON object.
-pub fn written_settings(settings: &Settings) -> Json {
+pub(super) fn written_settings(settings: &Settings) -> Json {
     let mut members = Map::new();
     for option in options::all() {
         let values = match option.get(settings) {
@@ -30,7 +30,7 @@ fn written(value: Value) -> Json {
 }
 
 /// Reads settings. Members that are missing or invalid get the values of a first start.
-pub fn read_settings(value: &Json) -> Settings {
+pub(super) fn read_settings(value: &Json) -> Settings {
     let mut settings = Settings::opening();
     for option in options::all() {
         if let Some(value) = read(option, value) {

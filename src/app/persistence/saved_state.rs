@@ -14,9 +14,9 @@ use crate::settings::Settings;
 use crate::tessellate::{Displacement, Tessellation};
 
 /// The greatest number of files that are saved with their cameras.
-pub const MAX_FILES: usize = 50;
+pub(super) const MAX_FILES: usize = 50;
 /// The smallest width and height, and the largest side of a window, in points.
-pub const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
+pub(crate) const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
 const LARGEST_SIDE: f32 = 16384.0;
 /// The range of the window's zoom; 1 is the usual size.
 const ZOOM_RANGE: RangeInclusive<f32> = 0.2..=5.0;
@@ -27,7 +27,7 @@ const THEMES: [(ThemePreference, &str); 3] =
 
 /// Everything that is saved.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SavedState {
+pub(super) struct SavedState {
     /// Without displacement, which depends on the mesh.
     pub settings: Settings,
     pub frame: WindowGeometry,
@@ -47,7 +47,7 @@ pub struct WindowGeometry {
 
 /// A file that was open.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SavedFile {
+pub(super) struct SavedFile {
     /// The absolute path.
     pub path: String,
     pub seen: Option<SavedCamera>,
@@ -77,14 +77,14 @@ impl Default for SavedState {
 
 impl SavedCamera {
     /// Returns the camera, unless the mesh's size has changed too much.
-    pub fn camera_for(&self, diagonal: f32) -> Option<Camera> {
+    pub(super) fn camera_for(&self, diagonal: f32) -> Option<Camera> {
         SAME_SIZE.contains(&(diagonal / self.diagonal)).then_some(self.camera)
     }
 }
 
 impl SavedState {
     /// Parses a saved state. Returns none if it isn't a JSON object.
-    pub fn read(bytes: &[u8]) -> Option<Self> {
+    pub(super) fn read(bytes: &[u8]) -> Option<Self> {
         let all: Value = serde_json::from_slice(bytes).ok()?;
         all.is_object().then(|| {
             let mut files: Vec<SavedFile> = Vec::new();
@@ -98,14 +98,14 @@ impl SavedState {
     }
 
     /// Returns the JSON text, with a line end.
-    pub fn written(&self) -> String {
+    pub(super) fn written(&self) -> String {
         let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
         let settings = written_settings(&self.settings);
         format!("{:#}\n", json!({ "settings": settings, "window": self.frame.written(), "files": files }))
     }
 
     /// Takes settings, without displacement, which depends on the mesh.
-    pub fn take_settings(&mut self, settings: &Settings) {
+    pub(super) fn take_settings(&mut self, settings: &Settings) {
         self.settings = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
     }
 }

@@ -18,7 +18,7 @@ const SET_ASIDE: &str = "window.damaged.json";
 const MAX_BYTES: u64 = 16 << 20;
 
 /// The user's folder for the file; none if there is no such folder, or nothing is to be saved.
-pub fn folder() -> Option<PathBuf> {
+pub(crate) fn folder() -> Option<PathBuf> {
     match std::env::var_os(FOLDER) {
         Some(folder) => Some(PathBuf::from(folder)).filter(|folder| !folder.as_os_str().is_empty()),
         None => Some(etcetera::choose_base_strategy().ok()?.config_dir().join("pnaen")),
@@ -26,7 +26,7 @@ pub fn folder() -> Option<PathBuf> {
 }
 
 /// The state that was read from a folder.
-pub struct StoredState {
+pub(super) struct StoredState {
     pub kept: SavedState,
     /// The path to write to; none if the file there must not be replaced.
     pub place: Option<PathBuf>,
@@ -35,7 +35,7 @@ pub struct StoredState {
 }
 
 /// Reads the saved state from a folder. A file that can't be parsed is renamed.
-pub fn read(folder: &Path) -> StoredState {
+pub(super) fn read(folder: &Path) -> StoredState {
     let place = folder.join(NAME);
     let shown = place.display();
     let alone = |said| StoredState { kept: SavedState::default(), place: None, said: Some(said) };
@@ -79,7 +79,7 @@ pub fn read(folder: &Path) -> StoredState {
 ///
 /// # Errors
 /// Why it can't be written, as a sentence.
-pub fn write(place: &Path, kept: &SavedState) -> Result<(), String> {
+pub(super) fn write(place: &Path, kept: &SavedState) -> Result<(), String> {
     let folder = place.parent().map_or(Ok(()), std::fs::create_dir_all);
     let written = folder.and_then(|()| write_whole(place, kept.written().as_bytes()));
     written.map_err(|error| format!("{}: settings could not be saved ({error})", place.display()))

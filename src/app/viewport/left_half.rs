@@ -43,12 +43,12 @@ impl LeftHalf {
     }
 
     /// Whether making the scene takes so long that the window should say so.
-    pub fn takes_long(&self) -> bool {
+    pub(crate) fn takes_long(&self) -> bool {
         self.making.as_ref().is_some_and(|making| making.start.elapsed() > NOTICED)
     }
 
     /// Forgets the measurements of a scene that no longer exists.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.making = None;
         self.measuring.forget();
         self.deviating.forget();

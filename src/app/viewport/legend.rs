@@ -27,7 +27,7 @@ struct Legend {
 }
 
 /// What is known of the distances to the reference surface.
-pub struct Distances {
+pub(crate) struct Distances {
     pub unit: DeviationUnit,
     /// None until something is measured.
     pub scale: Option<Scale>,

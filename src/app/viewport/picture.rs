@@ -46,7 +46,7 @@ impl Wanted {
 }
 
 /// A picture that is being drawn. Each step is a submission of its own, so that the window can be drawn in between.
-pub struct Drawing {
+pub(crate) struct Drawing {
     wanted: Wanted,
     start: Instant,
     /// How many of the `steps` have been submitted.
@@ -55,7 +55,7 @@ pub struct Drawing {
 }
 
 /// Pictures of up to this many steps are finished even if a newer one is wanted.
-pub const SHORT: usize = 8;
+pub(crate) const SHORT: usize = 8;
 
 /// The picture and what it cost.
 pub(crate) struct Picture {
@@ -119,23 +119,23 @@ impl Picture {
     }
 
     /// The view that the shown picture's LOD was computed for.
-    pub fn shown_view(&self) -> Option<LodView> {
+    pub(crate) fn shown_view(&self) -> Option<LodView> {
         self.drawn.as_ref().map(|drawn| drawn.inputs.view)
     }
 
     /// The largest gap of these cracks in px, in the view of the last picture.
-    pub fn gap_px(&self, cracks: &Cracks) -> f64 {
+    pub(crate) fn gap_px(&self, cracks: &Cracks) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| cracks.max_gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
     /// The gap of one edge in px, in the view of the last picture.
-    pub fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
+    pub(crate) fn gap_of_edge_px(&self, edge: &CrackedEdge) -> f64 {
         self.drawn.as_ref().map_or(0.0, |drawn| edge.gap_px(drawn.clip_from_object, drawn.viewport))
     }
 
     /// A pixel of the last picture, counted from the left and the top, and the half whose scene is there. Where the left
     /// half shows the untessellated mesh, that is the right half's scene.
-    pub fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
+    pub(crate) fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let Wanted { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let pixel = Pixel { clip_from_object, size, at, split: settings.split };
@@ -147,18 +147,18 @@ impl Picture {
     }
 
     /// The view of the picture that is shown.
-    pub fn seen_from(&self) -> Option<ScreenView> {
+    pub(crate) fn seen_from(&self) -> Option<ScreenView> {
         let Wanted { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })
     }
 
     /// Bytes of the textures that are drawn into.
-    pub fn bytes(&self) -> u64 {
+    pub(crate) fn bytes(&self) -> u64 {
         self.target.as_ref().map_or(0, |(target, _)| target.bytes())
     }
 
     /// Takes a picture that the device has finished, and the times that have come in.
-    pub fn land(&mut self, engine: &Engine) {
+    pub(crate) fn land(&mut self, engine: &Engine) {
         if self.in_flight.as_ref().is_some_and(|done| done.load(Ordering::Acquire)) {
             self.in_flight = None;
             if let Some(drawing) = self.drawing.take_if(|drawing| drawing.given == drawing.steps) {
@@ -177,7 +177,12 @@ impl Picture {
     }
 
     /// Makes a target of this size, registered with egui, if there is none yet.
-    pub fn fit(&mut self, app: &egui_wgpu::RenderState, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
+    pub(crate) fn fit(
+        &mut self,
+        app: &egui_wgpu::RenderState,
+        engine: &Engine,
+        size: [u32; 2],
+    ) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
@@ -278,17 +283,17 @@ impl Picture {
     }
 
     /// Whether no picture is under way, so that the scene may change.
-    pub fn is_free(&self) -> bool {
+    pub(crate) fn is_free(&self) -> bool {
         self.drawing.is_none() && self.counting.is_none() && self.in_flight.is_none()
     }
 
     /// Whether a picture of more than [`SHORT`] steps is under way.
-    pub fn is_long(&self) -> bool {
+    pub(crate) fn is_long(&self) -> bool {
         self.drawing.as_ref().is_some_and(|drawing| drawing.steps > SHORT)
     }
 
     /// Handles a picture that the device refused: it isn't drawn again by itself, nor shown, as it may be half drawn.
-    pub fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
+    pub(crate) fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
         (self.drawn, self.drawing, self.counting) = (None, None, None);
         self.cancelled = Some(*wanted);
         for half in SplitSide::BOTH {
@@ -299,7 +304,7 @@ impl Picture {
     }
 
     /// Stops drawing. The last picture stays until another one is wanted.
-    pub fn cancel(&mut self) {
+    pub(crate) fn cancel(&mut self) {
         self.cancelled = self.drawing.take().map(|drawing| drawing.wanted);
     }
 }

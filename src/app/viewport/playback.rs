@@ -40,7 +40,7 @@ impl Playback {
     }
 
     /// Goes on in another window, which has another clock.
-    pub fn go_on_in(&mut self, context: &egui::Context) {
+    pub(crate) fn go_on_in(&mut self, context: &egui::Context) {
         let now = context.input(|input| input.time);
         self.playing = self.playing.map(|_| now);
     }

@@ -35,7 +35,7 @@ pub(crate) struct Outlined {
 
 impl Selection {
     /// Keeps the selected triangle, and forgets everything about the tessellation.
-    pub fn forget_tessellation(&mut self) {
+    pub(crate) fn forget_tessellation(&mut self) {
         *self = Self { triangle: self.triangle, ..Self::default() };
     }
 

@@ -31,7 +31,7 @@ impl DeviceLosses {
 }
 
 /// What happens after a window was closed.
-pub enum Next {
+pub(crate) enum Next {
     Quit,
     /// Another window opens with the same state.
     Anew,

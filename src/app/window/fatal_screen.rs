@@ -13,7 +13,7 @@ use crate::mesh::Moment;
 use crate::tessellate::{Inputs, tessellate, totals};
 
 /// The state of the screen.
-pub struct FatalScreen {
+pub(crate) struct FatalScreen {
     /// The device that this screen alone is drawn with.
     pub gpu: Gpu,
     why: String,

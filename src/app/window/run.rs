@@ -36,7 +36,7 @@ pub enum WindowError {
 ///
 /// # Errors
 /// There is no display, no adapter, or the window can't be drawn.
-pub fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
+pub(crate) fn run(source: Option<Source>, limits: Limits, adapter: AdapterChoice) -> Result<(), WindowError> {
     run_watched(source, limits, adapter, |_, _| {})
 }
 

@@ -12,7 +12,7 @@ use crate::numbers::short;
 const NAMED: usize = 3;
 
 /// The sentences about all meshes together.
-pub fn sentences(parts: &[Part]) -> Vec<String> {
+pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
     let mut all: Vec<String> = PARTS.iter().filter_map(|error| reaching(parts, *error)).collect();
     all.extend(fronts::sentences(parts));
     all.extend([LodKind::Uniform, LodKind::Paper].into_iter().filter_map(|other| saved(parts, other)));

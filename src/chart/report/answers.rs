@@ -9,8 +9,8 @@ use crate::markdown;
 use crate::numbers::{grouped, short};
 
 /// The errors that the report asks for: as parts of the diagonal, and in px for meshes without a reference surface.
-pub const PARTS: [f64; 4] = [0.01, 0.005, 0.001, 0.0001];
-pub const PX: [f64; 3] = [1.0, 0.5, 0.1];
+pub(super) const PARTS: [f64; 4] = [0.01, 0.005, 0.001, 0.0001];
+pub(super) const PX: [f64; 3] = [1.0, 0.5, 0.1];
 
 /// Methods that take up to this many times as long as the fastest count as equally fast, since times differ that much between
 /// runs.
@@ -18,7 +18,7 @@ const AS_FAST: f64 = 1.05;
 
 /// The answer to which methods reach an error at the least cost.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer<'a> {
+pub(super) enum Answer<'a> {
     /// The mesh without tessellation reaches it.
     AsItIs(&'a Row),
     /// The cheapest row of each method that has the least cost, or about the least; the cheapest of all is the first.
@@ -28,7 +28,7 @@ pub enum Answer<'a> {
 }
 
 /// Returns which methods reach an error at the least cost, or `None` if nothing was measured.
-pub fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Option<Answer<'a>> {
+pub(super) fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Option<Answer<'a>> {
     let Some(best) = race.cheapest(error, cost, |_| true) else {
         let closest = race.entries.iter().min_by(|a, b| a.1.total_cmp(&b.1));
         return closest.map(|(row, error)| Answer::Nobody(row, *error));
@@ -46,7 +46,7 @@ pub fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -> Optio
 }
 
 /// The number of meshes on which each method is among the best, the largest number first.
-pub fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
+pub(super) fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
     let mut all: Vec<(Method, usize)> = Vec::new();
     let rows = answers.iter().filter_map(|answer| if let Answer::By(rows) = answer { Some(rows) } else { None });
     for row in rows.flatten() {
@@ -60,7 +60,7 @@ pub fn winners(answers: &[Answer]) -> Vec<(Method, usize)> {
 }
 
 /// A table for each error that any row reaches: the methods that reach it on each mesh.
-pub fn tables(parts: &[Part]) -> String {
+pub(super) fn tables(parts: &[Part]) -> String {
     const COLUMNS: [&str; 5] = ["mesh", "fewest triangles by", "triangles", "fastest by", "ms"];
     let mut text = String::new();
     for error in PARTS {

@@ -18,11 +18,11 @@ pub(super) struct Standing {
 }
 
 /// The costs, in the order of a standing's numbers.
-pub const COSTS: [Cost; 2] = [Cost::Triangles, Cost::Ms];
+pub(super) const COSTS: [Cost; 2] = [Cost::Triangles, Cost::Ms];
 
 /// The standing of every method on meshes with a reference surface, those on most fronts first. The mesh without tessellation
 /// doesn't count, since all methods have it.
-pub fn standings(parts: &[Part]) -> Vec<Standing> {
+pub(super) fn standings(parts: &[Part]) -> Vec<Standing> {
     let mut all: Vec<Standing> = Vec::new();
     for (part, race) in parts.iter().filter_map(|part| Some((part, part.race()?))) {
         for method in part.subject.methods() {
@@ -46,7 +46,7 @@ pub fn standings(parts: &[Part]) -> Vec<Standing> {
 }
 
 /// The table of standings.
-pub fn table_of(parts: &[Part]) -> String {
+pub(super) fn table_of(parts: &[Part]) -> String {
     const COLUMNS: [&str; 6] =
         ["method", "meshes", "on the front by triangles", "settings there", "on the front by ms", "settings there"];
     let rows: Vec<_> = standings(parts)
@@ -71,18 +71,18 @@ pub fn table_of(parts: &[Part]) -> String {
 }
 
 /// A number of meshes in words.
-pub fn meshes(count: usize) -> String {
+pub(super) fn meshes(count: usize) -> String {
     format!("{count} {}", if count == 1 { "mesh" } else { "meshes" })
 }
 
 /// A method's name, as on the first mesh that it was tried on.
-pub fn name(parts: &[Part], method: Method) -> String {
+pub(super) fn name(parts: &[Part], method: Method) -> String {
     let part = parts.iter().find(|part| part.subject.methods().contains(&method));
     part.map_or_else(|| method.to_string(), |part| part.subject.name(method))
 }
 
 /// The names of methods. If all tried methods of a surface are among them, they get one name.
-pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
+pub(super) fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     let tried: Vec<Method> = parts.iter().flat_map(|part| part.subject.methods()).collect();
     let mut names = Vec::new();
     for method in methods {
@@ -99,7 +99,7 @@ pub fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
 }
 
 /// The sentences that name the methods on most fronts, and those on none.
-pub fn sentences(parts: &[Part]) -> Vec<String> {
+pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
     let standings = standings(parts);
     let mut all = Vec::new();
     for (index, cost) in COSTS.into_iter().enumerate() {

@@ -11,7 +11,7 @@ use crate::tessellate::Surface;
 
 /// How close a surface gets on a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
+pub(super) struct Limit {
     /// The least largest error, as a part of the diagonal.
     pub error: f64,
     /// Whether it is known that finer settings come no closer.
@@ -19,7 +19,7 @@ pub struct Limit {
 }
 
 /// How close a surface gets; `None` if it wasn't tried.
-pub fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit> {
+pub(super) fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit> {
     let own = race.entries.iter().filter(|(row, _)| row.setting.method.surface == surface);
     let error = own.map(|(_, error)| *error).reduce(f64::min)?;
     let mut methods = part.subject.methods().into_iter().filter(|method| method.surface == surface);
@@ -28,7 +28,7 @@ pub fn limit(part: &Part, race: &Race, surface: Surface) -> Option<Limit> {
 }
 
 /// All surfaces that were tried, in the order of rows.
-pub fn surfaces(parts: &[Part]) -> Vec<Surface> {
+pub(super) fn surfaces(parts: &[Part]) -> Vec<Surface> {
     let mut all = Vec::new();
     for method in parts.iter().flat_map(|part| part.subject.methods()) {
         if !all.contains(&method.surface) {
@@ -39,7 +39,7 @@ pub fn surfaces(parts: &[Part]) -> Vec<Surface> {
 }
 
 /// A table of how close every surface gets on every mesh with a reference surface.
-pub fn table_of(parts: &[Part]) -> String {
+pub(super) fn table_of(parts: &[Part]) -> String {
     let surfaces = surfaces(parts);
     let row = |part: &Part| -> Option<Vec<String>> {
         let race = part.race()?;
@@ -66,7 +66,7 @@ pub fn table_of(parts: &[Part]) -> String {
 }
 
 /// The sentences about how close surfaces get.
-pub fn sentences(parts: &[Part]) -> Vec<String> {
+pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
     let all = surfaces(parts);
     all.iter()
         .filter_map(|surface| stops(parts, *surface))

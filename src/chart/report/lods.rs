@@ -5,7 +5,7 @@ use crate::chart::{Cost, LodKind, Race, Row};
 
 /// How much less LOD by error costs than another LOD, over surfaces, meshes and errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Saving {
+pub(super) struct Saving {
     /// The cost of the other LOD divided by that of LOD by error.
     pub times: Range,
     /// The number of comparisons.
@@ -19,7 +19,7 @@ pub struct Saving {
 /// For each surface, the cheapest settings of both are compared at errors of 1, 2 and 5 times powers of ten. An error that the
 /// mesh reaches without tessellation doesn't count, since nothing can be saved there; nor does one that the coarsest setting
 /// reaches, since a setting that wasn't tried might have been cheaper.
-pub fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
+pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Saving> {
     let (mut ratios, mut alone) = (Vec::new(), [0, 0]);
     for part in parts {
         for race in part.subject.races() {
@@ -69,7 +69,7 @@ pub(super) struct Range {
 
 impl Range {
     /// Returns `None` if there are no ratios.
-    pub fn of(ratios: &[f64]) -> Option<Self> {
+    pub(super) fn of(ratios: &[f64]) -> Option<Self> {
         let least = ratios.iter().copied().reduce(f64::min)?;
         let most = ratios.iter().copied().fold(least, f64::max);
         let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();

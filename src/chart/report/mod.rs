@@ -16,8 +16,8 @@ use answers::tables;
 use section::section;
 
 /// The file names of the page and of its table.
-pub const PAGE: &str = "results.md";
-pub const TABLE: &str = "results.csv";
+pub(crate) const PAGE: &str = "results.md";
+pub(crate) const TABLE: &str = "results.csv";
 
 /// Where and when the measurements were made.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub(crate) struct Part {
 
 /// The number of settings that were left out, for each reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LeftOut {
+pub(crate) struct LeftOut {
     /// They had more than `most_triangles` triangles.
     pub too_large: usize,
     /// The most triangles that were allowed.
@@ -60,7 +60,7 @@ pub struct LeftOut {
 
 impl LeftOut {
     /// The numbers with their reasons, in words; empty if nothing was left out.
-    pub fn words(&self) -> Vec<String> {
+    pub(crate) fn words(&self) -> Vec<String> {
         let most = crate::numbers::grouped(self.most_triangles);
         let reasons = [
             (self.too_large, format!("with more than {most} triangles")),
@@ -89,7 +89,7 @@ impl Part {
 }
 
 /// Returns the page in Markdown.
-pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
+pub(crate) fn page(occasion: &Occasion, parts: &[Part]) -> String {
     let Occasion { adapter, driver, date, command, .. } = occasion;
     let mut text = String::from("# Speed against accuracy\n\n");
     let _ = writeln!(text, "Measured on {} ({}), {date}, by\n\n    {command}\n", plain(adapter), plain(driver));

@@ -12,7 +12,7 @@ use crate::numbers::{grouped, short};
 use crate::settings::Choice;
 
 /// Returns the section, with its picture and tables.
-pub fn section(part: &Part) -> String {
+pub(super) fn section(part: &Part) -> String {
     let title = markdown::plain(&part.subject.title);
     let mut text = format!("\n## {title}\n\n{}\n\n", facts(part));
     let _ = writeln!(text, "![Largest error of {title} over ms and over triangles]({})", part.picture);

@@ -27,7 +27,7 @@ pub(super) fn usual() -> Vec<Source> {
 }
 
 /// Returns a file name for each mesh's picture, of letters, digits and hyphens; no name occurs twice.
-pub fn pictures(meshes: &[Source]) -> Vec<String> {
+pub(super) fn pictures(meshes: &[Source]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for mesh in meshes {
         let stem = match mesh {
@@ -44,7 +44,7 @@ pub fn pictures(meshes: &[Source]) -> Vec<String> {
 }
 
 /// Describes this run: adapter, driver, date and command line.
-pub fn occasion(gpu: &Gpu) -> Occasion {
+pub(super) fn occasion(gpu: &Gpu) -> Occasion {
     let info = &gpu.info;
     let driver = [info.driver.as_str(), info.driver_info.as_str()].into_iter().filter(|words| !words.is_empty());
     let driver: Vec<String> = driver.map(str::to_owned).chain([format!("{:?}", info.backend)]).collect();
@@ -68,7 +68,7 @@ fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
 }
 
 /// Makes the folder before anything is measured, so that a command that takes minutes doesn't fail at its end.
-pub fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
+pub(super) fn make_folder(folder: &Path) -> Result<PathBuf, CliError> {
     std::fs::create_dir_all(folder).map_err(|error| file_error(folder, "made", &file_reason(&error)))?;
     Ok(folder.to_owned())
 }

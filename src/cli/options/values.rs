@@ -10,7 +10,7 @@ use crate::load::Source;
 use crate::mesh::crease_band::WIDEST;
 
 /// Parses the path of a picture. Refuses endings of other formats than PNG.
-pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
+pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
@@ -24,7 +24,7 @@ pub fn picture() -> impl TypedValueParser<Value = PathBuf> {
 }
 
 /// Parses the path of a mesh to write, whose ending gives its format.
-pub fn model() -> impl TypedValueParser<Value = PathBuf> {
+pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
         let known = matches!(crate::export::ending(&path).as_str(), "glb" | "obj");
@@ -74,7 +74,7 @@ impl FromStr for CameraOption {
 
 /// A position in object units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Position(pub Vec3);
+pub(crate) struct Position(pub Vec3);
 
 impl FromStr for Position {
     type Err = String;
@@ -88,12 +88,12 @@ impl FromStr for Position {
 }
 
 /// Parses a mesh's source, whose path may be in any encoding.
-pub fn source() -> impl TypedValueParser<Value = Source> {
+pub(crate) fn source() -> impl TypedValueParser<Value = Source> {
     OsStringValueParser::new().try_map(Source::try_from)
 }
 
 /// Parses a number of bytes, with a unit or without.
-pub fn bytes(text: &str) -> Result<u64, String> {
+pub(super) fn bytes(text: &str) -> Result<u64, String> {
     let (number, unit) = text.split_at(text.find(|c: char| !c.is_ascii_digit()).unwrap_or(text.len()));
     let unit = match unit.trim().to_lowercase().as_str() {
         "" | "b" => Some(1),
@@ -108,18 +108,18 @@ pub fn bytes(text: &str) -> Result<u64, String> {
 }
 
 /// Parses a difference from 0 to 1.
-pub fn threshold(text: &str) -> Result<f64, String> {
+pub(crate) fn threshold(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (0.0..=1.0).contains(number));
     number.ok_or_else(|| "expected a number from 0 to 1".into())
 }
 
 /// Parses a weld tolerance, relative to the bounding diagonal, from 0 to 0.1.
-pub fn weld(text: &str) -> Result<f32, String> {
+pub(super) fn weld(text: &str) -> Result<f32, String> {
     within(text, 0.0..=0.1)
 }
 
 /// Parses the width of a crease band, relative to the bounding diagonal.
-pub fn crease_band(text: &str) -> Result<f32, String> {
+pub(super) fn crease_band(text: &str) -> Result<f32, String> {
     within(text, 0.0..=WIDEST)
 }
 

@@ -13,7 +13,7 @@ use crate::mesh::{Corner, HeightMap, Heights, Mesh, Rig, Shape};
 
 /// A level sheet whose normals all lean one way, each a little more or less than the next. Along an edge in that direction
 /// the tangents at both ends rise, and the tangent planes are nearly parallel.
-pub fn inflection() -> Mesh {
+pub(crate) fn inflection() -> Mesh {
     let at = |x: i32, z: i32| {
         let lean = vec3(0.6 + 0.02 * (x * x - z) as f32, 1.0, 0.01 * (x * z) as f32);
         corner(vec3(x as f32, 0.0, z as f32) * 0.5, lean.normalize())
@@ -27,7 +27,7 @@ pub fn inflection() -> Mesh {
 
 /// A sheet with a crease of two edges that ends within it. The sides' normals differ at both ends of the first edge, at one
 /// end of the second, and nowhere beyond it.
-pub fn dart() -> Mesh {
+pub(crate) fn dart() -> Mesh {
     let normal = |x: f32, z: f32| vec3(0.3 * x, 1.0, 0.3 * z).normalize();
     let at = |x: i32, z: i32, side: f32| {
         let (x, z) = (x as f32, z as f32);
@@ -58,7 +58,7 @@ fn displaced(mut mesh: Mesh) -> Mesh {
 
 /// A torus displaced by waves. Every other quarter of it reads another part of the height image, so that the heights on
 /// both sides of a seam have nothing in common.
-pub fn height_seams() -> Mesh {
+pub(crate) fn height_seams() -> Mesh {
     let quarter = |c: &Corner| (c.uv.x * 4.0 - 0.01).floor() as i32;
     let triangles = triangles(Shape::Torus).into_iter().map(|(_, corners)| {
         let shift =
@@ -69,14 +69,14 @@ pub fn height_seams() -> Mesh {
 }
 
 /// A cube with split normals, displaced by waves.
-pub fn height_splits() -> Mesh {
+pub(crate) fn height_splits() -> Mesh {
     displaced(Shape::CubeSplit.build())
 }
 
 /// A cylinder that bends about its middle and swells in a clip of two seconds. It has two joints, whose weights change along
 /// it, and a morph target, which applies before the joints. Normals are split between its caps and its side, and its side
 /// has a seam.
-pub fn moving() -> Mesh {
+pub(crate) fn moving() -> Mesh {
     let mut mesh = Shape::Cylinder.build();
     let bounds = mesh.bounds();
     let mut rig = Rig { joints: Vec::new(), ..Rig::default() };

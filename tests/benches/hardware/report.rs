@@ -38,7 +38,7 @@ impl Report {
         println!("# Tessellation in compute passes against the driver's tessellation stages\n");
         println!("- adapter: {} ({:?}, {:?})", info.name, info.device_type, info.backend);
         println!("- driver: {} {}", info.driver, info.driver_info);
-        println!("- date: {}", pnaen::numbers::utc(std::time::SystemTime::now()));
+        println!("- date: {}", pnaen::internals::utc(std::time::SystemTime::now()));
         println!("- pictures: {width} x {height} px, {samples} samples per px, cleared and resolved by both");
         println!("- times: ms, medians of {runs} runs after warm-up (least..most), by {clock}");
         println!("{METHOD}");

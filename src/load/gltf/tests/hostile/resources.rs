@@ -6,7 +6,7 @@ use crate::load::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// A folder that contains a document's folder, and files around it that the document mustn't read.
-pub(super) struct Folder(PathBuf);
+pub(crate) struct Folder(PathBuf);
 
 impl Folder {
     pub(super) fn new() -> Self {
