@@ -27,8 +27,8 @@
 //! the reference), `gpu` (the same mathematics as compute passes), then for the program `render` (pictures), `measure` (what
 //! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
 // The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
-#![cfg_attr(not(feature = "app"), allow(dead_code))]
-#![warn(unreachable_pub)]
+#![cfg_attr(not(feature = "app"), allow(dead_code, unused_imports))]
+#![cfg_attr(feature = "app", warn(unreachable_pub))]
 
 pub mod embed;
 #[cfg(feature = "formats")]
