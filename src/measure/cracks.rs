@@ -195,7 +195,7 @@ fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeS
 mod tests {
     use super::*;
     use crate::measure::AskedFactors;
-    use crate::mesh::Shape;
+    use crate::mesh::{Corner, Material, Shape};
     use crate::settings::Settings;
     use crate::tessellate::{Edges, Lod, LodView, Partitioning, Surface, Tessellation, tessellate};
 
@@ -271,6 +271,30 @@ mod tests {
     fn split_normals_may_differ() {
         let cube = cracks(Shape::CubeSplit, Settings::default());
         assert_eq!(cube.different_normals, 0, "normals that the mesh splits don't count");
+    }
+
+    #[test]
+    fn normals_of_many_sides_are_compared_where_the_sources_agree() {
+        // Three triangles on one edge, of which the first two have the same normals.
+        let corner = |position: [f32; 3], normal: Vec3| Corner { position: position.into(), normal, uv: Vec2::ZERO };
+        let ends = [[0.0; 3], [1.0, 0.0, 0.0]];
+        let thirds = [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+        let normals = [Vec3::Z, Vec3::Z, Vec3::Y];
+        let corners = (0..3).flat_map(|k| [ends[0], ends[1], thirds[k]].map(|position| corner(position, normals[k])));
+        let mut material = Material::plain("plain", [1.0; 4]);
+        material.triangles = 0..3;
+        let mesh = Mesh {
+            corners: corners.collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]].into(),
+            materials: vec![material],
+            ..Mesh::default()
+        };
+        let topology = Topology::build(&mesh, &Default::default()).expect("nobody cancels");
+        let edge = topology.edges.iter().position(|edge| topology.edge_sides(edge).len() == 3).expect("an edge");
+        // Both points of each side have a normal of the side's own.
+        let points = |normal| ends.map(|position| OutlinePoint { position, normal }).to_vec();
+        let sides = [0, 1, 2].map(|patch| EdgeSide { patch, points: points(patch), ..side(&[]) });
+        assert_eq!(different_normals(&mesh, &topology, edge as u32, &sides), 2, "those of the second side");
     }
 
     fn side(points: &[[f32; 3]]) -> EdgeSide {

@@ -297,4 +297,17 @@ mod tests {
         let field = measured([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere, &progress);
         assert!(matches!(field, Err(Cancelled)));
     }
+
+    #[test]
+    fn progress_goes_on_from_chunk_to_chunk() {
+        let (truth, progress) = (Truth::of_shape(Shape::Icosphere).expect("a sphere"), Progress::new());
+        let (target, mesh, topology) = (DeviationTarget::Truth(Arc::new(truth)), Mesh::default(), Topology::default());
+        let mut measurement = DeviationMeasurement::new(&target, &mesh, &topology, 4, &progress);
+        let vertices = triangle([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        let fractions = [0, 1, 2, 3].map(|_| {
+            measurement.take(&EmittedChunk::whole(&vertices, &[[0, 1, 2]]));
+            progress.fraction()
+        });
+        assert_eq!(fractions, [0.25, 0.5, 0.75, 1.0]);
+    }
 }

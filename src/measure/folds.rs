@@ -59,7 +59,7 @@ mod tests {
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::settings::Settings;
-    use crate::tessellate::{LodView, Partitioning, Surface, Tessellation, tessellate};
+    use crate::tessellate::{LodView, Partitioning, Surface, Tessellation, pack_key, tessellate};
     use glam::{Mat4, Vec2};
 
     #[test]
@@ -89,5 +89,33 @@ mod tests {
         let domains = out.triangles.iter().map(|triangle| triangle.map(|index| out.vertices[index as usize].domain()));
         assert!(domains.map(domain_area).any(|area| area < 0), "the pattern should turn a triangle over at {factor}");
         assert_eq!(count(&topology, 1e-9, &out.vertices, &out.triangles), 0);
+    }
+
+    #[test]
+    fn the_longest_side_decides_what_is_a_line_wherever_it_is() {
+        // A unit long and 1e-7 high: at most a line where the least height is 1.2e-7.
+        let flat = [DVec3::ZERO, DVec3::new(0.5, 1e-7, 0.0), DVec3::X];
+        for first in 0..3 {
+            let turned = [0, 1, 2].map(|k| flat[(first + k) % 3]);
+            assert!(is_folded(DVec3::Z, turned, 1.1e-8) && !is_folded(DVec3::Z, turned, 1.5e-8), "from corner {first}");
+        }
+    }
+
+    #[test]
+    fn every_folded_triangle_is_counted_against_its_own_patch() {
+        let mesh = Shape::Icosahedron.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let corner = |patch: u32, at: usize, domain: [u32; 2]| Vertex {
+            position: corners(&topology, patch)[at].as_vec3().to_array(),
+            key: pack_key(patch, domain),
+            ..bytemuck::Zeroable::zeroed()
+        };
+        // Two patches as they are, and the second once more with two of its corners exchanged.
+        let as_is =
+            |patch| [(0, [65536, 0]), (1, [0, 65536]), (2, [0, 0])].map(|(at, domain)| corner(patch, at, domain));
+        let turned = [(1, [65536, 0]), (0, [0, 65536]), (2, [0, 0])].map(|(at, domain)| corner(1, at, domain));
+        let vertices = [as_is(0), as_is(1), turned].concat();
+        assert_eq!(count(&topology, 1e-9, &vertices, &[[0, 1, 2], [3, 4, 5]]), 0);
+        assert_eq!(count(&topology, 1e-9, &vertices, &[[0, 1, 2], [6, 7, 8], [3, 4, 5], [6, 7, 8]]), 2);
     }
 }

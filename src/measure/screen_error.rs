@@ -135,3 +135,37 @@ fn in_view(clip: DVec4) -> bool {
 fn worse(a: ScreenError, b: ScreenError) -> ScreenError {
     if b.px > a.px { b } else { a }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
+    use crate::settings::Settings;
+    use crate::tessellate::{Surface, Tessellation, pack_key};
+    use glam::{Mat4, Vec2, Vec3};
+
+    #[test]
+    fn a_shifted_corner_is_measured_at_the_sample_nearest_to_it() {
+        let mesh = Shape::CubeSmooth.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let settings = Settings::from(Tessellation { surface: Surface::Flat, ..Tessellation::default() });
+        let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::splat(100.0)));
+        let positions = topology.patch_positions(0);
+        for (triangles, steps) in [(1, 8), (FINE, 8), (FINE + 1, 4), (10 * FINE, 4), (10 * FINE + 1, 2)] {
+            for shifted in 0..3 {
+                let vertices = [0, 1, 2].map(|k| Vertex {
+                    position: (positions[k] + if k == shifted { Vec3::X * 0.1 } else { Vec3::ZERO }).to_array(),
+                    key: pack_key(0, [[65536, 0], [0, 65536], [0, 0]][k]),
+                    ..bytemuck::Zeroable::zeroed()
+                });
+                let mut measurement = ScreenErrorMeasurement::new(&mesh, &topology, &inputs, triangles);
+                measurement.take(&EmittedChunk::whole(&vertices, &[[0, 1, 2]]));
+                // The corner itself is 10 px off, and isn't sampled.
+                let expected = 10.0 * f64::from(steps - 1) / f64::from(steps);
+                let worst = measurement.worst().expect("it is in view");
+                assert!((worst.px - expected).abs() < 1e-4, "{triangles}, corner {shifted}: {worst:?}");
+            }
+        }
+    }
+}

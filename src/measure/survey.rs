@@ -116,3 +116,30 @@ impl Measured {
         survey.finish()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
+    use crate::tessellate::{Inputs, LodView, Partitioning, Tessellation, tessellate};
+    use glam::{Mat4, Vec2};
+
+    #[test]
+    fn a_torus_is_measured_from_end_to_end() {
+        let mesh = Shape::Torus.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        for (factor, low, at_limit) in [(1.0, 256, 0), (4.0, 0, 0), (64.0, 0, 256)] {
+            let tessellation = Tessellation { factor, partitioning: Partitioning::Integer, ..Tessellation::default() };
+            let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
+            let mut out = tessellate(&mesh, &topology, &inputs, None);
+            out.vertices[0].uv = [f32::NAN, 0.0];
+            let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+            let own = Measured::of(&mesh, &topology, asked, &out);
+            assert_eq!((own.patches_low, own.patches_at_limit, own.culled.total()), (low, at_limit, 0), "{factor}");
+            assert_eq!((own.cracks.edges_compared, own.folds, own.not_finite), (384, 0, 1), "{factor}");
+            let positions = out.vertices[1..].iter().map(|vertex| Vec3::from(vertex.position));
+            assert_eq!(own.extent[1], positions.reduce(Vec3::max).expect("vertices"), "{factor}");
+        }
+    }
+}

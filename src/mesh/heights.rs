@@ -146,4 +146,17 @@ mod tests {
         let flat = Heights::everywhere(&Shape::Torus.build(), HeightMap::new([8, 8], vec![0.5; 64]));
         assert!(flat.detail[0].iter().all(|&lost| lost < 1e-6), "{:?}", flat.detail);
     }
+
+    #[test]
+    fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {
+        let map = HeightMap::new([4, 4], (0..16).map(|i| if i < 8 { 0.25 } else { 1.0 }).collect());
+        let heights = Heights::everywhere(&Shape::Torus.build(), map);
+        assert_eq!([0.0, 0.5, 0.75, 1.0].map(|midlevel| heights.reach(midlevel)), [1.0, 0.5, 0.5, 0.75]);
+    }
+
+    #[test]
+    fn angles_take_as_many_bytes_as_is_said() {
+        let mesh = Shape::Torus.build();
+        assert_eq!(angle_bytes(mesh.corners.len()), size_of_val(&angles(&mesh)[..]) as u64);
+    }
 }

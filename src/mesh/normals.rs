@@ -168,6 +168,20 @@ mod tests {
     }
 
     #[test]
+    fn faces_of_a_large_fan_that_are_far_apart_keep_their_normals() {
+        // 85 degrees apart, but in the same third of each axis.
+        let directions = [DVec3::new(0.48, 0.48, 0.734), DVec3::new(-0.48, -0.48, 0.734)].map(DVec3::normalize);
+        let face = |i: usize| Face { normal: directions[i % 2], angle: 0.5 + i as f64 / 100.0 };
+        let fan: Vec<Face> = (0..=FAN_LIMIT).map(face).collect();
+        let mut normals = Vec::new();
+        fan_normals(&fan, &mut normals);
+        assert_eq!(normals.len(), fan.len());
+        for (normal, face) in normals.iter().zip(&fan) {
+            assert!(normal.as_dvec3().distance(face.normal) < 1e-6, "{normal}, not {}", face.normal);
+        }
+    }
+
+    #[test]
     fn normals_of_any_length_keep_their_direction() {
         for scale in [1e-45, 1e-30, 1e-3, 0.98, 1.02, 1e30, f32::MAX] {
             assert_eq!(GivenNormal::new(Vec3::NEG_Y * scale), GivenNormal::Rescaled(Vec3::NEG_Y), "{scale}");

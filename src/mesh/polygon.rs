@@ -314,6 +314,16 @@ mod tests {
         assert_eq!((triangles.len(), budget.0), (outline.len() - 2, 0));
     }
 
+    #[test]
+    fn no_ear_has_a_corner_on_its_open_side() {
+        // The fifth corner lies in the middle of the line between the first and the third, which would otherwise be cut
+        // off with the second: what is left would touch itself, and have a triangle without area.
+        for axes in [[0, 1], [1, 0]] {
+            let outline = [[4.0, 2.0], [0.0, 1.0], [4.0, 0.0], [10.0, 0.0], [4.0, 1.0], [10.0, 2.0]];
+            assert_exact(&in_plane(&outline.map(|p: [f32; 2]| axes.map(|axis| p[axis]))));
+        }
+    }
+
     proptest! {
         /// Outlines around a centre from which all of them can be seen, in whole numbers, for which the test is exact.
         #[test]

@@ -139,6 +139,13 @@ mod tests {
     const ENDS: [Vec3; 4] = [vec3(1.0, 2.0, 3.0), vec3(4.0, 0.0, 5.0), vec3(0.6, 0.0, 0.8), vec3(0.36, 0.48, 0.8)];
 
     #[test]
+    fn normals_that_sides_share_count_once() {
+        let count = |normals: &[Vec3]| normals.iter().fold(DistinctNormals::default(), |a, &b| add_normal(a, b)).count;
+        let [x, y, z] = Vec3::AXES;
+        assert_eq!([count(&[]), count(&[x, x]), count(&[x, y, x, y]), count(&[x, y, y, z])], [0, 1, 2, 3]);
+    }
+
+    #[test]
     fn control_points_are_those_of_the_paper() {
         // Vlachos et al. 2001, section 3.1, by hand in f64: w12 = (P2 - P1) . N1, b210 = (2 P1 + P2 - w12 N1) / 3.
         let [a, b, n, _] = ENDS;

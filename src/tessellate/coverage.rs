@@ -192,6 +192,25 @@ mod tests {
         })
     }
 
+    #[test]
+    fn what_rounding_may_put_before_the_near_plane_is_not_placed() {
+        let reach = |z: f32| screen_corner(&view(1, false), vec3(0.0, 0.0, z)).reach;
+        assert!(reach(0.999) > 0.0 && reach(1.001) < 0.0);
+        assert_eq!(reach(1.0_f32.next_down()), -1.0, "an ULP beyond the plane");
+    }
+
+    #[test]
+    fn a_triangle_covers_what_its_corners_can_come_to() {
+        // A place at a distance from the side from (0, 0) to (4, 0). The area with it is four times the distance, and
+        // corners that move by 1/10 px change it by up to 1/10 (4 + 2 distance + 2/10): equal at 0.42 / 3.8.
+        let [a, b, c] = [vec2(0.0, 0.0), vec2(4.0, 0.0), vec2(0.0, 4.0)];
+        let covers = |distance: f32| {
+            let at = vec2(1.0, -distance);
+            [may_cover(at, a, b, c, 0.1), may_cover(at, c, b, a, 0.1)]
+        };
+        assert_eq!([covers(0.110), covers(0.111)], [[true; 2], [false; 2]]);
+    }
+
     fn place() -> impl Strategy<Value = Vec2> {
         (20.0_f32..21.0, 20.0_f32..21.0).prop_map(|(x, y)| vec2(x, y))
     }

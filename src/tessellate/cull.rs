@@ -244,6 +244,19 @@ mod tests {
         position.dot((at_u - at_w).cross(at_v - at_w))
     }
 
+    #[test]
+    fn margins_are_the_lengths_of_the_planes_normals() {
+        // No two rows are perpendicular to w, as they would be before a camera that looks straight ahead.
+        let rows = [[3.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0], [1.0, 2.0, 5.0, 1.0]];
+        let clip_from_object = Mat4::from_cols_array_2d(&rows).transpose();
+        let view = LodView { reach: 0.5, ..LodView::new(clip_from_object, Vec2::ONE) };
+        // The squared lengths of x + w, x - w, y + w, y - w, z and z - w.
+        let expected = [45.0, 33.0, 62.0, 30.0, 4.0, 14.0].map(|square: f32| 0.5 * square.sqrt());
+        for (own, expected) in reach_margins(&view).into_iter().zip(expected) {
+            assert!((own - expected).abs() < 1e-6, "{own}, not {expected}");
+        }
+    }
+
     proptest::proptest! {
         #[test]
         fn patches_that_face_away_show_their_back_everywhere(

@@ -238,6 +238,12 @@ mod tests {
         assert_eq!(raised_normal(Vec3::ZERO, Vec3::Y), Vec3::Y);
     }
 
+    #[test]
+    fn texel_lengths_count_px_of_the_width_and_of_the_height() {
+        let map = HeightMap::new([64, 32], vec![0.0; 2048]);
+        assert_eq!(texel_length(&map, vec2(0.5, 0.25), vec2(0.5 + 3.0 / 64.0, 0.25 + 4.0 / 32.0)), 5.0);
+    }
+
     proptest! {
         #[test]
         fn raised_normals_are_the_normals_of_displaced_triangles(

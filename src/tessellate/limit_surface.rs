@@ -53,3 +53,38 @@ impl<'a> LimitSurface<'a> {
             + net.center.as_dvec3() * (6.0 * x * y * z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Shape;
+    use crate::progress::Progress;
+    use crate::settings::Settings;
+    use crate::tessellate::{LodView, Tessellation};
+    use glam::{Mat4, Vec2};
+
+    /// Returns the x coordinate of the surface at the weights 1/2, 1/3 and 1/6, if the control points have these.
+    fn at_a_half_and_a_third(surface: Surface, corners: [f32; 3], edges: [f32; 6], center: f32) -> f64 {
+        let mesh = Shape::Icosahedron.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let settings = Settings::from(Tessellation { surface, ..Tessellation::default() });
+        let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        let at = |x: f32| Vec3::X * x;
+        let net = ControlNet { corners: corners.map(at), edges: edges.map(at), center: at(center) };
+        LimitSurface::new(&mesh, &topology, &inputs).position(0, &net, 1.0 / 2.0, 1.0 / 3.0).x
+    }
+
+    #[test]
+    fn positions_are_those_of_the_bernstein_polynomials() {
+        // With these control points, each bit of the sum would show a wrong weight.
+        let (corners, edges, center) = ([1.0, 2.0, 4.0], [8.0, 16.0, 32.0, 64.0, 128.0, 256.0], 512.0);
+        let cubic = at_a_half_and_a_third(Surface::PnAen, corners, edges, center);
+        // The ten weights, times 216.
+        let corner_sum = 27.0 * 1.0 + 8.0 * 2.0 + 1.0 * 4.0;
+        let edge_sum = 54.0 * 8.0 + 36.0 * 16.0 + 12.0 * 32.0 + 6.0 * 64.0 + 9.0 * 128.0 + 27.0 * 256.0;
+        let expected = (corner_sum + edge_sum + 36.0 * 512.0) / 216.0;
+        assert!((cubic - expected).abs() < 1e-9, "{cubic}, not {expected}");
+        let flat = at_a_half_and_a_third(Surface::Flat, corners, edges, center);
+        assert!((flat - (1.0 / 2.0 + 2.0 / 3.0 + 4.0 / 6.0)).abs() < 1e-12, "{flat}: a flat surface has corners alone");
+    }
+}

@@ -358,3 +358,81 @@ fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
     };
     dominance.part_starts.windows(2).map(of).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::mesh::{Corner, Material};
+    use crate::progress::Progress;
+    use crate::tessellate::{LimitSurface, LodView, Partitioning, Surface, Tessellation, tessellate};
+    use glam::{Mat4, vec2, vec3};
+
+    /// Returns a square of two triangles from (-1, -1) to (1, 1), over the middle half of an image that rises by 1/2
+    /// across and by 1/4 down.
+    fn square() -> Mesh {
+        let corner = |x: f32, y: f32| Corner {
+            position: vec3(x, y, 0.0),
+            normal: Vec3::Z,
+            uv: vec2(0.5 + 0.25 * x, 0.5 - 0.25 * y),
+        };
+        let mut material = Material::plain("plain", [1.0; 4]);
+        material.triangles = 0..2;
+        let mut mesh = Mesh {
+            corners: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| corner(x, y)).to_vec(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]].into(),
+            materials: vec![material],
+            ..Mesh::default()
+        };
+        let height = |i: u32| ((i % 64) as f32 + 0.5) / 128.0 + ((i / 64) as f32 + 0.5) / 256.0;
+        let map = HeightMap::new([64, 64], (0..4096).map(height).collect());
+        mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
+        mesh
+    }
+
+    #[test]
+    fn a_slope_over_a_square_is_a_slope() {
+        let mesh = square();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        // In object units from black to white; the square's bounding radius is the root of 2.
+        let scale = 2.0;
+        // The height rises by 1/2 over 4 units across and by 1/4 over 4 units down.
+        let rise = vec2(scale / 8.0, -scale / 16.0);
+        let normal = vec3(-rise.x, -rise.y, 1.0).normalize();
+        for (surface, normals) in [
+            (Surface::Flat, Normals::Linear),
+            (Surface::PnAen, Normals::Quadratic),
+            (Surface::PnAen, Normals::Surface),
+            (Surface::Flat, Normals::Surface),
+        ] {
+            for displacement in [Displacement::On, Displacement::PerPatch] {
+                let tessellation = Tessellation {
+                    surface,
+                    normals,
+                    displacement,
+                    height_scale: scale / 2.0_f32.sqrt(),
+                    midlevel: 0.25,
+                    // Segments shorter than a px: heights are read from level 0.
+                    partitioning: Partitioning::Integer,
+                    factor: 64.0,
+                    ..Tessellation::default()
+                };
+                let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
+                let limit = LimitSurface::new(&mesh, &topology, &inputs);
+                for vertex in tessellate(&mesh, &topology, &inputs, None).vertices {
+                    let position = Vec3::from(vertex.position);
+                    // In the middle of the image the height is 3/8.
+                    let expected = vec3(position.x, position.y, rise.dot(position.truncate()) + scale * (0.375 - 0.25));
+                    let what = format!("{surface:?} {normals:?} {displacement:?} at {position}");
+                    assert!(position.distance(expected) < 1e-5, "{what}, not {expected}");
+                    let own = unpack_normal(vertex.normal);
+                    assert!(own.distance(normal) < 1e-3, "{what}: {own}, not {normal}");
+                    let [u, v] = vertex.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
+                    let exact = limit.position(vertex.patch(), &limit.net(vertex.patch()), u, v);
+                    assert!(exact.distance(position.as_dvec3()) < 1e-5, "{what}: {exact} on the limit surface");
+                }
+            }
+        }
+    }
+}

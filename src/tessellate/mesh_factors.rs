@@ -96,3 +96,35 @@ impl ControlNets<'_> {
         HullFactors::of_sides(inputs.tessellation.convention, sides, inside)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Mesh, Shape, Topology};
+    use crate::progress::Progress;
+    use crate::tessellate::{LodView, Tessellation};
+    use glam::{Mat4, Vec2};
+
+    #[test]
+    fn edges_use_three_quarters_of_the_tolerance() {
+        let mesh: Mesh = Shape::Torus.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let tessellation = Tessellation {
+            lod: Lod::Error,
+            tolerance: 2.0,
+            partitioning: Partitioning::Integer,
+            ..Tessellation::default()
+        };
+        let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::splat(500.0)));
+        let nets = ControlNets::new(&mesh, &topology, &inputs);
+        let own = nets.edge_factors(&inputs, None);
+        // Every edge of the torus has one curve.
+        assert_eq!(own.len(), nets.curve_nets.len());
+        for ((curve, [ab, ba]), factor) in nets.curves.curves.iter().zip(&nets.curve_nets).zip(&own) {
+            let [a, b] = curve.points.map(|point| topology.points[point as usize]);
+            let least = edge_error_factor(&inputs.view, 1.5, [a, *ab, *ba, b]);
+            assert_eq!(*factor, nesting_factor(Partitioning::Integer, least), "{curve:?}");
+        }
+        assert!(own.iter().any(|&factor| factor > 2.0), "{own:?}");
+    }
+}

@@ -215,3 +215,54 @@ impl ControlNets<'_> {
         (position, normal, edge_uv(at_a.uv, at_b.uv, t))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::mesh::{HeightMap, Heights, Shape};
+    use crate::progress::Progress;
+    use crate::tessellate::{Convention, Displacement, Lod, Partitioning, Tessellation};
+    use glam::{Mat4, Vec2};
+
+    /// Returns a torus with a relief, and inputs under which its edges have different factors.
+    fn torus(convention: Convention, partitioning: Partitioning) -> (Mesh, Topology, Inputs) {
+        let mut mesh = Shape::Torus.build();
+        let heights = (0..4096).map(|i| ((i % 64) * (i / 64) % 7) as f32 / 6.0).collect();
+        mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, HeightMap::new([64, 64], heights))));
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let tessellation = Tessellation {
+            lod: Lod::EdgeLength,
+            displacement: Displacement::On,
+            convention,
+            partitioning,
+            ..Tessellation::default()
+        };
+        let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::splat(100.0)));
+        (mesh, topology, inputs)
+    }
+
+    #[test]
+    fn totals_are_what_is_emitted() {
+        for partitioning in Partitioning::ALL {
+            let (mesh, topology, inputs) = torus(Convention::D3d11, partitioning);
+            let out = tessellate(&mesh, &topology, &inputs, None);
+            let emitted = (out.vertices.len() as u64, out.triangles.len() as u64);
+            assert_eq!(totals(&mesh, &topology, &inputs), emitted, "{partitioning:?}");
+            let given = hull_factors(&mesh, &topology, &inputs);
+            assert_eq!(given_totals(&given, &inputs), emitted, "{partitioning:?}, given");
+        }
+    }
+
+    #[test]
+    fn the_factors_of_a_hull_shader_give_the_mesh_that_they_were_written_for() {
+        for convention in Convention::ALL.into_iter().filter(|convention| convention.is_consistent()) {
+            let (mesh, topology, inputs) = torus(convention, Partitioning::Integer);
+            let out = tessellate(&mesh, &topology, &inputs, None);
+            assert!(out.edge_factors.iter().any(|&factor| factor < 0.5 * out.edge_factors[0]), "edges are alike");
+            let given = tessellate_given(&mesh, &topology, &inputs, &hull_factors(&mesh, &topology, &inputs));
+            assert!(given == Tessellated { edge_factors: Vec::new(), ..out }, "{convention:?}");
+        }
+    }
+}

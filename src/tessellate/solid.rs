@@ -138,4 +138,22 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn control_points_on_creases_reach_half_of_the_longest_edge() {
+        // A cube whose normals are those of its faces: no proposal leaves its edge.
+        let mut mesh = Shape::CubeSplit.build();
+        for triangle in mesh.triangles.iter() {
+            let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize].position);
+            let normal = (b - a).cross(c - a).normalize();
+            triangle.iter().for_each(|&corner| mesh.corners[corner as usize].normal = normal);
+        }
+        let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+        let [min, max] = [mesh.bounds().min, mesh.bounds().max];
+        let diagonal = (max.x - min.x) * 2.0_f32.sqrt();
+        for (surface, reach) in [(Surface::Pn, 0.0), (Surface::PnCrease, diagonal / 2.0)] {
+            let own = control_point_reach(surface, &mesh, &topology);
+            assert!((own - reach).abs() < 1e-6, "{surface:?}: {own}, not {reach}");
+        }
+    }
 }

@@ -4,7 +4,9 @@ use glam::{DVec3, Vec2, Vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{EdgeCounts, EdgeKind, Material, Shape, Side, Unlimited, weld};
+use crate::files::Limits;
+use crate::load::Budget;
+use crate::mesh::{EdgeCounts, EdgeKind, Material, MemoryRefused, Shape, Side, Unlimited, weld};
 use crate::stability::{CASES, soup};
 
 fn topology(mesh: &Mesh) -> Topology {
@@ -361,4 +363,31 @@ fn cancelling_stops_the_work() {
     let topology = topology(&cube);
     progress.cancel();
     assert!(matches!(with_crease_band(&cube, &topology, 0.01, &Unlimited, &progress), Err(BuildError::Cancelled(_))));
+}
+
+#[test]
+fn the_account_is_asked_for_every_patch_and_every_edge() {
+    let mesh = Shape::CubeSplit.build();
+    let (before, none) = (topology(&mesh), Budget::new(0, &Limits { memory: 0, ..Limits::default() }));
+    let refused = with_crease_band(&mesh, &before, 0.01, &none, &Progress::new()).err();
+    let needed = (PER_PATCH * 12 + size_of::<EdgeCuts>() * 18) as u64;
+    assert_eq!(refused, Some(BuildError::Memory(MemoryRefused { needed, allowed: 0 })));
+}
+
+#[test]
+fn the_second_side_of_a_sheet_has_a_narrower_band() {
+    let at = [Vec3::ZERO, Vec3::X * 4.0, Vec3::Y * 3.0];
+    let side = |order: [usize; 3], normal: Vec3| order.map(|k| Corner { position: at[k], normal, uv: Vec2::ZERO });
+    let mesh = mesh_of([side([0, 1, 2], Vec3::Z), side([0, 2, 1], Vec3::NEG_Z)]);
+    // The bounding diagonal has a length of 5. What lies inside is as far from two sides as the band is wide.
+    let (made, ..) = banded(&mesh, 0.02);
+    let distance = |corner: &Corner| {
+        let Vec3 { x, y, .. } = corner.position;
+        x.min(y).min((12.0 - 3.0 * x - 4.0 * y) / 5.0)
+    };
+    let inside: Vec<f32> = made.corners.iter().map(distance).filter(|&distance| distance > 1e-3).collect();
+    let wide = |&distance: &f32| (distance - 0.1).abs() < 1e-5;
+    let narrow = |&distance: &f32| (distance - 0.1 / 1.125).abs() < 1e-5;
+    assert!(inside.iter().any(wide) && inside.iter().any(narrow), "{inside:?}");
+    assert!(inside.iter().all(|distance| wide(distance) || narrow(distance)), "{inside:?}");
 }

@@ -267,4 +267,22 @@ mod tests {
         assert_eq!(map.detail(&progress), Err(Cancelled));
         assert_eq!(HeightMap::build::<Cancelled>([64, 64], &progress, |_| Ok(())), Err(Cancelled));
     }
+
+    #[test]
+    fn detail_is_what_interpolation_between_pixels_leaves() {
+        // Level 1 is 1/7 and 6/7, as its filter reaches one pixel across the middle; the last level is the mean.
+        for size in [[4, 1], [1, 4]] {
+            let map = HeightMap::new(size, vec![0.0, 0.0, 1.0, 1.0]);
+            let detail = map.detail(&Progress::new()).expect("not cancelled");
+            let expected = [0.0, 1.0 / 7.0 + 5.0 / 28.0, 0.5, 0.5];
+            assert!(detail.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{size:?}: {detail:?}");
+        }
+    }
+
+    #[test]
+    fn progress_moves_on_within_the_last_level() {
+        let (map, progress) = (HeightMap::new([1, 2048], vec![0.5; 2048]), Progress::new());
+        map.detail(&progress).expect("not cancelled");
+        assert!(progress.fraction() > 0.95, "{}: the last of 11 levels begins at 10/11", progress.fraction());
+    }
 }

@@ -1,6 +1,7 @@
 //! Building meshes: corners are merged, repaired and put in order.
 
 use super::*;
+use crate::load::Budget;
 
 fn corner(x: f32, y: f32) -> InputCorner {
     InputCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
@@ -63,4 +64,47 @@ fn coordinates_that_devices_drop_are_dropped_here_too() {
     let positions: Vec<_> = mesh.corners.iter().map(|c| [c.position.x, c.position.y].map(f32::to_bits)).collect();
     assert_eq!(positions, [[0.0, 0.0], [least, 1.0], [-least, 0.0]].map(|xy| xy.map(f32::to_bits)));
     assert_eq!(mesh.repairs, Repairs { denormals: 1, ..Repairs::default() });
+}
+
+#[test]
+fn room_for_corners_grows_by_half_where_nothing_is_known() {
+    let (mut builder, budget) = (MeshBuilder::new(), Budget::unlimited());
+    for x in 0..1000_u16 {
+        builder.corner(corner(x.into(), 0.0), 0);
+    }
+    let more = builder.distinct.room() + 1;
+    assert!(more <= 500);
+    builder.make_room(more, &budget).unwrap();
+    assert_eq!(builder.distinct.corners.capacity(), 1500);
+}
+
+/// Adds a strip of 98 triangles over 100 corners.
+fn add_strip(builder: &mut MeshBuilder) {
+    let material = builder.material(Material::plain("plain", [1.0; 4]));
+    for i in 0..98_u16 {
+        builder.triangle(material, [i, i + 1, i + 2].map(|k| corner(k.into(), (k % 2).into())));
+    }
+}
+
+#[test]
+fn lists_of_triangles_are_full_before_the_next_is_twice_as_long() {
+    let mut builder = MeshBuilder::new();
+    add_strip(&mut builder);
+    let lists: Vec<_> = builder.groups[0].runs.iter().map(|run| (run.len(), run.capacity())).collect();
+    assert_eq!(lists, [(4, 4), (8, 8), (16, 16), (32, 32), (38, 64)]);
+}
+
+#[test]
+fn room_that_was_not_needed_is_returned_and_the_copy_is_accounted_for() {
+    let built = |room: usize| {
+        let (mut builder, budget) = (MeshBuilder::new(), Budget::unlimited());
+        builder.make_room(room, &budget).unwrap();
+        add_strip(&mut builder);
+        let (mesh, _) = builder.finish_bound(String::new(), &budget, &Progress::new()).unwrap();
+        assert_eq!(mesh.corners.len(), 100);
+        (mesh.corners.capacity(), budget.borrowed())
+    };
+    let (exact, spare) = (built(100), built(500));
+    assert_eq!((exact.0, spare.0), (100, 100));
+    assert_eq!(spare.1 - exact.1, 100 * size_of::<Corner>() as u64);
 }

@@ -132,3 +132,17 @@ fn clips_of_one_name_are_told_apart_by_number() {
     let found: Vec<_> = (0..clips.len()).map(|index| rig.clip(&rig.clip_name(index))).collect();
     assert_eq!(found, [0, 1, 3, 3, 4, 5].map(Some), "all but one that another clip is called");
 }
+
+#[test]
+fn rotations_stay_or_bend_where_their_interpolation_says_so() {
+    let [from, to] = [0.0_f64, 90.0].map(|degrees| DQuat::from_rotation_z(degrees.to_radians()).as_quat().to_array());
+    let step = keys(&[0.0, 1.0], [from, to].as_flattened(), 4, Interpolation::Step);
+    assert_eq!(step.rotation(0.75).to_array(), from.map(f64::from));
+    // With tangents of 0, the weights of a Hermite curve at a quarter are 27/32 and 5/32.
+    let spline = [[0.0; 4], from, [0.0; 4], [0.0; 4], to, [0.0; 4]];
+    let found = keys(&[0.0, 1.0], spline.as_flattened(), 4, Interpolation::CubicSpline).rotation(0.25).to_array();
+    for (i, own) in found.into_iter().enumerate() {
+        let expected = (27.0 * f64::from(from[i]) + 5.0 * f64::from(to[i])) / 32.0;
+        assert!((own - expected).abs() < 1e-9, "{found:?}");
+    }
+}

@@ -96,3 +96,19 @@ pub(super) fn vase(level: u32) -> Vec<[Corner; 3]> {
     }
     triangles
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_points_lie_on_their_rings() {
+        for (row, [height, radius, aside]) in RINGS.into_iter().enumerate() {
+            for (column, lobe) in LOBES.into_iter().enumerate() {
+                let point = control_point(column, row);
+                let out = (point.x - aside).hypot(point.z);
+                assert!((out - radius * lobe).abs() < 1e-12 && point.y == height, "{column}, {row}: {point}");
+            }
+        }
+    }
+}

@@ -61,3 +61,24 @@ fn grid(columns: usize, rows: usize, node: impl Fn(usize, usize) -> Corner) -> V
     }
     triangles
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_of_the_moebius_strip_are_perpendicular_to_it() {
+        let at = |turn: f32, across: f32| moebius_at(turn, across).0;
+        let step = 1e-2;
+        for i in 0..48 {
+            for across in [-0.3, 0.0, 0.2] {
+                let turn = TAU * i as f32 / 48.0;
+                let ahead = at(turn + step, across) - at(turn - step, across);
+                let beside = at(turn, across + step) - at(turn, across - step);
+                let normal = moebius_at(turn, across).1.normalize();
+                let leaning = normal.dot(ahead.normalize()).abs().max(normal.dot(beside.normalize()).abs());
+                assert!(leaning < 1e-3, "{turn}, {across}: {leaning}");
+            }
+        }
+    }
+}

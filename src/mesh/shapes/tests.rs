@@ -142,3 +142,13 @@ fn every_level_of_every_shape_fits_into_what_a_load_may_take() {
         assert!(bytes < 256 << 20, "{shape}: {bytes} bytes");
     }
 }
+
+#[test]
+fn closed_shapes_are_closed_at_every_level() {
+    for (shape, expected) in CLOSED.into_iter().filter(|(shape, _)| shape.has_levels()) {
+        let mesh = shape.build_at(1);
+        let topology = Topology::build(&mesh, &Progress::new()).unwrap();
+        assert!(topology.is_closed_and_oriented(), "{shape}");
+        assert_eq!((topology.degenerate, euler(&topology)), (0, expected), "{shape}");
+    }
+}

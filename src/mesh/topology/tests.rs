@@ -4,6 +4,7 @@ use glam::Vec2;
 use proptest::prelude::*;
 
 use super::*;
+use crate::load::Budget;
 use crate::mesh::Material;
 use crate::mesh::shapes::Shape;
 
@@ -234,4 +235,20 @@ fn a_triangle_knows_its_patch_unless_it_is_degenerate() {
     assert_eq!([0, 1, 2, 3].map(|triangle| topology.patch_of(triangle)), [Some(0), None, Some(1), None]);
     let [a, b, c] = topology.patch_positions(1);
     assert_eq!([a.x, b.x, c.x], [2.0, 1.0, 3.0]);
+}
+
+#[test]
+fn the_account_holds_what_a_topology_takes() {
+    let (mesh, budget) = (Shape::Torus.build(), Budget::unlimited());
+    let own = Topology::build_afforded(&mesh, 0.0, &budget, &Progress::new()).unwrap();
+    let by_point = size_of_val(&own.points[..]) + size_of_val(&own.point_corners[..]);
+    let by_corner = size_of_val(&own.corner_points[..]);
+    let by_patch = size_of_val(&own.patches[..]) + size_of_val(&own.sides[..]) + size_of_val(&own.edges[..]);
+    assert_eq!(u64::MAX - budget.left(), (by_point + by_corner + by_patch) as u64);
+}
+
+#[test]
+fn the_total_counts_edges_of_every_kind() {
+    let counts = EdgeCounts { smooth: 1, split: 20, seam: 300, boundary: 4000, non_manifold: 50_000 };
+    assert_eq!(counts.total(), 54_321);
 }

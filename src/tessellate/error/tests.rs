@@ -190,3 +190,105 @@ fn triangles_between_rows_of_levels_are_short_and_others_are_long() {
         "other factors still cost what levels were introduced to save"
     );
 }
+
+#[test]
+fn bounds_are_widened_by_what_displacement_may_move() {
+    let spread = |view: &LodView, p: Vec3| {
+        let bounds = widen(view, no_bounds(), p);
+        [bounds.least.x, bounds.least.y, bounds.greatest.x, bounds.greatest.y, bounds.nearest, bounds.farthest]
+    };
+    let near = |own: [f32; 6], expected: [f32; 6]| {
+        assert!(own.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{own:?}, not {expected:?}");
+    };
+    let flat = LodView { reach: 0.1, ..VIEW };
+    near(spread(&flat, vec3(0.3, -0.2, 0.5)), [0.2, -0.3, 0.4, -0.1, 1.0, 1.0]);
+    // With perspective, a point at a depth of 2 may come as near as 1.6: it moves by 0.4 across, and by as much of its
+    // place as it comes nearer.
+    let mut clip_from_object = Mat4::IDENTITY;
+    clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
+    clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
+    let perspective = LodView { clip_from_object, reach: 0.4, ..VIEW };
+    let (across, up) = ((0.4 + 0.5 * 0.4) / 1.6, 0.4 / 1.6);
+    near(spread(&perspective, vec3(1.0, 0.0, 2.0)), [0.5 - across, -up, 0.5 + across, up, 1.6, 2.4]);
+}
+
+#[test]
+fn differences_on_screen_are_those_of_one_moved_control_point() {
+    // The control point beside an end of the edge opposite corner 0 is moved across the view by 30 px. At that end it is
+    // part of the difference along and inward, and at corner 0 of the one along; both make up one diagonal.
+    for moved in [1, 4] {
+        let mut net = raised(CORNERS, 0.0);
+        net.edges[moved] += Vec3::X * 0.3;
+        let own = screen_differences(&VIEW, net_bounds(&VIEW, &net), &net, 0);
+        let expected = [30.0, 30.0 * 2.0 / 3.0, 30.0 * 4.0 / 9.0, 30.0 * 16.0 / 9.0];
+        assert!(own.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3), "{moved}: {own:?}, not {expected:?}");
+    }
+}
+
+#[test]
+fn errors_inside_fall_with_the_square_of_the_number_of_segments() {
+    // The triangle in the middle is equilateral in its second differences, so that its error is that of its sides.
+    for (segments, expected) in [(1.0, 1.001), (4.0, 1.001 / 16.0), (5.0, 1.001 / 25.0)] {
+        let own = inner_error([[1.0, 0.0, 0.0, 0.0]; 3], segments);
+        assert!((own - expected).abs() < 1e-6, "{segments}: {own}");
+    }
+}
+
+#[test]
+fn a_row_of_two_segments_is_seen_from_as_near_as_its_inner_points_may_be() {
+    let at =
+        |nearest: f32| ScreenBounds { nearest, farthest: 1.0, least: Vec2::ZERO, greatest: Vec2::ZERO, is_cut: false };
+    let row = EdgeRow { bounds: at(1.0), along: [Vec3::X * 0.35; 3], mixed: [Vec3::ZERO; 3] };
+    // The weight of the opposite corner is up to 1/3 in the row, so 1 - (2/3)^3 = 19/27 of a way from 1 to 1/2: the
+    // nearest depth is 35/54, and 35 px become 54. Half a segment costs a quarter of them.
+    let own = edge_row_error(&VIEW, row, at(0.5), [0.0; 4], 2.0, 2.0);
+    assert!((own - 0.751 * 54.0 / 4.0).abs() < 1e-4, "{own}");
+}
+
+#[test]
+fn bounds_of_a_net_hold_all_ten_control_points() {
+    let net = raised(CORNERS, 0.0);
+    let mut moved = [net; 10];
+    for k in 0..10 {
+        *match k {
+            0..3 => &mut moved[k].corners[k],
+            3..9 => &mut moved[k].edges[k - 3],
+            _ => &mut moved[k].center,
+        } = vec3(-3.0, 5.0, 0.5);
+        let bounds = net_bounds(&VIEW, &moved[k]);
+        assert_eq!((bounds.least.x, bounds.greatest.y), (-3.0, 5.0), "control point {k}");
+    }
+}
+
+#[test]
+fn mixed_bounds_are_weighted_by_depth() {
+    let bounds = |nearest: f32, farthest: f32, reach: f32| ScreenBounds {
+        nearest,
+        farthest,
+        least: Vec2::splat(-reach),
+        greatest: Vec2::splat(reach),
+        is_cut: false,
+    };
+    // The nearest mean is a quarter of 1 and three quarters of 7/3, which is 2. There, a quarter of a point at a depth of
+    // 4 counts as a half.
+    let own = mixed_bounds(bounds(7.0 / 3.0, 3.0, 0.25), bounds(1.0, 4.0, 0.75), 0.25);
+    assert!((own.nearest - 2.0).abs() < 1e-6 && own.farthest == 4.0 && !own.is_cut, "{own:?}");
+    assert!(own.least.distance(Vec2::splat(-0.5)) < 1e-6 && own.greatest.distance(Vec2::splat(0.5)) < 1e-6, "{own:?}");
+}
+
+#[test]
+fn heights_need_segments_for_their_detail_and_for_their_turning() {
+    let view = LodView { reach: 0.5, ..VIEW };
+    let bounds = ScreenBounds { nearest: 1.0, farthest: 1.0, least: Vec2::ZERO, greatest: Vec2::ZERO, is_cut: false };
+    let mut detail = [0.5; MAX_LEVELS];
+    (detail[0], detail[1], detail[2]) = (0.0, 0.001, 0.01);
+    // A length of 1 is 100 px across and 100 px up. Of a tolerance of 10 px, 3 px are for the detail, which is 2 px at
+    // level 2 with the scale 1.4, and 4 px with 2.8.
+    let factor = |turn, scale| displacement_factor(&view, bounds, 10.0, 64.0, turn, scale, detail);
+    assert_eq!([factor(0.0, 1.4), factor(0.0, 2.8)], [64.0 / 4.0, 64.0 / 2.0]);
+    assert_eq!(factor(0.0, 1400.0), 64.0, "each level loses too much");
+    // 2 px of it are for the turning.
+    let bend = 0.5 * 0.28125 * 20.0_f32.powi(2) * 100.0 * 2.0_f32.sqrt();
+    let turning = factor(20.0, 1.4);
+    assert!((turning - (bend / 2.0).sqrt()).abs() < 1e-3, "{turning}");
+}

@@ -142,3 +142,16 @@ proptest! {
         prop_assert_eq!(f64::from(f.outside[1] & FACTOR_VALUE), expected);
     }
 }
+
+#[test]
+fn patches_are_low_if_they_are_drawn_with_all_factors_below_two() {
+    let low = |edges, inside| patch_is_low(process(Partitioning::FractionalOdd, edges, inside));
+    assert!(low([1.0; 3], 1.0) && low([1.0, 1.5, 1.99], 1.99));
+    assert!(!low([1.0, 2.0, 1.0], 1.5) && !low([1.0; 3], 2.0));
+    assert!(!low([1.0, 0.0, 1.0], 1.0), "nothing is drawn");
+}
+
+#[test]
+fn there_are_at_least_two_segments_inside_and_three_if_they_are_odd() {
+    assert_eq!([whole(1), FIXED_ONE, whole(2), whole(3), whole(4)].map(inside_segments), [3, 2, 2, 3, 4]);
+}
