@@ -19,17 +19,18 @@ pub(crate) const MAX_MAPS: usize = 256;
 
 /// The heights of one image, from 0 (black) to 1 (white), in levels. Each level is half as wide and high as the one
 /// before, down to a single pixel.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
     /// The width and height of level 0, in px.
-    pub(crate) size: [u32; 2],
+    pub size: [u32; 2],
     /// The number of levels.
-    pub(crate) levels: u32,
+    pub levels: u32,
     /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
     /// continue.
-    pub(crate) repeats: bool,
+    pub repeats: bool,
     /// The pixels of all levels, one level after another, each row by row from the top.
-    pub(crate) heights: Vec<f32>,
+    pub heights: Vec<f32>,
 }
 
 /// The height maps that displace a mesh.
