@@ -80,7 +80,9 @@ pub struct Context {
 /// triangles. A vertex takes 32 bytes, a triangle 12.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
+    /// The most vertices that are emitted.
     pub vertices: u32,
+    /// The most triangles that are emitted.
     pub triangles: u32,
 }
 

@@ -27,15 +27,21 @@ impl Default for Limits {
 
 /// Why a file could not be read whole.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum FileError {
+    /// Reading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The path leads to a folder, a device or a pipe.
     #[error("{} is not a file; choose a file", shown_path(path))]
     NotAFile { path: PathBuf },
+    /// The file changed while it was read.
     #[error("{} changed while it was read; open it again once it is whole", shown_path(path))]
     Changed { path: PathBuf },
+    /// The file system refused.
     #[error("{} can't be read: {}", shown_path(path), file_reason(source))]
     Io { path: PathBuf, source: io::Error },
+    /// The file has more bytes than are read.
     #[error(
         "{} has {bytes} bytes, but at most {limit} are read; if you trust the file, allow more with --max-size",
         shown_path(path)

@@ -29,6 +29,7 @@
 // The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
 #![cfg_attr(not(feature = "app"), allow(dead_code, unused_imports))]
 #![cfg_attr(feature = "app", warn(unreachable_pub))]
+#![cfg_attr(not(feature = "cli"), warn(missing_docs))]
 
 pub mod embed;
 #[cfg(feature = "formats")]

@@ -42,6 +42,7 @@ struct Shared {
 }
 
 impl Progress {
+    /// Returns a handle on a job of its own, which nothing has cancelled.
     pub fn new() -> Self {
         Self::default()
     }
@@ -81,6 +82,7 @@ impl Progress {
         self.shared.reads_heights.store(stage == Stage::Heights, Ordering::Relaxed);
     }
 
+    /// Returns which part of a load is running.
     pub fn stage(&self) -> Stage {
         if self.shared.reads_heights.load(Ordering::Relaxed) { Stage::Heights } else { Stage::Mesh }
     }

@@ -7,6 +7,7 @@ use crate::mesh::Mesh;
 /// A mesh as its file describes it.
 #[derive(Clone, Debug, Default)]
 pub struct LoadedMesh {
+    /// What the file holds.
     pub mesh: Mesh,
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,

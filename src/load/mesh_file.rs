@@ -16,35 +16,48 @@ const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
 
 /// Why a file could not be loaded as a mesh.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum LoadError {
+    /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The extension is none of those that are read.
     #[error("{} can't be read, since it has {extension}; choose a {KNOWN} file", shown_path(path))]
     UnknownFormat { path: PathBuf, extension: String },
+    /// The path leads to a folder, a device or a pipe.
     #[error("{} is not a file; choose a {KNOWN} file", shown_path(path))]
     NotAFile { path: PathBuf },
+    /// The file could not be read.
     #[error(transparent)]
     File(FileError),
+    /// The file is empty.
     #[error("{} is empty; export the model again", shown_path(path))]
     NoBytes { path: PathBuf },
+    /// The content belongs to another format than the extension.
     #[error(
         "{} begins like {is}, which doesn't fit its extension; rename it, or export the model again",
         shown_path(path)
     )]
     Misnamed { path: PathBuf, is: &'static str },
+    /// The file is neither glTF JSON nor a binary glTF.
     #[error(
         "{} isn't a glTF file: it begins neither with \"glTF\" nor with a {{; export the model again",
         shown_path(path)
     )]
     NoGltf { path: PathBuf },
+    /// The glTF document can't be read.
     #[error("{}: {problem}", shown_path(path))]
     Gltf { path: PathBuf, problem: Box<GltfError> },
+    /// The OBJ, STL or PLY file can't be read.
     #[error("{}: {fault}", shown_path(path))]
     Broken { path: PathBuf, fault: Box<ReadError> },
+    /// A height image can't be read.
     #[error(transparent)]
     Heights(HeightError),
+    /// The mesh, or something that is made of it, would take too much memory.
     #[error("{}: {what} {reason}; split the model into several files", shown_path(path))]
     TooMuch { path: PathBuf, what: &'static str, reason: String },
+    /// The file has no triangles.
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },
 }

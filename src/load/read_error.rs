@@ -7,15 +7,21 @@ use crate::progress::Cancelled;
 
 /// Why an OBJ, STL or PLY file could not be loaded. The message doesn't contain the file's path.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum ReadError {
+    /// Reading was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// Something is wrong at a place in the file.
     #[error("{place}{reason}; export the model again")]
     Broken { place: FilePosition, reason: String },
+    /// There is more of something than the program can hold.
     #[error("it has more than {limit} {what}; split it into several files")]
     TooMany { limit: u64, what: &'static str },
+    /// The mesh would take too much memory, or have too many triangles.
     #[error("its mesh {reason}; split it into several files")]
     TooLarge { reason: String },
+    /// The file has no triangles.
     #[error("no triangles: {holds}")]
     Empty { holds: String },
 }

@@ -8,7 +8,9 @@ use super::Mesh;
 /// corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
+    /// The least coordinates, in object units.
     pub min: Vec3,
+    /// The greatest coordinates, in object units.
     pub max: Vec3,
     radius: f32,
 }

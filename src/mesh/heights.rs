@@ -23,6 +23,7 @@ pub(crate) const MAX_MAPS: usize = 256;
 pub struct HeightMap {
     /// The width and height of level 0, in px.
     pub size: [u32; 2],
+    /// The number of levels.
     pub levels: u32,
     /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
     /// continue.
@@ -34,6 +35,7 @@ pub struct HeightMap {
 /// The height maps that displace a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heights {
+    /// The images.
     pub maps: Vec<HeightMap>,
     /// For each of the mesh's materials, its map; none if the material isn't displaced.
     pub of_material: Vec<Option<u32>>,

@@ -55,8 +55,11 @@ pub(crate) use weld_preview::{WeldPreview, weld_previews};
 /// heights, v downwards as in glTF).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
+    /// In object units.
     pub position: Vec3,
+    /// Of unit length.
     pub normal: Vec3,
+    /// In texture widths and heights, from the upper left corner.
     pub uv: Vec2,
 }
 
@@ -83,6 +86,7 @@ pub struct Mesh {
 /// The look of some of a mesh's patches.
 #[derive(Clone, Debug)]
 pub struct Material {
+    /// The name in the file.
     pub name: String,
     /// Linear RGBA, 0 to 1.
     pub base_color: [f32; 4],

@@ -117,9 +117,9 @@ pub struct Morph {
 /// The state of all joints and morph targets at one time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pose {
-    pub palette: Vec<JointMatrix>,
+    pub(crate) palette: Vec<JointMatrix>,
     /// The weights of all morph targets of all nodes. Never empty, so that a buffer for them can be bound.
-    pub weights: Vec<f32>,
+    pub(crate) weights: Vec<f32>,
 }
 
 /// A time in a clip.

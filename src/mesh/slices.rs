@@ -24,17 +24,24 @@ pub struct MeshSlices<'a> {
 
 /// Why arrays are no mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum SliceError {
+    /// There are not as many normals or texture coordinates as positions.
     #[error("there are {found} {what} for {vertices} vertices: give one for each vertex, or none at all")]
     Lengths { what: &'static str, found: usize, vertices: usize },
+    /// The number of indices is no multiple of 3.
     #[error("there are {0} indices, which is no multiple of 3")]
     NoTriangles(usize),
+    /// An index is beyond the vertices.
     #[error("index {at} is {index}, but there are only {vertices} vertices")]
     Index { at: usize, index: u32, vertices: usize },
+    /// A vertex's position isn't finite, or too far away.
     #[error("vertex {0} has a position that isn't finite, or a coordinate beyond {LARGEST_COORDINATE:e}")]
     Position(usize),
+    /// A vertex's texture coordinate isn't finite.
     #[error("vertex {0} has a texture coordinate that isn't finite")]
     Uv(usize),
+    /// There are more triangles than a mesh can have.
     #[error("there are {0} triangles, and at most {MAX_TRIANGLES} are possible")]
     TooManyTriangles(usize),
 }

@@ -33,7 +33,9 @@ pub struct Topology {
     pub point_corners: Vec<u32>,
     /// The triangles of the mesh.
     triangles: Arc<Vec<[u32; 3]>>,
+    /// The triangles with three distinct points.
     pub patches: Vec<Patch>,
+    /// The lines where sides meet.
     pub edges: Vec<Edge>,
     /// The sides of all patches, grouped by edge.
     pub sides: Vec<Side>,
@@ -57,6 +59,7 @@ pub struct Patch {
 pub struct Edge {
     /// The first of its sides, an index into [`Topology::sides`].
     pub first_side: u32,
+    /// How its sides meet.
     pub kind: EdgeKind,
     /// Whether it has exactly two sides, which have the same two corners of the mesh.
     pub shares_corners: bool,
@@ -68,6 +71,7 @@ pub struct Side {
     /// Six times the patch, plus twice which of its sides this is, plus 1 if it has the opposite direction to the edge.
     /// Packed, since a mesh has more sides than anything else.
     code: u32,
+    /// The edge that it lies on.
     pub edge: u32,
 }
 
@@ -76,6 +80,7 @@ impl Side {
         Self { code: 6 * patch + 2 * u32::from(index) + u32::from(reversed), edge }
     }
 
+    /// Returns the patch that it belongs to.
     pub fn patch(&self) -> u32 {
         self.code / 6
     }
@@ -111,10 +116,15 @@ pub enum EdgeKind {
 /// The number of edges of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct EdgeCounts {
+    /// See [`EdgeKind::Smooth`].
     pub smooth: u32,
+    /// See [`EdgeKind::Split`].
     pub split: u32,
+    /// See [`EdgeKind::Seam`].
     pub seam: u32,
+    /// See [`EdgeKind::Boundary`].
     pub boundary: u32,
+    /// See [`EdgeKind::NonManifold`].
     pub non_manifold: u32,
 }
 

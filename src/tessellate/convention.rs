@@ -30,6 +30,7 @@ pub enum Convention {
 }
 
 impl Convention {
+    /// All values.
     pub const ALL: [Self; 5] = [Self::D3d11, Self::AmdPn, Self::EdgeOrder, Self::Rotated, Self::Mirrored];
 
     /// Returns whether both shaders agree, so that every edge gets its own factor.

@@ -51,6 +51,7 @@ pub enum Partitioning {
 }
 
 impl Partitioning {
+    /// All values.
     pub const ALL: [Self; 5] =
         [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven, Self::Subtriangulation];
     /// Those that Direct3D 11's tessellator has, which give every edge a factor of its own.
@@ -67,6 +68,7 @@ impl Partitioning {
 pub struct PatchFactors {
     /// The words of the edges U == 0, V == 0 and W == 0.
     pub outside: [u32; 3],
+    /// The word of the inside.
     pub inside: u32,
 }
 

@@ -18,13 +18,17 @@ pub enum Edges {
 /// How a mesh is tessellated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tessellation {
+    /// The surface that replaces each triangle.
     pub surface: Surface,
     /// Strength of Phong tessellation, 0 (flat) to 1.
     pub alpha: f32,
+    /// The normals of emitted vertices.
     pub normals: Normals,
+    /// Where sides get what they share from.
     pub edges: Edges,
     /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64.
     pub factor: f32,
+    /// How factors become segments.
     pub partitioning: Partitioning,
     /// The LOD that is chosen; [`Self::used_lod`] is the one that is used.
     pub lod: Lod,
@@ -36,10 +40,13 @@ pub struct Tessellation {
     pub near: f32,
     /// Under LOD by distance: distance to the eye from which on the factor is 1, in bounding radii; larger than `near`.
     pub far: f32,
+    /// Whether patches outside the view are left out.
     pub clip: Clip,
     /// Whether patches that show only their backs are left out, where [`super::Solid`] allows it.
     pub cull_back_faces: bool,
+    /// The order of factors and weights.
     pub convention: Convention,
+    /// Whether height images move the surface.
     pub displacement: Displacement,
     /// Distance between a height of 0 and a height of 1, in bounding radii of the mesh at rest.
     pub height_scale: f32,
@@ -83,6 +90,7 @@ impl Tessellation {
 pub struct Inputs {
     /// Its LOD is the one that is used.
     pub tessellation: Tessellation,
+    /// What LOD and clipping are computed for.
     pub view: LodView,
 }
 

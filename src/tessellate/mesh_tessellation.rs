@@ -17,6 +17,7 @@ use crate::mesh::{Mesh, Topology};
 /// The output of a tessellation, patch after patch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tessellated {
+    /// The vertices of the first patch, then those of the next.
     pub vertices: Vec<Vertex>,
     /// Indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,

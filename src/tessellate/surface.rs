@@ -39,6 +39,7 @@ pub enum Surface {
 }
 
 impl Surface {
+    /// All values.
     pub const ALL: [Self; 8] =
         [Self::Flat, Self::Pn, Self::PnAen, Self::PnCrease, Self::Phong, Self::PhongAen, Self::Nagata, Self::NagataAen];
 

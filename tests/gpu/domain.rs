@@ -260,7 +260,8 @@ fn gpu_and_cpu_tessellate_alike() {
 
 /// The names of a file's functions, in order; methods and nested ones, which are indented, left out.
 fn function_names(source: &str) -> Vec<&str> {
-    let declared = source.lines().filter_map(|line| line.trim_start_matches("pub ").strip_prefix("fn "));
+    let starts = ["fn ", "pub fn ", "pub(super) fn ", "pub(crate) fn "];
+    let declared = source.lines().filter_map(|line| starts.iter().find_map(|start| line.strip_prefix(start)));
     declared.filter_map(|rest| rest.split('(').next()).collect()
 }
 
@@ -280,6 +281,10 @@ fn twins_have_the_same_functions_in_the_same_order() {
         (include_str!("../../src/tessellate/surface.rs"), include_str!("../../shaders/surface.wgsl")),
         (include_str!("../../src/tessellate/displace.rs"), include_str!("../../shaders/displace.wgsl")),
         (include_str!("../../src/tessellate/normal.rs"), include_str!("../../shaders/normal.wgsl")),
+        (
+            include_str!("../../src/tessellate/octahedral_normal.rs"),
+            include_str!("../../shaders/octahedral_normal.wgsl"),
+        ),
         (include_str!("../../src/tessellate/lod.rs"), include_str!("../../shaders/lod.wgsl")),
         (include_str!("../../src/tessellate/error.rs"), include_str!("../../shaders/error.wgsl")),
         (include_str!("../../src/tessellate/convention.rs"), include_str!("../../shaders/convention.wgsl")),

@@ -106,13 +106,16 @@ fn copied(harness: &mut Harness<App>) -> String {
 /// Runs a command in a folder of its own, and compares its picture with the window's.
 fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let (line, file) = command.rsplit_once(" -o ").expect("a command that writes a picture");
-    assert_eq!(file, format!("{name}.png"));
     // The shell splits the line into words.
-    let output = Command::new("sh").args(["-c", &format!("printf '%s\\n' {line}")]).output().expect("a shell");
-    let words = String::from_utf8(output.stdout).expect("UTF-8");
-    let picture = folder.path().join(file);
-    run_command(words.lines().skip(1), &picture);
+    let output = Command::new("sh").args(["-c", &format!("printf '%s\\n' {command}")]).output().expect("a shell");
+    let line = String::from_utf8(output.stdout).expect("UTF-8");
+    let mut words: Vec<&str> = line.lines().collect();
+    assert_eq!(words.remove(0), "pnaen");
+    let at = words.iter().position(|word| *word == "-o").expect("a command that writes a picture");
+    let file: Vec<_> = words.drain(at..at + 2).collect();
+    assert_eq!(file[1], format!("{name}.png"));
+    let picture = folder.path().join(file[1]);
+    run_command(words, &picture);
     let drawn = image::open(&picture).expect("a picture").to_rgba8();
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
     let difference = compare(&drawn, &shown).expect("one size").difference;

@@ -6,25 +6,36 @@ use crate::progress::Cancelled;
 /// Why a glTF document could not be loaded. The message doesn't contain the file's path. Places in the document are
 /// JSON pointers (RFC 6901).
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum GltfError {
+    /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The file is no glTF 2.0 document.
     #[error("not a glTF 2.0 document: {reason}; export the model again as glTF 2.0")]
     NotGltf { reason: String },
+    /// The document requires an extension that isn't supported.
     #[error("/extensionsRequired/{place} is {name}, which isn't supported; export the model without it")]
     Extension { place: usize, name: String },
+    /// A member of the document has a value that it can't have.
     #[error("{pointer} {reason}; export the model again")]
     Document { pointer: String, reason: String },
+    /// A buffer could not be read.
     #[error("/buffers/{buffer} ({uri}) can't be read: {reason}")]
     Buffer { buffer: usize, uri: String, reason: String },
+    /// An accessor's data can't be what the document says.
     #[error("/accessors/{accessor} ({role}) {reason}; export the model again")]
     Accessor { accessor: usize, role: String, reason: String },
+    /// A primitive can't be used.
     #[error("{primitive} {reason}; export the model again")]
     Primitive { primitive: String, reason: String },
+    /// A compressed primitive could not be decompressed.
     #[error("{pointer} {reason}; decompress the model first, for example with gltf-transform")]
     Draco { pointer: String, reason: String },
+    /// Something would take too much memory, or have too many triangles.
     #[error("{what} {reason}; split the model into several files")]
     TooLarge { what: String, reason: String },
+    /// The scene has no triangles.
     #[error("no triangles: {holds}")]
     Empty { holds: String },
 }

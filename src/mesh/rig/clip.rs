@@ -7,10 +7,11 @@ use glam::DQuat;
 /// An animation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
+    /// The name in the file, which may be empty.
     pub name: String,
     /// The time of the last key frame, in s.
     pub duration: f64,
-    pub channels: Vec<Channel>,
+    pub(crate) channels: Vec<Channel>,
 }
 
 /// The values of one property of one target over time.
