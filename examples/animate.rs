@@ -1,6 +1,6 @@
 //! Animates a skinned mesh, and changes how it is tessellated at the same time.
 //!
-//! `cargo run --example animate [PICTURE.png]` draws six moments side by side: a tube bends, and its tessellation factor grows
+//! `cargo run --no-default-features --features formats --example animate [PICTURE.png]` draws six moments side by side: a tube bends, and its tessellation factor grows
 //! from 1 to 6. Between the moments nothing is uploaded but the pose and the settings.
 
 mod canvas;

@@ -31,6 +31,8 @@
 //! # }
 //! ```
 //!
+//! A mesh that is seen from several cameras with adaptive LOD needs a [`TessellatedMesh`] for each.
+//!
 //! `examples/embed.rs` is a whole program; `examples/animate.rs` changes settings and a pose over time.
 
 use std::ops::Range;
@@ -76,8 +78,10 @@ pub struct Context {
     pipelines: Arc<ComputePipelines>,
 }
 
-/// The memory for a mesh's output. It is never smaller than what one patch takes at factor 64: 3,169 vertices and 6,144
-/// triangles. A vertex takes 32 bytes, a triangle 12.
+/// The memory for a mesh's output. A vertex takes 32 bytes, a triangle 12.
+///
+/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles: 3,169 and 6,144 at factor 64. Smaller numbers than
+/// these two are raised to them. WebGPU's default limits allow 4,194,304 vertices and 11,184,810 triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
     /// The most vertices that are emitted.
@@ -89,7 +93,7 @@ pub struct Room {
 /// A mesh on the device with memory for its tessellation.
 pub struct TessellatedMesh {
     tessellator: Tessellator,
-    patches: u32,
+    inputs: Option<Inputs>,
 }
 
 /// What the passes wrote about their output: see [`TessellatedMesh::status_buffer`].
@@ -154,41 +158,65 @@ impl TessellatedMesh {
     /// the mesh has more than 524,288 triangles.
     pub fn new(context: &Context, mesh: Mesh, room: Room) -> Result<Self, GpuError> {
         let topology = Topology::of(&mesh);
-        let patches = topology.patches.len() as u32;
         let (gpu, pipelines) = (&context.gpu, context.pipelines.clone());
         let room = [room.vertices, room.triangles];
         let tessellator = Tessellator::with_room(gpu, pipelines, Arc::new(mesh), Arc::new(topology), room)?;
-        Ok(Self { tessellator, patches })
+        Ok(Self { tessellator, inputs: None })
+    }
+
+    /// The mesh at rest.
+    pub fn mesh(&self) -> &Mesh {
+        self.tessellator.mesh()
+    }
+
+    /// How the mesh's triangles are connected: its patches, edges and sides.
+    pub fn topology(&self) -> &Topology {
+        self.tessellator.topology()
     }
 
     /// The number of patches: the mesh's triangles, but those with two corners at one position.
     pub fn patches(&self) -> u32 {
-        self.patches
+        self.topology().patches.len() as u32
     }
 
     /// Takes a tessellation, and the view that adaptive LOD and clipping are computed for. What is the same as before is not
-    /// computed again. The parameters are written through the queue, ahead of what is submitted next, so this may be called
-    /// once between two submissions.
+    /// computed again.
+    ///
+    /// Call this at most once between two submissions. The parameters are written through the queue, so that passes which were
+    /// recorded before, but not submitted, would run with the later ones.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] if the mesh's control points under another surface are larger than the device binds.
     pub fn set(&mut self, tessellation: &Tessellation, view: LodView) -> Result<(), GpuError> {
-        self.tessellator.set(&Inputs::new(tessellation, view))
+        let inputs = Inputs::new(tessellation, view);
+        self.inputs = Some(inputs);
+        self.tessellator.set(&inputs)
     }
 
-    /// Takes a pose of the mesh's rig, or the mesh at rest with `None`. A mesh without a rig stays at rest. It takes effect
-    /// with the next [`set`](Self::set).
+    /// Takes a pose of the mesh's rig, or the mesh at rest with `None`. A mesh without a rig stays at rest. As for
+    /// [`set`](Self::set), call this at most once between two submissions.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] if the mesh's rig is larger than the device binds.
     pub fn set_pose(&mut self, pose: Option<Pose>) -> Result<(), GpuError> {
-        self.tessellator.set_pose(pose.map(Arc::new))
+        self.tessellator.set_pose(pose.map(Arc::new))?;
+        self.inputs.map_or(Ok(()), |inputs| self.tessellator.set(&inputs))
+    }
+
+    /// Forgets what was computed, so that the next [`record`](Self::record) records every pass: for a host that dropped an
+    /// encoder instead of submitting it.
+    ///
+    /// # Errors
+    /// As [`set`](Self::set).
+    pub fn invalidate(&mut self) -> Result<(), GpuError> {
+        self.tessellator.forget();
+        self.inputs.map_or(Ok(()), |inputs| self.tessellator.set(&inputs))
     }
 
     /// Records the compute passes whose results have changed since they were last recorded; none if nothing has. The host
     /// submits the encoder, and may draw in it after this. Before the first [`set`](Self::set) there is nothing to record.
     ///
-    /// The encoder must be submitted: later calls count on what it computes. The first call that needs a pipeline compiles it,
+    /// The encoder must be submitted: later calls count on what it computes (see [`invalidate`](Self::invalidate)). The first call that needs a pipeline compiles it,
     /// which may take some tenths of a second in all.
     ///
     /// # Errors
@@ -212,7 +240,11 @@ impl TessellatedMesh {
 
     /// The buffer, and the offset in it in bytes, of a material's arguments for `draw_indexed_indirect`. Materials are numbered
     /// as in [`Mesh::materials`].
+    ///
+    /// # Panics
+    /// If the mesh has no such material.
     pub fn draw_arguments(&self, material: u32) -> (&wgpu::Buffer, u64) {
+        assert!((material as usize) < self.mesh().materials.len(), "the mesh has no material {material}");
         let (arguments, _) = self.tessellator.first_chunk();
         (arguments, u64::from(material) * size_of::<DrawArgs>() as u64)
     }
@@ -224,8 +256,9 @@ impl TessellatedMesh {
         (status, 0..size_of::<OutputStatus>() as u64)
     }
 
-    /// Whether some patches are missing, since the output doesn't fit its [`Room`]. The others are whole.
+    /// Whether the last patches were left out, since the output doesn't fit its [`Room`]. The others are whole. The status is
+    /// that of passes that have run; before, it is all zeros, which says that everything was left out.
     pub fn has_overflowed(&self, status: &OutputStatus) -> bool {
-        status.patches < self.patches
+        status.patches < self.patches()
     }
 }

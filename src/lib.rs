@@ -23,7 +23,7 @@
 //! # Ok::<(), pnaen::mesh::SliceError>(())
 //! ```
 //!
-//! The way through the crate: [`mesh`] (triangles, and how they are connected), [`tessellate`] (the mathematics on the CPU:
+//! The way through the crate, for those who read its code: [`mesh`] (triangles, and how they are connected), [`tessellate`] (the mathematics on the CPU:
 //! the reference), `gpu` (the same mathematics as compute passes), then for the program `render` (pictures), `measure` (what
 //! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
 // The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
@@ -99,6 +99,9 @@ mod rooms;
 #[cfg(test)]
 #[path = "../tests/window/mod.rs"]
 mod window_tests;
+
+// Types of these crates are part of the interface.
+pub use {glam, wgpu};
 
 #[cfg(feature = "cli")]
 pub use program::run;

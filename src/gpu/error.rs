@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
+/// Why something could not be done on the device. The message says what to do.
 #[derive(Clone, Debug, Error)]
+#[non_exhaustive]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum GpuError {
     /// The machine has no adapter that the passes run on.

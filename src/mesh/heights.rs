@@ -22,32 +22,32 @@ pub(crate) const MAX_MAPS: usize = 256;
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightMap {
     /// The width and height of level 0, in px.
-    pub size: [u32; 2],
+    pub(crate) size: [u32; 2],
     /// The number of levels.
-    pub levels: u32,
+    pub(crate) levels: u32,
     /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
     /// continue.
-    pub repeats: bool,
+    pub(crate) repeats: bool,
     /// The pixels of all levels, one level after another, each row by row from the top.
-    pub heights: Vec<f32>,
+    pub(crate) heights: Vec<f32>,
 }
 
 /// The height maps that displace a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Heights {
     /// The images.
-    pub maps: Vec<HeightMap>,
+    pub(crate) maps: Vec<HeightMap>,
     /// For each of the mesh's materials, its map; none if the material isn't displaced.
-    pub of_material: Vec<Option<u32>>,
+    pub(crate) of_material: Vec<Option<u32>>,
     /// The least and the greatest height in all maps.
-    pub range: [f32; 2],
+    pub(crate) range: [f32; 2],
     /// The mesh's bounding radius at rest, in object units. The scale of displacement is a multiple of it.
-    pub radius: f32,
+    pub(crate) radius: f32,
     /// For each of the mesh's corners, the sum of the angles, in radians, of the triangles there, in the mesh at rest.
-    pub angles: Vec<f32>,
+    pub(crate) angles: Vec<f32>,
     /// For each level of each map, the greatest difference between that level, interpolated linearly, and level 0. The
     /// difference never decreases from level to level.
-    pub detail: Vec<[f32; MAX_LEVELS]>,
+    pub(crate) detail: Vec<[f32; MAX_LEVELS]>,
 }
 
 impl HeightMap {
@@ -101,6 +101,11 @@ impl Heights {
         let lost = |(index, map): (usize, &HeightMap)| map.detail(&progress.part(part(index), part(index + 1)));
         let detail = maps.iter().enumerate().map(lost).collect::<Result<_, _>>()?;
         Ok(Self { maps, of_material, range, radius: mesh.bounds().radius(), angles: angles(mesh), detail })
+    }
+
+    /// Returns the images.
+    pub fn maps(&self) -> &[HeightMap] {
+        &self.maps
     }
 
     /// Returns the greatest distance that a point can be moved by, as a multiple of the scale.

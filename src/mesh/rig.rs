@@ -22,28 +22,28 @@ pub(crate) use clip::{Channel, Clip, Interpolation, Keys, Property};
 #[derive(Clone, Debug, Default)]
 pub struct Rig {
     /// One binding for each of the mesh's corners.
-    pub bindings: Vec<Binding>,
+    pub(crate) bindings: Vec<Binding>,
     /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns
     /// it.
-    pub deltas: Vec<Delta>,
+    pub(crate) deltas: Vec<Delta>,
     /// Corners at one position with the same number here stay together in every pose: they have the same joints,
     /// weights and displacements.
-    pub alike: Vec<u32>,
+    pub(crate) alike: Vec<u32>,
     /// The animated nodes, parents before children.
-    pub nodes: Vec<AnimatedNode>,
+    pub(crate) nodes: Vec<AnimatedNode>,
     /// The matrices of the palette.
-    pub joints: Vec<Joint>,
+    pub(crate) joints: Vec<Joint>,
     /// One for each node with morph targets.
-    pub morphs: Vec<Morph>,
+    pub(crate) morphs: Vec<Morph>,
     /// The clips that move something.
     pub clips: Vec<Clip>,
     /// Bounds on the coordinates before deformation.
-    pub reach: Reach,
+    pub(crate) reach: Reach,
 }
 
 /// The largest coordinates of the data that poses deform.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reach {
+pub(crate) struct Reach {
     /// The largest coordinate of a position.
     position: f64,
     /// The largest coordinate of a displacement of a position or normal, by a morph target of weight 1.
@@ -54,7 +54,7 @@ pub struct Reach {
 /// too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Binding {
+pub(crate) struct Binding {
     pub position: [f32; 3],
     pub first_delta: u32,
     /// Not of unit length if morph targets are added to it.
@@ -69,7 +69,7 @@ pub struct Binding {
 /// What a morph target of weight 1 adds to a corner. The shaders use this struct too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct Delta {
+pub(crate) struct Delta {
     pub position: [f32; 3],
     /// Index into [`Pose::weights`].
     pub weight: u32,
@@ -80,7 +80,7 @@ pub struct Delta {
 /// The first three rows of a matrix whose fourth row is (0, 0, 0, 1). The shaders use this struct too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub struct JointMatrix {
+pub(crate) struct JointMatrix {
     pub x: [f32; 4],
     pub y: [f32; 4],
     pub z: [f32; 4],
@@ -92,14 +92,14 @@ impl JointMatrix {
         Self { x, y, z }
     }
 
-    pub fn rows(&self) -> [[f32; 4]; 3] {
+    pub(crate) fn rows(&self) -> [[f32; 4]; 3] {
         [self.x, self.y, self.z]
     }
 }
 
 /// A matrix of the palette: `offset`, followed by the transform of the animated node.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
+pub(crate) struct Joint {
     /// Index into [`Rig::nodes`]; none if no clip moves the joint.
     pub node: Option<u32>,
     pub offset: DMat4,
@@ -107,7 +107,7 @@ pub struct Joint {
 
 /// The morph targets of one node.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Morph {
+pub(crate) struct Morph {
     /// Where the weights of these targets start in [`Pose::weights`].
     pub first_weight: u32,
     /// The weight of each target at rest.
@@ -176,6 +176,9 @@ impl Rig {
     }
 
     /// Returns the name by which [`Self::clip`] finds a clip.
+    ///
+    /// # Panics
+    /// If there are not so many clips.
     pub fn clip_name(&self, clip: usize) -> String {
         let name = &self.clips[clip].name;
         match self.clips[..clip].iter().filter(|other| other.name == *name).count() {
@@ -274,7 +277,7 @@ impl Rig {
 }
 
 impl Reach {
-    pub fn of(bindings: &[Binding], deltas: &[Delta]) -> Self {
+    pub(crate) fn of(bindings: &[Binding], deltas: &[Delta]) -> Self {
         let largest = |sum: f64, vector: &[f32; 3]| vector.iter().map(|x| f64::from(x.abs())).fold(sum, f64::max);
         Self {
             position: bindings.iter().map(|binding| &binding.position).fold(0.0, largest),

@@ -86,7 +86,7 @@ impl MeshSlices<'_> {
 }
 
 impl Mesh {
-    /// Makes a mesh of one material from arrays. Vertices that are equal to the last bit become one corner, those that no
+    /// Makes a mesh of one material, without height images and without a rig, from arrays. Vertices that are equal to the last bit become one corner, those that no
     /// triangle uses are left out, and what was repaired is counted in [`Mesh::repairs`]. Takes time linear in the number of
     /// triangles.
     ///

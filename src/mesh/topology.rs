@@ -25,7 +25,7 @@ use crate::progress::{Cancelled, Progress};
 /// sides.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
-    /// Welded positions (see [`weld_alike`]), in object units.
+    /// Welded positions, in object units.
     pub points: Vec<Vec3>,
     /// The point of each of the mesh's corners.
     pub corner_points: Vec<u32>,
@@ -151,7 +151,7 @@ impl Topology {
         Self::build(mesh, &Progress::new()).unwrap_or_default()
     }
 
-    /// Welds corners within a tolerance (see [`super::weld::weld_within`]) and finds the edges. The tolerance is
+    /// Welds corners within a tolerance and finds the edges. The tolerance is
     /// relative to the mesh's bounding diagonal; 0 joins only exactly equal positions. A triangle with two corners on
     /// one point is degenerate. Corners that a clip moves apart aren't joined. Takes time linear in the number of
     /// triangles, times the logarithm of the greatest number of patches around a point.
@@ -170,7 +170,7 @@ impl Topology {
     ///
     /// # Errors
     /// [`BuildError`].
-    pub fn build_afforded(
+    pub(crate) fn build_afforded(
         mesh: &Mesh,
         tolerance: f32,
         budget: &dyn MemoryAccount,

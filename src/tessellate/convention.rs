@@ -40,7 +40,7 @@ impl Convention {
 
     /// Inverts [`corner_weights`]: returns the tessellator's U and V for the weights of corners 0 and 1, in 16.16 fixed
     /// point.
-    pub fn domain_weights(self, [a, b]: [u32; 2]) -> [u32; 2] {
+    pub(crate) fn domain_weights(self, [a, b]: [u32; 2]) -> [u32; 2] {
         let on_corners = [a, b, super::FIXED_ONE - a - b];
         [0, 1].map(|i| on_corners[weight_corner(self, i) as usize])
     }

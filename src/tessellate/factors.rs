@@ -39,7 +39,7 @@ pub enum Partitioning {
     /// Rounded up to a whole number of equal segments.
     #[default]
     Integer = 0,
-    /// As integer to the tessellator; factors go through [`round_pow2`] before it.
+    /// As integer to the tessellator; factors are rounded to powers of two before it.
     Pow2 = 1,
     /// Always an odd number of segments, two of which grow from nothing.
     FractionalOdd = 2,
@@ -59,10 +59,10 @@ impl Partitioning {
 }
 
 /// A patch's factors as the tessellator uses them. Each word is a factor of 1 to 64 in 16.16 fixed point, clamped and
-/// rounded, with [`FACTOR_ODD`] set if its parity is odd.
+/// rounded, with bit 31 set if its parity is odd.
 ///
 /// In a culled patch the edges' words are 0, and the inside's word says why (see `cull.rs`): 0 if its own factors cull
-/// it. In a subtriangulated patch all four are the same number, and the inside's word has [`SUBTRIANGULATED`] set.
+/// it. In a subtriangulated patch all four are the same number, and the inside's word has bit 30 set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchFactors {

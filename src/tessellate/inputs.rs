@@ -42,7 +42,7 @@ pub struct Tessellation {
     pub far: f32,
     /// Whether patches outside the view are left out.
     pub clip: Clip,
-    /// Whether patches that show only their backs are left out, where [`super::Solid`] allows it.
+    /// Whether patches that show only their backs are left out, if the mesh is closed.
     pub cull_back_faces: bool,
     /// The order of factors and weights.
     pub convention: Convention,

@@ -26,11 +26,11 @@ pub enum Lod {
 /// The view that LOD and clipping are computed for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LodView {
-    /// The matrix from object units to clip space, with reversed depth.
+    /// The matrix from object units to clip space, with reversed depth: 1 at the near plane. The far plane may be anywhere.
     pub clip_from_object: Mat4,
     /// Half the viewport's width and height, in px.
     pub half_viewport: Vec2,
-    /// The largest distance in object units by which displacement moves a point.
+    /// The largest distance in object units by which displacement moves a point. Tessellation replaces it; leave it 0.
     pub reach: f32,
     /// The position of the eye in object units.
     pub eye: Vec3,

@@ -38,7 +38,10 @@ impl Tessellated {
 }
 
 /// Tessellates the mesh. `factors` replace the ones that LOD gives: one for each edge, or with edges as published one
-/// for each curve (see [`crate::mesh::Curves::factor`]).
+/// for each curve.
+///
+/// # Panics
+/// If `factors` are fewer than that.
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);

@@ -9,9 +9,9 @@ use bytemuck::{Pod, Zeroable};
 pub struct Vertex {
     /// The position in object units.
     pub position: [f32; 3],
-    /// The packed unit normal: see [`super::pack_normal`].
+    /// The packed unit normal: see [`super::unpack_normal`].
     pub normal: u32,
-    /// The packed patch and domain point: see [`pack_key`].
+    /// The packed patch and domain point: see [`Self::patch`] and [`Self::domain`].
     pub key: [u32; 2],
     /// The texture coordinate.
     pub uv: [f32; 2],

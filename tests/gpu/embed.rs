@@ -161,9 +161,9 @@ fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
     let (device, queue) = host();
     let context = Context::new(&device, &queue).expect("default limits are enough");
     let mut mesh = TessellatedMesh::new(&context, tube, ROOM).expect("a small mesh");
+    mesh.set(&uniform(3.0), LodView::default()).expect("a small mesh");
     let mut at = |time: Option<f64>| {
         mesh.set_pose(time.map(|time| rig.pose(Moment { clip: 0, time }))).expect("a small rig");
-        mesh.set(&uniform(3.0), LodView::default()).expect("a small mesh");
         emitted(&queue, &device, &mut mesh).1
     };
     let (rest, bent, rest_again) = (at(None), at(Some(0.5)), at(None));
@@ -240,4 +240,22 @@ fn the_examples_draw_their_pictures() {
         pictures.push((format!("example-animate-{moment}"), frames[moment].0.clone()));
     }
     assert_eq!(differing(pictures), Vec::<String>::new());
+}
+
+#[test]
+fn a_host_that_dropped_an_encoder_can_ask_for_everything_again() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, Shape::CubeSplit.build(), ROOM).expect("a small mesh");
+    mesh.set(&uniform(4.0), LodView::default()).expect("a small mesh");
+    let mut dropped = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    mesh.record(&mut dropped).expect("passes");
+    drop(dropped);
+    let (status, _) = emitted(&queue, &device, &mut mesh);
+    assert_eq!(status.triangles, 0, "nothing ran");
+    mesh.invalidate().expect("a small mesh");
+    let (status, output) = emitted(&queue, &device, &mut mesh);
+    assert_eq!(status.patches, mesh.patches());
+    let expected = tessellate(mesh.mesh(), mesh.topology(), &Inputs::new(&uniform(4.0), LodView::default()), None);
+    assert_eq!(output.triangles, expected.triangles);
 }

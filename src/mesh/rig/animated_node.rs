@@ -6,7 +6,7 @@ use super::clip::{Channel, Property, unit};
 
 /// A node that a clip moves. The transforms of nodes that no clip moves are part of `between`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnimatedNode {
+pub(crate) struct AnimatedNode {
     /// The nearest ancestor that a clip moves. Its index is lower than this node's.
     pub parent: Option<u32>,
     /// The transform from the space that `rest` places this node in to the parent's own space, or to the scene's
@@ -20,7 +20,7 @@ pub struct AnimatedNode {
 
 /// A node's own transform, as translation, rotation and scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
+pub(crate) struct Placement {
     pub translation: DVec3,
     /// Not always of unit length.
     pub rotation: DQuat,
@@ -34,7 +34,7 @@ impl Default for Placement {
 }
 
 impl Placement {
-    pub fn matrix(&self) -> DMat4 {
+    pub(crate) fn matrix(&self) -> DMat4 {
         DMat4::from_scale_rotation_translation(self.scale, unit(self.rotation), self.translation)
     }
 

@@ -16,7 +16,7 @@ pub struct Clip {
 
 /// The values of one property of one target over time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Channel {
+pub(crate) struct Channel {
     /// Index into [`super::Rig::nodes`], or for weights into [`super::Rig::morphs`].
     pub target: u32,
     pub property: Property,
@@ -24,7 +24,7 @@ pub struct Channel {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Property {
+pub(crate) enum Property {
     Translation,
     Rotation,
     Scale,
@@ -32,7 +32,7 @@ pub enum Property {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Interpolation {
+pub(crate) enum Interpolation {
     Linear,
     Step,
     CubicSpline,
@@ -40,7 +40,7 @@ pub enum Interpolation {
 
 /// Key frames.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Keys {
+pub(crate) struct Keys {
     /// In seconds. There is at least one, and each is later than the one before.
     pub times: Vec<f32>,
     /// `width` numbers for each key frame. Cubic splines have three times as many: in-tangent, value and out-tangent.
@@ -69,7 +69,7 @@ impl Clip {
 impl Keys {
     /// Calls `take` with the index and value of each number at a time. Before its first and after its last key frame, a
     /// channel keeps the value of that key frame.
-    pub fn sample(&self, time: f64, mut take: impl FnMut(usize, f64)) {
+    pub(crate) fn sample(&self, time: f64, mut take: impl FnMut(usize, f64)) {
         let interval = self.interval(time);
         for i in 0..self.width {
             take(i, self.component(&interval, i));
@@ -78,7 +78,7 @@ impl Keys {
 
     /// Returns a rotation at a time; it isn't normalised. Linear interpolation takes the shorter way between key
     /// frames.
-    pub fn rotation(&self, time: f64) -> DQuat {
+    pub(crate) fn rotation(&self, time: f64) -> DQuat {
         let interval = self.interval(time);
         if self.interpolation == Interpolation::Linear && interval.step > 0.0 {
             let [from, to] = [interval.key, interval.key + 1]
