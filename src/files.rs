@@ -240,7 +240,8 @@ mod tests {
 
     #[test]
     fn a_file_that_changes_while_it_is_read_is_refused() {
-        let path = std::env::temp_dir().join(format!("pnaen-changes-{}.stl", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.stl");
         let write = |bytes: usize| std::fs::write(&path, vec![b' '; bytes]).unwrap();
         let opened = || open_file(&path).unwrap().expect("a file");
         let read = |(file, about): (File, Metadata)| {
@@ -271,17 +272,16 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         write(7);
         assert_eq!(read(before).map(|bytes| bytes.len()), Ok(100));
-        std::fs::remove_file(&path).unwrap();
     }
 
     #[test]
     fn reading_stops_when_it_is_cancelled() {
-        let path = std::env::temp_dir().join(format!("pnaen-cancelled-{}.stl", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.stl");
         File::create(&path).and_then(|file| file.set_len(1 << 30)).unwrap();
         let progress = Progress::new();
         progress.cancel();
         let result = read_file(&path, &Limits::default(), |_| Ok::<(), FileError>(()), &progress);
-        std::fs::remove_file(&path).unwrap();
         assert!(matches!(result, Err(FileError::Cancelled(_))));
     }
 }

@@ -286,21 +286,19 @@ fn the_coarsest_of_every_method_come_first() {
 #[test]
 fn the_ending_decides_how_a_chart_is_saved() {
     let shown = subject(Some("the exact surface"), some_rows());
-    let folder = std::env::temp_dir().join(format!("pnaen-chart-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let saved = |name: &str| {
-        save(&folder.join(name), &shown).expect("it is written");
-        std::fs::read(folder.join(name)).expect("it is there")
+        save(&folder.path().join(name), &shown).expect("it is written");
+        std::fs::read(folder.path().join(name)).expect("it is there")
     };
     assert!(saved("a.svg").starts_with(b"<svg "));
     assert_eq!(saved("a.PNG")[1..4], *b"PNG");
     let table = String::from_utf8(saved("a.csv")).expect("text");
     assert_eq!(table.lines().count(), 1 + shown.rows.len());
     assert_eq!(table.lines().next(), Some(&COLUMNS.join(",")[..]));
-    let other = save(&folder.join("a.txt"), &shown).map_err(|error| error.to_string());
+    let other = save(&folder.path().join("a.txt"), &shown).map_err(|error| error.to_string());
     assert!(other.is_err_and(|text| text.contains(".svg, .png or .csv")));
-    std::fs::remove_dir_all(&folder).expect("removed");
-    let nowhere = save(&folder.join("a.svg"), &shown).map_err(|error| error.to_string());
+    let nowhere = save(&folder.path().join("nowhere/a.svg"), &shown).map_err(|error| error.to_string());
     assert!(nowhere.is_err_and(|text| text.contains("a.svg")), "it says which file");
 }
 

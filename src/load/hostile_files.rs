@@ -15,22 +15,6 @@ use crate::files::Limits;
 use crate::load::LoadedMesh;
 use crate::progress::Progress;
 
-/// Xorshift, 64 bits, from a seed that isn't 0 (Marsaglia 2003).
-pub(super) struct Random(pub u64);
-
-impl Random {
-    pub(super) fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    pub(super) fn below(&mut self, end: usize) -> usize {
-        (self.next() % end.max(1) as u64) as usize
-    }
-}
-
 /// The longest time that reading a file may take, in CPU time of this thread.
 const LIMIT: Duration = Duration::from_secs(1);
 

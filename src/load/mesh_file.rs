@@ -236,8 +236,9 @@ mod tests {
 
     #[test]
     fn files_of_another_format_are_recognised_by_their_start() {
+        let folder = tempfile::tempdir().unwrap();
         let said = |name: &str, bytes: &[u8]| {
-            let path = std::env::temp_dir().join(format!("pnaen-start-{}-{name}", std::process::id()));
+            let path = folder.path().join(name);
             std::fs::write(&path, bytes).unwrap();
             // Too large to read in the time that a test may take.
             File::options()
@@ -245,9 +246,7 @@ mod tests {
                 .open(&path)
                 .and_then(|file| file.set_len(bytes.len() as u64 + (1 << 30)))
                 .unwrap();
-            let said = message(path.to_str().expect("it is of letters"));
-            std::fs::remove_file(&path).unwrap();
-            said
+            message(path.to_str().expect("it is of letters"))
         };
         for name in ["a.obj", "a.stl", "a.ply"] {
             assert!(said(name, b"glTF\x02\0\0\0").contains("begins like a .glb file"), "{name}");
@@ -259,10 +258,9 @@ mod tests {
             said("a.glb", b"\0\0\0\0").contains("isn't a glTF file: it begins neither with \"glTF\" nor with a {;")
         );
         assert!(said("a.gltf", b"\xff\xfe{\0").contains("isn't a glTF file"));
-        let empty = std::env::temp_dir().join(format!("pnaen-start-{}.gltf", std::process::id()));
+        let empty = folder.path().join("empty.gltf");
         std::fs::write(&empty, b"").unwrap();
         assert!(message(empty.to_str().expect("it is of letters")).ends_with("is empty; export the model again"));
-        std::fs::remove_file(&empty).unwrap();
     }
 
     #[test]

@@ -35,12 +35,8 @@ fn torus(n: u32) -> Mesh {
 
 /// The mesh with its triangles in random order, as files may have them.
 fn shuffled(mut mesh: Mesh) -> Mesh {
-    let mut state = 1_u64;
-    let triangles = Arc::make_mut(&mut mesh.triangles);
-    for i in (1..triangles.len()).rev() {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        triangles.swap(i, ((state >> 33) % (i as u64 + 1)) as usize);
-    }
+    let triangles: &mut Vec<_> = Arc::make_mut(&mut mesh.triangles);
+    fastrand::Rng::with_seed(1).shuffle(triangles);
     mesh
 }
 

@@ -24,7 +24,7 @@ fn adapters_are_listed_and_one_can_be_chosen() {
 
 #[test]
 fn commands_that_need_no_adapter_work_without_one() {
-    let folder = Folder::new("no-adapter");
+    let folder = Folder::new();
     let [obj, indices] = ["out.obj", "out.json"].map(|name| folder.path(name));
     let without = |arguments: &[&str]| {
         let mut command = command(arguments);
@@ -60,7 +60,7 @@ fn commands_that_need_no_adapter_work_without_one() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_driver_that_is_out_of_memory_is_an_error_of_one_line() {
-    let folder = Folder::new("out-of-memory");
+    let folder = Folder::new();
     let picture = folder.path("out.png");
     // The limit is in KiB. The picture takes 2.5 GiB, everything else less than 1 GiB.
     let limited = r#"ulimit -v 2000000; exec "$0" "$@""#;

@@ -37,7 +37,7 @@ fn write_degenerate(folder: &Folder) -> String {
 
 #[test]
 fn json_and_bare_indices_agree_and_contain_each_other() {
-    let folder = Folder::new("adjacency-formats");
+    let folder = Folder::new();
     for mesh in ["shape:cube-split", "shape:moebius", vase()] {
         let [six, nine, twelve] = COUNTS.map(|(name, count)| {
             let document = json(mesh, name);
@@ -72,7 +72,7 @@ fn json_and_bare_indices_agree_and_contain_each_other() {
 
 #[test]
 fn the_json_lists_corners_triangles_and_patches() {
-    let folder = Folder::new("adjacency-document");
+    let folder = Folder::new();
     let document = json("shape:cube-split", "9");
     let counts = ["positions", "normals", "uvs", "triangles", "patch_triangles", "patches"];
     let counts = counts.map(|list| document[list].as_array().map_or(0, Vec::len));
@@ -89,7 +89,7 @@ fn the_json_lists_corners_triangles_and_patches() {
 
 #[test]
 fn written_files_compare_equal_in_every_format_and_layout() {
-    let folder = Folder::new("adjacency-equal");
+    let folder = Folder::new();
     for (name, _) in COUNTS {
         for file in ["a.json", "a.bin", "a"] {
             let path = folder.path(file);
@@ -111,7 +111,7 @@ fn written_files_compare_equal_in_every_format_and_layout() {
 
 #[test]
 fn differences_are_listed_with_patch_side_indices_and_meaning() {
-    let folder = Folder::new("adjacency-different");
+    let folder = Folder::new();
     let path = folder.path("theirs.bin");
     let compare = || failure(&["adjacency", "shape:cube-split", "--against", &path], 1);
     let original = patches(&json("shape:cube-split", "9")).concat();
@@ -163,7 +163,7 @@ fn differences_are_listed_with_patch_side_indices_and_meaning() {
 
 #[test]
 fn json_and_bare_indices_are_compared_alike() {
-    let folder = Folder::new("adjacency-alike");
+    let folder = Folder::new();
     let [text, bare] = ["theirs.json", "theirs.bin"].map(|name| folder.path(name));
     let mesh = write_degenerate(&folder);
     let mut document = json(&mesh, "12");
@@ -186,7 +186,7 @@ fn json_and_bare_indices_are_compared_alike() {
 
 #[test]
 fn errors_in_a_file_are_one_line_with_their_numbers() {
-    let folder = Folder::new("adjacency-wrong");
+    let folder = Folder::new();
     let (text, bare) = (folder.path("wrong.json"), folder.path("wrong.bin"));
     let wrong = |path: &str, bytes: &[u8], words: &[&str]| {
         std::fs::write(path, bytes).expect("a writable folder");
@@ -226,7 +226,7 @@ fn errors_in_a_file_are_one_line_with_their_numbers() {
 
 #[test]
 fn a_file_with_patches_of_degenerate_triangles_is_recognised() {
-    let folder = Folder::new("adjacency-degenerate");
+    let folder = Folder::new();
     let (mesh, path) = (write_degenerate(&folder), folder.path("theirs.bin"));
     write_indices(&path, &[0; 27]);
     sentence(&["adjacency", &mesh, "--against", &path], &["108 bytes", "72", "degenerate triangles"]);

@@ -13,7 +13,7 @@ fn file(folder: &Folder) -> String {
 
 #[test]
 fn stats_of_a_pose_name_it_and_count_no_cracks() {
-    let folder = Folder::new("animation-render");
+    let folder = Folder::new();
     let file = file(&folder);
     let picture = |name: &str, options: &[&str]| {
         let picture = folder.path(name);
@@ -34,7 +34,7 @@ fn stats_of_a_pose_name_it_and_count_no_cracks() {
 
 #[test]
 fn both_devices_write_the_pose() {
-    let folder = Folder::new("animation-tessellate");
+    let folder = Folder::new();
     let file = file(&folder);
     let extent = |options: &[&str]| {
         let path = folder.path("out.obj");
@@ -58,7 +58,7 @@ fn both_devices_write_the_pose() {
 
 #[test]
 fn a_time_beyond_a_clips_end_is_its_end() {
-    let folder = Folder::new("animation-end");
+    let folder = Folder::new();
     let file = file(&folder);
     let written = |time: &str| {
         let path = folder.path("out.obj");
@@ -75,7 +75,7 @@ fn a_time_beyond_a_clips_end_is_its_end() {
 
 #[test]
 fn an_unknown_animation_is_answered_with_those_there_are() {
-    let folder = Folder::new("animation-missing");
+    let folder = Folder::new();
     let (file, picture) = (file(&folder), folder.path("out.png"));
     let said = failure(&["render", &file, "-o", &picture, "--animation", "Fly away"], 1);
     assert!(said.contains("has no animation \"Fly away\": it has Bend, Swell, Fly, All"), "{said}");
@@ -90,7 +90,7 @@ fn an_unknown_animation_is_answered_with_those_there_are() {
 
 #[test]
 fn info_lists_clips() {
-    let folder = Folder::new("animation-info");
+    let folder = Folder::new();
     let file = file(&folder);
     let text = output(&["info", &file]);
     assert!(text.contains("\nanimation     Bend: 1 s, moves 1 joint\n"), "{text}");

@@ -15,7 +15,7 @@ const QUICK: [&str; 6] = ["--samples", "2000", "--size", "64x48", "--lods", "uni
 
 #[test]
 fn a_chart_measures_errors_against_the_exact_surface() {
-    let folder = Folder::new("chart");
+    let folder = Folder::new();
     let (svg, csv) = (folder.path("out.svg"), folder.path("out.csv"));
     let options = ["chart", "shape:icosahedron", "--surfaces", "flat,pn-aen", "--factors", "1,4", "-o", &svg];
     let said = output(&[&options[..], &QUICK, &["--csv", &csv]].concat());
@@ -33,7 +33,7 @@ fn a_chart_measures_errors_against_the_exact_surface() {
 
 #[test]
 fn errors_are_measured_against_a_given_mesh_or_the_limit_surface() {
-    let folder = Folder::new("chart-truth");
+    let folder = Folder::new();
     let png = folder.path("out.png");
     let options = ["chart", "shape:cube-smooth", "--surfaces", "pn-aen", "--factors", "1,4", "--csv", "-", "-o", &png];
     let own = output(&[&options[..], &QUICK].concat());
@@ -51,7 +51,7 @@ fn errors_are_measured_against_a_given_mesh_or_the_limit_surface() {
 
 #[test]
 fn a_report_has_a_page_a_table_and_a_picture_for_every_mesh() {
-    let folder = Folder::new("chart-report");
+    let folder = Folder::new();
     let into = folder.path("made/here");
     let options =
         ["chart", "shape:icosahedron", "shape:cube-smooth", "--surfaces", "flat,pn-aen", "--factors", "1,2,8"];
@@ -109,7 +109,7 @@ fn settings_with_too_many_triangles_are_left_out_and_counted() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_keeps_what_is_done() {
-    let folder = Folder::new("chart-interrupted");
+    let folder = Folder::new();
     let (svg, csv) = (folder.path("out.svg"), folder.path("out.csv"));
     // Thousands of settings take longer than the test waits.
     let factors: Vec<String> = (0..4000).map(|k| format!("{}", 1.0 + f64::from(k) / 64.0 / 4.0)).collect();

@@ -74,7 +74,7 @@ fn without_a_reference_surface_both_halves_are_compared_with_the_right_ones_limi
 
 #[test]
 fn another_surface_needs_a_split() {
-    let folder = Folder::new("split-surface");
+    let folder = Folder::new();
     let out = folder.path("out.png");
     let without = ["render", "shape:torus", "-o", &out, "--split-surface", "flat"];
     assert!(failure(&without, 2).contains("--split"), "the error names the missing option");
@@ -85,7 +85,7 @@ fn another_surface_needs_a_split() {
 
 #[test]
 fn deviation_is_measured_against_a_given_mesh_or_the_limit_surface() {
-    let folder = Folder::new("truth");
+    let folder = Folder::new();
     let high = folder.path("high.glb");
     output(&["tessellate", "shape:cube-smooth", "--surface", "pn", "--factor", "16", "-o", &high]);
     let against = |truth: &[&str]| {
@@ -112,7 +112,7 @@ fn accuracy_is_null_unless_asked_for_and_one_way_only_if_patches_are_left_out() 
 
 #[test]
 fn a_reference_surface_that_cannot_be_read_is_named() {
-    let folder = Folder::new("untruth");
+    let folder = Folder::new();
     let out = folder.path("out.png");
     let with = |truth: &'static str| {
         ["render", "shape:torus", "-o", &out, "--size", "60x40", "--truth", truth].map(str::to_owned)

@@ -8,7 +8,7 @@ use crate::{Folder, command, failure, output, sentence};
 
 #[test]
 fn both_devices_print_the_same_domain() {
-    let folder = Folder::new("domain");
+    let folder = Folder::new();
     let sets = folder.path("sets.txt");
     let text = "1 1 1 1\n2.5 3 7.25 4\n\nnan 1 1 1\n0 1 1 1\n-1 2 3 4\ninf 1 1 inf\n1 1 1 3\n64 64 64 64\n";
     std::fs::write(&sets, text).expect("a writable folder");
@@ -32,7 +32,7 @@ fn points_and_triangles_are_printed_in_order() {
 
 #[test]
 fn subtriangulation_needs_four_equal_factors() {
-    let folder = Folder::new("subtriangulation");
+    let folder = Folder::new();
     let sets = folder.path("sets.txt");
     let text = "1 1 1 1\n1.5 1.5 1.5 1.5\n0 1 2 3\nnan nan nan nan\ninf inf inf inf\n";
     std::fs::write(&sets, text).expect("a writable folder");

@@ -61,7 +61,7 @@ fn factors_are_printed_patch_by_patch_in_the_order_of_the_convention() {
 
 #[test]
 fn factors_from_a_file_give_the_same_mesh_as_lod() {
-    let folder = Folder::new("round-trip");
+    let folder = Folder::new();
     let [factors, direct, again] = ["factors.csv", "direct.obj", "again.obj"].map(|name| folder.path(name));
     let lods =
         [&["--lod", "edge-length", "--pixels", "24"][..], &["--lod", "error"], &["--lod", "distance", "--factor", "5"]];
@@ -97,7 +97,7 @@ fn drawn(folder: &Folder, factors: &str, convention: &str) -> (Value, String) {
 
 #[test]
 fn the_convention_of_a_file_is_recognised_by_its_edges() {
-    let folder = Folder::new("other-convention");
+    let folder = Folder::new();
     let (amd, mirrored) = (write_factors(&folder, "amd-pn"), write_factors(&folder, "mirrored"));
     let (stats, said) = drawn(&folder, &amd, "d3d11");
     let different = number(&stats, "/factors_file/edges_different");
@@ -130,7 +130,7 @@ fn the_convention_of_a_file_is_recognised_by_its_edges() {
 
 #[test]
 fn one_edge_that_disagrees_is_named_with_its_triangles() {
-    let folder = Folder::new("one-edge");
+    let folder = Folder::new();
     let path = write_factors(&folder, "d3d11");
     let text = std::fs::read_to_string(&path).expect("a file");
     let changed: Vec<String> = text
@@ -160,7 +160,7 @@ fn one_edge_that_disagrees_is_named_with_its_triangles() {
 
 #[test]
 fn lines_of_degenerate_triangles_are_optional() {
-    let folder = Folder::new("degenerate-factors");
+    let folder = Folder::new();
     let [a, b, c, d] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
     let mesh = write_triangles(&folder, &[[a, b, c], [b, b, c], [b, d, c]], [0.0, 0.0, 1.0]);
     let written = output(&["factors", &mesh, "-o", "-", "--factor", "2", "--device", "cpu"]);
@@ -176,7 +176,7 @@ fn lines_of_degenerate_triangles_are_optional() {
 
 #[test]
 fn errors_in_a_file_are_one_line_with_the_line_number() {
-    let folder = Folder::new("wrong-factors");
+    let folder = Folder::new();
     let [file, obj] = ["wrong.csv", "out.obj"].map(|name| folder.path(name));
     let text = output(&["factors", "shape:cube-split", "-o", "-", "--device", "cpu"]);
     let lines: Vec<_> = text.lines().collect();
@@ -211,7 +211,7 @@ fn errors_in_a_file_are_one_line_with_the_line_number() {
 
 #[test]
 fn factors_can_come_from_standard_input() {
-    let folder = Folder::new("factors-input");
+    let folder = Folder::new();
     let obj = folder.path("out.obj");
     let arguments = ["tessellate", "shape:cube-split", "-o", &obj, "--factors", "-", "--device", "cpu"];
     let mut child = command(&arguments)

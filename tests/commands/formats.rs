@@ -47,7 +47,7 @@ fn rewrite(folder: &Folder, obj: &str) -> [String; 2] {
 
 #[test]
 fn one_mesh_is_the_same_in_every_format() {
-    let folder = Folder::new("formats");
+    let folder = Folder::new();
     let [glb, obj] = ["a.glb", "a.obj"].map(|name| folder.path(name));
     let tessellate = ["tessellate", "shape:cube-split", "--surface", "flat", "--factor", "1", "--device", "cpu", "-o"];
     for path in [&glb, &obj] {
@@ -66,7 +66,7 @@ fn one_mesh_is_the_same_in_every_format() {
 
 #[test]
 fn an_exported_obj_file_loads_with_the_same_triangles() {
-    let folder = Folder::new("obj-round-trip");
+    let folder = Folder::new();
     let [first, second] = ["first.obj", "second.obj"].map(|name| folder.path(name));
     output(&["tessellate", "shape:torus", "--factor", "3", "--device", "cpu", "-o", &first]);
     let again = ["tessellate", &first, "--surface", "flat", "--factor", "1", "--device", "cpu", "-o", &second];
@@ -80,7 +80,7 @@ fn an_exported_obj_file_loads_with_the_same_triangles() {
 
 #[test]
 fn broken_files_are_refused_with_place_and_numbers() {
-    let folder = Folder::new("broken-formats");
+    let folder = Folder::new();
     let cases: [(&str, &[u8], &[&str]); 6] = [
         ("a.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", &["a.obj: line 4", "position 4", "3"]),
         ("points.OBJ", b"v 0 0 0\np 1\n", &["points.OBJ has no triangles", "1 positions, 1 points"]),
@@ -102,7 +102,7 @@ fn broken_files_are_refused_with_place_and_numbers() {
 
 #[test]
 fn materials_of_an_obj_file_are_read_and_missing_ones_reported() {
-    let folder = Folder::new("materials");
+    let folder = Folder::new();
     let text = "mtllib colours.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl lost\nf 3 2 1\n";
     std::fs::write(folder.path("a.obj"), text).expect("a writable folder");
     std::fs::write(folder.path("colours.mtl"), "newmtl red\nKd 1 0 0\nmap_Kd lost.png\n").expect("a writable folder");

@@ -4,7 +4,7 @@ use crate::{Folder, failure, output, sentence};
 
 #[test]
 fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
-    let folder = Folder::new("gallery");
+    let folder = Folder::new();
     let into = folder.path("made/here");
     output(&["gallery", "shape:cube-split", "-o", &into, "--factor", "3"]);
     let page = std::fs::read_to_string(folder.path("made/here/gallery.md")).expect("a page");
@@ -31,7 +31,7 @@ fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
 
 #[test]
 fn files_that_are_no_mesh_or_image_are_named() {
-    let folder = Folder::new("no-gallery");
+    let folder = Folder::new();
     sentence(&["gallery", "nowhere.glb", "-o", &folder.path("out")], &["nowhere.glb", "can't be read"]);
     sentence(&["gallery", "-o", &folder.path("out"), "--height", "nowhere.png"], &["nowhere.png", "height image"]);
     sentence(

@@ -33,7 +33,7 @@ fn a_crease_band_is_in_info_and_in_adjacency() {
 
 #[test]
 fn weld_previews_are_about_the_mesh_without_its_crease_band() {
-    let folder = Folder::new("crease-band");
+    let folder = Folder::new();
     let path = write_seam(&folder);
     let joins = |options: &[&str]| -> Value {
         let json: Value = serde_json::from_str(&output(&[&["info", &path, "--json"], options].concat())).expect("JSON");
@@ -44,7 +44,7 @@ fn weld_previews_are_about_the_mesh_without_its_crease_band() {
 
 #[test]
 fn info_has_t_junctions_and_repairs_and_the_effect_of_a_weld_tolerance() {
-    let folder = Folder::new("odd");
+    let folder = Folder::new();
     // One triangle above the edge from 0 to 4 along x. Two below it meet at 1 on the edge and miss its ends by 1e-4.
     let gap = 1e-4;
     let triangles = [
@@ -74,7 +74,7 @@ fn info_has_t_junctions_and_repairs_and_the_effect_of_a_weld_tolerance() {
 
 #[test]
 fn a_weld_tolerance_closes_a_seam_that_almost_meets() {
-    let folder = Folder::new("seam");
+    let folder = Folder::new();
     let (path, out) = (write_seam(&folder), folder.path("out.glb"));
     let json = |arguments: &[&str]| -> Value { serde_json::from_str(&output(arguments)).expect("JSON") };
     let info = |options: &[&str]| json(&[&["info", &path, "--json"], options].concat());
@@ -98,7 +98,7 @@ fn a_weld_tolerance_closes_a_seam_that_almost_meets() {
 
 #[test]
 fn control_characters_in_names_are_replaced() {
-    let folder = Folder::new("names");
+    let folder = Folder::new();
     let path = folder.path("odd\n\x1b[2J.obj");
     let name = format!("\x1b[2Jred{}", "x".repeat(1000));
     let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl {name}\nf 1 2 3\n");

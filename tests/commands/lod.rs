@@ -38,7 +38,7 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 
 #[test]
 fn subtriangulation_needs_uniform_factors() {
-    let folder = Folder::new("uniform");
+    let folder = Folder::new();
     let [picture, mesh, factors] = ["out.png", "out.obj", "out.csv"].map(|name| folder.path(name));
     let pattern = ["shape:torus", "--partitioning", "subtriangulation"];
     for lod in ["paper", "edge-length", "error", "distance"] {
@@ -64,7 +64,7 @@ fn subtriangulation_needs_uniform_factors() {
 
 #[test]
 fn a_budget_of_triangles_raises_the_tolerance_and_reports_it() {
-    let folder = Folder::new("budget");
+    let folder = Folder::new();
     let [picture, mesh] = ["out.png", "out.obj"].map(|name| folder.path(name));
     let by_error = ["shape:torus", "--lod", "error", "--tolerance", "0.1"];
     let all = number(&stats(&by_error), "/triangles_out");

@@ -22,29 +22,21 @@ mod usage;
 #[cfg(unix)]
 mod writing;
 
-use std::path::PathBuf;
 use std::process::{Command, Output};
 
 use serde_json::Value;
+use tempfile::TempDir;
 
 /// A temporary folder, which is removed at the end of the test.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a writable temporary folder");
-        Self(path)
+    fn new() -> Self {
+        Self(tempfile::tempdir().expect("a writable temporary folder"))
     }
 
     fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().expect("a path in UTF-8").to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
+        self.0.path().join(name).to_str().expect("a path in UTF-8").to_owned()
     }
 }
 
@@ -90,7 +82,7 @@ fn vase() -> &'static str {
 }
 
 fn stats(arguments: &[&str]) -> Value {
-    let folder = Folder::new(&format!("stats-{}", arguments.join("-").replace(['/', ':', '.', ','], "_")));
+    let folder = Folder::new();
     let picture = folder.path("out.png");
     let all = [&["render"], arguments, &["-o", &picture, "--size", "160x120", "--stats", "-"]].concat();
     serde_json::from_str(&output(&all)).expect("JSON")

@@ -55,7 +55,7 @@ fn leaks_of_an_open_mesh_are_null() {
 
 #[test]
 fn stats_count_folds_where_normals_lie_nearly_in_the_plane() {
-    let folder = Folder::new("folds");
+    let folder = Folder::new();
     // The leaning normals are like those at a notch and a point of a star.
     let positions = [[0.0, 0.0, 0.0], [0.28, 0.0, 0.2], [1.0, 0.0, 0.0]];
     let upright = [[0.0, 1.0, 0.0]; 3];
@@ -93,7 +93,7 @@ fn the_vase_is_drawn_without_cracks() {
 
 #[test]
 fn a_picture_has_its_size_and_background() {
-    let folder = Folder::new("picture");
+    let folder = Folder::new();
     let path = folder.path("out.png");
     output(&[
         "render",
@@ -115,7 +115,7 @@ fn a_picture_has_its_size_and_background() {
 
 #[test]
 fn a_picture_is_compared_with_its_reference() {
-    let folder = Folder::new("reference");
+    let folder = Folder::new();
     let [reference, same, other] = ["reference.png", "same.png", "other.png"].map(|name| folder.path(name));
     let render = |out: &str, more: &[&str]| {
         let base = ["render", "shape:torus", "--size", "160x120", "-o", out];
@@ -177,7 +177,7 @@ fn stats_count_small_triangles_and_patches_with_low_factors() {
 
 #[test]
 fn a_selected_triangle_is_outlined() {
-    let folder = Folder::new("select");
+    let folder = Folder::new();
     let drawn = |name: &str, options: &[&str]| {
         let path = folder.path(name);
         let base = ["render", "shape:cube-split", "-o", &path, "--size", "320x240", "--camera", "0,0"];

@@ -116,7 +116,7 @@ fn stability_prints_a_table_with_verdicts() {
 
 #[test]
 fn stability_draws_its_cases_and_writes_a_page() {
-    let folder = Folder::new("stability");
+    let folder = Folder::new();
     let pages = folder.path("made/on/the/way");
     output(&["stability", "--case", "split-normals", "--cameras", "0", "-o", &pages]);
     let mut files: Vec<_> =
@@ -153,7 +153,7 @@ fn stability_draws_its_cases_and_writes_a_page() {
 
 #[test]
 fn stability_runs_files() {
-    let folder = Folder::new("tent");
+    let folder = Folder::new();
     // Two sides of a roof, each with its own normal.
     let [left, right] = [[-0.48, 0.6, 0.64], [0.48, 0.6, 0.64]];
     let [front, back] = [[0.0, -1.0, 1.0], [0.0, 1.0, 1.0]];
@@ -194,7 +194,7 @@ fn stability_runs_files() {
 
 #[test]
 fn leaks_are_counted_for_a_file_that_a_weld_tolerance_closes() {
-    let folder = Folder::new("looks");
+    let folder = Folder::new();
     let path = write_seam(&folder);
     let leaks = |options: &[&str]| {
         let text = output(&[&["stability", &path, "--json", "--cameras", "0", "--device", "gpu"], options].concat());

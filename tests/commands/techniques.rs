@@ -36,7 +36,7 @@ fn stats_have_the_names_of_the_options_values() {
 
 #[test]
 fn an_image_displaces_any_surface_without_cracks() {
-    let folder = Folder::new("heights");
+    let folder = Folder::new();
     let path = height_image(&folder);
     for surface in ["flat", "pn-aen", "phong-aen", "nagata-aen"] {
         let base =
@@ -52,7 +52,7 @@ fn an_image_displaces_any_surface_without_cracks() {
 
 #[test]
 fn a_displaced_mesh_stays_in_the_picture() {
-    let folder = Folder::new("lifted");
+    let folder = Folder::new();
     let (white, out) = (folder.path("white.png"), folder.path("out.png"));
     image::GrayImage::from_pixel(2, 2, image::Luma([255])).save(&white).expect("a folder of our own");
     let lift = ["--displacement", "on", "--height", &white, "--height-scale", "1", "--midlevel", "0"];
@@ -67,7 +67,7 @@ fn a_displaced_mesh_stays_in_the_picture() {
 
 #[test]
 fn both_devices_write_the_same_displaced_mesh() {
-    let folder = Folder::new("displaced");
+    let folder = Folder::new();
     let (image, [gpu, cpu]) = (height_image(&folder), ["gpu.obj", "cpu.obj"].map(|name| folder.path(name)));
     for (device, path) in [("gpu", &gpu), ("cpu", &cpu)] {
         let options = ["--height", &image, "--midlevel", "0.2", "--factor", "3", "--device", device];
@@ -87,7 +87,7 @@ fn both_devices_write_the_same_displaced_mesh() {
 
 #[test]
 fn bad_height_images_are_named_and_wrong_options_are_usage_errors() {
-    let folder = Folder::new("no-heights");
+    let folder = Folder::new();
     let out = folder.path("out.png");
     let text = folder.path("notes.txt");
     std::fs::write(&text, "no image").expect("a writable folder");

@@ -8,7 +8,7 @@ use crate::{Folder, output, read_obj, sentence, stats, vase};
 
 #[test]
 fn a_tessellated_mesh_is_closed_to_the_last_bit() {
-    let folder = Folder::new("tessellate");
+    let folder = Folder::new();
     let path = folder.path("out.obj");
     for device in ["gpu", "cpu"] {
         output(&["tessellate", "shape:cylinder", "-o", &path, "--device", device, "--factor", "5.5"]);
@@ -30,7 +30,7 @@ fn a_tessellated_mesh_is_closed_to_the_last_bit() {
 
 #[test]
 fn a_tessellated_mesh_can_be_opened_again() {
-    let folder = Folder::new("again");
+    let folder = Folder::new();
     let path = folder.path("out.glb");
     output(&["tessellate", vase(), "-o", &path, "--factor", "3", "--partitioning", "integer"]);
     let info: Value = serde_json::from_str(&output(&["info", &path, "--json"])).expect("JSON");
@@ -44,7 +44,7 @@ fn a_tessellated_mesh_can_be_opened_again() {
 
 #[test]
 fn a_mesh_of_degenerate_triangles_is_written_empty_and_refused_as_input() {
-    let folder = Folder::new("empty");
+    let folder = Folder::new();
     let [degenerate, out] = ["degenerate.gltf", "out.glb"].map(|name| folder.path(name));
     // A triangle with all corners on one point is left out. The buffer has 36 zero bytes.
     let zeros = "A".repeat(48);
@@ -64,7 +64,7 @@ fn a_mesh_of_degenerate_triangles_is_written_empty_and_refused_as_input() {
 
 #[test]
 fn a_mesh_too_large_for_its_format_is_refused_before_it_is_tessellated() {
-    let folder = Folder::new("huge");
+    let folder = Folder::new();
     let [torus, out] = ["torus.glb", "out.glb"].map(|name| folder.path(name));
     output(&["tessellate", "shape:torus", "-o", &torus, "--factor", "20", "--partitioning", "integer"]);
     for device in ["gpu", "cpu"] {

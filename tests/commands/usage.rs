@@ -6,7 +6,7 @@ use crate::{Folder, command, failure, output, run, sentence};
 
 #[test]
 fn failures_are_one_line_and_exit_code_1() {
-    let folder = Folder::new("failures");
+    let folder = Folder::new();
     let [out, text, broken] = ["out.png", "notes.txt", "broken.gltf"].map(|name| folder.path(name));
     std::fs::write(&text, "no mesh").expect("a writable folder");
     std::fs::write(&broken, "{\"asset\":").expect("a writable folder");
@@ -38,7 +38,7 @@ fn failures_are_one_line_and_exit_code_1() {
 
 #[test]
 fn a_picture_too_large_for_the_device_is_an_error_of_one_line() {
-    let folder = Folder::new("large");
+    let folder = Folder::new();
     let path = folder.path("out.png");
     let output = run(&["render", "shape:torus", "-o", &path, "--size", "16384x16384"]);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -50,7 +50,7 @@ fn a_picture_too_large_for_the_device_is_an_error_of_one_line() {
 
 #[test]
 fn wrong_usage_exits_with_2() {
-    let folder = Folder::new("wrong-usage");
+    let folder = Folder::new();
     for arguments in [
         &["render", "shape:torus"][..],
         &["render", "shape:teapot", "-o", "x.png"],
@@ -106,7 +106,7 @@ fn adapter_and_the_cpu_exclude_each_other() {
 
 #[test]
 fn without_a_display_the_program_writes_a_picture() {
-    let folder = Folder::new("preview");
+    let folder = Folder::new();
     let output = command(&[]).current_dir(&folder.0).output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -120,7 +120,7 @@ fn without_a_display_the_program_writes_a_picture() {
 
 #[test]
 fn commands_never_read_the_settings_of_the_window() {
-    let folder = Folder::new("kept");
+    let folder = Folder::new();
     std::fs::write(folder.path("window.json"), r#"{"settings": {"surface": "flat", "background": [255, 0, 0]}}"#)
         .expect("a writable folder");
     let pictures = ["", &folder.path("")].map(|kept| {
@@ -138,7 +138,7 @@ fn commands_never_read_the_settings_of_the_window() {
 
 #[test]
 fn two_overlays_that_colour_the_surface_are_wrong_usage() {
-    let folder = Folder::new("overlays");
+    let folder = Folder::new();
     let picture = folder.path("out.png");
     let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
     for list in ["barycentric,factors", "triangle-size,wireframe,low-factors", "deviation,factors"] {
@@ -151,14 +151,14 @@ fn two_overlays_that_colour_the_surface_are_wrong_usage() {
 
 #[test]
 fn pictures_must_be_png_files() {
-    let folder = Folder::new("named");
+    let folder = Folder::new();
     let errors = failure(&["render", "shape:cube-split", "-o", &folder.path("out.jpg")], 2);
     assert!(errors.contains("PNG") && errors.contains(".jpg"), "{errors}");
 }
 
 #[test]
 fn a_mesh_of_degenerate_triangles_is_drawn_with_a_warning() {
-    let folder = Folder::new("nothing-left");
+    let folder = Folder::new();
     let path = folder.path("line.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nf 1 2 2\n").expect("a writable temporary folder");
     let run = run(&["render", &path, "-o", &folder.path("out.png")]);
@@ -201,7 +201,7 @@ fn document(member: &str) -> String {
 
 #[test]
 fn hostile_files_are_one_line_and_exit_code_1() {
-    let folder = Folder::new("hostile");
+    let folder = Folder::new();
     let write = |name: &str, bytes: &[u8]| {
         std::fs::write(folder.path(name), bytes).expect("a writable folder");
         folder.path(name)
@@ -222,7 +222,7 @@ fn hostile_files_are_one_line_and_exit_code_1() {
 
 #[test]
 fn devices_are_refused_and_not_read() {
-    let folder = Folder::new("endless");
+    let folder = Folder::new();
     let picture = folder.path("none.png");
     let device = "it is a device";
     sentence(&["render", "shape:torus", "-o", &picture, "--factors", "/dev/zero"], &["/dev/zero", device]);

@@ -34,7 +34,7 @@ fn permit(path: &str, mode: u32) {
 
 #[test]
 fn a_read_only_file_is_not_replaced() {
-    let folder = Folder::new("read-only");
+    let folder = Folder::new();
     let path = old(&folder, "out.json");
     permit(&path, 0o444);
     sentence(&writes(&path), &["out.json", "could not be written", "it is read-only"]);
@@ -48,7 +48,7 @@ fn a_read_only_file_is_not_replaced() {
 
 #[test]
 fn a_read_only_folder_keeps_its_files() {
-    let folder = Folder::new("closed");
+    let folder = Folder::new();
     let path = old(&folder, "out.json");
     sentence(&writes(&format!("{path}/below.json")), &["below.json", "there is no folder", "out.json"]);
     permit(&folder.path(""), 0o555);
@@ -58,12 +58,12 @@ fn a_read_only_folder_keeps_its_files() {
     permit(&folder.path(""), 0o755);
     assert_eq!(done.status.code(), Some(i32::from(!may_write)));
     assert_eq!(is_old(&path), !may_write);
-    assert_eq!(names(&folder.0).len(), 1 + usize::from(may_write), "nothing is left beside it");
+    assert_eq!(names(folder.0.path()).len(), 1 + usize::from(may_write), "nothing is left beside it");
 }
 
 #[test]
 fn a_link_stays_a_link_and_its_target_is_written() {
-    let folder = Folder::new("links");
+    let folder = Folder::new();
     std::fs::create_dir(folder.path("there")).expect("a writable folder");
     let target = old(&folder, "there/target.json");
     let [near, far, dangling] = ["near.json", "far.json", "dangling.json"].map(|name| folder.path(name));
@@ -93,7 +93,7 @@ fn with_little_room(before: &str, path: &str) -> std::process::Output {
 
 #[test]
 fn a_full_disk_leaves_the_old_file_whole_and_nothing_beside_it() {
-    let folder = Folder::new("full");
+    let folder = Folder::new();
     let path = old(&folder, "out.json");
     // With the signal ignored, the limit is an error of the write, like a full disk.
     let done = with_little_room("trap '' XFSZ;", &path);
@@ -101,12 +101,12 @@ fn a_full_disk_leaves_the_old_file_whole_and_nothing_beside_it() {
     assert_eq!(done.status.code(), Some(1), "{errors}");
     assert!(errors.contains("out.json: could not be written") && errors.lines().count() == 1, "{errors}");
     assert!(is_old(&path));
-    assert_eq!(names(&folder.0), [PathBuf::from(&path)]);
+    assert_eq!(names(folder.0.path()), [PathBuf::from(&path)]);
 }
 
 #[test]
 fn a_kill_while_writing_leaves_the_old_file_whole() {
-    let folder = Folder::new("killed");
+    let folder = Folder::new();
     let path = old(&folder, "out.json");
     let done = with_little_room("", &path);
     assert_eq!(done.status.code(), None, "a signal ends the program");
@@ -117,7 +117,7 @@ fn a_kill_while_writing_leaves_the_old_file_whole() {
 
 #[test]
 fn a_command_does_not_overwrite_its_input() {
-    let folder = Folder::new("apart");
+    let folder = Folder::new();
     let path = |name: &str| folder.path(name);
     let (mesh, picture, factors) = (path("in.glb"), path("in.png"), path("in.csv"));
     std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb"), &mesh).expect("a writable folder");

@@ -17,12 +17,11 @@ use crate::gpu_tests::moving::{CLIPS, moving};
 use crate::gpu_tests::passes::{assert_agree, inputs, on_gpu};
 
 fn scene() -> (Loaded, Scene) {
-    let path =
-        std::env::temp_dir().join(format!("pnaen-moving-{}-{:?}.glb", std::process::id(), std::thread::current().id()));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("moving.glb");
     std::fs::write(&path, moving()).expect("a writable temporary folder");
-    let loaded = load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
-        .expect("what was just written");
-    let _ = std::fs::remove_file(path);
+    let loaded =
+        load(&Source::File(path), &Preparation::default(), &Progress::default()).expect("what was just written");
     let scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
     (loaded, scene)
 }

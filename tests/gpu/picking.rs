@@ -39,12 +39,8 @@ fn pick(scene: &mut Scene, pixel: &Pixel) -> Option<Picked> {
 
 /// The same pixels on every run, anywhere in the picture.
 fn pixels(count: u32) -> impl Iterator<Item = [u32; 2]> {
-    let mut state = 12345_u32;
-    let mut below = move |end: u32| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 16) % end
-    };
-    (0..count).map(move |_| [below(SIZE[0]), below(SIZE[1])])
+    let mut random = fastrand::Rng::with_seed(12345);
+    (0..count).map(move |_| SIZE.map(|end| random.u32(..end)))
 }
 
 /// A triangle as seen from a pixel's middle: how far inside it that is in px, negative outside, and its depth there.

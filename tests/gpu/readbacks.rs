@@ -25,9 +25,8 @@ fn chunks_read(engine: &Engine, arguments: &[&str], output: &Path) -> u64 {
 #[test]
 fn each_chunk_is_read_back_once_whatever_is_asked_for() {
     let engine = Engine::new(engine().gpu.clone());
-    let folder = std::env::temp_dir().join(format!("pnaen-readbacks-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a writable temporary folder");
-    let (picture, mesh, stats) = (folder.join("out.png"), folder.join("out.obj"), folder.join("stats.json"));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let [picture, mesh, stats] = ["out.png", "out.obj", "stats.json"].map(|name| folder.path().join(name));
     let settings = ["shape:icosahedron@3", "--factor", "5", "--arena", "1"];
     let with = |command: &'static str, more: &[&'static str]| [&[command], &settings[..], more].concat();
     let read = |arguments: &[&str], output: &Path| chunks_read(&engine, arguments, output);
@@ -53,5 +52,4 @@ fn each_chunk_is_read_back_once_whatever_is_asked_for() {
     let (count, stats) = everything(&["--split", "0.5", "--split-surface", "flat"]);
     assert_eq!(count, left + right, "one walk over each half");
     assert!(!stats["left"]["accuracy"].is_null(), "the left half was measured too");
-    std::fs::remove_dir_all(&folder).expect("removed");
 }

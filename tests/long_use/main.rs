@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
+use fastrand::Rng;
 use image::RgbaImage;
 use pnaen::internals::Shape;
 use pnaen::internals::Source;
@@ -37,40 +38,11 @@ struct Effort {
     compared: usize,
 }
 
-/// A temporary folder for this test, which is removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-long-use-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a writable temporary folder");
-        Self(path)
-    }
-
-    fn file(&self, name: &str, bytes: &[u8]) -> Source {
-        let path = self.0.join(name);
-        std::fs::write(&path, bytes).expect("a writable temporary folder");
-        Source::File(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-/// Pseudo-random numbers (Steele, Lea and Flood 2014), the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, most: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((mixed ^ (mixed >> 31)) % most as u64) as usize
-    }
+/// Writes a file into a folder.
+fn file(folder: &Path, name: &str, bytes: &[u8]) -> Source {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).expect("a writable temporary folder");
+    Source::File(path)
 }
 
 fn window(kept: &Path, source: Option<Source>, [width, height]: [f32; 2]) -> Harness<'static, App> {
@@ -103,15 +75,15 @@ fn shows_what_a_new_window_does(harness: &mut Harness<App>, kept: &Path, size: [
     assert!(is_same, "{source:?} with {:?}", harness.state().settings());
 }
 
-fn loads(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
+fn loads(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part {
     let vase = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")).expect("it is there");
     let sources = [
-        folder.file("vase.glb", &vase),
+        file(folder, "vase.glb", &vase),
         Source::Shape(Shape::Torus),
-        folder.file("cut.glb", &vase[..vase.len() / 2]),
-        folder.file("square.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"),
+        file(folder, "cut.glb", &vase[..vase.len() / 2]),
+        file(folder, "square.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"),
         Source::Shape(Shape::Icosphere),
-        Source::File(folder.0.join("nowhere.ply")),
+        Source::File(folder.join("nowhere.ply")),
         Source::Shape(Shape::Bicubic),
     ];
     let mut part = Part { what: "loads", taken: Vec::new() };
@@ -124,7 +96,7 @@ fn loads(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
             harness.query_by_label_contains(&source.title()).is_some_and(|_| harness.state().source() != Some(source));
         assert!(harness.state().source() == Some(source) || refused, "{source:?}");
         if step % effort.compared == effort.compared - 1 {
-            shows_what_a_new_window_does(harness, &folder.0, SIZE);
+            shows_what_a_new_window_does(harness, folder, SIZE);
         }
         part.taken.push(figures::now(harness.state()));
     }
@@ -143,16 +115,16 @@ fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
 }
 
 /// Changes a random control to a random value.
-fn change(harness: &mut Harness<App>, random: &mut Random) {
+fn change(harness: &mut Harness<App>, random: &mut Rng) {
     let all = controls(harness);
-    let (role, name) = &all[random.below(all.len())];
+    let (role, name) = &all[random.usize(..all.len())];
     let control = harness.get_by_role_and_label(*role, name);
     match role {
         Role::Slider => {
             let node = control.accesskit_node();
             let range = node.min_numeric_value().zip(node.max_numeric_value());
             let (least, most) = range.expect("a slider has ends");
-            control.set_value_accesskit(least + (most - least) * (random.below(1001) as f64 / 1000.0));
+            control.set_value_accesskit(least + (most - least) * (f64::from(random.u32(0..1001)) / 1000.0));
         }
         Role::ComboBox => {
             control.click();
@@ -162,7 +134,7 @@ fn change(harness: &mut Harness<App>, random: &mut Random) {
                 node.role() == Role::Button && above.any(|node| node.role() == Role::ListBox)
             };
             let entries: Vec<_> = harness.query_all(By::new().predicate(in_list)).collect();
-            entries[random.below(entries.len())].click();
+            entries[random.usize(..entries.len())].click();
         }
         _ => control.click(),
     }
@@ -181,23 +153,23 @@ fn need_every_pipeline(harness: &mut Harness<App>) {
     }
 }
 
-fn settings(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
+fn settings(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part {
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::CubeSplit));
     settle(harness);
     need_every_pipeline(harness);
-    let (mut part, mut random) = (Part { what: "settings", taken: Vec::new() }, Random(5));
+    let (mut part, mut random) = (Part { what: "settings", taken: Vec::new() }, Rng::with_seed(5));
     for step in 0..effort.settings {
         change(harness, &mut random);
         if step % effort.compared == effort.compared - 1 {
-            shows_what_a_new_window_does(harness, &folder.0, SIZE);
+            shows_what_a_new_window_does(harness, folder, SIZE);
         }
         part.taken.push(figures::now(harness.state()));
     }
     part
 }
 
-fn sizes(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
+fn sizes(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part {
     let mut part = Part { what: "sizes", taken: Vec::new() };
     for step in 0..effort.sizes {
         // The same ten sizes again and again, large and small in turn.
@@ -205,7 +177,7 @@ fn sizes(harness: &mut Harness<App>, folder: &Folder, effort: &Effort) -> Part {
         harness.set_size(size.into());
         settle(harness);
         if step % effort.compared == effort.compared - 1 {
-            shows_what_a_new_window_does(harness, &folder.0, size);
+            shows_what_a_new_window_does(harness, folder, size);
         }
         part.taken.push(figures::now(harness.state()));
     }
@@ -219,12 +191,13 @@ fn memory_of_a_window_used_for_long_levels_off_and_its_picture_stays_right() {
         Some(_) => Effort { loads: 500, settings: 2000, sizes: 100, compared: 50 },
         None => Effort { loads: 50, settings: 60, sizes: 20, compared: 20 },
     };
-    let folder = Folder::new();
-    let mut harness = window(&folder.0, None, SIZE);
+    let temporary = tempfile::tempdir().expect("a writable temporary folder");
+    let folder = temporary.path();
+    let mut harness = window(folder, None, SIZE);
     let parts = [
-        loads(&mut harness, &folder, &effort),
-        settings(&mut harness, &folder, &effort),
-        sizes(&mut harness, &folder, &effort),
+        loads(&mut harness, folder, &effort),
+        settings(&mut harness, folder, &effort),
+        sizes(&mut harness, folder, &effort),
     ];
     if let Some(written) = &written {
         figures::write(written, &parts);

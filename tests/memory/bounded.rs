@@ -1,6 +1,7 @@
 //! Limits on a whole load: reading, edges, a crease band and heights. A load never takes more memory than it is
 //! allowed, and isn't refused the memory that it needs.
 
+use std::path::Path;
 use std::sync::PoisonError;
 
 use pnaen::internals::{HeightSource, Source};
@@ -12,7 +13,7 @@ use pnaen::progress::Progress;
 use super::counting::peak_of;
 use super::glb::{blocks, indexed, loose};
 use super::grid::Grid;
-use super::{ALONE, Temporary, textures};
+use super::{ALONE, temporary, textures};
 
 /// Memory that doesn't depend on the file's size, in bytes.
 const FIXED: usize = 1 << 20;
@@ -21,16 +22,16 @@ const FIXED: usize = 1 << 20;
 const PARTS: [f64; 7] = [0.15, 0.3, 0.5, 0.65, 0.8, 0.9, 0.97];
 
 /// Runs a whole load with this much memory (in bytes) beyond four times the files' size, and returns how much it took.
-pub fn loaded(file: &Temporary, preparation: &Preparation, memory: u64) -> (Result<Loaded, LoadError>, usize) {
+pub fn loaded(file: &Path, preparation: &Preparation, memory: u64) -> (Result<Loaded, LoadError>, usize) {
     let preparation = Preparation { limits: Limits { memory, ..Limits::default() }, ..preparation.clone() };
-    let source = Source::File(file.0.clone());
+    let source = Source::File(file.to_path_buf());
     peak_of(|| load(&source, &preparation, &Progress::new()))
 }
 
 /// Loads a file with more and more memory. A load may ask for `most` times the memory that it takes; `image` is the
 /// size of the height image file.
 fn assert_bounded(name: &str, bytes: &[u8], image: usize, preparation: &Preparation, most: f64) {
-    let file = Temporary::new(name, bytes);
+    let file = temporary(name, bytes);
     let (result, needed) = loaded(&file, preparation, u64::MAX);
     let triangles = result.expect("a file without a fault").read.triangles.len();
     println!("{name}: {needed} bytes, {} a triangle, of a file of {}", needed / triangles, bytes.len() / triangles);
@@ -90,9 +91,9 @@ fn the_limit_includes_heights() {
     assert_bounded("materials.glb", &textures(3, 700), 0, &of(HeightSource::Materials), 1.1);
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbImage::new(1500, 900).write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
-    let image = Temporary::new("heights.png", png.get_ref());
+    let image = temporary("heights.png", png.get_ref());
     let sheet = indexed(Grid::of(TRIANGLES, 0.0), true);
-    assert_bounded("file.glb", &sheet, png.get_ref().len(), &of(HeightSource::File(image.0.clone())), 1.1);
+    assert_bounded("file.glb", &sheet, png.get_ref().len(), &of(HeightSource::File(image.to_path_buf())), 1.1);
 }
 
 /// A small file with large images. Each is in memory twice, as a texture and as heights.
@@ -101,7 +102,7 @@ fn images_of_many_materials_are_refused_as_heights() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let bytes = textures(14, 2048);
     let allowed = 4 * bytes.len() + (256 << 20);
-    let file = Temporary::new("images.glb", &bytes);
+    let file = temporary("images.glb", &bytes);
     let heights = Preparation { heights: Some(HeightSource::Materials), ..Preparation::default() };
     let memory = Limits::default().memory;
     assert!(loaded(&file, &Preparation::default(), memory).0.is_ok());

@@ -11,12 +11,12 @@ use pnaen::mesh::Heights;
 use pnaen::progress::Progress;
 
 use super::counting::peak_of;
-use super::{ALONE, Temporary};
+use super::{ALONE, temporary};
 
 /// Reads an image from a file, checks the memory against what its size allows, and returns how much it took, in bytes.
 fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
-    let file = Temporary::new(name, bytes);
-    let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.0.clone()));
+    let file = temporary(name, bytes);
+    let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.to_path_buf()));
     let budget = Budget::of_mesh(&mesh, 0, &Limits::default());
     let (result, took) = peak_of(|| source.load(&mesh, &[], &budget, &Progress::new()));
     let allowed = 4 * bytes.len() + (256 << 20);

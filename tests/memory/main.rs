@@ -13,31 +13,22 @@ mod heights;
 mod honest;
 mod packed;
 
-use std::path::PathBuf;
+use std::io::Write;
 use std::sync::{Mutex, PoisonError};
 
 use pnaen::load::Limits;
 use pnaen::load::{LoadError, LoadedMesh, load};
 use pnaen::progress::Progress;
 use serde_json::{Value, json};
+use tempfile::TempPath;
 
 use counting::peak_of;
 
-/// A file in the temporary folder, which its test removes.
-struct Temporary(PathBuf);
-
-impl Temporary {
-    fn new(name: &str, bytes: &[u8]) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-memory-{}-{name}", std::process::id()));
-        std::fs::write(&path, bytes).expect("a writable temporary folder");
-        Self(path)
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_file(&self.0);
-    }
+/// Writes a temporary file whose name has this end. It is removed when its path is dropped.
+fn temporary(name: &str, bytes: &[u8]) -> TempPath {
+    let mut file = tempfile::Builder::new().suffix(name).tempfile().expect("a writable temporary folder");
+    file.write_all(bytes).expect("a writable temporary folder");
+    file.into_temp_path()
 }
 
 /// Lets one test run at a time, since the memory of all tests is counted together.
@@ -51,9 +42,9 @@ fn measured(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize
 
 /// Loads any file in the same way, after its bytes have been freed. Returns how much memory it took, in bytes.
 fn taken(name: &str, bytes: Vec<u8>) -> (Result<LoadedMesh, LoadError>, usize) {
-    let (file, size) = (Temporary::new(name, &bytes), bytes.len());
+    let (file, size) = (temporary(name, &bytes), bytes.len());
     drop(bytes);
-    let (result, took) = peak_of(|| load(&file.0, &Limits::default(), &Progress::new()));
+    let (result, took) = peak_of(|| load(&file, &Limits::default(), &Progress::new()));
     let allowed = 4 * size + (256 << 20);
     println!("{name}: {} of {} MiB, loaded: {}", took >> 20, allowed >> 20, result.is_ok());
     assert!(took <= allowed, "{name}: {took} of {allowed} bytes");

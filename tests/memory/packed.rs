@@ -11,7 +11,7 @@ use serde_json::json;
 
 use super::bounded::loaded;
 use super::grid::Grid;
-use super::{ALONE, Temporary, glb, measured, taken};
+use super::{ALONE, glb, measured, taken, temporary};
 
 /// A primitive with positions and other attributes, given by names, types and widths; `from` is the buffer.
 fn document(vertices: usize, triangles: usize, others: &[(String, u8)], from: &[u8]) -> Vec<u8> {
@@ -105,7 +105,7 @@ fn larger_files_are_read_with_more_memory() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let grid = Grid::of(500_000, 0.0);
     let bytes = sheet(grid, &[("TEXCOORD_0".to_owned(), 2)], false, 5);
-    let file = Temporary::new("packed-trusted.glb", &bytes);
+    let file = temporary("packed-trusted.glb", &bytes);
     let said = loaded(&file, &Preparation::default(), Limits::default().memory).0.map(|_| ()).expect_err("too much");
     assert!(said.to_string().contains("(--max-memory allows more); decompress the model first"), "{said}");
     let (result, took) = loaded(&file, &Preparation::default(), 2 << 30);

@@ -7,15 +7,17 @@ use egui_kittest::kittest::Queryable;
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::{Moment, Shape};
+use tempfile::TempDir;
 
 use crate::window_tests::moving::{CLIPS, moving};
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 
-/// A window with an animated mesh, and its file, which the test removes at its end.
-fn moving_window(name: &str) -> (Harness<'static, App>, std::path::PathBuf) {
-    let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}.glb", std::process::id()));
+/// A window with an animated mesh, and the folder of its file, which must be kept for as long as the window.
+fn moving_window() -> (Harness<'static, App>, TempDir) {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("moving.glb");
     std::fs::write(&path, moving()).expect("a writable temporary folder");
-    (uniform(Some(Source::File(path.clone()))), path)
+    (uniform(Some(Source::File(path))), folder)
 }
 
 fn time(harness: &Harness<App>) -> f64 {
@@ -31,7 +33,7 @@ fn a_mesh_without_clips_has_no_animation_section() {
 
 #[test]
 fn a_clip_is_chosen_and_scrubbed() {
-    let (mut harness, path) = moving_window("scrub");
+    let (mut harness, _folder) = moving_window();
     harness.get_by_label("Animation");
     assert_eq!(harness.state().moment(), None, "it opens at rest");
     // Frame again, because the viewport had another size when the mesh was loaded.
@@ -65,12 +67,11 @@ fn a_clip_is_chosen_and_scrubbed() {
     assert!(near.distance < rest.distance);
     choose(&mut harness, "Clip", CLIPS[2]);
     assert_eq!(*harness.state().camera(), near);
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]
 fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
-    let (mut harness, path) = moving_window("play");
+    let (mut harness, _folder) = moving_window();
     harness.key_press(Key::Space);
     harness.run_steps(2);
     assert!(harness.state().is_playing(), "the first clip plays if none is chosen");
@@ -95,12 +96,11 @@ fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
     harness.run_steps(5);
     assert_eq!((time(&harness), harness.state().pictures()), (paused, pictures), "nothing changes while paused");
     harness.get_by_role_and_label(Role::Button, "Play");
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]
 fn speed_multiplies_time() {
-    let (mut harness, path) = moving_window("speed");
+    let (mut harness, _folder) = moving_window();
     choose(&mut harness, "Clip", CLIPS[2]);
     let passed = |harness: &mut Harness<App>| {
         harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.0);
@@ -119,12 +119,11 @@ fn speed_multiplies_time() {
     harness.get_by_role_and_label(Role::Slider, "Speed").set_value_accesskit(4.0);
     let fast = passed(&mut harness);
     assert!((fast / normal - 4.0).abs() < 1e-3, "{normal} {fast}");
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]
 fn framing_a_selected_patch_uses_its_pose() {
-    let (mut harness, path) = moving_window("selected");
+    let (mut harness, _folder) = moving_window();
     harness.state_mut().select_triangle(Some(20));
     settle(&mut harness);
     choose(&mut harness, "Clip", CLIPS[0]);
@@ -140,12 +139,11 @@ fn framing_a_selected_patch_uses_its_pose() {
     let target = harness.state().camera().target;
     assert!(target.distance(middle(posed.topology.patch_positions(patch))) < 1e-4);
     assert!(target.distance(middle(loaded.topology.patch_positions(patch))) > 0.1);
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]
 fn a_mesh_loaded_again_keeps_its_pose_and_another_is_at_rest() {
-    let (mut harness, path) = moving_window("again");
+    let (mut harness, _folder) = moving_window();
     choose(&mut harness, "Clip", CLIPS[1]);
     harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
     settle(&mut harness);
@@ -163,5 +161,4 @@ fn a_mesh_loaded_again_keeps_its_pose_and_another_is_at_rest() {
     settle(&mut harness);
     assert_eq!(harness.state().moment(), None);
     click(&mut harness, "Wireframe");
-    let _ = std::fs::remove_file(path);
 }

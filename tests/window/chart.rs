@@ -95,10 +95,10 @@ fn the_chart_is_measured_and_a_setting_of_its_front_is_applied() {
     harness.get_by_label_contains(&format!("Apply {} ({})", best.method, best.label())).click();
     settle(&mut harness);
     assert_eq!(*harness.state().settings(), best.applied(&before), "nothing else changes");
-    let path = std::env::temp_dir().join(format!("pnaen-window-{}.csv", std::process::id()));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("chart.csv");
     harness.state().save_chart(&path).expect("it is written");
     let table = std::fs::read_to_string(&path).expect("it is there");
-    std::fs::remove_file(&path).expect("removed");
     assert_eq!(table.lines().count(), 11);
 }
 

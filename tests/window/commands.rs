@@ -1,6 +1,6 @@
 //! The table of commands: its keys, menus and search, and what the commands do.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use egui::accesskit::Role;
@@ -16,30 +16,10 @@ use pnaen::mesh::Shape;
 use pnaen::progress::Progress;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Edges, Lod, Surface};
+use tempfile::TempDir;
 
 use crate::window_tests::driver::PATIENCE;
 use crate::window_tests::{choose, moving, press, run_command, settle, uniform, window};
-
-/// A temporary folder, which is removed at the end of the test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-commands-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a writable temporary folder");
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
 
 fn commands(harness: &Harness<App>) -> Vec<Command> {
     all(&harness.state().availability())
@@ -61,8 +41,8 @@ fn press_shortcut(harness: &mut Harness<App>, key: &KeyboardShortcut) {
 
 /// A window in which every command with a key is possible once a triangle is selected: an animated mesh with heights,
 /// uniform LOD and a change that can be undone.
-fn full_window(folder: &Folder) -> Harness<'static, App> {
-    let path = folder.path("moving.glb");
+fn full_window(folder: &TempDir) -> Harness<'static, App> {
+    let path = folder.path().join("moving.glb");
     std::fs::write(&path, moving::moving()).expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::File(path)));
     let context = harness.ctx.clone();
@@ -83,7 +63,7 @@ fn wait_for_dialog(harness: &mut Harness<App>) {
 
 #[test]
 fn every_key_of_the_table_gives_its_command() {
-    let folder = Folder::new("keys");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = full_window(&folder);
     let mut pressed = 0;
     for command in commands(&harness).iter().filter(|command| !command.keys.is_empty()) {
@@ -212,7 +192,7 @@ fn values_tolerances_and_resets_are_commands() {
 
 #[test]
 fn every_clip_is_a_command() {
-    let folder = Folder::new("clips");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = full_window(&folder);
     for (i, clip) in moving::CLIPS.iter().enumerate() {
         give(&mut harness, &format!("Animation: {clip}"));
@@ -288,9 +268,9 @@ fn wait(harness: &mut Harness<App>, until: impl Fn(&App) -> bool) {
 
 #[test]
 fn the_picture_is_saved_as_it_is_shown() {
-    let folder = Folder::new("picture");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(Some(Source::Shape(Shape::Torus)));
-    let path = folder.path("torus.png");
+    let path = folder.path().join("torus.png");
     write_as(&mut harness, "Save picture path…", &path);
     let saved = image::open(&path).expect("a picture").to_rgba8();
     assert_eq!(saved, harness.state().read_picture().expect("a device").expect("a picture"));
@@ -303,25 +283,25 @@ fn the_picture_is_saved_as_it_is_shown() {
     assert!(harness.query_by_label_contains("torus.png exists already").is_some());
     assert_eq!(image::open(&path).expect("a picture").to_rgba8(), saved);
     press(&mut harness, Key::Escape);
-    write_as(&mut harness, "Save picture path…", &folder.path("torus.jpg"));
+    write_as(&mut harness, "Save picture path…", &folder.path().join("torus.jpg"));
     assert!(harness.query_by_label_contains("torus.jpg: the name must end in .png").is_some());
-    assert!(!folder.path("torus.jpg").exists());
+    assert!(!folder.path().join("torus.jpg").exists());
 }
 
 #[test]
 fn an_exported_mesh_is_the_one_that_the_command_writes() {
-    let folder = Folder::new("export");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (_, triangles) = harness.state().totals().expect("a torus");
     for name in ["torus.glb", "torus.obj"] {
-        let path = folder.path(name);
+        let path = folder.path().join(name);
         write_as(&mut harness, "Export mesh path…", &path);
         assert!(harness.query_by_label_contains(&format!("{name} is written.")).is_some());
         press(&mut harness, Key::Escape);
         let written = pnaen::engine::load(&Source::File(path.clone()), &Preparation::default(), &Progress::default())
             .expect("what was written");
         assert_eq!(written.mesh.triangles.len() as u64, triangles, "{name}");
-        let command = folder.path(&format!("command-{name}"));
+        let command = folder.path().join(format!("command-{name}"));
         let settings = ["--factor", "8", "--partitioning", "fractional-odd"];
         run_command(["tessellate", "shape:torus"].into_iter().chain(settings), &command);
         assert!(
@@ -329,22 +309,22 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
             "{name} differs from the command's file"
         );
     }
-    write_as(&mut harness, "Export mesh path…", &folder.path("torus.ply"));
+    write_as(&mut harness, "Export mesh path…", &folder.path().join("torus.ply"));
     assert!(harness.query_by_label_contains("torus.ply: the name must end in").is_some());
 }
 
 #[test]
 fn an_export_that_is_cancelled_writes_nothing() {
-    let folder = Folder::new("cancelled");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    let (context, path) = (harness.ctx.clone(), folder.path("torus.obj"));
+    let (context, path) = (harness.ctx.clone(), folder.path().join("torus.obj"));
     harness.state_mut().export_mesh(&context, path.clone()).expect("an .obj file");
     harness.step();
     assert!(harness.query_by_label_contains("Exporting torus.obj").is_some());
     press(&mut harness, Key::Escape);
     assert!(!harness.state().is_writing());
     // A second export takes as long as the first one would have taken.
-    harness.state_mut().export_mesh(&context, folder.path("second.obj")).expect("an .obj file");
+    harness.state_mut().export_mesh(&context, folder.path().join("second.obj")).expect("an .obj file");
     wait(&mut harness, |app| !app.is_writing());
-    assert!(folder.path("second.obj").exists() && !path.exists());
+    assert!(folder.path().join("second.obj").exists() && !path.exists());
 }

@@ -105,8 +105,7 @@ fn copied(harness: &mut Harness<App>) -> String {
 
 /// Runs a command in a folder of its own, and compares its picture with the window's.
 fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
-    let folder = std::env::temp_dir().join(format!("pnaen-editing-{name}-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("a writable temporary folder");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     // The shell splits the line into words.
     let output = Command::new("sh").args(["-c", &format!("printf '%s\\n' {command}")]).output().expect("a shell");
     let line = String::from_utf8(output.stdout).expect("UTF-8");
@@ -115,11 +114,10 @@ fn assert_draws(harness: &Harness<App>, command: &str, name: &str) {
     let at = words.iter().position(|word| *word == "-o").expect("a command that writes a picture");
     let file: Vec<_> = words.drain(at..at + 2).collect();
     assert_eq!(file[1], format!("{name}.png"));
-    let picture = folder.join(file[1]);
+    let picture = folder.path().join(file[1]);
     run_command(words, &picture);
     let drawn = image::open(&picture).expect("a picture").to_rgba8();
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
-    std::fs::remove_dir_all(&folder).expect("removed");
     let difference = compare(&drawn, &shown).expect("one size").difference;
     // The command has the camera's distance in bounding radii, which rounds its last bit.
     assert!(difference < 1e-3, "{command}: {difference}");

@@ -11,46 +11,23 @@ use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::settings::Settings;
 use pnaen::tessellate::{Displacement, Surface};
+use tempfile::TempDir;
 
-use crate::window_tests::{choose, click, press, settle, vase};
+use crate::window_tests::{choose, click, copy_vase, press, settle, vase};
 
-/// A temporary folder, which is removed at the end of the test.
-pub(super) struct Folder(PathBuf);
-
-impl Folder {
-    pub(super) fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-window-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a writable temporary folder");
-        Self(path)
-    }
-
-    pub(super) fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    /// The file that settings are saved in.
-    fn file(&self) -> PathBuf {
-        self.0.join("kept/window.json")
-    }
-
-    /// Copies the vase under another name.
-    fn mesh(&self, name: &str) -> Source {
-        let Source::File(vase) = vase() else { unreachable!("it is a file") };
-        let path = self.0.join(name);
-        std::fs::copy(vase, &path).expect("a writable temporary folder");
-        Source::File(path)
-    }
+/// The file that settings are saved in.
+fn settings_file(folder: &TempDir) -> PathBuf {
+    folder.path().join("kept/window.json")
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// A copy of the vase under another name.
+fn mesh(folder: &TempDir, name: &str) -> Source {
+    Source::File(copy_vase(folder, name))
 }
 
 /// A window that saves its state in a folder.
-fn window(folder: &Folder, source: Option<Source>) -> Harness<'static, App> {
-    let kept = folder.0.join("kept");
+fn window(folder: &TempDir, source: Option<Source>) -> Harness<'static, App> {
+    let kept = folder.path().join("kept");
     let mut harness = Harness::builder().with_size([1200.0, 960.0]).wgpu().build_eframe(move |context| {
         let mut app = App::new(context, source, Limits::default()).expect("these tests need a graphics adapter");
         app.resume(&context.egui_ctx, Persistence::read(Some(&kept)));
@@ -80,8 +57,8 @@ fn recent_menu(harness: &mut Harness<App>) {
 
 #[test]
 fn settings_cameras_and_recent_files_survive_a_restart() {
-    let folder = Folder::new("restart");
-    let (first, second) = (folder.mesh("first.glb"), folder.mesh("second.glb"));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let (first, second) = (mesh(&folder, "first.glb"), mesh(&folder, "second.glb"));
     let mut harness = window(&folder, None);
     assert_eq!(harness.state().settings(), &Settings::opening(), "the settings of a first start");
     choose(&mut harness, "Surface", "Phong AEN");
@@ -125,11 +102,11 @@ fn settings_cameras_and_recent_files_survive_a_restart() {
 
 #[test]
 fn changes_are_written_after_a_while_without_drawing_again() {
-    let folder = Folder::new("written");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(&folder, Some(Source::Shape(Shape::Torus)));
     choose(&mut harness, "Surface", "Nagata");
     let (pictures, start) = (harness.state().pictures(), std::time::Instant::now());
-    let written = || Persistence::read(folder.file().parent()).settings().tessellation.surface;
+    let written = || Persistence::read(settings_file(&folder).parent()).settings().tessellation.surface;
     while written() != Surface::Nagata {
         assert!(start.elapsed() < crate::window_tests::PATIENCE, "it isn't written");
         harness.step();
@@ -137,7 +114,7 @@ fn changes_are_written_after_a_while_without_drawing_again() {
     }
     assert_eq!(harness.state().pictures(), pictures);
     let is_file = |name: &std::ffi::OsString| name == "window.json";
-    let names: Vec<_> = std::fs::read_dir(folder.0.join("kept")).expect("a folder").flatten().collect();
+    let names: Vec<_> = std::fs::read_dir(folder.path().join("kept")).expect("a folder").flatten().collect();
     assert!(
         names.iter().map(|entry| entry.file_name()).all(|name| is_file(&name)),
         "no other file is left in the folder"
@@ -146,11 +123,11 @@ fn changes_are_written_after_a_while_without_drawing_again() {
 
 #[test]
 fn a_missing_recent_file_is_reported_and_leaves_the_list() {
-    let folder = Folder::new("gone");
-    let (first, second) = (folder.mesh("first.glb"), folder.mesh("second.glb"));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let (first, second) = (mesh(&folder, "first.glb"), mesh(&folder, "second.glb"));
     let mut harness = window(&folder, Some(first));
     open(&mut harness, &second);
-    std::fs::remove_file(folder.0.join("first.glb")).expect("it is there");
+    std::fs::remove_file(folder.path().join("first.glb")).expect("it is there");
     recent_menu(&mut harness);
     harness.get_by_label_contains("first.glb").click();
     settle(&mut harness);
@@ -164,20 +141,20 @@ fn a_missing_recent_file_is_reported_and_leaves_the_list() {
 }
 
 /// The files and cameras that are saved in a folder.
-fn kept_files(folder: &Folder) -> serde_json::Value {
-    let text = std::fs::read(folder.file()).expect("the saved state");
+fn kept_files(folder: &TempDir) -> serde_json::Value {
+    let text = std::fs::read(settings_file(folder)).expect("the saved state");
     serde_json::from_slice::<serde_json::Value>(&text).expect("JSON")["files"].take()
 }
 
 #[test]
 fn a_file_that_was_missing_for_a_while_is_listed_again_with_its_camera() {
-    let folder = Folder::new("back");
-    let (first, away) = (folder.mesh("first.glb"), folder.path("away.glb"));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let (first, away) = (mesh(&folder, "first.glb"), folder.path().join("away.glb"));
     let mut harness = window(&folder, Some(first.clone()));
-    std::fs::rename(folder.path("first.glb"), &away).expect("it is there");
+    std::fs::rename(folder.path().join("first.glb"), &away).expect("it is there");
     press(&mut harness, egui::Key::R);
     harness.get_by_label_contains("removed from the recent files");
-    std::fs::rename(&away, folder.path("first.glb")).expect("it is there");
+    std::fs::rename(&away, folder.path().join("first.glb")).expect("it is there");
     press(&mut harness, egui::Key::R);
     press(&mut harness, egui::Key::Num3);
     let looked = *harness.state().camera();
@@ -190,12 +167,12 @@ fn a_file_that_was_missing_for_a_while_is_listed_again_with_its_camera() {
 
 #[test]
 fn a_file_that_was_missing_when_the_window_closed_keeps_its_camera() {
-    let folder = Folder::new("later");
-    let (first, away) = (folder.mesh("first.glb"), folder.path("away.glb"));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let (first, away) = (mesh(&folder, "first.glb"), folder.path().join("away.glb"));
     let mut harness = window(&folder, Some(first.clone()));
     press(&mut harness, egui::Key::Num3);
     let looked = *harness.state().camera();
-    std::fs::rename(folder.path("first.glb"), &away).expect("it is there");
+    std::fs::rename(folder.path().join("first.glb"), &away).expect("it is there");
     press(&mut harness, egui::Key::R);
     close(harness);
     let mut harness = window(&folder, None);
@@ -205,7 +182,7 @@ fn a_file_that_was_missing_when_the_window_closed_keeps_its_camera() {
         "the missing file isn't listed"
     );
     close(harness);
-    std::fs::rename(&away, folder.path("first.glb")).expect("it is there");
+    std::fs::rename(&away, folder.path().join("first.glb")).expect("it is there");
     let mut harness = window(&folder, Some(first));
     assert_eq!(*harness.state().camera(), looked);
     recent_menu(&mut harness);
@@ -214,8 +191,8 @@ fn a_file_that_was_missing_when_the_window_closed_keeps_its_camera() {
 
 #[test]
 fn a_recent_file_can_be_opened_with_keys() {
-    let folder = Folder::new("keys");
-    let first = folder.mesh("first.glb");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let first = mesh(&folder, "first.glb");
     let mut harness = window(&folder, Some(first.clone()));
     open(&mut harness, &Source::Shape(Shape::Torus));
     harness.get_by_role_and_label(Role::Button, "File").focus();
@@ -229,7 +206,7 @@ fn a_recent_file_can_be_opened_with_keys() {
 
 #[test]
 fn forgetting_goes_back_to_the_state_of_a_first_start() {
-    let folder = Folder::new("forget");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(&folder, None);
     click(&mut harness, "File");
     assert!(
@@ -237,7 +214,7 @@ fn forgetting_goes_back_to_the_state_of_a_first_start() {
         "there are no recent files yet"
     );
     press(&mut harness, egui::Key::Escape);
-    let mesh = folder.mesh("first.glb");
+    let mesh = mesh(&folder, "first.glb");
     open(&mut harness, &mesh);
     let framed = *harness.state().camera();
     choose(&mut harness, "Surface", "PN");
@@ -255,7 +232,7 @@ fn forgetting_goes_back_to_the_state_of_a_first_start() {
     assert_eq!(*harness.state().camera(), framed);
     assert_eq!(harness.ctx.options(|options| options.theme_preference), egui::ThemePreference::System);
     close(harness);
-    let text = std::fs::read_to_string(folder.file()).expect("the saved state");
+    let text = std::fs::read_to_string(settings_file(&folder)).expect("the saved state");
     assert!(!text.contains("first.glb"), "{text}");
     let mut harness = window(&folder, None);
     assert_eq!(harness.state().settings(), &Settings::opening());
@@ -265,7 +242,7 @@ fn forgetting_goes_back_to_the_state_of_a_first_start() {
 
 #[test]
 fn forgetting_can_be_confirmed_or_cancelled_with_keys() {
-    let folder = Folder::new("forget-keys");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(&folder, None);
     choose(&mut harness, "Surface", "PN");
     for forgets in [false, true] {
@@ -282,13 +259,13 @@ fn forgetting_can_be_confirmed_or_cancelled_with_keys() {
 
 #[test]
 fn damaged_settings_are_renamed_and_the_window_opens() {
-    let folder = Folder::new("damaged");
-    std::fs::create_dir(folder.0.join("kept")).expect("a writable folder");
-    std::fs::write(folder.file(), "{\"settings\": {\"surf").expect("a writable folder");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    std::fs::create_dir(folder.path().join("kept")).expect("a writable folder");
+    std::fs::write(settings_file(&folder), "{\"settings\": {\"surf").expect("a writable folder");
     let mut harness = window(&folder, None);
     assert_eq!(harness.state().settings(), &Settings::opening());
     harness.get_by_label_contains("window.json is damaged");
-    assert!(folder.file().with_file_name("window.damaged.json").exists());
+    assert!(settings_file(&folder).with_file_name("window.damaged.json").exists());
     click(&mut harness, "Close");
     choose(&mut harness, "Surface", "Flat");
     close(harness);
@@ -301,7 +278,7 @@ fn damaged_settings_are_renamed_and_the_window_opens() {
 
 #[test]
 fn heights_and_selection_are_not_saved() {
-    let folder = Folder::new("bound");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = window(&folder, Some(vase()));
     let waves = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/waves.png");
     let context = harness.ctx.clone();

@@ -10,6 +10,7 @@ use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::tessellate::Surface;
+use tempfile::TempDir;
 
 use crate::window_tests::{PATIENCE, choose, press, settle, uniform};
 
@@ -104,8 +105,8 @@ fn edges_crack_as_published_and_not_if_computed_once() {
 }
 
 /// Writes two triangles with a slit between them, whose width is less than 1e-4 of the bounding diagonal.
-fn slit() -> PathBuf {
-    let path = std::env::temp_dir().join(format!("pnaen-slit-{}.obj", std::process::id()));
+fn slit(folder: &TempDir) -> PathBuf {
+    let path = folder.path().join("slit.obj");
     let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.0001 0 0\nv 1 1 0\nv 0.0001 1 0\n";
     std::fs::write(&path, format!("{corners}f 1 2 3\nf 4 5 6\n")).expect("a writable temporary folder");
     path
@@ -113,8 +114,8 @@ fn slit() -> PathBuf {
 
 #[test]
 fn the_list_of_weld_tolerances_says_what_each_joins() {
-    let path = slit();
-    let mut harness = uniform(Some(Source::File(path.clone())));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = uniform(Some(Source::File(slit(&folder))));
     let start = Instant::now();
     while harness.state().is_checking() {
         assert!(start.elapsed() < PATIENCE, "the mesh is still being checked");
@@ -135,7 +136,6 @@ fn the_list_of_weld_tolerances_says_what_each_joins() {
         assert_eq!(edges(&harness), expected, "{entry}");
         assert_eq!(*harness.state().camera(), camera, "the view stays");
     }
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]

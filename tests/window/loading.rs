@@ -11,8 +11,7 @@ use pnaen::files::Limits;
 use pnaen::load::Source;
 use pnaen::mesh::Shape;
 
-use crate::window_tests::lasting::Folder;
-use crate::window_tests::{click, press, settle, uniform, vase};
+use crate::window_tests::{click, copy_vase, press, settle, uniform, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -32,12 +31,6 @@ pub(super) fn drop_files(harness: &mut Harness<App>, paths: &[PathBuf]) {
         harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
     }
     harness.run_steps(2);
-}
-
-fn vase_at(folder: &Folder, name: &str) -> PathBuf {
-    let (Source::File(vase), path) = (vase(), folder.path(name)) else { unreachable!("it is a file") };
-    std::fs::copy(vase, &path).expect("a writable folder");
-    path
 }
 
 /// A shape that takes a second or more to make.
@@ -84,8 +77,8 @@ fn reloading_while_another_mesh_loads_keeps_the_open_mesh() {
 
 #[test]
 fn repeated_reloading_ends_with_the_last_version_of_the_file() {
-    let folder = Folder::new("reload");
-    let path = vase_at(&folder, "mesh.obj");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = copy_vase(&folder, "mesh.obj");
     std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a writable folder");
     let mut harness = uniform(Some(Source::File(path.clone())));
     let camera = *harness.state().camera();
@@ -113,11 +106,11 @@ fn closing_the_window_while_a_mesh_loads_ends_at_once() {
 
 #[test]
 fn one_of_several_dropped_files_is_opened_and_named() {
-    let folder = Folder::new("dropped");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let [image, first, second] = [
         PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png")),
-        vase_at(&folder, "a.glb"),
-        vase_at(&folder, "b.glb"),
+        copy_vase(&folder, "a.glb"),
+        copy_vase(&folder, "b.glb"),
     ];
     let mut harness = uniform(None);
     drop_files(&mut harness, &[image, first.clone(), second]);
@@ -134,8 +127,8 @@ fn one_of_several_dropped_files_is_opened_and_named() {
 
 #[test]
 fn a_file_dropped_while_another_loads_wins() {
-    let folder = Folder::new("dropped-while");
-    let path = vase_at(&folder, "a.glb");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = copy_vase(&folder, "a.glb");
     let mut harness = uniform(None);
     open(&mut harness, slow());
     drop_files(&mut harness, std::slice::from_ref(&path));
@@ -146,7 +139,7 @@ fn a_file_dropped_while_another_loads_wins() {
 
 #[test]
 fn folders_pipes_and_devices_are_refused_by_name() {
-    let folder = Folder::new("no-files");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = uniform(Some(vase()));
     let mut refuses = |path: PathBuf, expected: &str| {
         drop_files(&mut harness, std::slice::from_ref(&path));
@@ -155,18 +148,18 @@ fn folders_pipes_and_devices_are_refused_by_name() {
         assert_eq!(harness.state().source(), Some(&vase()), "the old mesh stays");
         click(&mut harness, "Close");
     };
-    let inside = folder.path("models.glb");
+    let inside = folder.path().join("models.glb");
     std::fs::create_dir(&inside).expect("a writable folder");
     refuses(inside, "models.glb is not a file");
     if cfg!(unix) {
         for name in ["pipe.glb", "pipe.png"] {
-            let pipe = folder.path(name);
+            let pipe = folder.path().join(name);
             let made = std::process::Command::new("mkfifo").arg(&pipe).status();
             assert!(made.is_ok_and(|made| made.success()));
             let is_mesh = name.ends_with("glb");
             refuses(pipe, if is_mesh { "pipe.glb is not a file" } else { "pipe.png" });
         }
-        let device = folder.path("zero.stl");
+        let device = folder.path().join("zero.stl");
         std::os::unix::fs::symlink("/dev/zero", &device).expect("a writable folder");
         refuses(device, "zero.stl is not a file");
     }
@@ -174,8 +167,8 @@ fn folders_pipes_and_devices_are_refused_by_name() {
 
 #[test]
 fn reloading_a_missing_file_keeps_the_mesh() {
-    let folder = Folder::new("gone-on-reload");
-    let path = vase_at(&folder, "a.glb");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = copy_vase(&folder, "a.glb");
     let mut harness = uniform(Some(Source::File(path.clone())));
     let (camera, totals) = (*harness.state().camera(), harness.state().totals());
     std::fs::remove_file(&path).expect("it is there");
@@ -183,7 +176,7 @@ fn reloading_a_missing_file_keeps_the_mesh() {
     harness.get_by_label_contains("a.glb can't be read");
     assert_eq!((*harness.state().camera(), harness.state().totals()), (camera, totals));
     assert_eq!(harness.state().source(), Some(&Source::File(path.clone())));
-    vase_at(&folder, "a.glb");
+    copy_vase(&folder, "a.glb");
     click(&mut harness, "Close");
     press(&mut harness, egui::Key::R);
     says_nothing(&harness);
@@ -191,8 +184,8 @@ fn reloading_a_missing_file_keeps_the_mesh() {
 
 #[test]
 fn a_file_that_changes_while_it_is_loaded_is_refused_or_read_whole() {
-    let folder = Folder::new("changes");
-    let path = folder.path("a.glb");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("a.glb");
     let Source::File(vase) = vase() else { unreachable!("it is a file") };
     let whole = std::fs::read(vase).expect("the vase");
     std::fs::write(&path, &whole).expect("a writable folder");

@@ -117,8 +117,8 @@ fn jobs_that_were_under_way_go_on_without_further_messages() {
 
 #[test]
 fn the_pose_stays() {
-    let folder = crate::window_tests::lasting::Folder::new("lost-clip");
-    let path = folder.path("moving.glb");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("moving.glb");
     std::fs::write(&path, crate::window_tests::moving::moving()).expect("a writable folder");
     let mut harness = window(Some(Source::File(path)));
     harness.state_mut().choose_clip(Some(0));
@@ -139,8 +139,8 @@ fn the_pose_stays() {
 
 #[test]
 fn after_a_second_loss_the_window_offers_to_save_and_to_try_again() {
-    let folder = crate::window_tests::lasting::Folder::new("lost-again");
-    let path = folder.path("saved.obj");
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("saved.obj");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let (totals, loaded) = (harness.state().totals(), harness.state().loaded().cloned().expect("a torus"));
     lose(&mut harness);

@@ -30,6 +30,7 @@ use pnaen::load::Source;
 use pnaen::mesh::Shape;
 use pnaen::settings::Colors;
 use pnaen::tessellate::{Clip, Edges, Lod, Partitioning, Surface};
+use tempfile::TempDir;
 
 use driver::{PATIENCE, settle};
 
@@ -78,6 +79,13 @@ fn run_command<'a>(words: impl IntoIterator<Item = &'a str>, output: &'a Path) {
     let command = Cli::try_parse_from(words).expect("a command").command.expect("a command");
     // Errors are on standard error; whoever reads the output sees that there is none.
     let _ = pnaen::cli::run(command);
+}
+
+/// Copies the vase into a folder under another name.
+fn copy_vase(folder: &TempDir, name: &str) -> PathBuf {
+    let (Source::File(vase), path) = (vase(), folder.path().join(name)) else { unreachable!("it is a file") };
+    std::fs::copy(vase, &path).expect("a writable folder");
+    path
 }
 
 fn vase() -> Source {

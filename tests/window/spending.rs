@@ -101,9 +101,10 @@ fn frozen_lod_stays_while_the_camera_moves() {
 
 #[test]
 fn a_picture_of_many_steps_can_be_cancelled_and_drawn_later() {
-    let path = std::env::temp_dir().join(format!("pnaen-window-{}.glb", std::process::id()));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("torus.glb");
     run_command(["tessellate", "shape:torus", "--factor", "3"], &path);
-    let mut harness = uniform(Some(Source::File(path.clone())));
+    let mut harness = uniform(Some(Source::File(path)));
     let (pictures, before) = (harness.state().pictures(), harness.state().totals());
     // About 20 million triangles, which take longer than the test waits.
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
@@ -130,5 +131,4 @@ fn a_picture_of_many_steps_can_be_cancelled_and_drawn_later() {
     settle(&mut harness);
     assert_eq!(harness.state().totals(), before);
     assert!(harness.state().pictures() > pictures, "the picture is drawn with the selection");
-    let _ = std::fs::remove_file(path);
 }

@@ -52,7 +52,8 @@ fn normals_of_the_surface_differ_across_edges_and_are_counted() {
 
 #[test]
 fn an_image_displaces_the_mesh_and_other_settings_stay() {
-    let path = std::env::temp_dir().join(format!("pnaen-heights-{}.png", std::process::id()));
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("heights.png");
     let image = image::GrayImage::from_fn(16, 16, |x, y| image::Luma([(x * 13 + y * 7) as u8]));
     image.save(&path).expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
@@ -90,7 +91,6 @@ fn an_image_displaces_the_mesh_and_other_settings_stay() {
     );
     choose(&mut harness, "Height map", "None");
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Displace").count(), 0);
-    let _ = std::fs::remove_file(path);
 }
 
 #[test]

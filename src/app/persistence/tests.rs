@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 use proptest::prelude::*;
 use serde_json::{Value, json};
+use tempfile::TempDir;
 
 use super::saved_state::{MAX_FILES, SavedCamera, SavedFile, SavedState, WindowGeometry};
 use super::{Persistence, state_file};
@@ -14,34 +15,16 @@ use crate::settings::random::settings;
 use crate::settings::{Overlays, Settings};
 use crate::tessellate::{Surface, Tessellation};
 
-/// A folder of this test's own, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-lasting-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn file(&self) -> PathBuf {
-        self.0.join("window.json")
-    }
-
-    fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(&self.0)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    }
+/// The file that the state is saved in.
+fn file(folder: &TempDir) -> PathBuf {
+    folder.path().join("window.json")
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+fn names(folder: &TempDir) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
 }
 
 prop_compose! {
@@ -227,33 +210,33 @@ fn the_number_of_files_is_limited_and_the_last_one_comes_first() {
 
 #[test]
 fn a_damaged_file_is_renamed_and_reported() {
-    let folder = Folder::new("damaged");
-    assert!(state_file::read(&folder.0).said.is_none(), "a missing file is not reported");
-    assert!(folder.names().is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    assert!(state_file::read(folder.path()).said.is_none(), "a missing file is not reported");
+    assert!(names(&folder).is_empty());
     for damage in [&b"{\"settings\":"[..], b"\xff\xfe", b""] {
-        std::fs::write(folder.file(), damage).unwrap();
-        let found = state_file::read(&folder.0);
+        std::fs::write(file(&folder), damage).unwrap();
+        let found = state_file::read(folder.path());
         let said = found.said.unwrap();
         assert!(["window.json is damaged", "window.damaged.json"].iter().all(|part| said.contains(part)), "{said}");
-        assert_eq!((found.kept, found.place), (SavedState::default(), Some(folder.file())));
-        assert_eq!(folder.names(), ["window.damaged.json"]);
-        assert_eq!(std::fs::read(folder.0.join("window.damaged.json")).unwrap(), damage);
+        assert_eq!((found.kept, found.place), (SavedState::default(), Some(file(&folder))));
+        assert_eq!(names(&folder), ["window.damaged.json"]);
+        assert_eq!(std::fs::read(folder.path().join("window.damaged.json")).unwrap(), damage);
     }
-    let file = std::fs::File::create(folder.file()).unwrap();
+    let file = std::fs::File::create(file(&folder)).unwrap();
     file.set_len(1 << 30).unwrap();
-    assert!(state_file::read(&folder.0).said.is_some_and(|said| said.contains("is damaged")), "it is too large");
+    assert!(state_file::read(folder.path()).said.is_some_and(|said| said.contains("is damaged")), "it is too large");
 }
 
 #[test]
 fn a_folder_in_place_of_the_file_is_left_alone() {
-    let folder = Folder::new("no-file");
-    std::fs::create_dir(folder.file()).unwrap();
-    let found = state_file::read(&folder.0);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(file(&folder)).unwrap();
+    let found = state_file::read(folder.path());
     assert!(found.place.is_none());
     let said = found.said.unwrap();
     assert!(["window.json", "(it is not a file)"].iter().all(|part| said.contains(part)), "{said}");
     // A file in place of the folder: nothing can be written below it.
-    let below = folder.0.join("file");
+    let below = folder.path().join("file");
     std::fs::write(&below, "").unwrap();
     let failed = state_file::write(&below.join("window.json"), &SavedState::default()).unwrap_err();
     assert!(failed.contains("window.json: settings could not be saved ("), "{failed}");
@@ -261,8 +244,8 @@ fn a_folder_in_place_of_the_file_is_left_alone() {
 
 #[test]
 fn writing_makes_the_folder() {
-    let folder = Folder::new("made");
-    let below = folder.0.join("config/pnaen");
+    let folder = tempfile::tempdir().unwrap();
+    let below = folder.path().join("config/pnaen");
     let settings =
         Settings::opening().with(Tessellation { surface: Surface::Nagata, ..Settings::opening().tessellation });
     let kept = SavedState { settings, ..SavedState::default() };

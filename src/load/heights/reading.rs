@@ -231,21 +231,11 @@ mod tests {
 
     use super::*;
 
-    /// A file in the temporary folder, which its test removes.
-    struct Temporary(std::path::PathBuf);
-
-    impl Temporary {
-        fn new(name: &str, bytes: &[u8]) -> Self {
-            let path = std::env::temp_dir().join(format!("pnaen-{}-{name}", std::process::id()));
-            std::fs::write(&path, bytes).expect("a writable temporary folder");
-            Self(path)
-        }
-    }
-
-    impl Drop for Temporary {
-        fn drop(&mut self) {
-            let _ = std::fs::remove_file(&self.0);
-        }
+    /// Writes a file into a folder.
+    fn write(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> std::path::PathBuf {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("a writable temporary folder");
+        path
     }
 
     fn of(image: &DynamicImage) -> HeightMap {
@@ -273,15 +263,13 @@ mod tests {
     #[test]
     fn a_file_gives_the_px_that_it_has() {
         let image: DynamicImage = RgbImage::from_fn(9, 5, |x, y| Rgb([(20 * x) as u8, (40 * y) as u8, 7])).into();
-        let file = Temporary::new("px.png", &png(&image));
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        let file = write(&folder, "px.png", &png(&image));
         let progress = Progress::new();
-        assert_eq!(read_map(&file.0, 0, &Budget::unlimited(), &progress).expect("an image"), of(&image));
+        assert_eq!(read_map(&file, 0, &Budget::unlimited(), &progress).expect("an image"), of(&image));
         assert!(progress.fraction() > 0.8, "{}", progress.fraction());
         progress.cancel();
-        assert!(matches!(
-            read_map(&file.0, 0, &Budget::unlimited(), &progress),
-            Err(HeightError::Cancelled(Cancelled))
-        ));
+        assert!(matches!(read_map(&file, 0, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
     }
 
     #[test]
@@ -292,15 +280,16 @@ mod tests {
         header.extend([20_000_u32, 20_000].map(u32::to_be_bytes).as_flattened());
         header.extend([8, 0, 0, 0, 0]);
         let start = Instant::now();
-        let file = Temporary::new("large.png", &header);
-        let error = read_map(&file.0, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        let file = write(&folder, "large.png", &header);
+        let error = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         assert!(start.elapsed() < Duration::from_millis(100), "{:?}", start.elapsed());
         let expected = "has 20000 x 20000 px, but at most 16384 px a side are read; scale it to 4096 px a side or less";
         assert!(error.ends_with(expected) && error.contains("large.png"), "{error}");
         // One pixel more than is read; the decoder itself would read it.
         let wide = DynamicImage::new_luma8(MAX_SIZE + 1, 1);
-        let file = Temporary::new("wide.png", &png(&wide));
-        let error = read_map(&file.0, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        let file = write(&folder, "wide.png", &png(&wide));
+        let error = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         assert!(error.contains("has 16385 x 1 px"), "{error}");
     }
 }

@@ -5,8 +5,10 @@
 
 use std::time::Duration;
 
+use fastrand::Rng;
+
 use super::Format::{Obj, Ply, Stl};
-use super::{Format, Random, read, time};
+use super::{Format, read, time};
 use crate::load::{self, obj, ply, stl};
 
 /// The texts that replace a number.
@@ -37,17 +39,17 @@ fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
     })
 }
 
-fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
-    for _ in 0..=random.below(4) {
-        let at = random.below(bytes.len());
-        match random.below(8) {
+fn mutate(bytes: &mut Vec<u8>, random: &mut Rng) {
+    for _ in 0..=random.usize(..4) {
+        let at = random.usize(..bytes.len().max(1));
+        match random.usize(..8) {
             0 => bytes.truncate(at),
-            1 | 2 => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << random.below(8)),
+            1 | 2 => bytes.iter_mut().skip(at).take(1).for_each(|byte| *byte ^= 1 << random.usize(..8)),
             3 => {
-                let number = [0, u32::MAX, 1 << 30, f32::NAN.to_bits(), f32::MAX.to_bits()][random.below(5)];
+                let number = [0, u32::MAX, 1 << 30, f32::NAN.to_bits(), f32::MAX.to_bits()][random.usize(..5)];
                 bytes.iter_mut().skip(at).zip(number.to_le_bytes()).for_each(|(byte, new)| *byte = new);
             }
-            _ => replace_number(bytes, at, NUMBERS[random.below(NUMBERS.len())]),
+            _ => replace_number(bytes, at, NUMBERS[random.usize(..NUMBERS.len())]),
         }
     }
 }
@@ -66,7 +68,7 @@ fn mutated_copies_are_read_or_refused() {
     for (format, bytes) in &originals {
         assert!(read(*format, bytes).is_ok(), "{format:?}");
     }
-    let (mut random, mut refused, mut slowest) = (Random(0x9e37_79b9_7f4a_7c15), 0, Duration::ZERO);
+    let (mut random, mut refused, mut slowest) = (Rng::with_seed(1), 0, Duration::ZERO);
     for i in 0..copies {
         let (format, mut bytes) = originals[i % originals.len()].clone();
         mutate(&mut bytes, &mut random);

@@ -100,7 +100,7 @@ impl Picture {
 
     fn run(&self) -> Result<(), String> {
         let name = self.image.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let folder = Folder::new(&format!("manual-{name}"));
+        let folder = Folder::new();
         let is_update = std::env::var_os("PNAEN_UPDATE_IMAGES").is_some();
         let result = if is_update { self.update(&folder) } else { self.check(&folder) };
         result.map_err(|said| format!("{}: {name}: {said}", self.page))

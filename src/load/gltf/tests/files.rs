@@ -1,7 +1,6 @@
 //! Textures, and files next to the document.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
-use std::path::PathBuf;
 
 use super::*;
 use crate::load::{LoadError, load};
@@ -63,40 +62,23 @@ fn missing_and_broken_textures_are_warnings() {
     assert!(elsewhere.read().unwrap().warnings[0].contains("texture 0 has no PNG or JPEG"));
 }
 
-/// A folder for one test, which is removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 #[test]
 fn files_next_to_the_document_are_found() {
-    let folder = Folder::new("files");
+    let folder = tempfile::tempdir().unwrap();
     let draft = textured(json!({ "uri": "my%20skin.png" }));
     let mut document = draft.document();
     document["buffers"][0]["uri"] = json!("data.bin");
-    let path = folder.0.join("model.GLTF");
+    let path = folder.path().join("model.GLTF");
     std::fs::write(&path, document.to_string()).unwrap();
     let progress = Progress::new();
     let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
     assert!(error.contains("model.GLTF: /buffers/0 (data.bin) can't be read"), "{error}");
-    std::fs::write(folder.0.join("data.bin"), &draft.bytes).unwrap();
-    std::fs::write(folder.0.join("my skin.png"), png()).unwrap();
+    std::fs::write(folder.path().join("data.bin"), &draft.bytes).unwrap();
+    std::fs::write(folder.path().join("my skin.png"), png()).unwrap();
     let mesh = load(&path, &Limits::default(), &progress).unwrap();
     assert!(mesh.materials[0].texture.is_some());
     assert_eq!((mesh.name.as_str(), progress.fraction()), ("model", 1.0));
-    std::fs::write(folder.0.join("data.bin"), &draft.bytes[1..]).unwrap();
+    std::fs::write(folder.path().join("data.bin"), &draft.bytes[1..]).unwrap();
     let error = load(&path, &Limits::default(), &progress).unwrap_err().to_string();
     assert!(error.contains("it should have 96 bytes but has 95"), "{error}");
     progress.cancel();
@@ -105,16 +87,16 @@ fn files_next_to_the_document_are_found() {
 
 #[test]
 fn files_that_are_named_have_the_same_limit() {
-    let folder = Folder::new("limits");
+    let folder = tempfile::tempdir().unwrap();
     let draft = textured(json!({ "uri": "large.png" }));
     let mut document = draft.document();
     document["buffers"][0]["uri"] = json!("data.bin");
-    let path = folder.0.join("model.gltf");
+    let path = folder.path().join("model.gltf");
     let text = document.to_string();
     let [own, data] = [text.len() as u64, draft.bytes.len() as u64];
     std::fs::write(&path, text).unwrap();
-    std::fs::write(folder.0.join("large.png"), [&png()[..], &vec![0; 100_000]].concat()).unwrap();
-    std::fs::write(folder.0.join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
+    std::fs::write(folder.path().join("large.png"), [&png()[..], &vec![0; 100_000]].concat()).unwrap();
+    std::fs::write(folder.path().join("data.bin"), [&draft.bytes[..], &vec![0; own as usize]].concat()).unwrap();
     let load = |file| load(&path, &Limits { file, ..Limits::default() }, &Progress::new());
     let said = load(own).unwrap_err().to_string();
     let expected = format!("data.bin has {} bytes, but at most {own} are read", own + data);
@@ -128,14 +110,14 @@ fn files_that_are_named_have_the_same_limit() {
 #[cfg(unix)]
 #[test]
 fn links_within_the_folder_are_followed() {
-    let folder = Folder::new("links");
+    let folder = tempfile::tempdir().unwrap();
     let draft = triangle();
     let mut document = draft.document();
     document["buffers"][0]["uri"] = json!("link/data.bin");
-    let path = folder.0.join("model.gltf");
+    let path = folder.path().join("model.gltf");
     std::fs::write(&path, document.to_string()).unwrap();
-    std::fs::create_dir_all(folder.0.join("there")).unwrap();
-    std::fs::write(folder.0.join("there/data.bin"), &draft.bytes).unwrap();
-    std::os::unix::fs::symlink("there", folder.0.join("link")).unwrap();
+    std::fs::create_dir_all(folder.path().join("there")).unwrap();
+    std::fs::write(folder.path().join("there/data.bin"), &draft.bytes).unwrap();
+    std::os::unix::fs::symlink("there", folder.path().join("link")).unwrap();
     assert_eq!(load(&path, &Limits::default(), &Progress::new()).unwrap().triangles.len(), 1);
 }

@@ -8,9 +8,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::time::Duration;
 
+use fastrand::Rng;
+
 use super::*;
 use crate::load::Format;
-use crate::load::hostile_files::{Random, named_files, time};
+use crate::load::hostile_files::{named_files, time};
 
 /// The number of copies in every run of the tests.
 const COPIES: usize = 300;
@@ -101,24 +103,24 @@ fn json_of(bytes: &[u8]) -> std::ops::Range<usize> {
 }
 
 /// Changes a document in one to four places.
-fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
-    for _ in 0..=random.below(4) {
+fn mutate(bytes: &mut Vec<u8>, random: &mut Rng) {
+    for _ in 0..=random.usize(..4) {
         let length = bytes.len();
         if length == 0 {
             return;
         }
-        match random.below(8) {
-            0 => bytes[random.below(length)] ^= 1 << random.below(8),
+        match random.usize(..8) {
+            0 => bytes[random.usize(..length)] ^= 1 << random.usize(..8),
             1 => {
                 // Half of the cuts are near the end, after most of the document.
-                let cut = if random.below(2) == 0 { random.below(length) } else { random.below(64).min(length) };
+                let cut = if random.usize(..2) == 0 { random.usize(..length) } else { random.usize(..64).min(length) };
                 bytes.truncate(length - cut);
             }
-            2 => bytes.swap(random.below(length), random.below(length)),
+            2 => bytes.swap(random.usize(..length), random.usize(..length)),
             3 => {
                 let json = json_of(bytes);
                 if !json.is_empty() {
-                    bytes[json.start + random.below(json.len())] ^= 1 << random.below(7);
+                    bytes[json.start + random.usize(..json.len())] ^= 1 << random.usize(..7);
                 }
             }
             _ => replace_number(bytes, random),
@@ -127,19 +129,19 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 }
 
 /// Replaces a number of the JSON; the lengths in a `.glb` stay correct.
-fn replace_number(bytes: &mut Vec<u8>, random: &mut Random) {
+fn replace_number(bytes: &mut Vec<u8>, random: &mut Rng) {
     let json = json_of(bytes);
     let is_start = |i: usize| bytes[i].is_ascii_digit() && matches!(bytes[i - 1], b':' | b',' | b'[' | b' ');
     let starts: Vec<usize> = (json.start + 1..json.end).filter(|&i| is_start(i)).collect();
     if starts.is_empty() {
         return;
     }
-    let start = starts[random.below(starts.len())];
+    let start = starts[random.usize(..starts.len())];
     let is_part = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
     let end = start + bytes[start..json.end].iter().take_while(|byte| is_part(byte)).count();
-    let mut number = NUMBERS[random.below(NUMBERS.len())].to_owned();
-    if random.below(3) == 0 {
-        number = random.below(40).to_string();
+    let mut number = NUMBERS[random.usize(..NUMBERS.len())].to_owned();
+    if random.usize(..3) == 0 {
+        number = random.usize(..40).to_string();
     }
     let (old, new) = (end - start, number.len());
     bytes.splice(start..end, number.into_bytes());
@@ -161,8 +163,7 @@ fn mutations_become_a_mesh_or_a_sentence() {
         let subject = &subjects[copy % subjects.len()];
         let is_packed = subject.name.starts_with("a packed");
         others += usize::from(!is_packed);
-        let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ (copy as u64 + 1));
-        (0..8).for_each(|_| _ = random.next());
+        let mut random = Rng::with_seed(copy as u64);
         let mut bytes = subject.bytes.clone();
         mutate(&mut bytes, &mut random);
         let start = time();

@@ -1,38 +1,28 @@
 //! Material files and textures in a model's folder, and missing ones.
 
-use std::path::PathBuf;
+use tempfile::TempDir;
 
 use crate::files::Limits;
 use crate::load::{LoadedMesh, load};
 use crate::progress::Progress;
 
-/// A folder for one test, which is removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("pnaen-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(path.join("maps")).unwrap();
-        Self(path)
-    }
-
-    fn write(&self, name: &str, bytes: &[u8]) {
-        std::fs::write(self.0.join(name), bytes).unwrap();
-    }
-
-    /// Reads a file with this start and a triangle for each material.
-    fn read(&self, start: &str, materials: &[&str]) -> LoadedMesh {
-        let faces: String = materials.iter().map(|name| format!("usemtl {name}\nf 1/1/1 2/1/1 3/1/1\n")).collect();
-        let text = format!("{start}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n{faces}");
-        self.write("model.OBJ", text.as_bytes());
-        load(&self.0.join("model.OBJ"), &Limits::default(), &Progress::new()).unwrap()
-    }
+/// A folder with a folder of textures in it.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("maps")).unwrap();
+    folder
 }
 
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+fn write(folder: &TempDir, name: &str, bytes: &[u8]) {
+    std::fs::write(folder.path().join(name), bytes).unwrap();
+}
+
+/// Writes a file with this start and a triangle for each material into a folder, and reads it.
+fn read(folder: &TempDir, start: &str, materials: &[&str]) -> LoadedMesh {
+    let faces: String = materials.iter().map(|name| format!("usemtl {name}\nf 1/1/1 2/1/1 3/1/1\n")).collect();
+    let text = format!("{start}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\n{faces}");
+    write(folder, "model.OBJ", text.as_bytes());
+    load(&folder.path().join("model.OBJ"), &Limits::default(), &Progress::new()).unwrap()
 }
 
 fn png() -> Vec<u8> {
@@ -44,12 +34,15 @@ fn png() -> Vec<u8> {
 
 #[test]
 fn colours_and_textures_come_from_files_in_the_folder() {
-    let folder = Folder::new("obj-materials");
-    folder
-        .write("my colours.mtl", b"newmtl red\nKd 1 0 0\nnewmtl skin\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 maps\\100%.png\n");
-    folder.write("more.mtl", b"newmtl red\nKd 0 1 0\nnewmtl twin\nmap_Kd maps\\100%.png\n");
-    folder.write("maps/100%.png", &png());
-    let mesh = folder.read("mtllib my colours.mtl more.mtl", &["skin", "red", "twin", "skin", "absent"]);
+    let folder = folder();
+    write(
+        &folder,
+        "my colours.mtl",
+        b"newmtl red\nKd 1 0 0\nnewmtl skin\nKd 0.5 0.5 0.5\nmap_Kd -s 1 1 maps\\100%.png\n",
+    );
+    write(&folder, "more.mtl", b"newmtl red\nKd 0 1 0\nnewmtl twin\nmap_Kd maps\\100%.png\n");
+    write(&folder, "maps/100%.png", &png());
+    let mesh = read(&folder, "mtllib my colours.mtl more.mtl", &["skin", "red", "twin", "skin", "absent"]);
     let names: Vec<_> = mesh.materials.iter().map(|m| (m.name.as_str(), m.base_color, m.triangles.len())).collect();
     let expected = [
         ("skin", [0.5, 0.5, 0.5, 1.0], 2),
@@ -66,11 +59,11 @@ fn colours_and_textures_come_from_files_in_the_folder() {
 
 #[test]
 fn missing_and_broken_files_cause_warnings() {
-    let folder = Folder::new("obj-missing");
-    folder.write("m.mtl", b"newmtl a\nKd x\nmap_Kd ../up.png\nnewmtl b\nmap_Kd maps/b.png\nnewmtl c\nmap_Kd c.png\n");
-    folder.write("c.png", b"no image");
+    let folder = folder();
+    write(&folder, "m.mtl", b"newmtl a\nKd x\nmap_Kd ../up.png\nnewmtl b\nmap_Kd maps/b.png\nnewmtl c\nmap_Kd c.png\n");
+    write(&folder, "c.png", b"no image");
     let libraries = "mtllib m.mtl\nmtllib /etc/passwd\nmtllib ../m.mtl\nmtllib gone.mtl\nmtllib C:\\m.mtl\nmtllib maps";
-    let mesh = folder.read(libraries, &["a", "b", "c"]);
+    let mesh = read(&folder, libraries, &["a", "b", "c"]);
     assert!(mesh.materials.iter().all(|material| material.texture.is_none()));
     let expected = [
         ("the material file \"/etc/passwd\" is left out: ", "an absolute path"),
@@ -91,9 +84,9 @@ fn missing_and_broken_files_cause_warnings() {
 
 #[test]
 fn only_64_material_files_are_read() {
-    let folder = Folder::new("obj-flood");
+    let folder = folder();
     let libraries: String = (0..1000).map(|i| format!("mtllib {}.mtl\n", i % 100)).collect();
-    let warnings = folder.read(&libraries, &["a"]).warnings;
+    let warnings = read(&folder, &libraries, &["a"]).warnings;
     assert_eq!(warnings.len(), 64 + 2);
     assert!(warnings[64].starts_with("material files beyond the first 64, left out: "), "{}", warnings[64]);
 }

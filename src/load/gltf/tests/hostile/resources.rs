@@ -4,16 +4,16 @@ use super::*;
 use crate::load::gltf::schema::MESHOPT;
 use crate::load::uri;
 use base64::prelude::{BASE64_STANDARD, Engine};
+use tempfile::TempDir;
 
 /// A folder that contains a document's folder, and files around it that the document mustn't read.
-pub(crate) struct Folder(PathBuf);
+pub(crate) struct Folder(TempDir);
 
 impl Folder {
     pub(super) fn new() -> Self {
-        let root = std::env::temp_dir().join(format!("pnaen-hostile-{}", std::process::id()));
-        let folder = Self(root);
+        let folder = Self(tempfile::tempdir().expect("a writable temporary folder"));
         std::fs::create_dir_all(folder.own().join("folder.bin")).expect("a writable temporary folder");
-        std::fs::write(folder.0.join("secret.bin"), [0; 72]).expect("a writable temporary folder");
+        std::fs::write(folder.0.path().join("secret.bin"), [0; 72]).expect("a writable temporary folder");
         #[cfg(unix)]
         for (to, name) in [("../secret.bin", "link.bin"), ("/dev/zero", "device.bin"), ("loop.bin", "loop.bin")] {
             let _ = std::os::unix::fs::symlink(to, folder.own().join(name));
@@ -24,7 +24,7 @@ impl Folder {
     }
 
     fn own(&self) -> PathBuf {
-        self.0.join("own")
+        self.0.path().join("own")
     }
 
     /// A buffer that can't be read. The parts of its message may contain `{folder}`, and `{os}` for the system's own message.
@@ -33,12 +33,6 @@ impl Folder {
         let parts = parts.replace("{folder}", &self.own().display().to_string()).replace("{os}", &said);
         let expected = format!("Buffer | /buffers/0 | {} | {parts}", uri::shown(uri));
         Case::refused(name, elsewhere(uri), &expected)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
