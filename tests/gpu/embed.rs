@@ -13,12 +13,13 @@ use pnaen::tessellate::{Clip, Inputs, LodView, Surface, Tessellated, Tessellatio
 use crate::gpu_tests::engine;
 use crate::gpu_tests::pictures::differing;
 
-#[allow(unreachable_pub, reason = "a crate of its own")]
+// Each example is a crate of its own, and both have the same canvas.
+#[allow(unreachable_pub, clippy::duplicate_mod)]
 #[path = "../../examples/animate.rs"]
-mod animate;
-#[allow(unreachable_pub, reason = "a crate of its own")]
+mod animate_example;
+#[allow(unreachable_pub, clippy::duplicate_mod)]
 #[path = "../../examples/embed.rs"]
-mod embed;
+mod embed_example;
 
 /// A device as a host has it: with WebGPU's default limits and no features.
 fn host() -> (wgpu::Device, wgpu::Queue) {
@@ -229,9 +230,9 @@ fn a_mesh_of_too_many_patches_is_refused_with_their_number() {
 #[test]
 fn the_examples_draw_their_pictures() {
     let _ = engine();
-    let (picture, status, has_overflowed) = embed::picture(0.5, ROOM).expect("a picture");
+    let (picture, status, has_overflowed) = embed_example::picture(0.5, ROOM).expect("a picture");
     assert!(!has_overflowed && status.triangles > 10_000, "{status:?}");
-    let frames = animate::frames().expect("pictures");
+    let frames = animate_example::frames().expect("pictures");
     let triangles: Vec<_> = frames.iter().map(|(_, triangles)| *triangles).collect();
     assert_eq!(triangles[0], 160, "factor 1 is the mesh itself");
     assert!(triangles.is_sorted() && triangles[5] > 10_000, "{triangles:?}");

@@ -14,7 +14,7 @@ mod embed;
 mod error;
 mod limits;
 #[path = "../documents/moving.rs"]
-mod moving;
+pub(crate) mod moving;
 mod passes;
 mod picking;
 mod pictures;

@@ -10,8 +10,6 @@ mod lasting;
 mod lists;
 mod loading;
 mod lost;
-#[path = "../documents/moving.rs"]
-mod moving;
 mod picking;
 mod spending;
 mod techniques;
@@ -19,6 +17,7 @@ mod typing;
 
 use std::path::{Path, PathBuf};
 
+use crate::gpu_tests::moving;
 use clap::Parser;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
