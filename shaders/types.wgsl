@@ -33,7 +33,7 @@ struct Params {
 }
 
 // A value of Params.lod that no LOD has: the factors of every patch were given.
-const LOD_GIVEN: u32 = 5u;
+const LOD_GIVEN: u32 = 0xffffffffu;
 
 // The run of patches that one scan covers, and how much fits the arena.
 struct Slab {

@@ -112,7 +112,8 @@ impl Document {
 
     /// Compares the lists with the mesh's.
     ///
-    /// # Errors A list differs.
+    /// # Errors
+    /// A list differs.
     fn check_lists(&self, mesh: &Mesh, topology: &Topology, layout: Layout) -> Result<(), IndicesFault> {
         let own = Self::new(mesh, topology, layout, &[]);
         same("positions", &self.positions, &own.positions)?;
@@ -134,7 +135,8 @@ fn same<T: PartialEq>(list: &'static str, given: &Option<Vec<T>>, own: &Option<V
 
 /// Returns a JSON document of a mesh's indices, with a line end. Numbers are written so that they read back exactly.
 ///
-/// # Errors None occur: every key is a plain name.
+/// # Errors
+/// None occur: every key is a plain name.
 pub(crate) fn to_json(mesh: &Mesh, topology: &Topology, layout: Layout, indices: &[u32]) -> serde_json::Result<String> {
     let text = serde_json::to_string(&Document::new(mesh, topology, layout, indices))?;
     Ok(text + "\n")
@@ -148,7 +150,8 @@ pub(crate) fn to_bin(indices: &[u32]) -> Vec<u8> {
 /// Reads the indices of a mesh's patches from a file's bytes. The file is JSON if its name ends in .json or its text
 /// starts with a brace, otherwise bare indices.
 ///
-/// # Errors The file doesn't hold the indices of this mesh's patches in this layout.
+/// # Errors
+/// The file doesn't hold the indices of this mesh's patches in this layout.
 pub(crate) fn read(
     path: &Path,
     bytes: &[u8],

@@ -58,7 +58,8 @@ pub(crate) fn to_csv(topology: &Topology, written: &[HullFactors]) -> String {
 /// Reads the factors of each patch of a mesh with `triangles` triangles. The lines may be in any order. Lines of
 /// degenerate triangles are allowed and ignored.
 ///
-/// # Errors The text isn't such a file, or its patches aren't those of the mesh.
+/// # Errors
+/// The text isn't such a file, or its patches aren't those of the mesh.
 pub(crate) fn from_csv(text: &str, topology: &Topology, triangles: usize) -> Result<Vec<HullFactors>, FactorsError> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
     let byte = |at: Option<&csv::Position>| at.map_or(0, |at| at.byte() as usize);

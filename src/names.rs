@@ -2,6 +2,17 @@
 
 use std::path::Path;
 
+/// Every variant of an enum, as an array in the given order. It doesn't compile if one is missing.
+macro_rules! every {
+    ($type:ident: $($variant:ident),+ $(,)?) => {{
+        const _: fn($type) = |value| match value {
+            $($type::$variant => {})+
+        };
+        [$($type::$variant),+]
+    }};
+}
+pub(crate) use every;
+
 /// The greatest length of a displayed name or path, in characters.
 const MAX_LENGTH: usize = 200;
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::names::every;
 use crate::settings::{Choice, Description, Settings};
 use crate::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
 
@@ -17,7 +18,7 @@ pub enum LodKind {
 }
 
 impl LodKind {
-    pub const ALL: [Self; 3] = [Self::Uniform, Self::Paper, Self::Error];
+    pub const ALL: [Self; 3] = every![LodKind: Uniform, Paper, Error];
 
     /// The kind of an LOD; `None` for one that isn't tried.
     fn of(lod: Lod) -> Option<Self> {

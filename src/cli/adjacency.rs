@@ -9,7 +9,7 @@ use crate::engine::Loaded;
 use crate::load::Source;
 use crate::measure::{IndexDifference, Meaning, index_differences};
 use crate::mesh::adjacency::{Layout, Part};
-use crate::names::shown_path;
+use crate::names::{every, shown_path};
 use crate::settings::{Choice, Description};
 
 #[derive(Debug, clap::Args)]
@@ -53,7 +53,7 @@ impl Choice for Layout {
 }
 
 impl Choice for Format {
-    const ALL: &'static [Self] = &[Self::Json, Self::Bin];
+    const ALL: &'static [Self] = &every![Format: Json, Bin];
 
     fn description(self) -> Description {
         match self {

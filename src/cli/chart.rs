@@ -83,8 +83,8 @@ pub(crate) struct Args {
     /// Table to write (- for standard output); each line is written as soon as its setting is done
     #[arg(long, value_name = "OUT.csv")]
     pub csv: Option<PathBuf>,
-    /// Folder for results.md, a page that says which method to use when, with a picture for each mesh, and for the table,
-    /// results.csv; made if it isn't there
+    /// Folder for a report: results.md (which method to use when), a picture for each mesh, and the table results.csv; made
+    /// if it isn't there
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     #[command(flatten)]

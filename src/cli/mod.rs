@@ -53,7 +53,7 @@ use crate::load::{LoadError, Source};
 use crate::names::{on_one_line, shown_path};
 use crate::progress::Progress;
 
-/// Shows what tessellation does to a mesh: in a window, or with a command in a picture, a mesh or numbers.
+/// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true)]
 pub(crate) struct Cli {
@@ -81,8 +81,8 @@ pub(crate) enum Command {
     Factors(factors::Args),
     /// Write the index buffer of PN-AEN patches, or compare one with the mesh
     ///
-    /// Indices refer to the mesh's distinct corners, which the JSON lists: one for every position, normal and uv that occur
-    /// together. Patches are the triangles in their order, without degenerate ones; the JSON has the triangle of each.
+    /// Indices refer to the mesh's distinct corners, which the JSON lists: one for each combination of position, normal and
+    /// uv. Patches are the mesh's triangles in order, without degenerate ones; the JSON gives each patch's triangle.
     Adjacency(adjacency::Args),
     /// Run cases that break tessellators, and report which methods pass and which fail
     ///

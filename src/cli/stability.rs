@@ -25,7 +25,7 @@ pub(crate) struct Args {
     /// Run only this case; may be given several times
     #[arg(long = "case", value_name = "NAME", value_parser = PossibleValuesParser::new(CASES.map(|case| case.name)))]
     pub cases: Vec<String>,
-    /// Where to tessellate; by default on both
+    /// Where to tessellate: cpu or gpu; without it, both
     #[arg(long, value_enum)]
     pub device: Option<Device>,
     /// Number of views for adaptive LOD and clipping: from all around, near, far and inside

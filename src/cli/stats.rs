@@ -11,7 +11,7 @@ use crate::gpu::PassTime;
 use crate::measure::Measured;
 use crate::mesh::{EdgeCounts, Topology};
 use crate::render::Scene;
-use crate::settings::{Choice, Settings};
+use crate::settings::{Choice, Declaration, Settings, options};
 use crate::tessellate::Displacement;
 use crate::view::{ScreenView, ulp};
 
@@ -35,7 +35,7 @@ pub(super) struct Stats {
     triangles_out: u64,
     /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
     pub triangles_in_view: u64,
-    /// Those of them that are half of squares with sides of less than 3 px.
+    /// Those of them that cover less than 4.5 px² (half of a square of 3 px).
     pub triangles_below_3_px: u64,
     vertices_out: u64,
     bytes: Bytes,
@@ -78,7 +78,15 @@ struct SettingsStats {
     lod: &'static str,
     /// The factor of uniform LOD, and the largest factor of LOD by distance.
     factor: f32,
+    /// Px per segment; none where the LOD has no segment length.
+    pixels: Option<f32>,
+    /// Px; of LOD by error alone.
+    tolerance: Option<f32>,
+    /// Bounding radii; of LOD by distance alone.
+    near: Option<f32>,
+    far: Option<f32>,
     clip: &'static str,
+    cull_back_faces: bool,
     convention: &'static str,
     displacement: &'static str,
     /// In bounding radii; none without displacement.
@@ -90,6 +98,7 @@ struct SettingsStats {
 impl SettingsStats {
     fn new(settings: &Settings) -> Self {
         let own = &settings.tessellation;
+        let has_effect = |option: &Declaration| (option.no_effect)(settings).is_none();
         let is_displaced = own.displacement != Displacement::Off;
         Self {
             surface: own.surface.name(),
@@ -99,7 +108,12 @@ impl SettingsStats {
             partitioning: own.partitioning.name(),
             lod: own.used_lod().name(),
             factor: own.factor,
+            pixels: has_effect(&options::PIXELS).then_some(own.pixels),
+            tolerance: has_effect(&options::TOLERANCE).then_some(own.tolerance),
+            near: has_effect(&options::DISTANCES).then_some(own.near),
+            far: has_effect(&options::DISTANCES).then_some(own.far),
             clip: own.clip.name(),
+            cull_back_faces: own.cull_back_faces,
             convention: own.convention.name(),
             displacement: own.displacement.name(),
             height_scale: is_displaced.then_some(own.height_scale),

@@ -1,4 +1,4 @@
-//! Hull factors, computed once more and read back: the counts pass uses them without keeping them.
+//! Computes the hull factors again and reads them back; the counts pass computes them too, but doesn't store them.
 
 use super::GpuError;
 use super::bound_pass::{BoundPass, PassInputs};

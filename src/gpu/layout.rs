@@ -21,7 +21,7 @@ pub(crate) struct LodView {
 }
 
 /// A value of [`Params::lod`] that no [`crate::tessellate::Lod`] has: the factors of every patch were given.
-pub(crate) const LOD_GIVEN: u32 = 5;
+pub(crate) const LOD_GIVEN: u32 = u32::MAX;
 
 /// Settings and view of one tessellation.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -14,7 +14,7 @@ pub(crate) struct HeightImages {
     pub view: wgpu::TextureView,
     /// A [`HeightMap`] for each image.
     pub maps: wgpu::Buffer,
-    /// Bytes that were uploaded for this value.
+    /// Bytes that this value uploaded; 0 if it shares another's.
     bytes: u64,
 }
 
@@ -72,8 +72,9 @@ fn upload(gpu: &Gpu, heights: &[f32], rows: u32) -> wgpu::TextureView {
     texture.create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves in some way. Lists of varying
-/// length lie one after another in one buffer; `starts` holds where each begins, and then where the last ends.
+/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](crate::mesh::Sharing).
+/// Lists of varying length lie one after another in one buffer; `starts` holds where each begins, and then where the last
+/// ends.
 pub struct ReliefBuffers {
     pub part_starts: wgpu::Buffer,
     /// For each point, its corners, each with the bits of its weight in the point's direction.
@@ -111,8 +112,12 @@ impl ReliefBuffers {
     }
 }
 
-/// The [`Share`] of every point, then of every factor, then two for every corner, then further texel lengths of factors; filled in
-/// as far as they depend on the mesh alone.
+/// The [`Share`]s of a mesh, filled in as far as they depend on the mesh alone. In this order:
+///
+/// - one for each point,
+/// - one for each factor,
+/// - two for each corner,
+/// - further texel lengths of factors.
 pub(crate) fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
     let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
     let behind = (point_count + 2 * mesh.corners.len()) as u32;

@@ -11,8 +11,16 @@ use crate::files::{FileError, Limits, Stamp, read_file};
 use crate::names::shown_path;
 use crate::progress::{Cancelled, Progress};
 
-/// The extensions of files that can be read, for messages.
-const KNOWN: &str = ".gltf, .glb, .obj, .stl or .ply";
+/// The extensions of files that can be read, in lower case, each with its format.
+pub(crate) const EXTENSIONS: [(&str, Format); 5] =
+    [("gltf", Format::Gltf), ("glb", Format::Gltf), ("obj", Format::Obj), ("stl", Format::Stl), ("ply", Format::Ply)];
+
+/// The extensions of files that can be read, for messages: ".gltf, .glb, .obj, .stl or .ply".
+pub(crate) fn known_extensions() -> String {
+    let all = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
+    let (last, others) = all.split_last().expect("there are formats");
+    format!("{} or {last}", others.join(", "))
+}
 
 /// Why a file could not be loaded as a mesh.
 #[derive(Debug, thiserror::Error)]
@@ -22,10 +30,10 @@ pub enum LoadError {
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The extension is none of those that are read.
-    #[error("{} can't be read, since it has {extension}; choose a {KNOWN} file", shown_path(path))]
+    #[error("{} can't be read, since it has {extension}; choose a {} file", shown_path(path), known_extensions())]
     UnknownFormat { path: PathBuf, extension: String },
     /// The path leads to a folder, a device or a pipe.
-    #[error("{} is not a file; choose a {KNOWN} file", shown_path(path))]
+    #[error("{} is not a file; choose a {} file", shown_path(path), known_extensions())]
     NotAFile { path: PathBuf },
     /// The file could not be read.
     #[error(transparent)]
@@ -122,17 +130,12 @@ impl Format {
     /// [`LoadError::UnknownFormat`].
     pub fn of(path: &Path) -> Result<Self, LoadError> {
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("gltf" | "glb") => Ok(Self::Gltf),
-            Some("obj") => Ok(Self::Obj),
-            Some("stl") => Ok(Self::Stl),
-            Some("ply") => Ok(Self::Ply),
-            other => {
-                let extension =
-                    other.map_or("no extension".to_owned(), |extension| format!("the extension .{extension}"));
-                Err(LoadError::UnknownFormat { path: path.to_owned(), extension })
-            }
-        }
+        let known = EXTENSIONS.into_iter().find(|(known, _)| extension.as_deref() == Some(*known));
+        known.map(|(_, format)| format).ok_or_else(|| {
+            let extension =
+                extension.map_or("no extension".to_owned(), |extension| format!("the extension .{extension}"));
+            LoadError::UnknownFormat { path: path.to_owned(), extension }
+        })
     }
 }
 

@@ -8,6 +8,7 @@
 use std::ops::Range;
 
 use super::topology::{Patch, Side, Topology};
+use crate::names::every;
 
 /// How many indices a patch has, and which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +33,7 @@ pub enum Part {
 }
 
 impl Layout {
-    pub const ALL: [Self; 3] = [Self::Six, Self::Nine, Self::Twelve];
+    pub const ALL: [Self; 3] = every![Layout: Six, Nine, Twelve];
 
     /// The number of indices of each patch.
     pub fn per_patch(self) -> usize {

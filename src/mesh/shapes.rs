@@ -14,6 +14,7 @@ use glam::{Vec2, Vec3};
 
 use super::mesh_builder::MeshBuilder;
 use super::{Corner, Material, Mesh};
+use crate::names::every;
 use crate::progress::Progress;
 
 /// A mesh that is made in code.
@@ -66,18 +67,8 @@ pub enum ShapeError {
 
 impl Shape {
     /// All shapes, in the order of the menu.
-    pub const ALL: [Self; 11] = [
-        Self::CubeSplit,
-        Self::CubeSmooth,
-        Self::Icosahedron,
-        Self::Icosphere,
-        Self::Ellipsoid,
-        Self::Torus,
-        Self::Cylinder,
-        Self::Cone,
-        Self::Saddle,
-        Self::Bicubic,
-        Self::Moebius,
+    pub const ALL: [Self; 11] = every![Shape:
+        CubeSplit, CubeSmooth, Icosahedron, Icosphere, Ellipsoid, Torus, Cylinder, Cone, Saddle, Bicubic, Moebius,
     ];
 
     /// Returns the name in commands, as in `shape:torus`.

@@ -1,5 +1,6 @@
 //! Values with names: how the command line, saved settings and the window call the values of an option.
 
+use crate::names::every;
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// What a value is called, and what it does.
@@ -31,7 +32,7 @@ impl Description {
 
 /// A value that is one of several, each with a name.
 pub(crate) trait Choice: Copy + PartialEq + 'static {
-    /// All values, in the order in which lists show them.
+    /// All values, in the order in which lists show them; made by [`every!`](crate::names::every), which misses none.
     const ALL: &'static [Self];
 
     fn description(self) -> Description;
@@ -111,7 +112,7 @@ impl Choice for Surface {
 }
 
 impl Choice for Normals {
-    const ALL: &'static [Self] = &[Self::Linear, Self::Quadratic, Self::Surface];
+    const ALL: &'static [Self] = &every![Normals: Linear, Quadratic, Surface];
 
     fn description(self) -> Description {
         let (name, label, text) = match self {
@@ -136,7 +137,7 @@ impl Choice for Normals {
 }
 
 impl Choice for Edges {
-    const ALL: &'static [Self] = &[Self::PerEdge, Self::AsPublished];
+    const ALL: &'static [Self] = &every![Edges: PerEdge, AsPublished];
 
     fn description(self) -> Description {
         let (name, label, text) = match self {
@@ -200,7 +201,7 @@ impl Choice for Partitioning {
 }
 
 impl Choice for Lod {
-    const ALL: &'static [Self] = &[Self::Uniform, Self::Error, Self::EdgeLength, Self::Distance, Self::Paper];
+    const ALL: &'static [Self] = &every![Lod: Uniform, Error, EdgeLength, Distance, Paper];
 
     fn description(self) -> Description {
         let (name, label, text) = match self {
@@ -235,7 +236,7 @@ impl Choice for Lod {
 }
 
 impl Choice for Clip {
-    const ALL: &'static [Self] = &[Self::Off, Self::Frustum, Self::Paper];
+    const ALL: &'static [Self] = &every![Clip: Off, Frustum, Paper];
 
     fn description(self) -> Description {
         let (name, label, text) = match self {
@@ -297,7 +298,7 @@ impl Choice for Convention {
 }
 
 impl Choice for Displacement {
-    const ALL: &'static [Self] = &[Self::Off, Self::On, Self::AsPublished, Self::PerPatch];
+    const ALL: &'static [Self] = &every![Displacement: Off, On, AsPublished, PerPatch];
 
     fn description(self) -> Description {
         let (name, label, text) = match self {
@@ -330,8 +331,7 @@ mod tests {
     use super::super::{Colors, DeviationUnit, Overlay};
     use super::*;
 
-    fn check<T: Choice + std::fmt::Debug>(count: usize) {
-        assert_eq!(T::ALL.len(), count, "{:?}", T::ALL);
+    fn check<T: Choice + std::fmt::Debug>() {
         for (index, value) in T::ALL.iter().copied().enumerate() {
             let Description { name, label, text } = value.description();
             assert!(!T::ALL[..index].contains(&value), "{value:?} is listed twice");
@@ -348,16 +348,16 @@ mod tests {
 
     #[test]
     fn every_value_is_found_by_its_name_and_has_a_text() {
-        check::<Surface>(8);
-        check::<Normals>(3);
-        check::<Edges>(2);
-        check::<Partitioning>(5);
-        check::<Lod>(5);
-        check::<Clip>(3);
-        check::<Convention>(5);
-        check::<Displacement>(4);
-        check::<DeviationUnit>(2);
-        check::<Overlay>(13);
-        check::<Colors>(6);
+        check::<Surface>();
+        check::<Normals>();
+        check::<Edges>();
+        check::<Partitioning>();
+        check::<Lod>();
+        check::<Clip>();
+        check::<Convention>();
+        check::<Displacement>();
+        check::<DeviationUnit>();
+        check::<Overlay>();
+        check::<Colors>();
     }
 }

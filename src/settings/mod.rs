@@ -13,6 +13,7 @@ mod value;
 use glam::{Mat4, Vec2};
 
 use crate::mesh::Mesh;
+use crate::names::every;
 use crate::tessellate::{Clip, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation, displacement_reach};
 
 pub(crate) use choice::{Choice, Description, descriptions};
@@ -78,7 +79,7 @@ pub enum DeviationUnit {
 }
 
 impl Choice for DeviationUnit {
-    const ALL: &'static [Self] = &[Self::Units, Self::Px];
+    const ALL: &'static [Self] = &every![DeviationUnit: Units, Px];
 
     fn description(self) -> Description {
         match self {

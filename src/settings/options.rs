@@ -235,8 +235,7 @@ pub(crate) static CONVENTION: Declaration = Declaration {
     name: "convention",
     label: "Convention",
     placeholder: "NAME",
-    text: "Which edges factors 0, 1 and 2 belong to, and which corners the weights u, v and w: hull and domain shader must \
-           agree on it.",
+    text: "The order of the edge factors 0, 1, 2 and of the weights u, v, w. Hull and domain shader must use the same.",
     kind: Kind::Choice(descriptions::<Convention>),
     unset: None,
     saved_as: &["convention"],

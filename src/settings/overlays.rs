@@ -1,6 +1,7 @@
 //! What is drawn over the shaded surface, or in place of its colours.
 
 use super::{Choice, Description};
+use crate::names::every;
 
 /// What the surface's colours mean: one thing at a time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,20 +62,9 @@ pub enum Overlay {
 }
 
 impl Overlay {
-    pub const ALL: [Self; 13] = [
-        Self::Wireframe,
-        Self::Patches,
-        Self::Barycentric,
-        Self::Adjacency,
-        Self::Cracks,
-        Self::Folds,
-        Self::TJunctions,
-        Self::BackFaces,
-        Self::Factors,
-        Self::TriangleSize,
-        Self::LowFactors,
-        Self::Normals,
-        Self::Deviation,
+    pub const ALL: [Self; 13] = every![Overlay:
+        Wireframe, Patches, Barycentric, Adjacency, Cracks, Folds, TJunctions, BackFaces, Factors, TriangleSize, LowFactors,
+        Normals, Deviation,
     ];
 }
 
@@ -143,8 +133,7 @@ impl Choice for Overlay {
 }
 
 impl Choice for Colors {
-    const ALL: &'static [Self] =
-        &[Self::Material, Self::Barycentric, Self::Factors, Self::TriangleSize, Self::LowFactors, Self::Deviation];
+    const ALL: &'static [Self] = &every![Colors: Material, Barycentric, Factors, TriangleSize, LowFactors, Deviation];
 
     fn description(self) -> Description {
         match self {

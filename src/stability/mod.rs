@@ -178,8 +178,8 @@ impl Quantity {
             Self::Segment => "times the segment asked for",
             Self::TJunctions => "T-junctions missed",
             Self::OpenEdges => "open edges left",
-            Self::Jump => "of the diagonal at most in a fractional step",
-            Self::Pop => "of the diagonal at most in a pop",
+            Self::Jump => "of the diagonal (the largest jump in a fractional step)",
+            Self::Pop => "of the diagonal (the largest pop)",
         }
     }
 

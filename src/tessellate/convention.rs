@@ -8,6 +8,8 @@
 //!
 //! Side k of a patch runs from corner k to corner k + 1 (modulo 3).
 
+use crate::names::every;
+
 /// What a hull shader and a domain shader take factors and weights for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -31,7 +33,7 @@ pub enum Convention {
 
 impl Convention {
     /// All values.
-    pub const ALL: [Self; 5] = [Self::D3d11, Self::AmdPn, Self::EdgeOrder, Self::Rotated, Self::Mirrored];
+    pub const ALL: [Self; 5] = every![Convention: D3d11, AmdPn, EdgeOrder, Rotated, Mirrored];
 
     /// Returns whether both shaders agree, so that every edge gets its own factor.
     pub fn is_consistent(self) -> bool {

@@ -8,6 +8,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::names::every;
+
 /// 1.0 in 16.16 fixed point.
 pub(crate) const FIXED_ONE: u32 = 0x1_0000;
 /// 0.5 in 16.16 fixed point.
@@ -52,8 +54,7 @@ pub enum Partitioning {
 
 impl Partitioning {
     /// All values.
-    pub const ALL: [Self; 5] =
-        [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven, Self::Subtriangulation];
+    pub const ALL: [Self; 5] = every![Partitioning: Integer, Pow2, FractionalOdd, FractionalEven, Subtriangulation];
     /// Those that Direct3D 11's tessellator has, which give every edge a factor of its own.
     pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 }

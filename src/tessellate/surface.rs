@@ -7,6 +7,7 @@
 use glam::{Vec2, Vec3};
 
 use super::factors::FIXED_ONE;
+use crate::names::every;
 
 /// The smallest step of 16.16 fixed point as a float. It is a power of two, so products with it are exact.
 pub(crate) const UNIT: f32 = 1.0 / FIXED_ONE as f32;
@@ -40,8 +41,7 @@ pub enum Surface {
 
 impl Surface {
     /// All values.
-    pub const ALL: [Self; 8] =
-        [Self::Flat, Self::Pn, Self::PnAen, Self::PnCrease, Self::Phong, Self::PhongAen, Self::Nagata, Self::NagataAen];
+    pub const ALL: [Self; 8] = every![Surface: Flat, Pn, PnAen, PnCrease, Phong, PhongAen, Nagata, NagataAen];
 
     /// Returns whether edges crack where their sides' normals differ, because each side uses only its own normals.
     pub fn tears(self) -> bool {

@@ -9,7 +9,8 @@ const PRECISION: f32 = 1.02;
 /// to within 2 percent. Returns `None` if there are more triangles even at the largest tolerance. Calls `count` about a
 /// dozen times.
 ///
-/// # Errors Returns the first error of `count`.
+/// # Errors
+/// Returns the first error of `count`.
 pub(crate) fn tolerance_within_budget<E>(
     tolerances: RangeInclusive<f32>,
     most: u64,

@@ -37,6 +37,26 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
 }
 
 #[test]
+fn stats_have_the_numbers_that_the_lod_uses() {
+    let adaptive = ["--pixels", "20", "--tolerance", "3", "--distances", "2,5", "--measure-error", "false"];
+    for (lod, used) in [
+        ("uniform", [None; 4]),
+        ("paper", [Some(20.0), None, None, None]),
+        ("edge-length", [Some(20.0), None, None, None]),
+        ("error", [None, Some(3.0), None, None]),
+        ("distance", [None, None, Some(2.0), Some(5.0)]),
+    ] {
+        let stats = stats(&[&["shape:torus", "--lod", lod], &adaptive[..]].concat());
+        let settings = &stats["settings"];
+        let found = ["pixels", "tolerance", "near", "far"].map(|key| settings[key].as_f64());
+        assert_eq!((settings["lod"].as_str(), found), (Some(lod), used), "{settings}");
+        assert_eq!(settings["cull_back_faces"].as_bool(), Some(false), "{settings}");
+    }
+    let budget = stats(&["shape:torus", "--lod", "error", "--tolerance", "0.1", "--max-triangles", "2000"]);
+    assert!(number(&budget, "/settings/tolerance") > 0.1, "the tolerance that was used: {budget}");
+}
+
+#[test]
 fn subtriangulation_needs_uniform_factors() {
     let folder = Folder::new();
     let [picture, mesh, factors] = ["out.png", "out.obj", "out.csv"].map(|name| folder.path(name));

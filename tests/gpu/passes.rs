@@ -9,7 +9,7 @@ use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
 use pnaen::mesh::{Corner, CreaseBand, EdgeKind, Material, Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::Settings;
+use pnaen::settings::{Choice, Settings};
 use pnaen::tessellate::{
     Clip, Edges, Inputs, Lod, Normals, Partitioning, Surface, Tessellated, Tessellation, beyond_near, patch_is_culled,
     point_count, process, tessellate, totals, triangle_count, unpack_normal,
@@ -126,15 +126,16 @@ fn adaptive_factors_agree_with_the_cpu() {
 #[test]
 fn adaptive_factors_are_those_of_the_formula() {
     let (loaded, mut scene) = scene(Shape::Torus);
-    let distance = Settings::from(Tessellation {
-        lod: Lod::Distance,
-        near: 3.0,
-        far: 4.5,
-        factor: 20.0,
-        ..Tessellation::default()
-    });
-    for settings in [Settings::from(Tessellation { lod: Lod::Paper, pixels: 6.0, ..Tessellation::default() }), distance]
-    {
+    for &lod in Lod::ALL {
+        let own = Tessellation { lod, ..Tessellation::default() };
+        let settings = Settings::from(match lod {
+            Lod::Paper | Lod::EdgeLength => Tessellation { pixels: 6.0, ..own },
+            Lod::Distance => Tessellation { near: 3.0, far: 4.5, factor: 20.0, ..own },
+            // Its bounds may fall on either of two levels, so `error.rs` compares its factors.
+            Lod::Error => continue,
+            // All its factors are the same; `uniform_factors_agree_with_the_cpu` compares them.
+            Lod::Uniform => continue,
+        });
         let inputs = inputs(&loaded, &settings);
         on_gpu(&mut scene, &inputs);
         let own = pnaen::tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);

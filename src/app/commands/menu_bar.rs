@@ -71,13 +71,44 @@ impl App {
         response.clicked()
     }
 
-    /// Whether a command that switches something is on; none for other commands.
+    /// Whether a menu's command that switches something is on; none for other commands, also those that are in no menu.
     fn is_on(&self, context: &egui::Context, action: &Action) -> Option<bool> {
         match action {
-            Action::Camera(CameraAction::Orthographic) => Some(self.viewport.camera.orthographic),
+            Action::Camera(action) => match action {
+                CameraAction::Orthographic => Some(self.viewport.camera.orthographic),
+                CameraAction::Frame
+                | CameraAction::FramePatch
+                | CameraAction::LookFrom(_)
+                | CameraAction::Orbit(_)
+                | CameraAction::Pan(_)
+                | CameraAction::ZoomIn
+                | CameraAction::ZoomOut => None,
+            },
             Action::Chart => Some(self.panels.chart.is_open),
             Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),
-            _ => None,
+            Action::File(_)
+            | Action::Setting(_)
+            | Action::Prepare(_)
+            | Action::Undo
+            | Action::Redo
+            | Action::CopyAsCommand
+            | Action::ResetSettings
+            | Action::ForgetEverything
+            | Action::SplitView
+            | Action::FreezeLodCamera
+            | Action::Background
+            | Action::MeasureChart
+            | Action::LargerText
+            | Action::SmallerText
+            | Action::UsualText
+            | Action::ToggleDisplacement
+            | Action::PlayOrPause
+            | Action::AnimationClip(_)
+            | Action::Deselect
+            | Action::Cancel
+            | Action::SearchCommands
+            | Action::Keys
+            | Action::WhitePaper => None,
         }
     }
 }

@@ -6,8 +6,8 @@ use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
 use crate::commands::{Action, Availability, Command, FileAction, Preparing};
 use crate::load::{HeightSource, Source};
-use crate::settings::{Colors, Settings};
-use crate::tessellate::{Lod, Partitioning, Tessellation};
+use crate::settings::{Colors, Declaration, Settings, options};
+use crate::tessellate::Tessellation;
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
@@ -19,7 +19,7 @@ impl App {
 
     /// The state that decides which commands are possible.
     pub fn availability(&self) -> Availability {
-        let lod = self.settings.tessellation.used_lod();
+        let has_effect = |option: &Declaration| (option.no_effect)(&self.settings).is_none();
         Availability {
             has_document: self.document.is_some(),
             has_picture: self.viewport.picture.drawn.is_some(),
@@ -29,8 +29,8 @@ impl App {
             has_selection: self.viewport.selected_edge.is_some() || self.selected_triangle().is_some(),
             has_selected_patch: self.selected_patch().is_some(),
             has_heights: self.has_heights(),
-            takes_factor: matches!(lod, Lod::Uniform | Lod::Distance),
-            takes_lod: self.settings.tessellation.partitioning != Partitioning::Subtriangulation,
+            takes_factor: has_effect(&options::FACTOR),
+            takes_lod: has_effect(&options::LOD),
             can_cull_back_faces: self.can_cull_back_faces(),
             is_split: self.settings.split.is_some(),
             shows_deviation: self.settings.overlays.colors == Colors::Deviation,

@@ -9,6 +9,7 @@ use super::desktop_dialog::Asked;
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::load::Source;
+use crate::load::mesh_file::known_extensions;
 use crate::names::shown_path;
 
 /// What a path is for.
@@ -67,14 +68,14 @@ impl Purpose {
     }
 
     /// The kinds of file that can be typed.
-    fn takes(self) -> &'static str {
+    fn takes(self) -> String {
         match self {
-            Self::Open => "A .gltf, .glb, .obj, .stl or .ply file, shape:NAME, or a height image (.png, .jpg)",
-            Self::Heights => "A .png or .jpg image",
-            Self::Truth => "A .gltf, .glb, .obj, .stl or .ply file, shape:NAME",
-            Self::SaveChart => "A new .svg, .png or .csv file",
-            Self::SavePicture => "A new .png file",
-            Self::ExportMesh => "A new .glb or .obj file",
+            Self::Open => format!("A {} file, shape:NAME, or a height image (.png, .jpg)", known_extensions()),
+            Self::Heights => "A .png or .jpg image".to_owned(),
+            Self::Truth => format!("A {} file, or shape:NAME", known_extensions()),
+            Self::SaveChart => "A new .svg, .png or .csv file".to_owned(),
+            Self::SavePicture => "A new .png file".to_owned(),
+            Self::ExportMesh => "A new .glb or .obj file".to_owned(),
         }
     }
 

@@ -6,7 +6,7 @@ use super::desktop_dialog;
 use super::typed_path::{PendingDialog, Purpose, name_beside};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
-use crate::app::jobs::loading::MESHES;
+use crate::load::mesh_file::EXTENSIONS;
 
 impl App {
     pub(in crate::app) fn open_dialog(&mut self, context: &egui::Context) {
@@ -86,5 +86,5 @@ impl App {
 }
 
 fn meshes(title: &str) -> rfd::FileDialog {
-    rfd::FileDialog::new().set_title(title).add_filter("Meshes", &MESHES)
+    rfd::FileDialog::new().set_title(title).add_filter("Meshes", &EXTENSIONS.map(|(extension, _)| extension))
 }

@@ -13,9 +13,10 @@ use crate::tessellate::{PosedMesh, Surface};
 /// The measurement of the distance to the reference surface, and its last result.
 #[derive(Default)]
 pub(crate) struct DeviationJob {
-    /// What the last measurement that was started is about.
+    /// What the measurement that was started last depends on.
     of: Option<DeviationBasis>,
-    /// Declared before `copying`, so that it is dropped first: its thread must not take a closed channel for the last part.
+    /// Declared before `copying`, so that it is dropped first: if `copying` went first, the channel would close, and the
+    /// thread would think that it has everything.
     comparing: Option<Comparing>,
     copying: Option<Copying>,
     found: Option<DeviationResult>,
@@ -30,7 +31,7 @@ pub(crate) struct DeviationBasis {
     pub tessellation: u64,
     /// Counts reference surfaces.
     pub truth: u64,
-    /// The surface whose limit is measured against, if there is no reference surface.
+    /// The surface whose limit surface is the reference, if none was chosen.
     pub limit: Surface,
 }
 
@@ -66,7 +67,7 @@ impl Drop for Comparing {
 }
 
 impl DeviationJob {
-    /// The last result. While a new measurement is under way, it is about something else.
+    /// The last result. While a new measurement is under way, it belongs to the previous inputs.
     pub(crate) fn found(&self) -> Option<&DeviationResult> {
         self.found.as_ref()
     }

@@ -6,11 +6,8 @@ use super::document::{Load, NotLoaded};
 use super::measure_job::MeasureJob;
 use crate::app::App;
 use crate::engine::{Loaded, Preparation};
-use crate::export::ending;
 use crate::load::Source;
-
-/// Endings of the names of files that hold meshes.
-pub(in crate::app) const MESHES: [&str; 5] = ["gltf", "glb", "obj", "stl", "ply"];
+use crate::load::mesh_file::Format;
 
 impl App {
     /// Starts to load a mesh on a thread of its own; a load that is under way is cancelled. If it is the mesh that is open,
@@ -102,7 +99,7 @@ impl App {
     pub(in crate::app) fn take_dropped(&mut self, context: &egui::Context) {
         let dropped: Vec<PathBuf> =
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
-        let mesh = dropped.iter().find(|path| MESHES.contains(&ending(path).as_str()));
+        let mesh = dropped.iter().find(|path| Format::of(path).is_ok());
         let Some(path) = mesh.or(dropped.first()) else { return };
         self.open_path(context, path.clone());
         if let Some(load) = self.jobs.load.as_mut().filter(|_| dropped.len() > 1) {

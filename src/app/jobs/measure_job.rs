@@ -32,7 +32,8 @@ pub(crate) struct MeasureJob {
     of: Option<(u64, u64)>,
     /// The view that sizes on screen were last measured for.
     seen_from: Option<ScreenView>,
-    /// Declared before `copying`, so that it is dropped first: its thread must not take a closed channel for the last part.
+    /// Declared before `copying`, so that it is dropped first: if `copying` went first, the channel would close, and the
+    /// thread would think that it has everything.
     comparing: Option<Comparing>,
     copying: Option<Copying>,
     found: Option<Measured>,

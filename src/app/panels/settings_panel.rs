@@ -5,8 +5,8 @@ use crate::app::option_rows::{option_hover, option_row};
 use crate::app::text::short;
 use crate::app::widgets::{chooser, fixed, heading};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
-use crate::settings::{Choice, Colors, Control, Overlay, Overlays, Range, Settings, options};
-use crate::tessellate::{Displacement, Lod};
+use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
+use crate::tessellate::{Displacement, Lod, Tessellation};
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -65,10 +65,16 @@ impl App {
                 Some(why) => fixed(ui, options::LOD.label, settings.tessellation.used_lod().label(), why),
                 None => option_row(ui, &options::LOD, settings, key_name(&Action::Setting(Change::AdaptiveLod))),
             }
-            match settings.tessellation.used_lod() {
-                Lod::Distance => distances_row(ui, settings),
-                Lod::Error => option_row(ui, &options::TOLERANCE, settings, ""),
-                Lod::Uniform | Lod::Paper | Lod::EdgeLength => option_row(ui, &options::PIXELS, settings, ""),
+            let mut own: Vec<_> = options_of_lods().filter(|option| (option.no_effect)(settings).is_none()).collect();
+            if own.is_empty() {
+                // A row that is greyed out keeps the panel's height.
+                own.push(&options::PIXELS);
+            }
+            for option in own {
+                match option.kind {
+                    Kind::Pair(_) => distances_row(ui, settings),
+                    _ => option_row(ui, option, settings, ""),
+                }
             }
             option_row(ui, &options::CLIP, settings, "");
             option_row(ui, &options::CONVENTION, settings, "");
@@ -181,6 +187,16 @@ impl App {
     }
 }
 
+/// The options that have an effect under some LODs only, without the factor, which has a row beside the surface.
+fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
+    let depends_on_lod = |option: &&Declaration| {
+        let under = |&lod: &Lod| Settings::from(Tessellation { lod, ..Tessellation::default() });
+        let idle = Lod::ALL.iter().filter(|lod| (option.no_effect)(&under(lod)).is_some()).count();
+        (1..Lod::ALL.len()).contains(&idle)
+    };
+    options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
+}
+
 /// The keys that raise and lower the factor.
 fn factor_keys() -> String {
     let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&Action::Setting(change)));
@@ -214,7 +230,7 @@ fn distances_row(ui: &mut egui::Ui, settings: &mut Settings) {
         drag(ui, label, &mut own.near, least..=far * 0.99, hover);
         let label = ui.label("far");
         let hover =
-            "Edges from this distance to the eye on have factor 1. In bounding radii of the mesh (--distances).";
+            "Edges at this distance from the eye or farther have factor 1. In bounding radii of the mesh (--distances).";
         drag(ui, label, &mut own.far, near * 1.01..=most, hover);
     });
     ui.end_row();
@@ -222,4 +238,15 @@ fn distances_row(ui: &mut egui::Ui, settings: &mut Settings) {
 
 fn tolerance(weld: f32) -> String {
     if weld == 0.0 { "Exact".into() } else { format!("{weld:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_of_a_lod_has_a_row() {
+        let names: Vec<_> = options_of_lods().map(|option| option.name).collect();
+        assert_eq!(names, ["pixels", "tolerance", "distances"]);
+    }
 }

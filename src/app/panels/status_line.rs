@@ -31,7 +31,7 @@ impl App {
                 ui,
                 120.0,
                 format!("{} of {} patches", grouped(drawn), grouped(patches)),
-                "Patches drawn, of all. The others are out of view or face away.",
+                "Patches that are drawn, out of all. The others are out of view or face away.",
             );
             status(
                 ui,
@@ -91,7 +91,7 @@ impl App {
             None => {
                 let chunks = self.document.as_ref().map_or(0, |document| document.scene.tessellator.chunk_count());
                 let text = match self.jobs.measure.fraction(chunks) {
-                    _ if self.is_playing() => "cracks when paused".into(),
+                    _ if self.is_playing() => "cracks: pause to measure".into(),
                     Some(part) if chunks > 1 => format!("cracks … {:.0} %", 100.0 * part),
                     _ if self.is_busy() => "cracks …".into(),
                     _ => "cracks not measured".into(),

@@ -65,7 +65,7 @@ const fn may(name: &'static str, kind: MemberKind) -> Field {
 /// A number of bytes or elements.
 const COUNT: MemberKind = Whole { least: 0, most: u64::MAX };
 
-/// The extension that compresses buffer views. It also marks buffers.
+/// The extension that compresses buffer views. On a buffer it marks one that is only a fallback.
 pub(super) const MESHOPT: &str = "EXT_meshopt_compression";
 /// The extension that compresses primitives.
 pub(super) const DRACO: &str = "KHR_draco_mesh_compression";

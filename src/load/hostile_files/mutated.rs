@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use fastrand::Rng;
 
-use super::Format::{Obj, Ply, Stl};
-use super::{Format, read, time};
-use crate::load::{self, obj, ply, stl};
+use super::{read, time};
+use crate::load::Format::{self, Obj, Ply, Stl};
+use crate::load::{obj, ply, stl};
 
 /// The texts that replace a number.
 const NUMBERS: [&str; 5] = ["0", "-1", "4611686018427387904", "1e308", "nan"];
@@ -26,15 +26,10 @@ pub(super) fn originals() -> Vec<(Format, Vec<u8>)> {
     originals
 }
 
-/// Returns the files of these formats that `PNAEN_MUTATE` names.
+/// Returns the files that `PNAEN_MUTATE` names, without those of glTF, whose own tests take them.
 fn files() -> impl Iterator<Item = (Format, Vec<u8>)> {
     crate::load::hostile_files::named_files().into_iter().filter_map(|path| {
-        let format = match load::Format::of(&path).ok()? {
-            load::Format::Obj => Obj,
-            load::Format::Stl => Stl,
-            load::Format::Ply => Ply,
-            load::Format::Gltf => return None,
-        };
+        let format = Format::of(&path).ok().filter(|format| *format != Format::Gltf)?;
         Some((format, std::fs::read(path).expect("a file that can be read")))
     })
 }

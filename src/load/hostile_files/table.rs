@@ -6,7 +6,8 @@ mod stl;
 
 use std::borrow::Cow;
 
-use super::{Format, is_expected, mentions, page, read};
+use super::{is_expected, mentions, page, read};
+use crate::load::Format;
 
 enum Gets {
     /// An error (see [`is_expected`]).

@@ -9,9 +9,9 @@ use crate::mesh::{Edge, Topology};
 /// The greatest distance of a chain's points from the straight edge, as a part of its length.
 const WIDTH: f64 = 1.0 / 8.0;
 
-/// The least height of the triangles of the edge and of the chain, and the least distance beyond the edge of the third
-/// corners of the chain's triangles, as parts of the edge's length. It is more than rounding makes of a sliver, or of a
-/// corner on the edge.
+/// The least height of the triangles of the edge and of the chain, as a part of the edge's length; it is more than rounding
+/// makes of a sliver. The third corners of the chain's triangles are at least as far beyond the edge, which is more than
+/// rounding makes of a corner on the edge.
 const HEIGHT: f64 = 1e-3;
 
 /// The number of search steps for each boundary edge on average. A mesh's chains have no more edges than its boundary,

@@ -2,7 +2,7 @@
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, case};
-use crate::load::hostile_files::Format::Obj;
+use crate::load::Format::Obj;
 
 /// A triangle's vertices, then whatever is to be tried.
 macro_rules! obj {

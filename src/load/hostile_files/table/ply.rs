@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, case};
-use crate::load::hostile_files::Format::Ply;
+use crate::load::Format::Ply;
 
 /// A triangle in text, with a part of it replaced.
 fn ply(part: &str, by: &str) -> String {

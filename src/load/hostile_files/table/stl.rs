@@ -2,7 +2,7 @@
 
 use super::Gets::{Refused, Repaired};
 use super::{Case, case};
-use crate::load::hostile_files::Format::Stl;
+use crate::load::Format::Stl;
 
 /// A binary file that says it has so many triangles, and has others.
 fn stl(said: u32, triangles: &[[f32; 9]]) -> Vec<u8> {
