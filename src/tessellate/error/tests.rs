@@ -248,14 +248,13 @@ fn a_row_of_two_segments_is_seen_from_as_near_as_its_inner_points_may_be() {
 #[test]
 fn bounds_of_a_net_hold_all_ten_control_points() {
     let net = raised(CORNERS, 0.0);
-    let mut moved = [net; 10];
-    for k in 0..10 {
+    for (k, mut moved) in [net; 10].into_iter().enumerate() {
         *match k {
-            0..3 => &mut moved[k].corners[k],
-            3..9 => &mut moved[k].edges[k - 3],
-            _ => &mut moved[k].center,
+            0..3 => &mut moved.corners[k],
+            3..9 => &mut moved.edges[k - 3],
+            _ => &mut moved.center,
         } = vec3(-3.0, 5.0, 0.5);
-        let bounds = net_bounds(&VIEW, &moved[k]);
+        let bounds = net_bounds(&VIEW, &moved);
         assert_eq!((bounds.least.x, bounds.greatest.y), (-3.0, 5.0), "control point {k}");
     }
 }
