@@ -64,7 +64,7 @@ fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inp
     for (what, out, measured) in others {
         assert_eq!(out.triangles.len(), first.1.triangles.len(), "{what}");
         assert_eq!(out.edge_factors, first.1.edge_factors, "{what}");
-        assert!(sides(loaded, &measured) == sides(loaded, &first.2), "{what}: rims");
+        assert!(sides(loaded, &measured) == sides(loaded, &first.2), "{what}: outlines");
         assert_eq!(measured.cracks, first.2.cracks, "{what}");
         assert_eq!((measured.folds, measured.not_finite), (first.2.folds, 0), "{what}");
         if settings.tessellation.edges == Edges::PerEdge && settings.tessellation.surface != Surface::Pn {
@@ -74,7 +74,7 @@ fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inp
 }
 
 #[test]
-fn consistent_conventions_give_the_same_rims_on_both_devices() {
+fn consistent_conventions_give_the_same_outlines_on_both_devices() {
     for shape in [Shape::Torus, Shape::CubeSplit, Shape::Moebius, Shape::Cone] {
         let (loaded, mut scene) = scene(shape);
         for settings in

@@ -34,7 +34,7 @@ fn leaks(scene: &mut Scene, measured: &Measured, camera: &Camera) -> u64 {
 }
 
 #[test]
-fn pn_tears_without_a_rim_and_is_whole_with_one() {
+fn pn_tears_without_a_crease_band_and_is_whole_with_one() {
     for shape in [Shape::CubeSplit, Shape::Cylinder, Shape::Cone] {
         for partitioning in Partitioning::ALL {
             let pn = Settings::from(Tessellation {
@@ -62,7 +62,7 @@ fn pn_tears_without_a_rim_and_is_whole_with_one() {
 }
 
 #[test]
-fn with_a_rim_pn_is_whole_on_whatever_breaks_tessellators() {
+fn with_a_crease_band_pn_is_whole_on_whatever_breaks_tessellators() {
     let progress = Progress::default();
     let cases = CASES.iter().map(|case| (case.name, (case.mesh)(), case.weld));
     for (name, mesh, weld) in cases.chain((0..8).map(|seed| ("soup", soup(seed), 0.0))) {

@@ -393,12 +393,12 @@ fn a_noisy_image_refines_its_own_patches_alone() {
         let (mut alone, mut shared) = (0, 0);
         for (index, patch) in loaded.topology.patches.iter().enumerate().skip(both.len() / 2) {
             assert!(both[index].inside == smooth[index].inside, "{surface:?}: inside a patch of the smooth image");
-            let is_rim = |&side: &u32| {
+            let is_boundary = |&side: &u32| {
                 let edge = loaded.topology.sides[side as usize].edge;
                 let others = loaded.topology.patches[..both.len() / 2].iter().flat_map(|patch| patch.sides);
                 others.into_iter().any(|other| loaded.topology.sides[other as usize].edge == edge)
             };
-            match patch.sides.iter().any(is_rim) {
+            match patch.sides.iter().any(is_boundary) {
                 true => shared += 1,
                 false => alone += u32::from(both[index] == smooth[index]),
             }

@@ -76,7 +76,7 @@ fn normals_look_as_they_did() {
 }
 
 #[test]
-fn a_rim_looks_as_it_did() {
+fn a_crease_band_looks_as_it_did() {
     // Beside surface-pn and surface-pn-aen: closed as the one is not, round where the other has its crease.
     let loaded = load(
         &Source::Shape(Shape::CubeSplit),
@@ -87,7 +87,7 @@ fn a_rim_looks_as_it_did() {
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("shapes are small");
     let settings = Settings::from(Tessellation { surface: Surface::Pn, factor: 12.0, ..Tessellation::default() });
     let picture = picture(&mut scene, &settings, SIZE);
-    assert_eq!(differing(vec![("surface-pn-rim".to_owned(), picture)]), Vec::<String>::new());
+    assert_eq!(differing(vec![("surface-pn-crease-band".to_owned(), picture)]), Vec::<String>::new());
 }
 
 #[test]

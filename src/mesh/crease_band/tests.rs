@@ -234,8 +234,8 @@ fn the_two_sides_of_a_leaf_stay_separate() {
     assert!(topology.is_closed_and_oriented());
     assert_eq!((band.creases, mesh.triangles.len(), topology.points.len()), (3, 2 * 7, 3 + 2 * 3));
     for (point, normal) in mesh.corners.iter().map(|corner| (corner.position, corner.normal)) {
-        let on_rim = point.x == 0.0 || point.y == 0.0 || point.x + point.y > 0.999;
-        assert!(on_rim || normal == front || normal == back);
+        let on_border = point.x == 0.0 || point.y == 0.0 || point.x + point.y > 0.999;
+        assert!(on_border || normal == front || normal == back);
     }
     let inside = |normal| mesh.corners.iter().filter(|c| c.normal == normal && c.position.min_element() >= 0.0).count();
     assert!(inside(front) >= 3 && inside(back) >= 3);
