@@ -3,7 +3,7 @@
 //!
 //! As a library it serves programs that have a wgpu device of their own. [`embed`] tessellates a mesh into vertex and index
 //! buffers that the host draws. [`mesh::Mesh::from_slices`] makes a mesh from arrays; with the feature `formats`,
-//! [`load::load`] reads one from a file. [`tessellate::tessellate`] does the same as the passes on the CPU.
+//! `load::load` reads one from a file. [`tessellate::tessellate`] does the same as the passes on the CPU.
 //!
 //! ```
 //! use pnaen::mesh::{Mesh, MeshSlices, Topology};
@@ -26,6 +26,8 @@
 //! The way through the crate, for those who read its code: [`mesh`] (triangles, and how they are connected), [`tessellate`] (the mathematics on the CPU:
 //! the reference), `gpu` (the same mathematics as compute passes), then for the program `render` (pictures), `measure` (what
 //! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
+// What `internals` hands to tests is no part of the documentation, so its links may lead to private items.
+#![cfg_attr(feature = "app", allow(rustdoc::private_intra_doc_links))]
 // The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
 #![cfg_attr(not(feature = "app"), allow(dead_code, unused_imports))]
 #![cfg_attr(feature = "app", warn(unreachable_pub))]

@@ -95,7 +95,7 @@ pub(crate) fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
     nine
 }
 
-/// Returns the nine indices of [`nine`], followed by the dominant corners on the points of corners 0, 1 and 2. A
+/// Returns the nine indices of `nine`, followed by the dominant corners on the points of corners 0, 1 and 2. A
 /// point's dominant corner is the lowest one on it, so that all patches around the point agree.
 ///
 /// # Panics

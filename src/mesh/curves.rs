@@ -15,7 +15,7 @@ pub enum Sharing {
     /// shaders without adjacency compute it.
     None,
     /// No sides share one, but each side averages its control points with those of its one neighbour, as the shader in
-    /// the PN-AEN white paper does with a patch's nine indices (see [`super::adjacency::nine`]).
+    /// the PN-AEN white paper does with a patch's nine indices (`nine` in `adjacency.rs`).
     NoneAveraged,
 }
 

@@ -223,7 +223,7 @@ impl MeshBuilder {
         Ok((Mesh { name, corners, triangles: triangles.into(), materials, repairs, ..Mesh::default() }, bindings))
     }
 
-    /// WeldPreview all triangles into one list, and returns it with the materials that have triangles.
+    /// Joins all triangles into one list, and returns it with the materials that have triangles.
     fn gathered(&mut self, budget: &dyn MemoryAccount) -> Result<(Vec<[u32; 3]>, Vec<Material>), BuildError> {
         let used = |group: &Group| group.runs.iter().any(|run| !run.is_empty());
         let mut groups: Vec<Group> = std::mem::take(&mut self.groups).into_iter().filter(used).collect();

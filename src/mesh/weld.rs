@@ -8,7 +8,7 @@ use glam::{DVec3, Vec2, Vec3};
 use super::interner::Interner;
 use super::spatial_hash::SpatialHash;
 
-/// WeldPreview equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
+/// Joins equal positions into points. Two positions are equal if all three coordinates have the same value (-0 equals
 /// 0), without any tolerance. Points are in the order of their first appearance, and have +0 for every zero.
 ///
 /// Returns the points, and for each position the index of its point. Takes expected linear time.
@@ -17,7 +17,7 @@ pub(crate) fn weld(positions: impl IntoIterator<Item = Vec3>) -> (Vec<Vec3>, Vec
     (points.into_iter().map(|(point, _)| point).collect(), point_of)
 }
 
-/// WeldPreview positions as [`weld`] does; each has a number, which must be equal too.
+/// Joins positions as [`weld`] does; each has a number, which must be equal too.
 fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32)>, Vec<u32>) {
     let count = positions.size_hint().0;
     let (mut ids, mut points) = (Interner::with_capacity(count), Vec::with_capacity(count));
@@ -39,7 +39,7 @@ fn weld_exactly(positions: impl Iterator<Item = (Vec3, u32)>) -> (Vec<(Vec3, u32
     (points, point_of)
 }
 
-/// WeldPreview positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
+/// Joins positions within a tolerance, in object units, into points. Distinct positions are taken in the order of their
 /// first appearance. Each becomes part of the nearest point so far that lies within the tolerance (the earlier one of
 /// two at the same distance), or else a new point. So every position lies within one tolerance of its point, however
 /// long a chain of near positions is, and any two points are more than one tolerance apart.
@@ -52,9 +52,9 @@ pub(crate) fn weld_within(positions: impl IntoIterator<Item = Vec3>, tolerance: 
     weld_alike(positions.into_iter().map(|position| (position, 0)), tolerance)
 }
 
-/// WeldPreview positions as [`weld_within`] does; each has a number, and positions with different numbers aren't joined.
+/// Joins positions as `weld_within` does; each has a number, and positions with different numbers aren't joined.
 pub(crate) fn weld_alike(positions: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
-    // WeldPreview equal positions first: they must stay together even if a nearer point comes between them.
+    // Join equal positions first: they must stay together even if a nearer point comes between them.
     let (distinct, mut point_of) = weld_exactly(positions);
     if tolerance.is_nan() || tolerance <= 0.0 {
         return (distinct.into_iter().map(|(point, _)| point).collect(), point_of);
