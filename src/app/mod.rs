@@ -4,7 +4,6 @@ mod commands;
 mod dialogs;
 mod history;
 mod jobs;
-mod option_rows;
 mod panels;
 mod patch_names;
 pub(crate) mod persistence;

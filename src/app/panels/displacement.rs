@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
 use crate::app::dialogs::typed_path::Purpose;
-use crate::app::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::text::short;
 use crate::commands::{Action, HEIGHT_IMAGE, key_name};
 use crate::load::{HeightSource, Source};

@@ -1,7 +1,7 @@
 //! The settings in the left panel.
 
+use super::option_rows::{LABEL_WIDTH, option_hover, option_row};
 use crate::app::App;
-use crate::app::option_rows::{option_hover, option_row};
 use crate::app::text::short;
 use crate::app::widgets::{chooser, fixed, heading};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
@@ -12,11 +12,11 @@ impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             heading(ui, "Surface");
-            egui::Grid::new("surface").num_columns(2).min_col_width(92.0).show(ui, |ui| self.surface_rows(ui));
+            egui::Grid::new("surface").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| self.surface_rows(ui));
             heading(ui, "Level of detail");
             self.lod_rows(ui);
             heading(ui, "Mesh");
-            egui::Grid::new("weld").num_columns(2).min_col_width(92.0).show(ui, |ui| {
+            egui::Grid::new("weld").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
                 self.weld_row(ui);
                 self.crease_band_row(ui);
                 self.height_rows(ui);
@@ -34,7 +34,7 @@ impl App {
         let colors: Vec<_> =
             Colors::ALL.iter().zip(&hovers).map(|(&colors, hover)| (colors, colors.label(), hover.as_str())).collect();
         let settings = &mut self.settings;
-        egui::Grid::new("colors").num_columns(2).min_col_width(92.0).show(ui, |ui| {
+        egui::Grid::new("colors").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
             let hover = "What the surface's colours mean (--overlay).";
             chooser(ui, "Colours", hover, &mut settings.overlays.colors, &colors);
             option_row(ui, &options::DEVIATION_IN, settings, "");
@@ -60,7 +60,7 @@ impl App {
 
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         let settings = &mut self.settings;
-        egui::Grid::new("lod").num_columns(2).min_col_width(92.0).show(ui, |ui| {
+        egui::Grid::new("lod").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
             match (options::LOD.no_effect)(settings) {
                 Some(why) => fixed(ui, options::LOD.label, settings.tessellation.used_lod().label(), why),
                 None => option_row(ui, &options::LOD, settings, key_name(&Action::Setting(Change::AdaptiveLod))),
@@ -150,7 +150,7 @@ impl App {
         if ui.checkbox(&mut split, "Split view").on_hover_text(hover).changed() {
             self.toggle_split();
         }
-        egui::Grid::new("view").num_columns(2).min_col_width(92.0).show(ui, |ui| {
+        egui::Grid::new("view").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
             option_row(ui, &options::SPLIT_SURFACE, &mut self.settings, "");
             let mut percent = self.settings.split.unwrap_or(self.viewport.last_split) * 100.0;
             let label = ui.label(options::SPLIT.label);
