@@ -1,6 +1,7 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
+use crate::app::panels::option_rows::LABEL_WIDTH;
 use crate::app::text::shortened;
 use crate::app::widgets::{chooser, heading};
 use crate::commands::{Action, with_key};
@@ -144,7 +145,7 @@ impl App {
         heading(ui, "Animation");
         let mut chosen = self.viewport.playback.clip;
         let texts: Vec<_> = self.clips().iter().take(LISTED).map(clip_texts).collect();
-        egui::Grid::new("animation").num_columns(2).min_col_width(92.0).show(ui, |ui| {
+        egui::Grid::new("animation").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
             let mut choices = vec![(None, "Rest pose", "The mesh as it is without any clip.")];
             let clips = texts.iter().enumerate();
             choices.extend(clips.map(|(i, (name, hover))| (Some(i), name.as_str(), hover.as_str())));
