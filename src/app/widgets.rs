@@ -2,6 +2,9 @@
 
 use egui::RichText;
 
+/// The width of the settings' labels in points: as much as the longest, "Segment length", takes.
+pub(super) const LABEL_WIDTH: f32 = 94.0;
+
 /// A section's name, and a line under it.
 pub(super) fn heading(ui: &mut egui::Ui, text: &str) {
     ui.add_space(8.0);

@@ -8,7 +8,7 @@ mod crack_list;
 mod crease_band;
 mod deviation;
 pub(super) mod displacement;
-pub(super) mod option_rows;
+mod option_rows;
 mod patch_panel;
 mod patch_pattern;
 mod settings_panel;

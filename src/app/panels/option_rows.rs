@@ -3,9 +3,6 @@
 use crate::app::widgets::{chooser, fixed};
 use crate::settings::{Declaration, Range, Settings, Value};
 
-/// The width of the labels' column in points: as much as the longest, "Segment length", takes.
-pub(in crate::app) const LABEL_WIDTH: f32 = 94.0;
-
 /// A row that changes an option, greyed out where the option has no effect. `key` names the key that changes it too.
 pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, key: &str) {
     option_row_with(ui, option, settings, &option_hover(option, key));

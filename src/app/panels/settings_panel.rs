@@ -1,9 +1,9 @@
 //! The settings in the left panel.
 
-use super::option_rows::{LABEL_WIDTH, option_hover, option_row};
+use super::option_rows::{option_hover, option_row};
 use crate::app::App;
 use crate::app::text::short;
-use crate::app::widgets::{chooser, fixed, heading};
+use crate::app::widgets::{LABEL_WIDTH, chooser, fixed, heading};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
 use crate::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 use crate::tessellate::{Displacement, Lod, Tessellation};

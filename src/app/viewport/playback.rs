@@ -1,9 +1,8 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
-use crate::app::panels::option_rows::LABEL_WIDTH;
 use crate::app::text::shortened;
-use crate::app::widgets::{chooser, heading};
+use crate::app::widgets::{LABEL_WIDTH, chooser, heading};
 use crate::commands::{Action, with_key};
 use crate::mesh::Moment;
 use crate::mesh::rig::Clip;
