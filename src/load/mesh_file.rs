@@ -17,8 +17,7 @@ pub(crate) const EXTENSIONS: [(&str, Format); 5] =
 
 /// The extensions of files that can be read, for messages: ".gltf, .glb, .obj, .stl or .ply".
 pub(crate) fn known_extensions() -> String {
-    let all = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
-    let (last, others) = all.split_last().expect("there are formats");
+    let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
     format!("{} or {last}", others.join(", "))
 }
 
