@@ -7,6 +7,7 @@ mod cracks;
 mod deviation_field;
 mod folds;
 mod indices;
+pub(crate) mod optimum;
 mod outlines;
 mod screen_error;
 mod sizes;

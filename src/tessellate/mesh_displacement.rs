@@ -157,11 +157,9 @@ impl<'a> MeshDisplacement<'a> {
         self.texel_lengths_of(factor).filter(counts).map(needed).fold(1.0, f32::max)
     }
 
-    /// Returns the map of a patch, if the side with this factor depends on other maps too. The inside then needs a
-    /// factor of its own for that side.
-    pub(super) fn own_maps(&self, patch: u32, factor: u32) -> Option<Maps> {
-        let own = map_number(self.heights, self.topology, patch);
-        self.texel_lengths_of(factor).any(|length| length.map != own).then_some(Maps::Only(own))
+    /// Returns the map of a patch.
+    pub(super) fn own_map(&self, patch: u32) -> Maps {
+        Maps::Only(map_number(self.heights, self.topology, patch))
     }
 
     /// Returns the lengths of a factor's edge in its sides' maps.

@@ -22,6 +22,7 @@ mod error;
 pub(crate) mod factors;
 pub(crate) mod hull_factors;
 mod inputs;
+mod least_factors;
 mod limit_surface;
 mod lod;
 mod mesh_displacement;
@@ -29,6 +30,7 @@ mod mesh_factors;
 mod mesh_tessellation;
 mod normal;
 mod octahedral_normal;
+mod piece_error;
 mod posed_mesh;
 mod rings;
 mod solid;
@@ -62,7 +64,7 @@ pub(crate) use coverage::CoverageView;
 pub(crate) use coverage::{covers_nothing, screen_corner};
 pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
 pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
-pub(crate) use error::{EDGE_SHARE, SURFACE_SHARE, edge_error_factor, inside_error_factor, nesting_factor};
+pub(crate) use error::SURFACE_SHARE;
 #[cfg(test)]
 pub(crate) use factors::FACTOR_ODD;
 pub(crate) use factors::{

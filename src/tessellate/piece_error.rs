@@ -1,0 +1,280 @@
+//! The error of one flat triangle of a patch's pattern (a *piece*): how far on screen, in px, its points are from the
+//! points of the surface at the same places of the domain. Twin: `shaders/piece_error.wgsl`.
+//!
+//! The piece of the surface behind a flat triangle is a cubic Bézier triangle itself. Its difference from the flat
+//! triangle is one too, with zeros at its corners and seven other control points, which follow from the second
+//! derivatives at the corners (G. Farin: *Triangular Bernstein-Bézier patches*, 1986, sections 1 to 3). A projection
+//! divides it by the depth: where L is the flat triangle's point on screen and d the difference in clip space, the
+//! distance on screen is |d.xy - L d.w| divided by the depth of the surface.
+//!
+//! That distance is computed on a grid of the piece. Between the points of the grid a cubic function is at most so far
+//! from its linear interpolation as its second derivatives allow (D. Filip, R. Magedson, R. Markot: *Surface algorithms
+//! using bounds on derivatives*, 1986), divided by the square of the grid's number of steps. So what is on the grid
+//! is a lower bound, and with that margin an upper bound. Grids get finer until one of the two decides.
+
+use glam::{Vec2, Vec3};
+
+use super::error::{control_point, triangle_error};
+use super::lod::{LodView, clip_row};
+use super::surface::ControlNet;
+
+/// The steps of the finest grid. The margin is then at most 1/200 of the bound without a grid.
+pub(crate) const FINEST_GRID: u32 = 16;
+
+/// A patch in clip space: x and y in px times depth, and the depth (w).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenPatch {
+    /// The ten control points: corners, edges, centre.
+    points: [Vec3; 10],
+    /// A sixth of the second derivatives at each corner: twice along a, along a and b, twice along b. Direction a leads
+    /// from corner 2 to corner 0, b from corner 2 to corner 1.
+    second: [[Vec3; 3]; 3],
+    /// Half the viewport's width and height, in px.
+    half_viewport: Vec2,
+    /// The depth of the near plane; 0 in an orthographic view.
+    near: f32,
+    /// How far displacement may move a point: in depth, and across the view in px times depth.
+    deep: f32,
+    across: Vec2,
+}
+
+/// Returns a difference vector in object units as one in clip space.
+fn clip_difference(view: &LodView, difference: Vec3) -> Vec3 {
+    let across = Vec2::new(clip_row(view, 0).dot(difference), clip_row(view, 1).dot(difference)) * view.half_viewport;
+    across.extend(clip_row(view, 3).dot(difference))
+}
+
+/// Returns a point in object units in clip space.
+pub(super) fn clip_point(view: &LodView, p: Vec3) -> Vec3 {
+    let clip = view.clip_from_object * p.extend(1.0);
+    (Vec2::new(clip.x, clip.y) * view.half_viewport).extend(clip.w)
+}
+
+/// Returns the depth (w) of the near plane, where z = w; 0 in an orthographic view. Along the view, z is a linear
+/// function of w.
+pub(super) fn near_depth(view: &LodView) -> f32 {
+    let (z, w) = (clip_row(view, 2), clip_row(view, 3));
+    let square = w.dot(w);
+    if square <= 0.0 {
+        return 0.0;
+    }
+    let slope = z.dot(w) / square;
+    (view.clip_from_object.w_axis.z - slope * view.clip_from_object.w_axis.w) / (1.0 - slope)
+}
+
+/// Returns a sixth of a patch's second derivatives at corner `i`: see [`SeenPatch`].
+fn second_derivatives(view: &LodView, net: &ControlNet, i: usize) -> [Vec3; 3] {
+    let at_c = control_point(net, i, 2, 2);
+    let ac = control_point(net, i, 0, 2);
+    let bc = control_point(net, i, 1, 2);
+    let aa = control_point(net, i, 0, 0) - ac * 2.0 + at_c;
+    let ab = control_point(net, i, 0, 1) - ac - bc + at_c;
+    let bb = control_point(net, i, 1, 1) - bc * 2.0 + at_c;
+    [clip_difference(view, aa), clip_difference(view, ab), clip_difference(view, bb)]
+}
+
+/// Returns a patch as it is seen.
+pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
+    let mut points = [Vec3::ZERO; 10];
+    for i in 0..3 {
+        points[i] = clip_point(view, net.corners[i]);
+    }
+    for i in 0..6 {
+        points[3 + i] = clip_point(view, net.edges[i]);
+    }
+    points[9] = clip_point(view, net.center);
+    SeenPatch {
+        points,
+        second: [second_derivatives(view, net, 0), second_derivatives(view, net, 1), second_derivatives(view, net, 2)],
+        half_viewport: view.half_viewport,
+        near: near_depth(view),
+        deep: clip_row(view, 3).length() * view.reach,
+        across: Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length()) * view.half_viewport * view.reach,
+    }
+}
+
+/// Returns the point of the surface at a place of the domain.
+fn seen_point(patch: &SeenPatch, place: Vec2) -> Vec3 {
+    let (x, y) = (place.x, place.y);
+    let z = 1.0 - x - y;
+    patch.points[0] * (x * x * x)
+        + patch.points[1] * (y * y * y)
+        + patch.points[2] * (z * z * z)
+        + patch.points[3] * (3.0 * x * x * y)
+        + patch.points[4] * (3.0 * x * y * y)
+        + patch.points[5] * (3.0 * y * y * z)
+        + patch.points[6] * (3.0 * y * z * z)
+        + patch.points[7] * (3.0 * z * z * x)
+        + patch.points[8] * (3.0 * z * x * x)
+        + patch.points[9] * (6.0 * x * y * z)
+}
+
+/// Returns a sixth of the second derivatives at a place of the domain along three directions.
+fn along_sides(patch: &SeenPatch, place: Vec2, sides: [Vec2; 3]) -> [Vec3; 3] {
+    let z = 1.0 - place.x - place.y;
+    let [p, q, r] = patch.second;
+    let aa = p[0] * place.x + q[0] * place.y + r[0] * z;
+    let ab = p[1] * place.x + q[1] * place.y + r[1] * z;
+    let bb = p[2] * place.x + q[2] * place.y + r[2] * z;
+    sides.map(|side| aa * (side.x * side.x) + ab * (2.0 * side.x * side.y) + bb * (side.y * side.y))
+}
+
+/// A flat triangle, and its difference from the surface behind it.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    /// The places of its corners on screen in px from the middle of the view, and their depths.
+    places: [Vec2; 3],
+    depths: [f32; 3],
+    /// The control points of the difference, surface minus triangle: for each side k the one near corner k and the one
+    /// near corner k + 1, and the one in the centre.
+    differences: [Vec3; 7],
+    /// A sixth of the second derivatives at each corner, along each side.
+    second: [[Vec3; 3]; 3],
+}
+
+/// Returns the flat triangle with its corners at three places of the domain.
+fn piece(patch: &SeenPatch, at: [Vec2; 3]) -> Piece {
+    let sides = [at[1] - at[0], at[2] - at[1], at[0] - at[2]];
+    let second = [along_sides(patch, at[0], sides), along_sides(patch, at[1], sides), along_sides(patch, at[2], sides)];
+    let mut differences = [Vec3::ZERO; 7];
+    let mut sum = Vec3::ZERO;
+    for k in 0..3 {
+        let (here, there) = (second[k][k], second[(k + 1) % 3][k]);
+        differences[2 * k] = (here * 2.0 + there) * (-1.0 / 3.0);
+        differences[2 * k + 1] = (here + there * 2.0) * (-1.0 / 3.0);
+        sum += second[k][0] + second[k][1] + second[k][2];
+    }
+    differences[6] = sum * (-1.0 / 6.0);
+    let corners = [seen_point(patch, at[0]), seen_point(patch, at[1]), seen_point(patch, at[2])];
+    Piece {
+        places: corners.map(|corner| corner.truncate() / corner.z),
+        depths: corners.map(|corner| corner.z),
+        differences,
+        second,
+    }
+}
+
+/// Returns whether nothing of a piece is seen, neither flat nor as the surface is: it lies beyond one of the view's
+/// sides, or before the near plane. `nearest` and `farthest` bound its depth.
+fn piece_is_unseen(patch: &SeenPatch, piece: &Piece, farthest: f32) -> bool {
+    if farthest < patch.near {
+        return true;
+    }
+    // For each side: how far outside the corners lie at least, and how far the surface and displacement come back.
+    let half = patch.half_viewport;
+    let moved = patch.across + half * patch.deep;
+    let (mut right, mut left) = (Vec2::splat(3.4e38), Vec2::splat(3.4e38));
+    for i in 0..3 {
+        let (place, depth) = (piece.places[i], piece.depths[i]);
+        right = right.min((place - half) * depth);
+        left = left.min((-place - half) * depth);
+    }
+    let (mut back_right, mut back_left) = (Vec2::ZERO, Vec2::ZERO);
+    for difference in piece.differences {
+        let (across, deep) = (difference.truncate(), half * difference.z);
+        back_right = back_right.min(across - deep);
+        back_left = back_left.min(-across - deep);
+    }
+    let right = right + back_right - moved;
+    let left = left + back_left - moved;
+    right.max_element().max(left.max_element()) > 0.0
+}
+
+/// Returns a bound on the error of a flat triangle, in px, from its second derivatives alone: as seen from a depth of 1,
+/// by an eye that sees it within `spread` px of `middle`.
+fn derivative_bound(piece: &Piece, middle: Vec2, spread: f32) -> f32 {
+    let mut most = [0.0f32; 3];
+    for i in 0..3 {
+        for k in 0..3 {
+            let second = piece.second[i][k];
+            let seen = (second.truncate() - middle * second.z).length() + spread * second.z.abs();
+            // Not `max`, which may lose a NaN.
+            most[k] = if seen <= most[k] { most[k] } else { seen };
+        }
+    }
+    triangle_error(most[0], most[1], most[2])
+}
+
+/// Returns the difference at the weights `x`, `y` and `z` of a piece's corners.
+fn piece_difference(piece: &Piece, x: f32, y: f32, z: f32) -> Vec3 {
+    let d = &piece.differences;
+    (d[0] * x + d[1] * y) * (3.0 * x * y)
+        + (d[2] * y + d[3] * z) * (3.0 * y * z)
+        + (d[4] * z + d[5] * x) * (3.0 * z * x)
+        + d[6] * (6.0 * x * y * z)
+}
+
+/// Returns the largest error on a grid of `steps` steps, in px, and the largest difference in depth. It ends early once
+/// an error isn't within the tolerance.
+fn grid_error(patch: &SeenPatch, piece: &Piece, spread: f32, tolerance: f32, steps: u32) -> [f32; 2] {
+    let (mut error, mut deep) = (0.0f32, 0.0f32);
+    for i in 0..=steps {
+        for j in 0..=steps - i {
+            let [x, y, z] = [i, j, steps - i - j].map(|weight| weight as f32 / steps as f32);
+            let [p, q, r] = [x * piece.depths[0], y * piece.depths[1], z * piece.depths[2]];
+            let depth = p + q + r;
+            let place = (piece.places[0] * p + piece.places[1] * q + piece.places[2] * r) / depth;
+            let difference = piece_difference(piece, x, y, z);
+            let seen = (difference.truncate() - place * difference.z).length() + spread * difference.z.abs();
+            let own = seen / (depth + difference.z - patch.deep);
+            deep = deep.max(difference.z.abs());
+            if own > error {
+                error = own;
+            }
+            if error > tolerance {
+                return [error, deep];
+            }
+        }
+    }
+    [error, deep]
+}
+
+/// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1).
+/// If it is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
+pub(crate) fn piece_error(patch: &SeenPatch, at: [Vec2; 3], tolerance: f32) -> f32 {
+    let piece = piece(patch, at);
+    let (mut behind, mut before) = (0.0f32, 0.0f32);
+    for difference in piece.differences {
+        behind = behind.max(difference.z);
+        before = before.min(difference.z);
+    }
+    let farthest = piece.depths[0].max(piece.depths[1]).max(piece.depths[2]);
+    let nearest = piece.depths[0].min(piece.depths[1]).min(piece.depths[2]) + before - patch.deep;
+    if nearest > 0.0 && piece_is_unseen(patch, &piece, farthest + behind + patch.deep) {
+        return 0.0;
+    }
+    if nearest < patch.near || nearest <= 0.0 {
+        if farthest + behind + patch.deep < patch.near {
+            return 0.0;
+        }
+        // What is seen of it is anywhere in the view, and no nearer than the near plane.
+        return derivative_bound(&piece, Vec2::ZERO, patch.half_viewport.length()) / patch.near;
+    }
+    let [a, b, c] = piece.places;
+    let middle = (a + b + c) / 3.0;
+    // How far displacement moves it on screen.
+    let most = a.abs().max(b.abs()).max(c.abs());
+    let moved = ((patch.across + most * patch.deep) / nearest).length();
+    let radius = a.distance(middle).max(b.distance(middle)).max(c.distance(middle));
+    let bound = derivative_bound(&piece, middle, radius + moved) / nearest;
+    if bound <= tolerance {
+        return bound;
+    }
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let ratio = (farthest + behind) / nearest;
+    let mut steps = 2;
+    loop {
+        let [error, deep] = grid_error(patch, &piece, moved, tolerance, steps);
+        if error > tolerance {
+            return error;
+        }
+        // Between points of the grid: depth and place change, and the difference isn't linear.
+        let share = 1.0 / steps as f32;
+        let between = bound * share * share + longest * ratio * share * deep / nearest;
+        let upper = error * (1.0 + (ratio - 1.0) * share) + between;
+        if upper <= tolerance || steps == FINEST_GRID {
+            return upper;
+        }
+        steps *= 2;
+    }
+}
