@@ -6,7 +6,7 @@
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
-// Of edges; then, if Params.mixed is 1, the factor that the heights of each patch need inside it.
+// Of edges; under LOD by error then the least factor of each edge, and the inside factor of each patch.
 @group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
 @group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;
@@ -18,15 +18,14 @@
 // A patch's control net, or nothing if the settings have no use for it.
 fn needed_net(patch_index: u32) -> ControlNet {
     var net: ControlNet;
-    let by_error = params.lod == LOD_ERROR && params.surface != SURFACE_FLAT;
-    if by_error || params.clip != CLIP_OFF || params.culls_back == 1u {
+    if params.clip != CLIP_OFF || params.culls_back == 1u {
         net = load_net(patch_index);
     }
     return net;
 }
 
 // What a hull shader would write for a patch: the factors of its edges in the order of the convention, and the one inside.
-fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
+fn hull_factors(patch_index: u32) -> vec4<f32> {
     if params.lod == LOD_GIVEN {
         var given = bitcast<vec4<f32>>(given_factors[patch_index]);
         if params.partitioning == PARTITIONING_POW2 {
@@ -40,15 +39,9 @@ fn hull_factors(patch_index: u32, net: ControlNet) -> vec4<f32> {
     for (var k = 0u; k < 3u; k++) {
         sides[k] = edge_factors[patches[patch_index].factors[k] >> 3u];
     }
-    // If all edges have one height image on their sides, the inside needs no higher factor than the edges.
     var inside = max(max(sides.x, sides.y), sides.z);
-    if params.mixed == 1u {
-        inside = edge_factors[params.factor_count + patch_index];
-    }
-    if params.lod == LOD_ERROR && params.surface != SURFACE_FLAT {
-        let tolerance = params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
-        let own = inside_error_factor(params.view, tolerance, params.partitioning, net, sides.yzx);
-        inside = select(own, max(own, inside), params.displacement != 0u);
+    if params.lod == LOD_ERROR {
+        inside = edge_factors[2u * params.factor_count + patch_index];
     }
     return vec4<f32>(
         sides[factor_side(params.convention, 0u)],
@@ -66,7 +59,7 @@ fn counted(index: u32) -> vec2<u32> {
     var factors: PatchFactors;
     factors.inside = why;
     if why == NOT_CULLED {
-        let written = hull_factors(patch_index, net);
+        let written = hull_factors(patch_index);
         factors = process(params.partitioning, written.xyz, written.w);
     }
     patch_factors[index] = factors;
@@ -103,7 +96,7 @@ fn hull_factors_main(
     if index < params.patch_count {
         let net = needed_net(index);
         if cull_reason(params.clip, params.culls_back == 1u, params.view, net) == NOT_CULLED {
-            written_factors[index] = hull_factors(index, net);
+            written_factors[index] = hull_factors(index);
         }
     }
 }

@@ -1,5 +1,6 @@
 // LOD's factor of every edge. An edge whose sides don't all share one curve takes the largest factor of its curves. (As
-// published, every side has a factor of its own, that of its one curve.)
+// published, every side has a factor of its own, that of its one curve.) LOD by error has the least factor that an edge may
+// get instead; pass_asked.wgsl goes on from there.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -7,6 +8,7 @@
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
+// The factors of edges. Under LOD by error then the least factor of each edge, and the inside factor of each patch.
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<f32>;
 // Only of meshes with heights: see Share in types.wgsl.
 @group(0) @binding(6) var<storage, read> shares: array<Share>;
@@ -33,7 +35,7 @@ fn curve_factor(index: u32) -> f32 {
             return 1.0;
         }
         let tolerance = params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
-        return edge_error_factor(params.view, EDGE_SHARE * tolerance, a, net.ab, net.ba, b);
+        return least_edge_factor(params.view, tolerance, params.partitioning, a, net.ab, net.ba, b);
     }
     if params.lod == LOD_EDGE_LENGTH {
         return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
@@ -67,23 +69,28 @@ fn heights_factor(index: u32, curve_index: u32, map: u32) -> f32 {
     return factor;
 }
 
-// LOD's factor of an edge. If LOD is by error and the mesh is displaced, heights count too: those of one height image, or
-// of all.
-fn lod_factor(index: u32, map: u32) -> f32 {
-    var factor = params.factor;
-    if params.lod != LOD_UNIFORM {
-        factor = 1.0;
-        for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
-            factor = max(factor, curve_factor(curve));
-            if params.lod == LOD_ERROR && params.displacement != 0u {
-                factor = max(factor, heights_factor(index, curve, map));
-            }
-        }
+// The factor that the heights along an edge need: those of one height image, or of all images on its sides.
+fn edge_heights_factor(index: u32, map: u32) -> f32 {
+    var factor = 1.0;
+    for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
+        factor = max(factor, heights_factor(index, curve, map));
     }
-    if params.lod == LOD_ERROR {
-        return nesting_factor(params.partitioning, factor);
+    return factor;
+}
+
+// LOD's factor of an edge, or under LOD by error the least that it may get.
+fn lod_factor(index: u32) -> f32 {
+    if params.lod == LOD_UNIFORM {
+        return params.factor;
     }
-    return select(factor, round_pow2(factor), params.partitioning == PARTITIONING_POW2);
+    var factor = 1.0;
+    for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
+        factor = max(factor, curve_factor(curve));
+    }
+    if params.lod == LOD_ERROR && params.displacement != 0u {
+        factor = max(factor, edge_heights_factor(index, ALL_MAPS));
+    }
+    return factor;
 }
 
 @compute @workgroup_size(256)
@@ -96,17 +103,16 @@ fn edge_factors_main(
     if index >= params.factor_count {
         return;
     }
-    edge_factors[index] = lod_factor(index, ALL_MAPS);
+    let factor = lod_factor(index);
+    if params.lod == LOD_ERROR {
+        edge_factors[index] = whole_segments(params.partitioning, 1.0);
+        edge_factors[params.factor_count + index] = whole_segments(params.partitioning, factor);
+    } else {
+        edge_factors[index] = select(factor, round_pow2(factor), params.partitioning == PARTITIONING_POW2);
+    }
 }
 
-// Whether an edge has a side with another height image than this one.
-fn has_others(index: u32, own: u32) -> bool {
-    let first = shares[params.point_count + index];
-    return first.next > 0u || first.map != own;
-}
-
-// The factor that the heights of every patch need inside it, from its own height image alone. Needed if the sides of some
-// edge have different images.
+// The factor that the heights of every patch need inside it: the largest that its own height image needs along its sides.
 @compute @workgroup_size(256)
 fn heights_inside_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -120,12 +126,7 @@ fn heights_inside_main(
     let own = u32(points[params.point_count + index].w);
     var inside = 1.0;
     for (var k = 0u; k < 3u; k++) {
-        let factor = patches[index].factors[k] >> 3u;
-        if has_others(factor, own) {
-            inside = max(inside, lod_factor(factor, own));
-        } else {
-            inside = max(inside, edge_factors[factor]);
-        }
+        inside = max(inside, edge_heights_factor(patches[index].factors[k] >> 3u, own));
     }
-    edge_factors[params.factor_count + index] = inside;
+    edge_factors[2u * params.factor_count + index] = inside;
 }

@@ -27,9 +27,6 @@ struct Params {
     // In object units: how far white is above black.
     height_scale: f32,
     midlevel: f32,
-    // 1 if the sides of some edge have different height images and LOD is by error: then every patch has an inside factor
-    // of its own.
-    mixed: u32,
 }
 
 // A value of Params.lod that no LOD has: the factors of every patch were given.

@@ -196,7 +196,7 @@ impl Engine {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
-        scene.tessellator.prepare(settings.tessellation.normals, settings.tessellation.displacement)?;
+        scene.tessellator.prepare(&settings.tessellation)?;
         self.renderer.prepare(scene, settings)
     }
 
@@ -313,9 +313,8 @@ impl Engine {
             return Ok(AskedFactors::given(convention, given));
         }
         let (buffer, edges) = scene.tessellator.edge_factors();
-        let mut factors = cast::<f32>(&read_buffer(&self.gpu, buffer, 0, buffer.size())?);
-        factors.truncate(scene.tessellator.buffers().factor_count as usize);
-        Ok(AskedFactors::new(edges, convention, factors))
+        let bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
+        Ok(AskedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
     }
 
     /// The whole tessellated mesh, read back. The counts must be known.

@@ -54,10 +54,7 @@ pub(crate) struct Params {
     /// In object units: how far white is above black.
     pub height_scale: f32,
     pub midlevel: f32,
-    /// 1 if the sides of some edge have different height images and LOD is by error: then every patch has an inside factor of
-    /// its own.
-    pub mixed: u32,
-    pub _pad: [u32; 2],
+    pub _pad: [u32; 3],
 }
 
 /// The run of patches that one scan covers, and how much fits the arena.

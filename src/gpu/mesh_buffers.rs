@@ -5,7 +5,7 @@ use super::layout::{Corner, Curve, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
 use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
-use crate::tessellate::{has_mixed_maps, texel_lengths};
+use crate::tessellate::texel_lengths;
 
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
@@ -19,14 +19,13 @@ pub struct MeshBuffers {
     pub factor_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
-    /// One factor for each edge. If [`Self::is_mixed`], then for each patch the factor that its heights need inside it.
+    /// One factor for each edge; then what LOD by error needs: the least factor that each edge may get, and for each patch
+    /// its inside factor.
     pub edge_factors: wgpu::Buffer,
     /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
     pub shares: wgpu::Buffer,
     /// How far each mip level of each height image is from its level 0.
     pub details: wgpu::Buffer,
-    /// Whether the sides of some edge have different height images.
-    pub is_mixed: bool,
     /// None without heights.
     pub relief: Option<ReliefBuffers>,
     pub sharing: Sharing,
@@ -51,13 +50,12 @@ impl MeshBuffers {
         let dominance = heights.map(|heights| Dominance::new(topology, &grouped, &heights.angles));
         let relief =
             dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
-        let (mut all_shares, mut mixed) = (Vec::new(), false);
+        let mut all_shares = Vec::new();
         if let Some((heights, dominance)) = heights.zip(dominance.as_ref()) {
             let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
             all_shares = shares(mesh, dominance, &texel_lengths);
-            mixed = has_mixed_maps(&texel_lengths, heights, topology, dominance);
         }
-        let factor_room = grouped.factor_count() as usize + if mixed { topology.patches.len() } else { 0 };
+        let factor_room = 2 * grouped.factor_count() as usize + topology.patches.len();
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,
@@ -71,7 +69,6 @@ impl MeshBuffers {
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             shares: filled(gpu, "shares", &all_shares)?,
             details: details(gpu, heights),
-            is_mixed: mixed,
             relief,
             sharing,
             point_count: topology.points.len() as u32,

@@ -15,6 +15,8 @@ pub(super) struct MeshPasses {
     frames: OnceLock<BoundPass>,
     edge_factors: OnceLock<BoundPass>,
     heights_inside: OnceLock<BoundPass>,
+    asked_factors: OnceLock<BoundPass>,
+    inside_factors: OnceLock<BoundPass>,
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
 }
@@ -76,6 +78,16 @@ impl MeshPasses {
         BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
     }
 
+    /// The factors of every edge under LOD by error: the largest that its patches ask for.
+    pub(super) fn asked_factors(&self, on: &PassInputs) -> Bound<'_> {
+        BoundPass::once(&self.asked_factors, on.gpu, &on.pipelines.asked_factors, &asked_buffers(on))
+    }
+
+    /// The inside factor of every patch under LOD by error.
+    pub(super) fn inside_factors(&self, on: &PassInputs) -> Bound<'_> {
+        BoundPass::once(&self.inside_factors, on.gpu, &on.pipelines.inside_factors, &asked_buffers(on))
+    }
+
     /// The level at which heights are looked up on every edge.
     pub(super) fn factor_levels(&self, on: &PassInputs, images: &HeightImages) -> Bound<'_> {
         let mesh = on.mesh;
@@ -97,6 +109,11 @@ impl MeshPasses {
         let buffers = [(0, on.params), (6, &on.mesh.shares), (7, &relief.factor_starts), (9, &relief.factors)];
         BoundPass::once(&self.point_levels, on.gpu, &on.pipelines.point_levels, &buffers)
     }
+}
+
+fn asked_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 5] {
+    let mesh = on.mesh;
+    [(0, on.params), (1, &mesh.points), (2, &mesh.patches), (3, &mesh.curve_nets), (4, &mesh.edge_factors)]
 }
 
 fn factor_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 8] {

@@ -41,7 +41,7 @@ pub use error::GpuError;
 pub(crate) use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
 #[cfg(test)]
-pub(crate) use pipelines::GRID_WIDTH;
+pub(crate) use pipelines::{ASKED_WORKGROUP, GRID_WIDTH};
 pub(crate) use pipelines::{ComputePipeline, ComputePipelines, ShaderModule, WORKGROUP, bind_group, grid};
 pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
 #[cfg(test)]
@@ -52,10 +52,11 @@ pub(crate) use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
 #[cfg(test)]
-pub(crate) static MODULES: [&WgslFile; 10] = [
+pub(crate) static MODULES: [&WgslFile; 11] = [
     &pipelines::PASS_DEFORM,
     &pipelines::PASS_NETS,
     &pipelines::PASS_FACTORS,
+    &pipelines::PASS_ASKED,
     &pipelines::PASS_LEVELS,
     &pipelines::PASS_COUNTS,
     &pipelines::PASS_SCAN,

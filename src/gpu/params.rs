@@ -51,7 +51,6 @@ pub(super) fn params_of(
         displacement: heights.map_or(0, |_| inputs.tessellation.displacement as u32),
         height_scale: heights.map_or(0.0, |heights| tessellate::height_units(heights, inputs)),
         midlevel: heights.map_or(0.0, |_| inputs.tessellation.midlevel),
-        mixed: u32::from(by_error && heights.is_some() && buffers.is_mixed),
-        _pad: [0; 2],
+        _pad: [0; 3],
     }
 }

@@ -6,8 +6,8 @@ use wgpu::util::DeviceExt;
 
 use super::lazy::Lazy;
 use super::wgsl::{
-    CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_SHARES, DOMAIN, ERROR, FACTORS, LOAD_NET, LOADS, LOD,
-    NORMAL, OCTAHEDRAL_NORMAL, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
+    CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, LEAST_FACTORS,
+    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, PIECE_ERROR, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -19,11 +19,14 @@ static DEFORM: WgslFile = wgsl!("deform", NORMAL);
 // A module for each of these, in the order in which the passes run.
 pub(super) static PASS_DEFORM: WgslFile = wgsl!("pass_deform", DEFORM, NORMAL, TYPES);
 pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_NET, LOADS, SURFACE, TYPES);
-pub(super) static PASS_FACTORS: WgslFile = wgsl!("pass_factors", ERROR, FACTORS, LOD, SURFACE, TYPES);
+pub(super) static PASS_FACTORS: WgslFile =
+    wgsl!("pass_factors", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOD, SURFACE, TYPES);
+pub(super) static PASS_ASKED: WgslFile =
+    wgsl!("pass_asked", DISPLACEMENT_FACTOR, LEAST_FACTORS, LOAD_NET, LOADS, PIECE_ERROR, SURFACE, TYPES);
 pub(super) static PASS_LEVELS: WgslFile =
     wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, DISPLACEMENT_SHARES, TYPES);
 pub(super) static PASS_COUNTS: WgslFile =
-    wgsl!("pass_counts", CONVENTION, CULL, ERROR, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
+    wgsl!("pass_counts", CONVENTION, CULL, FACTORS, LOAD_NET, LOADS, LOD, SURFACE, TYPES, WORKGROUP_SCAN,);
 pub(super) static PASS_SCAN: WgslFile = wgsl!("pass_scan", TYPES, WORKGROUP_SCAN);
 pub(super) static PASS_CHUNKS: WgslFile = wgsl!("pass_chunks", TYPES);
 pub(super) static PASS_EMIT: WgslFile = wgsl!(
@@ -134,6 +137,8 @@ pub struct ComputePipelines {
     pub frames: ComputePipeline,
     pub edge_factors: ComputePipeline,
     pub heights_inside: ComputePipeline,
+    pub asked_factors: ComputePipeline,
+    pub inside_factors: ComputePipeline,
     pub factor_levels: ComputePipeline,
     pub point_levels: ComputePipeline,
     pub counts: ComputePipeline,
@@ -159,6 +164,7 @@ impl ComputePipelines {
     pub fn new() -> Self {
         let module = |file| Arc::new(ShaderModule::new(file));
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
+        let asked = module(&PASS_ASKED);
         let (factors, counts, emit) = (module(&PASS_FACTORS), module(&PASS_COUNTS), module(&PASS_EMIT));
         Self {
             deform_corners: ComputePipeline::new(&deform, "deform_corners_main"),
@@ -169,6 +175,8 @@ impl ComputePipelines {
             frames: ComputePipeline::new(&levels, "frames_main"),
             edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
             heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
+            asked_factors: ComputePipeline::new(&asked, "asked_factors_main"),
+            inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),
@@ -215,9 +223,17 @@ pub(crate) fn bind_group(
 /// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
 pub(crate) const WORKGROUP: u32 = 256;
 
+/// `ASKED_WORKGROUP` in `shaders/pass_asked.wgsl`: few invocations, since one patch may take much longer than another.
+pub(crate) const ASKED_WORKGROUP: u32 = 64;
+
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
 pub(crate) fn grid(items: u32) -> [u32; 3] {
-    let workgroups = items.div_ceil(WORKGROUP);
+    grid_of(items, WORKGROUP)
+}
+
+/// The same for workgroups of another size.
+pub(super) fn grid_of(items: u32, workgroup: u32) -> [u32; 3] {
+    let workgroups = items.div_ceil(workgroup);
     [workgroups.min(GRID_WIDTH), workgroups.div_ceil(GRID_WIDTH), 1]
 }
 

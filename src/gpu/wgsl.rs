@@ -38,7 +38,9 @@ pub(crate) static OCTAHEDRAL_NORMAL: WgslFile = wgsl!("octahedral_normal");
 pub(crate) static NORMAL: WgslFile = wgsl!("normal", FACTORS, SURFACE);
 pub(crate) static LOD: WgslFile = wgsl!("lod");
 pub(crate) static TYPES: WgslFile = wgsl!("types", LOD);
-pub(crate) static ERROR: WgslFile = wgsl!("error", FACTORS, LOD, SURFACE, TYPES);
+pub(crate) static DISPLACEMENT_FACTOR: WgslFile = wgsl!("displacement_factor", LOD, TYPES);
+pub(crate) static PIECE_ERROR: WgslFile = wgsl!("piece_error", LOD, SURFACE);
+pub(crate) static LEAST_FACTORS: WgslFile = wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR);
 pub(crate) static DISPLACE: WgslFile = wgsl!("displace", NORMAL, TYPES);
 /// The module that has it declares the buffers that it reads.
 pub(crate) static DISPLACEMENT_SHARES: WgslFile = wgsl!("displacement_shares", TYPES);

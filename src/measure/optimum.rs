@@ -384,16 +384,15 @@ impl Search {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::render::camera::Camera;
     use crate::settings::Settings;
     use crate::tessellate::{Lod, Tessellation, tessellate};
-    use crate::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
     use glam::Vec2;
 
     #[test]
@@ -401,20 +400,29 @@ mod tests {
     fn explore() {
         let viewport = Vec2::new(1280.0, 720.0);
         let names: Vec<String> = std::env::var("TRY").unwrap_or("torus".into()).split(',').map(str::to_owned).collect();
-        let tolerances: Vec<f32> = std::env::var("TOL").unwrap_or("1".into()).split(',').map(|t| t.parse().unwrap()).collect();
+        let tolerances: Vec<f32> =
+            std::env::var("TOL").unwrap_or("1".into()).split(',').map(|t| t.parse().unwrap()).collect();
         let odd = std::env::var("ODD").is_ok();
         let opt = std::env::var("NOOPT").is_err();
         for name in names {
             let mesh = match Shape::ALL.into_iter().find(|shape| shape.name() == name) {
                 Some(shape) => shape.build(),
                 None => {
-                    crate::load::Source::File(name.clone().into()).load(&Default::default(), &Progress::new()).unwrap().mesh
+                    crate::load::Source::File(name.clone().into())
+                        .load(&Default::default(), &Progress::new())
+                        .unwrap()
+                        .mesh
                 }
             };
             let topology = Topology::build(&mesh, &Progress::new()).unwrap();
             for &tolerance in &tolerances {
                 let partitioning = if odd { Partitioning::FractionalOdd } else { Partitioning::Integer };
-                let settings = Settings::from(Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() });
+                let settings = Settings::from(Tessellation {
+                    lod: Lod::Error,
+                    tolerance,
+                    partitioning,
+                    ..Tessellation::default()
+                });
                 let camera = Camera::framing(&mesh.bounds(), viewport);
                 let inputs = settings.inputs(camera.lod_view(viewport, &mesh.bounds()));
                 let time = std::time::Instant::now();
@@ -424,12 +432,24 @@ mod tests {
                 measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
                 let px = measurement.worst().map_or(0.0, |worst| worst.px);
                 let got = out.triangles.len() as f64;
-                print!("{name} {tolerance}: patches {} triangles {got} px/tol {:.3} cpu {ms:.0} ms", topology.patches.len(), px / f64::from(tolerance));
+                print!(
+                    "{name} {tolerance}: patches {} triangles {got} px/tol {:.3} cpu {ms:.0} ms",
+                    topology.patches.len(),
+                    px / f64::from(tolerance)
+                );
                 if opt {
                     let start = out.edge_factors.iter().map(|&f| f.min(64.0) as u32).collect();
                     let time = std::time::Instant::now();
                     let best = optimum(&mesh, &topology, &inputs, &[start]);
-                    print!(" optimum {} ratio {:.3} lower {} (opt/lower {:.3}) uniform {:?} {:.1} s", best.triangles, got / best.triangles as f64, best.lower_bound, best.triangles as f64 / best.lower_bound as f64, best.uniform, time.elapsed().as_secs_f64());
+                    print!(
+                        " optimum {} ratio {:.3} lower {} (opt/lower {:.3}) uniform {:?} {:.1} s",
+                        best.triangles,
+                        got / best.triangles as f64,
+                        best.lower_bound,
+                        best.triangles as f64 / best.lower_bound as f64,
+                        best.uniform,
+                        time.elapsed().as_secs_f64()
+                    );
                 }
                 println!();
             }

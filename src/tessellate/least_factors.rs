@@ -2,239 +2,263 @@
 //! `shaders/least_factors.wgsl`.
 //!
 //! The triangles along an edge (its *row*) depend on that edge's factor and on the inside factor alone, and all others
-//! on the inside factor alone. So every patch looks for the inside factor with which it and its edges together have the
-//! fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches ask for. Then
-//! every patch takes the least inside factor that suffices with the factors of its edges.
+//! depend on the inside factor alone. So every patch looks for the inside factor with which it and its edges together
+//! have the fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches ask for.
+//! Then every patch takes the least inside factor that suffices beside the factors of its edges.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-use super::error::whole_segments;
+use super::domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
 use super::factors::{
-    FIXED_ONE, Partitioning, PatchFactors, inside_segments, patch_is_minimal, process, segments, triangle_count,
+    FIXED_ONE, Partitioning, PatchFactors, inside_segments, outer_count, patch_is_minimal, process, round_pow2,
+    segments, triangle_count,
 };
 use super::lod::LodView;
-use super::piece_error::{SeenPatch, piece_error};
-use super::{domain_plan, domain_point, domain_triangle};
-use glam::Vec3;
+use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, near_depth, piece_error};
 
-/// The part of the tolerance that bounds may use up. The rest is for rounding, that of domain points to 16.16 too.
+/// The part of the tolerance that bounds may use up. The rest is for rounding.
 pub(crate) const BOUND_SHARE: f32 = 0.999;
 
+/// A factor that is asked for if none is enough.
+pub(crate) const BEYOND_LAST: f32 = 64.5;
+
+/// Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number,
+/// a power of two, or an odd or even number.
+pub(super) fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
+    match partitioning {
+        Partitioning::Integer | Partitioning::Subtriangulation => least.ceil(),
+        Partitioning::Pow2 => round_pow2(least),
+        Partitioning::FractionalOdd => 2.0 * (0.5 * (least - 1.0)).ceil() + 1.0,
+        Partitioning::FractionalEven => 2.0 * (0.5 * least).ceil(),
+    }
+}
+
 /// Returns the largest factor of a partitioning.
-pub(crate) fn last_factor(partitioning: Partitioning) -> f32 {
+fn last_factor(partitioning: Partitioning) -> f32 {
     if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 }
 }
 
-/// Returns the least factor above `factor` that may suffice, if the error with `factor` segments is `error`, which falls
-/// with the square of their number.
-fn next_factor(partitioning: Partitioning, factor: f32, error: f32, tolerance: f32) -> f32 {
-    let ratio = (error / tolerance).sqrt();
-    // NaN counts as infinite.
-    let guess = if ratio < 64.0 { 0.8 * ratio * factor } else { 65.0 };
-    whole_segments(partitioning, guess.floor().max(factor + 1.0))
+/// Returns the least factor of a partitioning, `least` or more; [`BEYOND_LAST`] if it has none.
+fn factor_from(partitioning: Partitioning, least: f32) -> f32 {
+    if least <= last_factor(partitioning) { whole_segments(partitioning, least) } else { BEYOND_LAST }
 }
 
-/// Returns the least number of segments that keeps a curve within `tolerance` px, as far as three points a segment tell.
-/// The result is above 64 if no number does. It's where the search of patches starts, and needs to be no bound.
-pub(crate) fn least_edge_factor(
+/// Returns the least factor above `factor` that may be enough if `factor` segments have this error, which falls with the
+/// square of their number. Beyond the last factor it returns [`BEYOND_LAST`].
+fn next_factor(partitioning: Partitioning, factor: f32, error: f32, tolerance: f32) -> f32 {
+    let ratio = (error / tolerance).sqrt();
+    // The estimate is lowered, so that it passes over no factor that is enough. NaN counts as infinite.
+    let estimate = if ratio < 100.0 { (0.8 * ratio * factor).floor() } else { BEYOND_LAST };
+    factor_from(partitioning, estimate.max(factor + 1.0))
+}
+
+/// Returns a point of a cubic curve.
+fn curve_point([a, ab, ba, b]: [Vec3; 4], t: f32) -> Vec3 {
+    let s = 1.0 - t;
+    a * (s * s * s) + ab * (3.0 * s * s * t) + ba * (3.0 * s * t * t) + b * (t * t * t)
+}
+
+/// Returns the largest distance in px between a curve and its `factor` segments, at three points of each that are in
+/// view. The control points are in clip space, as [`clip_point`] returns them.
+fn sampled_edge_error(half_viewport: Vec2, near: f32, curve: [Vec3; 4], factor: f32) -> f32 {
+    let mut worst = 0.0f32;
+    let mut start = curve[0];
+    for i in 0..factor as u32 {
+        let end = curve_point(curve, (i as f32 + 1.0) / factor);
+        for k in 1..4 {
+            let share = 0.25 * k as f32;
+            let flat = start + (end - start) * share;
+            let point = curve_point(curve, (i as f32 + share) / factor);
+            let nearest = flat.z.min(point.z);
+            let place = point.truncate() / point.z;
+            let outside = place.abs() - half_viewport;
+            if nearest > 0.0 && nearest >= near && outside.x.max(outside.y) <= 0.0 {
+                worst = worst.max(place.distance(flat.truncate() / flat.z));
+            }
+        }
+        start = end;
+    }
+    worst
+}
+
+/// Returns the least number of segments that keeps a curve within `tolerance` px, as far as samples tell; [`BEYOND_LAST`] if none
+/// does. Patches start from it when they look for factors, and take care of the bound themselves.
+pub(super) fn least_edge_factor(
     view: &LodView,
     tolerance: f32,
     partitioning: Partitioning,
     control_points: [Vec3; 4],
 ) -> f32 {
-    let net = control_points.map(|p| super::piece_error::clip_point(view, p));
-    let [a, ab, ba, b] = net;
+    let deepest = control_points.into_iter().fold(0.0, |deepest, p| deeper(view, deepest, p));
+    let scale = depth_scale(deepest);
+    let curve = control_points.map(|p| clip_point(view, scale, p));
+    let near = near_depth(view) * scale;
     let mut factor = whole_segments(partitioning, 1.0);
-    let at = |t: f32| {
-        let s = 1.0 - t;
-        a * (s * s * s) + ab * (3.0 * s * s * t) + ba * (3.0 * s * t * t) + b * (t * t * t)
-    };
-    let near = super::piece_error::near_depth(view);
-    loop {
-        let mut worst = 0.0f32;
-        let mut start = a;
-        for i in 0..factor as u32 {
-            let from = i as f32 / factor;
-            let end = at((i + 1) as f32 / factor);
-            for k in 1..4 {
-                let share = 0.25 * k as f32;
-                let surface = at(from + share / factor);
-                let flat = start + (end - start) * share;
-                if surface.z > near && flat.z > near && surface.z > 0.0 && flat.z > 0.0 {
-                    let own = (surface.truncate() / surface.z).distance(flat.truncate() / flat.z);
-                    let seen = (surface.truncate() / surface.z).abs().cmple(view.half_viewport).all();
-                    if seen && own > worst {
-                        worst = own;
-                    }
-                }
-            }
-            start = end;
-        }
-        if worst <= tolerance || factor >= last_factor(partitioning) {
-            return factor;
-        }
-        factor = next_factor(partitioning, factor, worst, tolerance).min(last_factor(partitioning));
-    }
-}
-
-/// Returns the largest error, in px, of the triangles `first` to `end` of a pattern. It ends early once an error isn't
-/// within the tolerance.
-fn triangles_error(patch: &SeenPatch, factors: PatchFactors, first: u32, end: u32, tolerance: f32) -> f32 {
-    let plan = domain_plan(factors);
-    let mut worst = 0.0f32;
-    for t in first..end {
-        let at = domain_triangle(&plan, t).map(|i| {
-            let [u, v] = domain_point(&plan, i);
-            Vec2::new(u as f32, v as f32) / FIXED_ONE as f32
-        });
-        let error = piece_error(patch, at, tolerance);
-        if !(error <= worst) {
-            worst = error;
-        }
-        if !(worst <= tolerance) {
-            break;
-        }
-    }
-    worst
-}
-
-/// Returns the error of the row along the edge `k` (U == 0, V == 0 or W == 0).
-fn row_error(patch: &SeenPatch, factors: PatchFactors, k: usize, tolerance: f32) -> f32 {
-    let inner = inside_segments(factors.inside) - 2;
-    let mut first = k as u32 * inner;
-    for i in 0..k {
-        first += segments(factors.outside[i]);
-    }
-    triangles_error(patch, factors, first, first + segments(factors.outside[k]) + inner, tolerance)
-}
-
-/// Returns the error of the triangles that belong to no edge's row.
-fn inner_error(patch: &SeenPatch, factors: PatchFactors, tolerance: f32) -> f32 {
-    let rows = super::outer_count(factors) + 3 * (inside_segments(factors.inside) - 2);
-    triangles_error(patch, factors, rows, triangle_count(factors), tolerance)
-}
-
-/// Returns the least inside factor, at least `least`, with which the triangles that belong to no row are within the
-/// tolerance. The result is above 64 if none is.
-fn least_inner_factor(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, least: f32) -> f32 {
-    let mut inside = whole_segments(partitioning, least.max(2.0));
-    loop {
-        if inside > last_factor(partitioning) {
-            return 64.5;
-        }
-        let error = inner_error(patch, process(partitioning, [2.0; 3], inside), tolerance);
-        if error <= tolerance {
-            return inside;
-        }
-        inside = next_factor(partitioning, inside, error, tolerance);
-    }
-}
-
-/// Returns whether one triangle is within the tolerance.
-fn single_suffices(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, least: f32) -> bool {
-    let factors = process(partitioning, [1.0; 3], 1.0);
-    least <= 1.0 && patch_is_minimal(factors) && triangles_error(patch, factors, 0, 1, tolerance) <= tolerance
-}
-
-/// Returns the least factor of edge `k`, at least `least`, whose row is within the tolerance beside `inside` segments.
-/// The result is above 64 if none up to `most` is.
-fn least_row_factor(
-    patch: &SeenPatch,
-    tolerance: f32,
-    partitioning: Partitioning,
-    k: usize,
-    least: f32,
-    inside: f32,
-) -> f32 {
-    let mut factor = least;
-    let most = (least.max(inside) + 2.0).min(last_factor(partitioning));
-    loop {
-        if !(factor <= most) {
-            return 64.5;
-        }
-        let mut edges = [2.0; 3];
-        edges[k] = factor;
-        let error = row_error(patch, process(partitioning, edges, inside), k, tolerance);
+    while factor <= 64.0 {
+        let error = sampled_edge_error(view.half_viewport, near, curve, factor);
         if error <= tolerance {
             return factor;
         }
         factor = next_factor(partitioning, factor, error, tolerance);
     }
+    BEYOND_LAST
 }
 
-/// Returns the factors of the edges U == 0, V == 0 and W == 0 that a patch asks for. `least` are the least that its
-/// edges may get, and `least_inside` is the least inside factor.
-pub(crate) fn asked_factors(
+/// Returns a place of a pattern's domain as weights of corners 0 and 1.
+fn domain_place(plan: &DomainPlan, i: u32) -> Vec2 {
+    let [u, v] = domain_point(plan, i);
+    Vec2::new(u as f32, v as f32) / FIXED_ONE as f32
+}
+
+/// Returns the largest error, in px, of the triangles `first` to `end` of a pattern. It ends early with the first error
+/// that isn't within the tolerance.
+fn triangles_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, first: u32, end: u32) -> f32 {
+    let plan = domain_plan(factors);
+    let mut worst = 0.0f32;
+    for t in first..end {
+        let error = piece_error(patch, tolerance, domain_triangle(&plan, t).map(|i| domain_place(&plan, i)));
+        // Written like this, NaN isn't within the tolerance.
+        if !(error <= tolerance) {
+            return error;
+        }
+        worst = worst.max(error);
+    }
+    worst
+}
+
+/// Returns the error of one triangle in place of the patch, if the partitioning allows that.
+fn single_error(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning) -> f32 {
+    let factors = process(partitioning, [1.0; 3], 1.0);
+    if !patch_is_minimal(factors) {
+        return 3.4e38;
+    }
+    triangles_error(patch, tolerance, factors, 0, 1)
+}
+
+/// Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
+fn row_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, k: u32) -> f32 {
+    let inner = inside_segments(factors.inside) - 2;
+    let counts = factors.outside.map(segments);
+    let before = [0, counts[0], counts[0] + counts[1]][k as usize];
+    let first = before + k * inner;
+    triangles_error(patch, tolerance, factors, first, first + counts[k as usize] + inner)
+}
+
+/// Returns the error of the triangles that lie along no edge.
+fn inner_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors) -> f32 {
+    let rows = outer_count(factors) + 3 * (inside_segments(factors.inside) - 2);
+    triangles_error(patch, tolerance, factors, rows, triangle_count(factors))
+}
+
+/// Returns the least inside factor, `least` or more, with which the triangles along no edge are within the tolerance;
+/// [`BEYOND_LAST`] if none is.
+fn least_inner_factor(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, least: f32) -> f32 {
+    let mut inside = factor_from(partitioning, least.max(2.0));
+    while inside <= last_factor(partitioning) {
+        let error = inner_error(patch, tolerance, process(partitioning, [2.0; 3], inside));
+        if error <= tolerance {
+            return inside;
+        }
+        inside = next_factor(partitioning, inside, error, tolerance);
+    }
+    BEYOND_LAST
+}
+
+/// Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
+/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and 2.
+fn least_row_factor(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    k: u32,
+    least: f32,
+    inside: f32,
+) -> f32 {
+    let most = (least.max(inside) + 2.0).min(last_factor(partitioning));
+    let mut factor = least;
+    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match.
+    while factor <= most {
+        let mut edges = [2.0; 3];
+        edges[k as usize] = factor;
+        if row_error(patch, tolerance, process(partitioning, edges, inside), k) <= tolerance {
+            return factor;
+        }
+        factor = factor_from(partitioning, factor + 1.0);
+    }
+    BEYOND_LAST
+}
+
+/// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0. `least` are the least that these may
+/// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`.
+pub(super) fn asked_factors(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     least: [f32; 3],
     least_inside: f32,
 ) -> [f32; 3] {
-    let tolerance = BOUND_SHARE * tolerance;
-    let most = least[0].max(least[1]).max(least[2]);
-    if most <= 1.0 && single_suffices(patch, tolerance, partitioning, least_inside) {
+    let within = BOUND_SHARE * tolerance;
+    let largest = least[0].max(least[1]).max(least[2]).max(least_inside);
+    if largest > 64.0 || (largest <= 1.0 && single_error(patch, within, partitioning) <= within) {
         return least;
     }
     let mut best = least;
     let mut fewest = 3.4e38;
-    let mut inside = least_inner_factor(patch, tolerance, partitioning, least_inside);
-    while inside <= last_factor(partitioning) {
-        // A segment of an edge costs a triangle on each of its two sides.
+    let mut inside = least_inner_factor(patch, within, partitioning, least_inside);
+    while inside <= 64.0 {
         let rings = inside - 2.0;
-        let own = 3.0 * rings + 1.5 * rings * rings;
-        if own + 2.0 * (least[0] + least[1] + least[2]) >= fewest {
+        // Every segment of an edge is a triangle's side in this patch and in its neighbour.
+        let mut cost = 3.0 * rings + 1.5 * rings * rings + 2.0 * (least[0] + least[1] + least[2]);
+        if cost >= fewest {
             break;
         }
         let mut asked = least;
-        let mut cost = own;
         for k in 0..3 {
-            asked[k] = least_row_factor(patch, tolerance, partitioning, k, least[k], inside);
-            cost += if asked[k] > 64.0 { 3.4e38 } else { 2.0 * asked[k] };
-            if cost >= fewest {
-                break;
+            if cost < fewest {
+                asked[k] = least_row_factor(patch, within, partitioning, k as u32, least[k], inside);
+                cost += if asked[k] > 64.0 { 3.4e38 } else { 2.0 * (asked[k] - least[k]) };
             }
         }
         if cost < fewest {
             fewest = cost;
             best = asked;
         }
-        inside = least_inner_factor(patch, tolerance, partitioning, inside + 1.0);
+        inside = least_inner_factor(patch, within, partitioning, inside + 1.0);
     }
     best
 }
 
-/// Returns the least inside factor, at least `least`, that keeps a patch within `tolerance` px of its surface, given the
-/// factors of the edges U == 0, V == 0 and W == 0. The result is above 64 if no factor does.
-pub(crate) fn least_inside_factor(
+/// Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these
+/// factors of the edges U == 0, V == 0 and W == 0; [`BEYOND_LAST`] if none does.
+pub(super) fn least_inside_factor(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     edges: [f32; 3],
     least: f32,
 ) -> f32 {
-    let tolerance = BOUND_SHARE * tolerance;
-    let most = edges[0].max(edges[1]).max(edges[2]);
-    if most <= 1.0 && single_suffices(patch, tolerance, partitioning, least) {
+    let within = BOUND_SHARE * tolerance;
+    let largest = edges[0].max(edges[1]).max(edges[2]).max(least);
+    if largest <= 1.0 && single_error(patch, within, partitioning) <= within {
         return 1.0;
     }
-    let mut inside = least_inner_factor(patch, tolerance, partitioning, least);
-    while inside <= last_factor(partitioning) {
+    if largest > 64.0 {
+        return BEYOND_LAST;
+    }
+    let mut inside = least_inner_factor(patch, within, partitioning, least);
+    while inside <= 64.0 {
         let factors = process(partitioning, edges, inside);
-        let mut worst = 0.0f32;
-        for k in 0..3 {
-            let error = row_error(patch, factors, k, tolerance);
-            if !(error <= worst) {
-                worst = error;
-            }
-            if !(worst <= tolerance) {
-                break;
-            }
+        let mut k = 0;
+        while k < 3 && row_error(patch, within, factors, k) <= within {
+            k += 1;
         }
-        if worst <= tolerance {
+        if k == 3 {
             return inside;
         }
-        inside = least_inner_factor(patch, tolerance, partitioning, inside + 1.0);
+        inside = least_inner_factor(patch, within, partitioning, inside + 1.0);
     }
-    64.5
+    BEYOND_LAST
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,7 +7,7 @@ use super::control_nets::ControlNets;
 use super::displace::{
     Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
-use super::error::{displacement_factor, edge_bounds};
+use super::displacement_factor::{displacement_factor, edge_bounds};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
 use super::surface::{UNIT, linear_uv, outline_place, patch_tangents};

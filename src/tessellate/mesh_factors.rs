@@ -4,27 +4,21 @@
 use glam::Vec3;
 
 use super::control_nets::ControlNets;
-use super::error::whole_segments;
-use super::least_factors::{asked_factors, least_edge_factor, least_inside_factor};
+use super::least_factors::{asked_factors, least_edge_factor, least_inside_factor, whole_segments};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::seen_patch;
 use super::texel_lengths::Maps;
 use super::{
-    ControlNet, HullFactors, Inputs, Lod, NOT_CULLED, Partitioning, SURFACE_SHARE, Surface, Tessellation, cull_reason,
-    distance_factor, edge_length_factor, paper_edge_factor, round_pow2,
+    ControlNet, HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor,
+    edge_length_factor, paper_edge_factor, round_pow2,
 };
 
 impl ControlNets<'_> {
     /// Returns the factor of each edge: the largest that any of its curves needs, or under LOD by error that any of its
     /// patches asks for. With edges as published, each curve has its own factor.
-    pub(super) fn edge_factors(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        culls_back: bool,
-    ) -> Vec<f32> {
+    pub(super) fn edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
         if inputs.tessellation.lod == Lod::Error {
-            return self.asked_edge_factors(inputs, displacement, culls_back);
+            return self.asked_edge_factors(inputs, displacement);
         }
         let largest = |form: &dyn Fn([Vec3; 4]) -> f32, curves: &[u32]| {
             (curves[0]..curves[1]).map(|curve| form(self.curve_points(curve))).fold(1.0, f32::max)
@@ -50,29 +44,20 @@ impl ControlNets<'_> {
         [a, ab, ba, b]
     }
 
-    /// Returns the factors of LOD by error: the largest that the patches of each edge ask for. Patches that are left
-    /// out ask for nothing.
-    fn asked_edge_factors(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        culls_back: bool,
-    ) -> Vec<f32> {
-        let Inputs { tessellation: Tessellation { surface, partitioning, clip, .. }, ref view } = *inputs;
+    /// Returns the factors of LOD by error: the largest that the patches of each edge ask for. Patches that are left out
+    /// ask, too: what others look like doesn't depend on it.
+    fn asked_edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
+        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
         let edges = 0..self.curves.factor_curves.len() as u32 - 1;
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
         let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
         for patch in 0..self.topology.patches.len() as u32 {
-            let net = self.patch(patch);
-            if cull_reason(clip, culls_back, view, &net) != NOT_CULLED {
-                continue;
-            }
             let factors = [1, 2, 0].map(|k| self.patch_factor(patch, k) as usize);
             let mut own = factors.map(|factor| least[factor]);
             if surface != Surface::Flat {
                 let inside = self.heights_inside(inputs, displacement, patch);
                 let tolerance = surface_tolerance(inputs, displacement);
-                own = asked_factors(&seen_patch(view, &net), tolerance, partitioning, own, inside);
+                own = asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, own, inside);
             }
             for (factor, own) in factors.into_iter().zip(own) {
                 asked[factor] = asked[factor].max(own);
@@ -103,13 +88,7 @@ impl ControlNets<'_> {
     }
 
     /// Returns the factor that an edge needs for the heights of some maps.
-    fn heights_factor(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        factor: u32,
-        maps: Maps,
-    ) -> f32 {
+    fn heights_factor(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, factor: u32, maps: Maps) -> f32 {
         let Some(displacement) = displacement else { return 1.0 };
         let curves = &self.curves.factor_curves[factor as usize..factor as usize + 2];
         let own = |curve: u32| {

@@ -47,7 +47,7 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
     let culls_back = culls_back(mesh, topology, inputs);
-    let made = || nets.edge_factors(inputs, displacement.as_ref(), culls_back);
+    let made = || nets.edge_factors(inputs, displacement.as_ref());
     let edge_factors = factors.map_or_else(made, <[f32]>::to_vec);
     let displacement = displacement.map(|displacement| displacement.with_levels(&edge_factors));
     let displacement = displacement.as_ref();
@@ -90,7 +90,7 @@ pub(crate) fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) ->
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
     let culls_back = culls_back(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs, displacement.as_ref(), culls_back);
+    let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
     let written = |patch| {
         let net = nets.patch(patch);
         match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
@@ -106,7 +106,7 @@ pub(crate) fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64,
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
-    let edge_factors = nets.edge_factors(inputs, displacement.as_ref(), false);
+    let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
     let patches = 0..topology.patches.len() as u32;
     let written =
         patches.map(|patch| nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch, &nets.patch(patch)));
@@ -133,7 +133,7 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 pub(crate) fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
-    nets.edge_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref(), culls_back(mesh, topology, inputs))
+    nets.edge_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref())
 }
 
 impl ControlNets<'_> {

@@ -17,8 +17,8 @@ mod coverage;
 mod cull;
 mod deform;
 mod displace;
+mod displacement_factor;
 pub(crate) mod domain;
-mod error;
 pub(crate) mod factors;
 pub(crate) mod hull_factors;
 mod inputs;
@@ -63,8 +63,8 @@ pub(crate) use coverage::CoverageView;
 #[cfg(test)]
 pub(crate) use coverage::{covers_nothing, screen_corner};
 pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
+pub(crate) use displacement_factor::SURFACE_SHARE;
 pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
-pub(crate) use error::SURFACE_SHARE;
 #[cfg(test)]
 pub(crate) use factors::FACTOR_ODD;
 pub(crate) use factors::{
@@ -86,7 +86,7 @@ pub(crate) use posed_mesh::deform;
 pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through};
 pub(crate) use solid::{Solid, is_beyond_near};
 pub(crate) use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position};
-pub(crate) use texel_lengths::{TexelLength, has_mixed_maps, map_number, texel_lengths};
+pub(crate) use texel_lengths::{TexelLength, map_number, texel_lengths};
 pub(crate) use triangle_budget::tolerance_within_budget;
 #[cfg(test)]
 pub(crate) use vertex::pack_key;
@@ -100,12 +100,14 @@ pub(crate) mod shared_constants {
     pub(crate) use super::cull::{
         FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, NOT_CULLED, OUT_OF_VIEW, POLAR_INDICES, POLAR_WEIGHTS,
     };
+    pub(crate) use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub(crate) use super::domain::FIXED_TWO_THIRDS;
-    pub(crate) use super::error::{DETAIL_SHARE, EDGE_SHARE, NESTING, SURFACE_SHARE, TURN_SHARE};
     pub(crate) use super::factors::{
         BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, FACTOR_ODD,
         FACTOR_VALUE, FIXED_HALF, FIXED_ONE, SUBTRIANGULATED,
     };
+    pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE};
     pub(crate) use super::normal::CANCELLED;
+    pub(crate) use super::piece_error::FINEST_GRID;
     pub(crate) use super::surface::UNIT;
 }

@@ -14,14 +14,14 @@
 
 use glam::{Vec2, Vec3};
 
-use super::error::{control_point, triangle_error};
 use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
 
 /// The steps of the finest grid. The margin is then at most 1/200 of the bound without a grid.
 pub(crate) const FINEST_GRID: u32 = 16;
 
-/// A patch in clip space: x and y in px times depth, and the depth (w).
+/// A patch in clip space: x and y in px times depth, and the depth (w). All are divided by the largest depth of its control
+/// points, which changes nothing on screen, so that squares don't leave the range of f32.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenPatch {
     /// The ten control points: corners, edges, centre.
@@ -38,16 +38,41 @@ pub(crate) struct SeenPatch {
     across: Vec2,
 }
 
+/// Returns the control point with these three indices (0 to 2), in any order: (0, 0, 1) is b210.
+fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
+    if i == j && j == l {
+        return net.corners[i];
+    }
+    if i != j && j != l && l != i {
+        return net.center;
+    }
+    // The index that occurs twice, and the one that occurs once.
+    let twice = if i == j || i == l { i } else { j };
+    let once = i + j + l - 2 * twice;
+    if once == (twice + 1) % 3 { net.edges[2 * twice] } else { net.edges[2 * once + 1] }
+}
+
 /// Returns a difference vector in object units as one in clip space.
 fn clip_difference(view: &LodView, difference: Vec3) -> Vec3 {
     let across = Vec2::new(clip_row(view, 0).dot(difference), clip_row(view, 1).dot(difference)) * view.half_viewport;
     across.extend(clip_row(view, 3).dot(difference))
 }
 
-/// Returns a point in object units in clip space.
-pub(super) fn clip_point(view: &LodView, p: Vec3) -> Vec3 {
-    let clip = view.clip_from_object * p.extend(1.0);
+/// Returns a point in object units in clip space, all of it multiplied by `scale`.
+pub(super) fn clip_point(view: &LodView, scale: f32, p: Vec3) -> Vec3 {
+    let clip = view.clip_from_object * p.extend(1.0) * scale;
     (Vec2::new(clip.x, clip.y) * view.half_viewport).extend(clip.w)
+}
+
+/// Returns the absolute depth (w) of a point in object units, or `deepest` if that is larger.
+pub(super) fn deeper(view: &LodView, deepest: f32, p: Vec3) -> f32 {
+    let clip = view.clip_from_object * p.extend(1.0);
+    deepest.max(clip.w.abs())
+}
+
+/// Returns the scale by which the largest depth becomes 1.
+pub(super) fn depth_scale(deepest: f32) -> f32 {
+    if deepest > 1e-38 { 1.0 / deepest } else { 1.0 }
 }
 
 /// Returns the depth (w) of the near plane, where z = w; 0 in an orthographic view. Along the view, z is a linear
@@ -62,34 +87,44 @@ pub(super) fn near_depth(view: &LodView) -> f32 {
     (view.clip_from_object.w_axis.z - slope * view.clip_from_object.w_axis.w) / (1.0 - slope)
 }
 
-/// Returns a sixth of a patch's second derivatives at corner `i`: see [`SeenPatch`].
-fn second_derivatives(view: &LodView, net: &ControlNet, i: usize) -> [Vec3; 3] {
+/// Returns a sixth of a patch's second derivatives at corner `i`, multiplied by `scale`: see [`SeenPatch`].
+fn second_derivatives(view: &LodView, scale: f32, net: &ControlNet, i: usize) -> [Vec3; 3] {
     let at_c = control_point(net, i, 2, 2);
     let ac = control_point(net, i, 0, 2);
     let bc = control_point(net, i, 1, 2);
     let aa = control_point(net, i, 0, 0) - ac * 2.0 + at_c;
     let ab = control_point(net, i, 0, 1) - ac - bc + at_c;
     let bb = control_point(net, i, 1, 1) - bc * 2.0 + at_c;
-    [clip_difference(view, aa), clip_difference(view, ab), clip_difference(view, bb)]
+    [clip_difference(view, aa * scale), clip_difference(view, ab * scale), clip_difference(view, bb * scale)]
 }
 
 /// Returns a patch as it is seen.
 pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
+    let mut deepest = deeper(view, 0.0, net.center);
+    for corner in net.corners {
+        deepest = deeper(view, deepest, corner);
+    }
+    for point in net.edges {
+        deepest = deeper(view, deepest, point);
+    }
+    let scale = depth_scale(deepest);
     let mut points = [Vec3::ZERO; 10];
     for i in 0..3 {
-        points[i] = clip_point(view, net.corners[i]);
+        points[i] = clip_point(view, scale, net.corners[i]);
     }
     for i in 0..6 {
-        points[3 + i] = clip_point(view, net.edges[i]);
+        points[3 + i] = clip_point(view, scale, net.edges[i]);
     }
-    points[9] = clip_point(view, net.center);
+    points[9] = clip_point(view, scale, net.center);
+    let second = [0, 1, 2].map(|i| second_derivatives(view, scale, net, i));
+    let across = Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length()) * view.half_viewport;
     SeenPatch {
         points,
-        second: [second_derivatives(view, net, 0), second_derivatives(view, net, 1), second_derivatives(view, net, 2)],
+        second,
         half_viewport: view.half_viewport,
-        near: near_depth(view),
-        deep: clip_row(view, 3).length() * view.reach,
-        across: Vec2::new(clip_row(view, 0).length(), clip_row(view, 1).length()) * view.half_viewport * view.reach,
+        near: near_depth(view) * scale,
+        deep: clip_row(view, 3).length() * view.reach * scale,
+        across: across * (view.reach * scale),
     }
 }
 
@@ -154,12 +189,9 @@ fn piece(patch: &SeenPatch, at: [Vec2; 3]) -> Piece {
     }
 }
 
-/// Returns whether nothing of a piece is seen, neither flat nor as the surface is: it lies beyond one of the view's
-/// sides, or before the near plane. `nearest` and `farthest` bound its depth.
-fn piece_is_unseen(patch: &SeenPatch, piece: &Piece, farthest: f32) -> bool {
-    if farthest < patch.near {
-        return true;
-    }
+/// Returns whether nothing of a piece is in view, neither flat nor as the surface is, since all of it lies beyond one of
+/// the view's sides. All of it must be in front of the eye.
+fn is_beside_view(patch: &SeenPatch, piece: &Piece) -> bool {
     // For each side: how far outside the corners lie at least, and how far the surface and displacement come back.
     let half = patch.half_viewport;
     let moved = patch.across + half * patch.deep;
@@ -178,6 +210,22 @@ fn piece_is_unseen(patch: &SeenPatch, piece: &Piece, farthest: f32) -> bool {
     let right = right + back_right - moved;
     let left = left + back_left - moved;
     right.max_element().max(left.max_element()) > 0.0
+}
+
+/// Returns a bound on the error, in px, of a triangle with these second differences along its sides.
+///
+/// The error of a quadratic function is half the sum of its second derivatives along the sides, each multiplied by the
+/// weights of the side's ends. Its maximum is 3 times the squared radius of the smallest circle around a triangle whose
+/// squared sides are the second differences.
+fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
+    let most = a.max(b).max(c);
+    let least = a.min(b).min(c);
+    let middle = a.min(b).max(a.max(b).min(c));
+    let more = least - (most - middle);
+    if more <= 0.0 {
+        return 0.75 * most;
+    }
+    3.0 * most / (4.0 - (more / least) * (more / middle))
 }
 
 /// Returns a bound on the error of a flat triangle, in px, from its second derivatives alone: as seen from a depth of 1,
@@ -206,7 +254,7 @@ fn piece_difference(piece: &Piece, x: f32, y: f32, z: f32) -> Vec3 {
 
 /// Returns the largest error on a grid of `steps` steps, in px, and the largest difference in depth. It ends early once
 /// an error isn't within the tolerance.
-fn grid_error(patch: &SeenPatch, piece: &Piece, spread: f32, tolerance: f32, steps: u32) -> [f32; 2] {
+fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, steps: u32) -> [f32; 2] {
     let (mut error, mut deep) = (0.0f32, 0.0f32);
     for i in 0..=steps {
         for j in 0..=steps - i {
@@ -215,15 +263,14 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, spread: f32, tolerance: f32, ste
             let depth = p + q + r;
             let place = (piece.places[0] * p + piece.places[1] * q + piece.places[2] * r) / depth;
             let difference = piece_difference(piece, x, y, z);
-            let seen = (difference.truncate() - place * difference.z).length() + spread * difference.z.abs();
+            let seen = (difference.truncate() - place * difference.z).length() + moved * difference.z.abs();
             let own = seen / (depth + difference.z - patch.deep);
             deep = deep.max(difference.z.abs());
-            if own > error {
-                error = own;
+            // Written like this, NaN isn't within the tolerance.
+            if !(own <= tolerance) {
+                return [own, deep];
             }
-            if error > tolerance {
-                return [error, deep];
-            }
+            error = error.max(own);
         }
     }
     [error, deep]
@@ -231,24 +278,26 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, spread: f32, tolerance: f32, ste
 
 /// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1).
 /// If it is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
-pub(crate) fn piece_error(patch: &SeenPatch, at: [Vec2; 3], tolerance: f32) -> f32 {
+pub(super) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
     let piece = piece(patch, at);
     let (mut behind, mut before) = (0.0f32, 0.0f32);
     for difference in piece.differences {
         behind = behind.max(difference.z);
         before = before.min(difference.z);
     }
-    let farthest = piece.depths[0].max(piece.depths[1]).max(piece.depths[2]);
-    let nearest = piece.depths[0].min(piece.depths[1]).min(piece.depths[2]) + before - patch.deep;
-    if nearest > 0.0 && piece_is_unseen(patch, &piece, farthest + behind + patch.deep) {
+    let [p, q, r] = piece.depths;
+    let farthest = p.max(q).max(r) + behind + patch.deep;
+    let nearest = p.min(q).min(r) + before - patch.deep;
+    if farthest < patch.near {
         return 0.0;
     }
-    if nearest < patch.near || nearest <= 0.0 {
-        if farthest + behind + patch.deep < patch.near {
-            return 0.0;
-        }
+    // Written like this, NaN is no depth in front of the eye.
+    if !(nearest > 0.0 && nearest >= patch.near) {
         // What is seen of it is anywhere in the view, and no nearer than the near plane.
         return derivative_bound(&piece, Vec2::ZERO, patch.half_viewport.length()) / patch.near;
+    }
+    if is_beside_view(patch, &piece) {
+        return 0.0;
     }
     let [a, b, c] = piece.places;
     let middle = (a + b + c) / 3.0;
@@ -257,24 +306,23 @@ pub(crate) fn piece_error(patch: &SeenPatch, at: [Vec2; 3], tolerance: f32) -> f
     let moved = ((patch.across + most * patch.deep) / nearest).length();
     let radius = a.distance(middle).max(b.distance(middle)).max(c.distance(middle));
     let bound = derivative_bound(&piece, middle, radius + moved) / nearest;
-    if bound <= tolerance {
-        return bound;
-    }
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let ratio = (farthest + behind) / nearest;
-    let mut steps = 2;
-    loop {
+    let ratio = farthest / nearest;
+    let mut steps = 1;
+    let mut upper = bound;
+    while !(upper <= tolerance) && steps < FINEST_GRID {
+        steps *= 2;
         let [error, deep] = grid_error(patch, &piece, moved, tolerance, steps);
-        if error > tolerance {
+        if !(error <= tolerance) {
             return error;
         }
         // Between points of the grid: depth and place change, and the difference isn't linear.
         let share = 1.0 / steps as f32;
         let between = bound * share * share + longest * ratio * share * deep / nearest;
-        let upper = error * (1.0 + (ratio - 1.0) * share) + between;
-        if upper <= tolerance || steps == FINEST_GRID {
-            return upper;
-        }
-        steps *= 2;
+        upper = error * (1.0 + (ratio - 1.0) * share) + between;
     }
+    upper
 }
+
+#[cfg(test)]
+mod tests;

@@ -61,17 +61,3 @@ fn own_texel_length(texel_lengths: &mut Vec<TexelLength>, factor: usize, map: u3
     texel_lengths[at].map = map;
     &mut texel_lengths[at]
 }
-
-/// Returns whether an edge of any patch also has a length in another map than the patch's own.
-pub(crate) fn has_mixed_maps(
-    texel_lengths: &[TexelLength],
-    heights: &Heights,
-    topology: &Topology,
-    dominance: &Dominance,
-) -> bool {
-    let differs = |length: &TexelLength, own: u32| length.next > 0 || length.map != own;
-    (0..).zip(&dominance.patch_factors).any(|(patch, factors)| {
-        let own = map_number(heights, topology, patch);
-        factors.iter().any(|&factor| differs(&texel_lengths[factor as usize], own))
-    })
-}

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use pnaen::engine::{Loaded, Measurements, Preparation, Runs};
-use pnaen::gpu::{Timing, read_buffer, take_times};
+use pnaen::gpu::{Timing, take_times};
 use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, Measured, Sizes, Visitor};
 use pnaen::mesh::{Corner, CreaseBand, EdgeKind, Material, Mesh, Shape, Topology};
@@ -41,8 +41,7 @@ pub(super) fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
 
 /// The factors that the GPU gave the edges.
 pub(super) fn edge_factors(scene: &Scene) -> Vec<f32> {
-    let buffer = &scene.tessellator.buffers().edge_factors;
-    bytemuck::pod_collect_to_vec(&read_buffer(&engine().gpu, buffer, 0, buffer.size()).expect("a readback"))
+    engine().asked_factors(scene).expect("a readback").into_factors()
 }
 
 /// Same domain points and triangles in the same order, positions within 4 ULP of the largest coordinate: what is left

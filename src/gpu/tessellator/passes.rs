@@ -4,11 +4,11 @@ use super::Tessellator;
 use crate::gpu::GpuError;
 use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
-use crate::gpu::pipelines::grid;
+use crate::gpu::pipelines::{ASKED_WORKGROUP, grid, grid_of};
 use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
-use crate::tessellate::{Displacement, Normals};
+use crate::tessellate::{Displacement, Lod, Tessellation};
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
@@ -59,15 +59,19 @@ impl Tessellator {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub fn prepare(&self, normals: Normals, displacement: Displacement) -> Result<(), GpuError> {
+    pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
         passes.curve_nets(&on)?;
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
+        if tessellation.used_lod() == Lod::Error {
+            passes.asked_factors(&on)?;
+            passes.inside_factors(&on)?;
+        }
         if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
             passes.directions(&on, relief)?;
             passes.frames(&on, relief)?;
-            if displacement != Displacement::Off {
+            if tessellation.displacement != Displacement::Off {
                 passes.factor_levels(&on, images)?;
                 passes.point_levels(&on, relief)?;
                 self.slabs.iter().try_for_each(|slab| slab.displace(&on, images).map(|_| ()))?;
@@ -77,7 +81,7 @@ impl Tessellator {
             slab.counts(&on)?;
             slab.scan(&on)?;
             slab.chunks(&on)?;
-            slab.emit_vertices(&on, normals as usize)?;
+            slab.emit_vertices(&on, tessellation.normals as usize)?;
             slab.emit_triangles(&on)?;
         }
         Ok(())
@@ -117,11 +121,19 @@ impl Tessellator {
         let (on, passes) = (self.inputs_of_passes(), &self.mesh_passes);
         if self.given.is_none() {
             let edge_factors = passes.edge_factors(&on)?;
-            let inside = if self.params.mixed == 1 { Some(passes.heights_inside(&on)?) } else { None };
+            let by_error = self.params.lod == Lod::Error as u32;
+            let by_heights = by_error && self.displacing_images().is_some();
+            let heights_inside = if by_heights { Some(passes.heights_inside(&on)?) } else { None };
+            let asked = if by_error { Some((passes.asked_factors(&on)?, passes.inside_factors(&on)?)) } else { None };
+            let patches = grid_of(self.buffers.patch_count, ASKED_WORKGROUP);
             recorder.compute("factors", |pass| {
                 edge_factors.dispatch(pass, grid(self.buffers.factor_count));
-                if let Some(inside) = inside {
-                    inside.dispatch(pass, grid(self.buffers.patch_count));
+                if let Some(heights_inside) = heights_inside {
+                    heights_inside.dispatch(pass, grid(self.buffers.patch_count));
+                }
+                if let Some((asked_factors, inside_factors)) = asked {
+                    asked_factors.dispatch(pass, patches);
+                    inside_factors.dispatch(pass, patches);
                 }
             });
         }

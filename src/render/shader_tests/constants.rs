@@ -6,7 +6,7 @@ use super::modules;
 use crate::gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use crate::gpu::layout::LOD_GIVEN;
 use crate::gpu::relief_buffers::HEIGHTS_ACROSS;
-use crate::gpu::{GRID_WIDTH, WORKGROUP};
+use crate::gpu::{ASKED_WORKGROUP, GRID_WIDTH, WORKGROUP};
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
 use crate::render::coverage::TILE;
 use crate::render::layout::{
@@ -15,10 +15,10 @@ use crate::render::layout::{
 use crate::render::scale::Scale;
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
-    BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, CANCELLED,
-    DETAIL_SHARE, EDGE_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD, FACTOR_VALUE, FIXED_HALF,
-    FIXED_ONE, FIXED_TWO_THIRDS, NESTING, NOT_CULLED, OUT_OF_VIEW, PARALLEL, PATTERN_HALVES, PATTERN_STEPS,
-    POLAR_INDICES, POLAR_WEIGHTS, ROW_SAMPLES, SUBTRIANGULATED, SURFACE_SHARE, TURN_SHARE, UNIT,
+    BEYOND_LAST, BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,
+    BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD, FACTOR_VALUE,
+    FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, NOT_CULLED, OUT_OF_VIEW, PARALLEL, PATTERN_HALVES,
+    PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_SAMPLES, SUBTRIANGULATED, SURFACE_SHARE, TURN_SHARE, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
@@ -115,11 +115,13 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("NOT_CULLED", number(NOT_CULLED)),
         ("OUT_OF_VIEW", number(OUT_OF_VIEW)),
         ("FACING_AWAY", number(FACING_AWAY)),
-        ("EDGE_SHARE", number(EDGE_SHARE)),
+        ("BEYOND_LAST", number(BEYOND_LAST)),
+        ("BOUND_SHARE", number(BOUND_SHARE)),
+        ("FINEST_GRID", number(FINEST_GRID)),
+        ("ASKED_WORKGROUP", number(ASKED_WORKGROUP)),
         ("SURFACE_SHARE", number(SURFACE_SHARE)),
         ("DETAIL_SHARE", number(DETAIL_SHARE)),
         ("TURN_SHARE", number(TURN_SHARE)),
-        ("NESTING", numbers(NESTING.into_iter().flatten())),
         ("FIXED_ONE", number(FIXED_ONE)),
         ("FIXED_HALF", number(FIXED_HALF)),
         ("FIXED_TWO_THIRDS", number(FIXED_TWO_THIRDS)),

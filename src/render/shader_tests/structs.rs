@@ -65,7 +65,6 @@ fn shared_structs_have_the_same_layout() {
         displacement,
         height_scale,
         midlevel,
-        mixed,
     });
     same!(Share { direction, level, dominant, texels, map, next });
     same!(HeightMap { size, levels, start, repeats });

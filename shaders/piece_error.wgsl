@@ -1,0 +1,333 @@
+// The error of one flat triangle of a patch's pattern (a piece): how far on screen, in px, its points are from the points of
+// the surface at the same places of the domain. Twin: src/tessellate/piece_error.rs, which explains the bounds.
+
+// The steps of the finest grid.
+const FINEST_GRID: u32 = 16u;
+
+// A patch in clip space: x and y in px times depth, and the depth (w). All are divided by the largest depth of its control
+// points, which changes nothing on screen, so that squares don't leave the range of f32.
+struct SeenPatch {
+    // The ten control points: corners, edges, centre.
+    points: array<vec3<f32>, 10>,
+    // A sixth of the second derivatives at each corner: twice along a, along a and b, twice along b. Direction a leads from
+    // corner 2 to corner 0, b from corner 2 to corner 1.
+    second: array<array<vec3<f32>, 3>, 3>,
+    half_viewport: vec2<f32>,
+    // The depth of the near plane; 0 in an orthographic view.
+    near: f32,
+    // How far displacement may move a point: in depth, and across the view in px times depth.
+    deep: f32,
+    across: vec2<f32>,
+}
+
+// Returns the control point with these three indices (0 to 2), in any order: (0, 0, 1) is b210.
+fn control_point(net: ControlNet, i: u32, j: u32, l: u32) -> vec3<f32> {
+    if i == j && j == l {
+        return net.corners[i];
+    }
+    if i != j && j != l && l != i {
+        return net.center;
+    }
+    // The index that occurs twice, and the one that occurs once.
+    let twice = select(j, i, i == j || i == l);
+    let once = i + j + l - 2u * twice;
+    if once == (twice + 1u) % 3u {
+        return net.edges[2u * twice];
+    }
+    return net.edges[2u * once + 1u];
+}
+
+// Returns a difference vector in object units as one in clip space.
+fn clip_difference(view: LodView, difference: vec3<f32>) -> vec3<f32> {
+    let across = vec2<f32>(dot(clip_row(view, 0u), difference), dot(clip_row(view, 1u), difference)) * view.half_viewport;
+    return vec3<f32>(across, dot(clip_row(view, 3u), difference));
+}
+
+// Returns a point in object units in clip space, all of it multiplied by `scale`.
+fn clip_point(view: LodView, scale: f32, p: vec3<f32>) -> vec3<f32> {
+    let clip = view.clip_from_object * vec4<f32>(p, 1.0) * scale;
+    return vec3<f32>(clip.xy * view.half_viewport, clip.w);
+}
+
+// Returns the absolute depth (w) of a point in object units, or `deepest` if that is larger.
+fn deeper(view: LodView, deepest: f32, p: vec3<f32>) -> f32 {
+    let clip = view.clip_from_object * vec4<f32>(p, 1.0);
+    return max(deepest, abs(clip.w));
+}
+
+// Returns the scale by which the largest depth becomes 1.
+fn depth_scale(deepest: f32) -> f32 {
+    return select(1.0, 1.0 / deepest, deepest > 1e-38);
+}
+
+// Returns the depth (w) of the near plane, where z = w; 0 in an orthographic view. Along the view, z is a linear function of
+// w.
+fn near_depth(view: LodView) -> f32 {
+    let z = clip_row(view, 2u);
+    let w = clip_row(view, 3u);
+    let square = dot(w, w);
+    if square <= 0.0 {
+        return 0.0;
+    }
+    let slope = dot(z, w) / square;
+    return (view.clip_from_object[3].z - slope * view.clip_from_object[3].w) / (1.0 - slope);
+}
+
+// Returns a sixth of a patch's second derivatives at corner `i`, multiplied by `scale`: see `SeenPatch`.
+fn second_derivatives(view: LodView, scale: f32, net: ControlNet, i: u32) -> array<vec3<f32>, 3> {
+    let at_c = control_point(net, i, 2u, 2u);
+    let ac = control_point(net, i, 0u, 2u);
+    let bc = control_point(net, i, 1u, 2u);
+    let aa = control_point(net, i, 0u, 0u) - ac * 2.0 + at_c;
+    let ab = control_point(net, i, 0u, 1u) - ac - bc + at_c;
+    let bb = control_point(net, i, 1u, 1u) - bc * 2.0 + at_c;
+    return array<vec3<f32>, 3>(
+        clip_difference(view, aa * scale),
+        clip_difference(view, ab * scale),
+        clip_difference(view, bb * scale),
+    );
+}
+
+// Returns a patch as it is seen.
+fn seen_patch(view: LodView, net: ControlNet) -> SeenPatch {
+    var deepest = deeper(view, 0.0, net.center);
+    for (var i = 0u; i < 3u; i++) {
+        deepest = deeper(view, deepest, net.corners[i]);
+    }
+    for (var i = 0u; i < 6u; i++) {
+        deepest = deeper(view, deepest, net.edges[i]);
+    }
+    let scale = depth_scale(deepest);
+    var points: array<vec3<f32>, 10>;
+    for (var i = 0u; i < 3u; i++) {
+        points[i] = clip_point(view, scale, net.corners[i]);
+    }
+    for (var i = 0u; i < 6u; i++) {
+        points[3u + i] = clip_point(view, scale, net.edges[i]);
+    }
+    points[9] = clip_point(view, scale, net.center);
+    let second = array<array<vec3<f32>, 3>, 3>(
+        second_derivatives(view, scale, net, 0u),
+        second_derivatives(view, scale, net, 1u),
+        second_derivatives(view, scale, net, 2u),
+    );
+    let across = vec2<f32>(length(clip_row(view, 0u)), length(clip_row(view, 1u))) * view.half_viewport;
+    let deep = length(clip_row(view, 3u)) * view.reach * scale;
+    return SeenPatch(points, second, view.half_viewport, near_depth(view) * scale, deep, across * (view.reach * scale));
+}
+
+// Returns the point of the surface at a place of the domain.
+fn seen_point(seen: ptr<function, SeenPatch>, place: vec2<f32>) -> vec3<f32> {
+    let x = place.x;
+    let y = place.y;
+    let z = 1.0 - x - y;
+    return (*seen).points[0] * (x * x * x)
+        + (*seen).points[1] * (y * y * y)
+        + (*seen).points[2] * (z * z * z)
+        + (*seen).points[3] * (3.0 * x * x * y)
+        + (*seen).points[4] * (3.0 * x * y * y)
+        + (*seen).points[5] * (3.0 * y * y * z)
+        + (*seen).points[6] * (3.0 * y * z * z)
+        + (*seen).points[7] * (3.0 * z * z * x)
+        + (*seen).points[8] * (3.0 * z * x * x)
+        + (*seen).points[9] * (6.0 * x * y * z);
+}
+
+// Returns a sixth of the second derivatives at a place of the domain along three directions.
+fn along_sides(seen: ptr<function, SeenPatch>, place: vec2<f32>, sides: array<vec2<f32>, 3>) -> array<vec3<f32>, 3> {
+    let x = place.x;
+    let y = place.y;
+    let z = 1.0 - x - y;
+    let aa = (*seen).second[0][0] * x + (*seen).second[1][0] * y + (*seen).second[2][0] * z;
+    let ab = (*seen).second[0][1] * x + (*seen).second[1][1] * y + (*seen).second[2][1] * z;
+    let bb = (*seen).second[0][2] * x + (*seen).second[1][2] * y + (*seen).second[2][2] * z;
+    let p = sides[0];
+    let q = sides[1];
+    let r = sides[2];
+    return array<vec3<f32>, 3>(
+        aa * (p.x * p.x) + ab * (2.0 * p.x * p.y) + bb * (p.y * p.y),
+        aa * (q.x * q.x) + ab * (2.0 * q.x * q.y) + bb * (q.y * q.y),
+        aa * (r.x * r.x) + ab * (2.0 * r.x * r.y) + bb * (r.y * r.y),
+    );
+}
+
+// A flat triangle, and its difference from the surface behind it.
+struct Piece {
+    // The places of its corners on screen in px from the middle of the view, and their depths.
+    places: array<vec2<f32>, 3>,
+    depths: vec3<f32>,
+    // The control points of the difference, surface minus triangle: for each side k the one near corner k and the one near
+    // corner k + 1, and the one in the centre.
+    differences: array<vec3<f32>, 7>,
+    // A sixth of the second derivatives at each corner, along each side.
+    second: array<array<vec3<f32>, 3>, 3>,
+}
+
+// Returns the flat triangle with its corners at three places of the domain.
+fn piece_of(seen: ptr<function, SeenPatch>, p: vec2<f32>, q: vec2<f32>, r: vec2<f32>) -> Piece {
+    let sides = array<vec2<f32>, 3>(q - p, r - q, p - r);
+    let at_p = along_sides(seen, p, sides);
+    let at_q = along_sides(seen, q, sides);
+    let at_r = along_sides(seen, r, sides);
+    let sum = at_p[0] + at_p[1] + at_p[2] + at_q[0] + at_q[1] + at_q[2] + at_r[0] + at_r[1] + at_r[2];
+    let differences = array<vec3<f32>, 7>(
+        (at_p[0] * 2.0 + at_q[0]) * (-1.0 / 3.0),
+        (at_p[0] + at_q[0] * 2.0) * (-1.0 / 3.0),
+        (at_q[1] * 2.0 + at_r[1]) * (-1.0 / 3.0),
+        (at_q[1] + at_r[1] * 2.0) * (-1.0 / 3.0),
+        (at_r[2] * 2.0 + at_p[2]) * (-1.0 / 3.0),
+        (at_r[2] + at_p[2] * 2.0) * (-1.0 / 3.0),
+        sum * (-1.0 / 6.0),
+    );
+    let a = seen_point(seen, p);
+    let b = seen_point(seen, q);
+    let c = seen_point(seen, r);
+    let places = array<vec2<f32>, 3>(a.xy / a.z, b.xy / b.z, c.xy / c.z);
+    let second = array<array<vec3<f32>, 3>, 3>(at_p, at_q, at_r);
+    return Piece(places, vec3<f32>(a.z, b.z, c.z), differences, second);
+}
+
+// Returns whether nothing of a piece is in view, neither flat nor as the surface is, since all of it lies beyond one of the
+// view's sides. All of it must be in front of the eye.
+fn is_beside_view(seen: ptr<function, SeenPatch>, piece: ptr<function, Piece>) -> bool {
+    // For each side: how far outside the corners lie at least, and how far the surface and displacement come back.
+    let half = (*seen).half_viewport;
+    let moved = (*seen).across + half * (*seen).deep;
+    var right = vec2<f32>(3.4e38);
+    var left = vec2<f32>(3.4e38);
+    for (var i = 0u; i < 3u; i++) {
+        right = min(right, ((*piece).places[i] - half) * (*piece).depths[i]);
+        left = min(left, (-(*piece).places[i] - half) * (*piece).depths[i]);
+    }
+    var back_right = vec2<f32>(0.0);
+    var back_left = vec2<f32>(0.0);
+    for (var i = 0u; i < 7u; i++) {
+        let across = (*piece).differences[i].xy;
+        let deep = half * (*piece).differences[i].z;
+        back_right = min(back_right, across - deep);
+        back_left = min(back_left, -across - deep);
+    }
+    let outside = max(right + back_right - moved, left + back_left - moved);
+    return max(outside.x, outside.y) > 0.0;
+}
+
+// Returns a bound on the error, in px, of a triangle with these second differences along its sides.
+fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
+    let most = max(max(a, b), c);
+    let least = min(min(a, b), c);
+    let middle = max(min(a, b), min(max(a, b), c));
+    let more = least - (most - middle);
+    if more <= 0.0 {
+        return 0.75 * most;
+    }
+    return 3.0 * most / (4.0 - (more / least) * (more / middle));
+}
+
+// Returns a bound on the error of a flat triangle, in px, from its second derivatives alone: as seen from a depth of 1, by
+// an eye that sees it within `spread` px of `middle`.
+fn derivative_bound(piece: ptr<function, Piece>, middle: vec2<f32>, spread: f32) -> f32 {
+    var most = vec3<f32>(0.0);
+    for (var i = 0u; i < 3u; i++) {
+        for (var k = 0u; k < 3u; k++) {
+            let second = (*piece).second[i][k];
+            most[k] = max(most[k], length(second.xy - middle * second.z) + spread * abs(second.z));
+        }
+    }
+    return triangle_error(most.x, most.y, most.z);
+}
+
+// Returns the difference at the weights `x`, `y` and `z` of a piece's corners.
+fn piece_difference(piece: ptr<function, Piece>, x: f32, y: f32, z: f32) -> vec3<f32> {
+    return ((*piece).differences[0] * x + (*piece).differences[1] * y) * (3.0 * x * y)
+        + ((*piece).differences[2] * y + (*piece).differences[3] * z) * (3.0 * y * z)
+        + ((*piece).differences[4] * z + (*piece).differences[5] * x) * (3.0 * z * x)
+        + (*piece).differences[6] * (6.0 * x * y * z);
+}
+
+// Returns the largest error on a grid of `steps` steps, in px, and the largest difference in depth. It ends early with the
+// first error that isn't within the tolerance.
+fn grid_error(
+    seen: ptr<function, SeenPatch>,
+    piece: ptr<function, Piece>,
+    moved: f32,
+    tolerance: f32,
+    steps: u32,
+) -> vec2<f32> {
+    var worst = vec2<f32>(0.0);
+    for (var i = 0u; i <= steps; i++) {
+        for (var j = 0u; j <= steps - i; j++) {
+            let x = f32(i) / f32(steps);
+            let y = f32(j) / f32(steps);
+            let z = f32(steps - i - j) / f32(steps);
+            let weights = vec3<f32>(x, y, z) * (*piece).depths;
+            let depth = weights.x + weights.y + weights.z;
+            let sum = (*piece).places[0] * weights.x + (*piece).places[1] * weights.y + (*piece).places[2] * weights.z;
+            let difference = piece_difference(piece, x, y, z);
+            let distance = length(difference.xy - sum / depth * difference.z) + moved * abs(difference.z);
+            let own = distance / (depth + difference.z - (*seen).deep);
+            worst.y = max(worst.y, abs(difference.z));
+            // Written like this, NaN isn't within the tolerance.
+            if !(own <= tolerance) {
+                return vec2<f32>(own, worst.y);
+            }
+            worst.x = max(worst.x, own);
+        }
+    }
+    return worst;
+}
+
+// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1). If it
+// is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
+fn piece_error(
+    seen: ptr<function, SeenPatch>,
+    tolerance: f32,
+    p: vec2<f32>,
+    q: vec2<f32>,
+    r: vec2<f32>,
+) -> f32 {
+    var piece = piece_of(seen, p, q, r);
+    var behind = 0.0;
+    var before = 0.0;
+    for (var i = 0u; i < 7u; i++) {
+        behind = max(behind, piece.differences[i].z);
+        before = min(before, piece.differences[i].z);
+    }
+    let farthest = max(max(piece.depths.x, piece.depths.y), piece.depths.z) + behind + (*seen).deep;
+    let nearest = min(min(piece.depths.x, piece.depths.y), piece.depths.z) + before - (*seen).deep;
+    if farthest < (*seen).near {
+        return 0.0;
+    }
+    // Written like this, NaN is no depth in front of the eye.
+    if !(nearest > 0.0 && nearest >= (*seen).near) {
+        // What is seen of it is anywhere in the view, and no nearer than the near plane.
+        return derivative_bound(&piece, vec2<f32>(0.0), length((*seen).half_viewport)) / (*seen).near;
+    }
+    if is_beside_view(seen, &piece) {
+        return 0.0;
+    }
+    let a = piece.places[0];
+    let b = piece.places[1];
+    let c = piece.places[2];
+    let middle = (a + b + c) / 3.0;
+    // How far displacement moves it on screen.
+    let most = max(max(abs(a), abs(b)), abs(c));
+    let moved = length(((*seen).across + most * (*seen).deep) / nearest);
+    let radius = max(max(distance(a, middle), distance(b, middle)), distance(c, middle));
+    let bound = derivative_bound(&piece, middle, radius + moved) / nearest;
+    let longest = max(max(distance(a, b), distance(b, c)), distance(c, a));
+    let ratio = farthest / nearest;
+    var steps = 1u;
+    var upper = bound;
+    while !(upper <= tolerance) && steps < FINEST_GRID {
+        steps *= 2u;
+        let worst = grid_error(seen, &piece, moved, tolerance, steps);
+        if !(worst.x <= tolerance) {
+            return worst.x;
+        }
+        // Between points of the grid: depth and place change, and the difference isn't linear.
+        let share = 1.0 / f32(steps);
+        let between = bound * share * share + longest * ratio * share * worst.y / nearest;
+        upper = worst.x * (1.0 + (ratio - 1.0) * share) + between;
+    }
+    return upper;
+}
