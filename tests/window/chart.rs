@@ -135,7 +135,7 @@ fn rows_stay_after_cancelling_and_are_out_of_date_after_the_camera_turned() {
     // Clipping isn't part of the measurement, so the chart isn't out of date.
     choose(&mut harness, "Clipping", "Off");
     assert!(harness.query_by_label_contains("out of date").is_none());
-    measure(&mut harness, "Measure on");
+    measure(&mut harness, "Measure rest");
     assert_eq!(harness.state().chart_rows().len(), 10);
     assert!(
         kept.iter().all(|row| harness.state().chart_rows().contains(row)),
