@@ -80,8 +80,9 @@ pub struct Context {
 
 /// The memory for a mesh's output. A vertex takes 32 bytes, a triangle 12.
 ///
-/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles: 3,169 and 6,144 at factor 64. Smaller numbers than
-/// these two are raised to them. WebGPU's default limits allow 4,194,304 vertices and 11,184,810 triangles.
+/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles. Smaller numbers are raised to those of one
+/// patch at factor 64: 3,169 vertices and 6,144 triangles. WebGPU's default limits allow 4,194,304 vertices and
+/// 11,184,810 triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
     /// The most vertices that are emitted.
@@ -100,11 +101,11 @@ pub struct TessellatedMesh {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct OutputStatus {
-    /// 0: the output begins with the first patch.
+    /// Always 0, since the output begins with the first patch.
     pub first_patch: u32,
     /// The number of patches that were tessellated, of [`TessellatedMesh::patches`].
     pub patches: u32,
-    /// Both 0.
+    /// Both are always 0.
     pub first: [u32; 2],
     /// The number of vertices that were emitted.
     pub vertices: u32,
@@ -174,7 +175,7 @@ impl TessellatedMesh {
         self.tessellator.topology()
     }
 
-    /// The number of patches: the mesh's triangles, but those with two corners at one position.
+    /// The number of patches: the mesh's triangles, except those with two corners at one position.
     pub fn patches(&self) -> u32 {
         self.topology().patches.len() as u32
     }
@@ -216,8 +217,8 @@ impl TessellatedMesh {
     /// Records the compute passes whose results have changed since they were last recorded; none if nothing has. The host
     /// submits the encoder, and may draw in it after this. Before the first [`set`](Self::set) there is nothing to record.
     ///
-    /// The encoder must be submitted: later calls count on what it computes (see [`invalidate`](Self::invalidate)). The first call that needs a pipeline compiles it,
-    /// which may take some tenths of a second in all.
+    /// The encoder must be submitted: later calls rely on what it computes (see [`invalidate`](Self::invalidate)). The
+    /// first call that needs a pipeline compiles it, which may take some tenths of a second in all.
     ///
     /// # Errors
     /// A pipeline can't be made, since the device is out of memory or lost.
@@ -249,15 +250,15 @@ impl TessellatedMesh {
         (arguments, u64::from(material) * size_of::<DrawArgs>() as u64)
     }
 
-    /// The buffer that holds an [`OutputStatus`], and which of its bytes. The host may copy them and read them later, to learn
-    /// whether the output fits its [`Room`].
+    /// The buffer that holds an [`OutputStatus`], and the range of its bytes there. The host may copy
+    /// these bytes and read them later, to learn whether the output fits its [`Room`].
     pub fn status_buffer(&self) -> (&wgpu::Buffer, Range<u64>) {
         let (_, status) = self.tessellator.first_chunk();
         (status, 0..size_of::<OutputStatus>() as u64)
     }
 
-    /// Whether the last patches were left out, since the output doesn't fit its [`Room`]. The others are whole. The status is
-    /// that of passes that have run; before, it is all zeros, which says that everything was left out.
+    /// Whether the last patches were left out, since the output doesn't fit its [`Room`]. The others are whole.
+    /// `status` must be of passes that have run: before, it is all zeros, which means that all patches were left out.
     pub fn has_overflowed(&self, status: &OutputStatus) -> bool {
         status.patches < self.patches()
     }
