@@ -180,10 +180,10 @@ impl TessellatedMesh {
         self.topology().patches.len() as u32
     }
 
-    /// Takes a tessellation, and the view that adaptive LOD and clipping are computed for. What is the same as before is not
-    /// computed again.
+    /// Takes a tessellation, and the view that adaptive LOD, clipping and back-face culling are computed for. What is the
+    /// same as before is not computed again.
     ///
-    /// Call this at most once between two submissions. The parameters are written through the queue, so that passes which were
+    /// Call this at most once between two submissions. The parameters are written through the queue, so passes that were
     /// recorded before, but not submitted, would run with the later ones.
     ///
     /// # Errors
