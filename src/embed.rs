@@ -180,11 +180,11 @@ impl TessellatedMesh {
         self.topology().patches.len() as u32
     }
 
-    /// Takes a tessellation, and the view that adaptive LOD, clipping and back-face culling are computed for. What is the
-    /// same as before is not computed again.
+    /// Takes a tessellation, and the view that adaptive LOD, clipping and back-face culling are computed for. What is
+    /// the same as before is not computed again.
     ///
-    /// Call this at most once between two submissions. The parameters are written through the queue, so passes that were
-    /// recorded before, but not submitted, would run with the later ones.
+    /// Call this at most once between two submissions. The parameters are written through the queue, so passes that
+    /// were recorded before, but not submitted, would run with the later ones.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] if the mesh's control points under another surface are larger than the device binds.

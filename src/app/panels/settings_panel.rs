@@ -122,8 +122,8 @@ impl App {
                     for joins in all {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));
                         ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
-                            "The tolerance is relative to the bounding diagonal; here it is {} object units. The counts \
-                             are compared with the exact weld.",
+                            "The tolerance is relative to the bounding diagonal; here it is {} object units. The \
+                             counts are compared with the exact weld.",
                             short(f64::from(joins.tolerance * document.diagonal))
                         ));
                     }
