@@ -86,9 +86,9 @@ impl MeshSlices<'_> {
 }
 
 impl Mesh {
-    /// Makes a mesh of one material, without height images and without a rig, from arrays. Equal vertices become one
-    /// corner (-0 counts as 0), vertices that no triangle uses are left out, and [`Mesh::repairs`] counts what was
-    /// repaired. Takes time linear in the number of triangles.
+    /// Makes a mesh of one material, without height images and without a rig, from arrays. It has the material even
+    /// without triangles. Equal vertices become one corner (-0 counts as 0), vertices that no triangle uses are left
+    /// out, and [`Mesh::repairs`] counts what was repaired. Takes time linear in the number of triangles.
     ///
     /// ```
     /// use pnaen::mesh::{Mesh, MeshSlices};
@@ -113,7 +113,12 @@ impl Mesh {
             builder.triangle(material, [0, 1, 2].map(|k| slices.corner(triangle[k])));
         }
         // Nothing else holds this progress, so nothing cancels it; too many triangles were refused above.
-        Ok(builder.finish(String::new(), &Progress::new()).unwrap_or_default())
+        let mut mesh = builder.finish(String::new(), &Progress::new()).unwrap_or_default();
+        if mesh.materials.is_empty() {
+            // The builder leaves out materials without triangles, but hosts draw material 0 of whatever arrays they have.
+            mesh.materials.push(Material::plain("", [1.0; 4]));
+        }
+        Ok(mesh)
     }
 }
 
@@ -148,6 +153,7 @@ mod tests {
     fn no_triangles_make_an_empty_mesh() {
         let mesh = Mesh::from_slices(&MeshSlices { indices: &[], ..SQUARE }).expect("nothing");
         assert!(mesh.triangles.is_empty() && mesh.corners.is_empty());
+        assert_eq!((mesh.materials.len(), mesh.materials[0].triangles.clone()), (1, 0..0));
     }
 
     #[test]

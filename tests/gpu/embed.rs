@@ -119,6 +119,20 @@ fn what_clipping_leaves_out_is_no_overflow() {
     assert_eq!((status.triangles, mesh.has_overflowed(&status)), (0, false));
 }
 
+#[test]
+fn a_mesh_without_triangles_draws_nothing() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let nothing = Mesh::from_slices(&MeshSlices::default()).expect("no triangles");
+    let mut mesh = TessellatedMesh::new(&context, nothing, ROOM).expect("a small mesh");
+    mesh.set(&uniform(4.0), LodView::default()).expect("a small mesh");
+    let (status, _) = emitted(&queue, &device, &mut mesh);
+    assert_eq!((status.vertices, status.triangles, mesh.has_overflowed(&status)), (0, 0, false));
+    let (arguments, offset) = mesh.draw_arguments(0);
+    let count = read_buffer(&pnaen::gpu::Gpu::borrowed(&device, &queue), arguments, offset, 4).expect("a readback");
+    assert_eq!(count, [0_u8; 4], "the number of indices");
+}
+
 /// The names of passes, which don't run.
 #[derive(Default)]
 struct Names(Vec<&'static str>);
