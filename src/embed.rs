@@ -42,7 +42,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::layout::{Chunk, DrawArgs};
 use crate::gpu::{ComputePipelines, Gpu, Tessellator};
-use crate::mesh::{Mesh, Pose, Topology};
+use crate::mesh::{Mesh, Pose, Rig, Topology};
 use crate::tessellate::{Inputs, LodView, Tessellation};
 
 pub use crate::gpu::GpuError;
@@ -151,6 +151,17 @@ fn check_limits(has: &wgpu::Limits) -> Result<(), GpuError> {
     }
 }
 
+/// Refuses a pose of another rig, beyond whose matrices and weights the passes would read.
+fn check_pose(rig: &Rig, pose: &Pose) -> Result<(), GpuError> {
+    let [joints, weights] = pose.lengths();
+    let [rig_joints, rig_weights] = rig.pose_lengths();
+    let counts = [("joint matrices", joints, rig_joints), ("morph weights", weights, rig_weights)];
+    match counts.into_iter().find(|(_, has, needs)| has != needs) {
+        Some((what, has, needs)) => Err(GpuError::OtherRig { what, has, needs }),
+        None => Ok(()),
+    }
+}
+
 impl TessellatedMesh {
     /// Uploads a mesh, and allocates memory for its output.
     ///
@@ -198,8 +209,12 @@ impl TessellatedMesh {
     /// [`set`](Self::set), call this at most once between two submissions.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] if the mesh's rig is larger than the device binds.
+    /// [`GpuError::OtherRig`] if the pose has other numbers of joints or morph targets than the mesh's rig, and
+    /// [`GpuError::TooLarge`] if the rig is larger than the device binds.
     pub fn set_pose(&mut self, pose: Option<Pose>) -> Result<(), GpuError> {
+        if let Some((rig, pose)) = self.mesh().rig.as_ref().zip(pose.as_ref()) {
+            check_pose(rig, pose)?;
+        }
         self.tessellator.set_pose(pose.map(Arc::new))?;
         self.inputs.map_or(Ok(()), |inputs| self.tessellator.set(&inputs))
     }

@@ -7,7 +7,7 @@ use glam::{Mat4, Vec2, Vec3};
 use pnaen::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
 use pnaen::engine::Engine;
 use pnaen::gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
-use pnaen::mesh::{Corner, Mesh, MeshSlices, Moment, Shape, Topology};
+use pnaen::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
 use pnaen::tessellate::{Clip, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
 
 use crate::gpu_tests::engine;
@@ -166,11 +166,16 @@ fn only_what_changed_is_recorded() {
     assert_eq!(recorded(Some(flat)), [&["nets"], &after_nets[..]].concat());
 }
 
-#[test]
-fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
+/// A mesh with a skin, and without morph targets.
+fn tube() -> Mesh {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tube.gltf");
     let tube = pnaen::load::load(&path, &pnaen::load::Limits::default(), &pnaen::progress::Progress::new());
-    let tube = tube.expect("a small file").mesh;
+    tube.expect("a small file").mesh
+}
+
+#[test]
+fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
+    let tube = tube();
     assert_eq!(tube.triangles.len(), 160);
     let rig = tube.rig.clone().expect("a skin");
     let (device, queue) = host();
@@ -188,6 +193,28 @@ fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
     assert!((top(&rest) - 3.0).abs() < 1e-6);
     // The upper half, 1.5 long and 0.35 thick, leans by 1.2 radians.
     assert!((top(&bent) - (1.5 + 1.5 * 1.2_f32.cos() + 0.35 * 1.2_f32.sin())).abs() < 0.1, "{}", top(&bent));
+}
+
+#[test]
+fn a_pose_of_another_rig_is_refused_with_both_numbers() {
+    let tube = tube();
+    let rig = tube.rig.clone().expect("a skin");
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, tube, ROOM).expect("a small mesh");
+    mesh.set(&uniform(3.0), LodView::default()).expect("a small mesh");
+    let rest = emitted(&queue, &device, &mut mesh).1;
+
+    let refused = mesh.set_pose(Some(Pose::default())).expect_err("it has no joints");
+    let GpuError::OtherRig { what: "joint matrices", has: 0, needs } = refused else { panic!("{refused}") };
+    assert!(needs > 1, "{refused}");
+    let targets = Pose { weights: vec![0.5; 7], ..rig.rest() };
+    let refused = mesh.set_pose(Some(targets)).expect_err("it has morph targets");
+    assert!(matches!(refused, GpuError::OtherRig { what: "morph weights", has: 7, needs: 1 }), "{refused}");
+
+    mesh.invalidate().expect("a small mesh");
+    assert_eq!(emitted(&queue, &device, &mut mesh).1.vertices, rest.vertices, "nothing has moved");
+    mesh.set_pose(Some(rig.rest())).expect("the mesh's own rig");
 }
 
 #[test]
