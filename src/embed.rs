@@ -198,11 +198,13 @@ impl TessellatedMesh {
     /// were recorded before, but not submitted, would run with the later ones.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] if the mesh's control points under another surface are larger than the device binds.
+    /// [`GpuError::TooLarge`] if the mesh's control points under another surface are larger than the device binds. What
+    /// was set before then stays.
     pub fn set(&mut self, tessellation: &Tessellation, view: LodView) -> Result<(), GpuError> {
         let inputs = Inputs::new(tessellation, view);
+        self.tessellator.set(&inputs)?;
         self.inputs = Some(inputs);
-        self.tessellator.set(&inputs)
+        Ok(())
     }
 
     /// Takes a pose of the mesh's rig, or the mesh at rest with `None`. A mesh without a rig stays at rest. As for
