@@ -93,13 +93,16 @@ pub mod internals;
 
 // Tests of the whole program, which name the crate as other crates do.
 #[cfg(test)]
+#[cfg(feature = "app")]
 extern crate self as pnaen;
 #[cfg(test)]
+#[cfg(feature = "app")]
 #[path = "../tests/gpu/mod.rs"]
 mod gpu_tests;
 #[cfg(test)]
 mod rooms;
 #[cfg(test)]
+#[cfg(feature = "app")]
 #[path = "../tests/window/mod.rs"]
 mod window_tests;
 
