@@ -204,5 +204,5 @@ fn methods_can_be_chosen_and_without_a_reference_surface_errors_are_in_px() {
     surfaces.dedup();
     assert!(rows.len() == 4 && !surfaces.contains(&Surface::Flat) && surfaces.contains(&Surface::Pn), "{surfaces:?}");
     assert!(rows.iter().all(|row| row.errors.is_none() && row.max_error_px.is_some()));
-    assert!(harness.query_all_by_label_contains("limit").count() > 0);
+    assert!(harness.query_all_by_label_contains("each surface's own limit").count() > 0);
 }
