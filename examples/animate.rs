@@ -1,7 +1,8 @@
 //! Animates a skinned mesh, and changes how it is tessellated at the same time.
 //!
-//! `cargo run --no-default-features --features formats --example animate [PICTURE.png]` draws six moments side by side: a tube bends, and its tessellation factor grows
-//! from 1 to 6. Between the moments nothing is uploaded but the pose and the settings.
+//! `cargo run --no-default-features --features formats --example animate [PICTURE.png]` draws six moments side by side:
+//! a tube bends, and its tessellation factor grows from 1 to 6. Between the moments only the pose and the settings are
+//! uploaded.
 
 mod canvas;
 
@@ -19,14 +20,14 @@ use pnaen::tessellate::{Partitioning, Tessellation};
 
 /// Width and height of each picture, in px.
 const SIZE: [u32; 2] = [192, 224];
-/// Moments that are drawn.
+/// The number of moments that are drawn.
 pub const MOMENTS: u32 = 6;
 
-/// The pictures of the moments, and the number of triangles of each.
+/// Draws the moments. Returns the picture of each, and its number of triangles.
 pub fn frames() -> Result<Vec<(RgbaImage, u32)>, Box<dyn Error>> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tube.gltf");
     let tube = load(&file, &Limits::default(), &Progress::new())?.mesh;
-    let rig = tube.rig.clone().ok_or("the tube has a rig")?;
+    let rig = tube.rig.clone().ok_or("the tube has no rig")?;
 
     let canvas = Canvas::new(SIZE)?;
     let context = Context::new(&canvas.device, &canvas.queue)?;

@@ -1,4 +1,4 @@
-//! Tessellates a mesh on the device of this program, and draws it with a render pass of this program's.
+//! Tessellates a mesh on this program's own device, and draws it in this program's own render pass.
 //!
 //! `cargo run --no-default-features --example embed [PICTURE.png]`
 
@@ -30,7 +30,8 @@ fn torus() -> Result<Mesh, SliceError> {
     Mesh::from_slices(&MeshSlices { positions: &positions, normals: &normals, uvs: &[], indices: &indices })
 }
 
-/// Draws the torus with an LOD under which no triangle is further than `tolerance` px from the curved surface.
+/// Draws the torus with an LOD under which no triangle is farther than `tolerance` px from the curved surface. Returns
+/// the picture, the status of the output, and whether the output was too large for `room`.
 pub fn picture(tolerance: f32, room: Room) -> Result<(RgbaImage, OutputStatus, bool), Box<dyn Error>> {
     let canvas = Canvas::new([320, 240])?;
     let context = Context::new(&canvas.device, &canvas.queue)?;

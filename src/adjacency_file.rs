@@ -54,8 +54,8 @@ pub(crate) enum IndicesFault {
     #[error("patch {patch} has {count} indices instead of {per_patch}")]
     Length { patch: usize, count: usize, per_patch: usize },
     #[error(
-        "patch {patch} has index {index}, but the mesh's corners are 0 to {last}; indices count its distinct corners, \
-         which the JSON lists"
+        "patch {patch} has index {index}, but the mesh's corners are 0 to {last}; indices refer to its distinct \
+         corners, which the JSON lists"
     )]
     Range { patch: usize, index: u32, last: usize },
 }

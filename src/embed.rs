@@ -42,7 +42,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::gpu::layout::{Chunk, DrawArgs};
 use crate::gpu::{ComputePipelines, Gpu, Tessellator};
-use crate::mesh::{Mesh, Pose, Topology};
+use crate::mesh::{Mesh, Pose, Rig, Topology};
 use crate::tessellate::{Inputs, LodView, Tessellation};
 
 pub use crate::gpu::GpuError;
@@ -80,8 +80,9 @@ pub struct Context {
 
 /// The memory for a mesh's output. A vertex takes 32 bytes, a triangle 12.
 ///
-/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles: 3,169 and 6,144 at factor 64. Smaller numbers than
-/// these two are raised to them. WebGPU's default limits allow 4,194,304 vertices and 11,184,810 triangles.
+/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles. Smaller numbers are raised to those of one
+/// patch at factor 64: 3,169 vertices and 6,144 triangles. WebGPU's default limits allow 4,194,304 vertices and
+/// 11,184,810 triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
     /// The most vertices that are emitted.
@@ -100,11 +101,11 @@ pub struct TessellatedMesh {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct OutputStatus {
-    /// 0: the output begins with the first patch.
+    /// Always 0, since the output begins with the first patch.
     pub first_patch: u32,
     /// The number of patches that were tessellated, of [`TessellatedMesh::patches`].
     pub patches: u32,
-    /// Both 0.
+    /// Both are always 0.
     pub first: [u32; 2],
     /// The number of vertices that were emitted.
     pub vertices: u32,
@@ -150,6 +151,17 @@ fn check_limits(has: &wgpu::Limits) -> Result<(), GpuError> {
     }
 }
 
+/// Refuses a pose of another rig, beyond whose matrices and weights the passes would read.
+fn check_pose(rig: &Rig, pose: &Pose) -> Result<(), GpuError> {
+    let [joints, weights] = pose.lengths();
+    let [rig_joints, rig_weights] = rig.pose_lengths();
+    let counts = [("joint matrices", joints, rig_joints), ("morph weights", weights, rig_weights)];
+    match counts.into_iter().find(|(_, has, needs)| has != needs) {
+        Some((what, has, needs)) => Err(GpuError::OtherRig { what, has, needs }),
+        None => Ok(()),
+    }
+}
+
 impl TessellatedMesh {
     /// Uploads a mesh, and allocates memory for its output.
     ///
@@ -174,31 +186,37 @@ impl TessellatedMesh {
         self.tessellator.topology()
     }
 
-    /// The number of patches: the mesh's triangles, but those with two corners at one position.
+    /// The number of patches: the mesh's triangles, except those with two corners at one position.
     pub fn patches(&self) -> u32 {
         self.topology().patches.len() as u32
     }
 
-    /// Takes a tessellation, and the view that adaptive LOD and clipping are computed for. What is the same as before is not
-    /// computed again.
+    /// Takes a tessellation, and the view that adaptive LOD, clipping and back-face culling are computed for. What is
+    /// the same as before is not computed again.
     ///
-    /// Call this at most once between two submissions. The parameters are written through the queue, so that passes which were
-    /// recorded before, but not submitted, would run with the later ones.
+    /// Call this at most once between two submissions. The parameters are written through the queue, so passes that
+    /// were recorded before, but not submitted, would run with the later ones.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] if the mesh's control points under another surface are larger than the device binds.
+    /// [`GpuError::TooLarge`] if the mesh's control points under another surface are larger than the device binds. What
+    /// was set before then stays.
     pub fn set(&mut self, tessellation: &Tessellation, view: LodView) -> Result<(), GpuError> {
         let inputs = Inputs::new(tessellation, view);
+        self.tessellator.set(&inputs)?;
         self.inputs = Some(inputs);
-        self.tessellator.set(&inputs)
+        Ok(())
     }
 
     /// Takes a pose of the mesh's rig, or the mesh at rest with `None`. A mesh without a rig stays at rest. As for
     /// [`set`](Self::set), call this at most once between two submissions.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] if the mesh's rig is larger than the device binds.
+    /// [`GpuError::OtherRig`] if the pose has other numbers of joints or morph targets than the mesh's rig, and
+    /// [`GpuError::TooLarge`] if the rig is larger than the device binds.
     pub fn set_pose(&mut self, pose: Option<Pose>) -> Result<(), GpuError> {
+        if let Some((rig, pose)) = self.mesh().rig.as_ref().zip(pose.as_ref()) {
+            check_pose(rig, pose)?;
+        }
         self.tessellator.set_pose(pose.map(Arc::new))?;
         self.inputs.map_or(Ok(()), |inputs| self.tessellator.set(&inputs))
     }
@@ -216,8 +234,8 @@ impl TessellatedMesh {
     /// Records the compute passes whose results have changed since they were last recorded; none if nothing has. The host
     /// submits the encoder, and may draw in it after this. Before the first [`set`](Self::set) there is nothing to record.
     ///
-    /// The encoder must be submitted: later calls count on what it computes (see [`invalidate`](Self::invalidate)). The first call that needs a pipeline compiles it,
-    /// which may take some tenths of a second in all.
+    /// The encoder must be submitted: later calls rely on what it computes (see [`invalidate`](Self::invalidate)). The
+    /// first call that needs a pipeline compiles it, which may take some tenths of a second in all.
     ///
     /// # Errors
     /// A pipeline can't be made, since the device is out of memory or lost.
@@ -249,15 +267,15 @@ impl TessellatedMesh {
         (arguments, u64::from(material) * size_of::<DrawArgs>() as u64)
     }
 
-    /// The buffer that holds an [`OutputStatus`], and which of its bytes. The host may copy them and read them later, to learn
-    /// whether the output fits its [`Room`].
+    /// The buffer that holds an [`OutputStatus`], and the range of its bytes there. The host may copy
+    /// these bytes and read them later, to learn whether the output fits its [`Room`].
     pub fn status_buffer(&self) -> (&wgpu::Buffer, Range<u64>) {
         let (_, status) = self.tessellator.first_chunk();
         (status, 0..size_of::<OutputStatus>() as u64)
     }
 
-    /// Whether the last patches were left out, since the output doesn't fit its [`Room`]. The others are whole. The status is
-    /// that of passes that have run; before, it is all zeros, which says that everything was left out.
+    /// Whether the last patches were left out, since the output doesn't fit its [`Room`]. The others are whole.
+    /// `status` must be of passes that have run: before, it is all zeros, which means that all patches were left out.
     pub fn has_overflowed(&self, status: &OutputStatus) -> bool {
         status.patches < self.patches()
     }

@@ -1,5 +1,5 @@
-//! What the project's own benches, fuzzers and tests in other processes use. It is no part of the library's interface, and
-//! changes without notice.
+//! What the project's own benches, fuzzers and tests in other processes use. It isn't part of the library's interface,
+//! and changes without notice.
 
 pub use crate::app::window::run::run_watched;
 pub use crate::app::{App, persistence::Persistence};

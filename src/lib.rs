@@ -9,7 +9,7 @@
 //! use pnaen::mesh::{Mesh, MeshSlices, Topology};
 //! use pnaen::tessellate::{Inputs, LodView, Tessellation, tessellate};
 //!
-//! // A roof of two triangles whose normals lean apart, so that the surface between them is curved.
+//! // A flat square of two triangles whose normals lean apart, so that the surface between them is curved.
 //! let mesh = Mesh::from_slices(&MeshSlices {
 //!     positions: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
 //!     normals: &[[-1.0, -1.0, 2.0], [1.0, -1.0, 2.0], [1.0, 1.0, 2.0], [-1.0, 1.0, 2.0]],
@@ -23,12 +23,13 @@
 //! # Ok::<(), pnaen::mesh::SliceError>(())
 //! ```
 //!
-//! The way through the crate, for those who read its code: [`mesh`] (triangles, and how they are connected), [`tessellate`] (the mathematics on the CPU:
-//! the reference), `gpu` (the same mathematics as compute passes), then for the program `render` (pictures), `measure` (what
-//! was emitted, in numbers), `engine` (these parts put together), and above them `cli` (the commands) and `app` (the window).
-// What `internals` hands to tests is no part of the documentation, so its links may lead to private items.
+//! Those who read the crate's code can go through it in this order: [`mesh`] (triangles, and how they are connected),
+//! [`tessellate`] (the mathematics on the CPU: the reference), `gpu` (the same mathematics as compute passes), then for
+//! the program `render` (pictures), `measure` (what was emitted, in numbers), `engine` (these parts put together), and
+//! above them `cli` (the commands) and `app` (the window).
+// The items of `internals` aren't part of the documentation, so their links may lead to private items.
 #![cfg_attr(feature = "app", allow(rustdoc::private_intra_doc_links))]
-// The program uses all of the crate; a library without it leaves parts of the rooms that both have unused.
+// Only the program uses the whole crate. In a library without it, parts of the rooms are unused.
 #![cfg_attr(not(feature = "app"), allow(dead_code, unused_imports))]
 #![cfg_attr(feature = "app", warn(unreachable_pub))]
 #![cfg_attr(not(feature = "cli"), warn(missing_docs))]
@@ -92,13 +93,16 @@ pub mod internals;
 
 // Tests of the whole program, which name the crate as other crates do.
 #[cfg(test)]
+#[cfg(feature = "app")]
 extern crate self as pnaen;
 #[cfg(test)]
+#[cfg(feature = "app")]
 #[path = "../tests/gpu/mod.rs"]
 mod gpu_tests;
 #[cfg(test)]
 mod rooms;
 #[cfg(test)]
+#[cfg(feature = "app")]
 #[path = "../tests/window/mod.rs"]
 mod window_tests;
 

@@ -34,7 +34,8 @@ pub fn run() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Opens the window, and returns when it is closed: with the program's exit code, or with the reason why there is none.
+/// Opens the window and waits until it is closed. Returns the reason if there can be no window, and as an error the
+/// exit code with which the program ends otherwise.
 #[cfg(feature = "app")]
 fn open_window(Cli { file, limit, adapter, .. }: &Cli) -> Result<String, ExitCode> {
     match app::run(file.clone(), limit.limits(), adapter.choice()) {

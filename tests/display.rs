@@ -8,12 +8,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use pnaen::internals::Camera;
-use pnaen::internals::Settings;
-use pnaen::internals::Shape;
-use pnaen::internals::Source;
-use pnaen::internals::{AdapterChoice, Gpu};
-use pnaen::internals::{App, run_watched};
+use pnaen::internals::{AdapterChoice, App, Camera, Gpu, Settings, Shape, Source, run_watched};
 use pnaen::load::Limits;
 
 /// More time than each test needs on two slow cores.

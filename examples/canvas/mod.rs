@@ -1,4 +1,4 @@
-//! What a program that embeds pnaen has already: a device, a picture to draw in, and a shader of its own.
+//! What a program that embeds pnaen already has: a device, a picture to draw in, and a shader of its own.
 
 use std::error::Error;
 
@@ -39,13 +39,13 @@ pub struct Canvas {
     pipeline: wgpu::RenderPipeline,
     camera: wgpu::Buffer,
     bindings: wgpu::BindGroup,
-    /// The status of the output and the px of the picture, on their way to the host.
+    /// Buffers through which the host reads the output's status and the picture's px.
     status: wgpu::Buffer,
     pixels: wgpu::Buffer,
 }
 
 impl Canvas {
-    /// A picture of this width (a multiple of 64) and height, in px.
+    /// Makes a canvas for pictures of this width (a multiple of 64) and height, in px.
     pub fn new(size: [u32; 2]) -> Result<Self, Box<dyn Error>> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
@@ -142,7 +142,7 @@ impl Canvas {
         self.queue.submit([encoder.finish()]);
         let (status, pixels) = (self.read(&self.status)?, self.read(&self.pixels)?);
         let picture =
-            image::RgbaImage::from_raw(self.size[0], self.size[1], pixels).ok_or("the picture has all its px")?;
+            image::RgbaImage::from_raw(self.size[0], self.size[1], pixels).ok_or("the picture lacks some of its px")?;
         Ok((picture, bytemuck::pod_read_unaligned(&status)))
     }
 

@@ -17,7 +17,7 @@ use crate::tessellate::{Convention, HullFactors, Partitioning, Tessellation};
 pub(crate) struct FactorsOption {
     /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
     /// patch,e0,e1,e2,inside and a line for each triangle, as the factors command or another engine writes it. Standard error
-    /// lists edges whose two sides have different factors, and names the convention under which no edge has
+    /// lists edges whose two sides have different factors, and names the convention under which all sides agree
     #[arg(
         long = "factors",
         value_name = "CSV",

@@ -98,7 +98,7 @@ pub(crate) enum Command {
     /// not compared with each other. Ctrl-C ends the command after the current setting: the CSV and the picture have what was
     /// done, and the exit code is 130. A second Ctrl-C ends it at once.
     Chart(chart::Args),
-    /// Print what a file holds, and what of it is left out
+    /// Print what a file holds, and which parts of it are left out
     Info(info::Args),
     /// List the graphics adapters
     Adapters(adapters::Args),

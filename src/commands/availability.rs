@@ -96,8 +96,9 @@ pub(super) fn redo(now: &Availability) -> Option<&'static str> {
 }
 
 /// Why patches that show their backs can't be left out.
-pub(crate) const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen, because one of these holds: it is open, a part of it is wound \
-                                  inward, a material is double-sided, it is displaced, or it moves.";
+pub(crate) const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen, because one of these holds: it is open, a \
+                                         part of it is wound inward, a material is double-sided, it is displaced, or \
+                                         it moves.";
 
 pub(super) fn selection(now: &Availability) -> Option<&'static str> {
     unless(now.has_selection, "Nothing is selected.")

@@ -18,7 +18,7 @@ pub(super) fn commands() -> Vec<Command> {
     [file(), edit(), view(), camera(), look(), tessellation(), help()].into_iter().flatten().collect()
 }
 
-const TRUTH: &str = "Opens a mesh, such as the high-poly original, that deviation and charts compare with.";
+const TRUTH: &str = "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
 const PICTURE: &str = "Writes the viewport's picture, at its size, as a PNG file.";
 const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is emitted for this view.";
 
@@ -131,7 +131,7 @@ fn edit() -> Vec<Command> {
         Command::new(
             Action::ResetSettings,
             "Reset settings",
-            "Sets every setting to its value of a first start. This can be undone.",
+            "Sets every setting to its value at the first start. This can be undone.",
         )
         .menu(Edit, 2),
     ]
@@ -239,7 +239,8 @@ fn look() -> Vec<Command> {
         Command::new(
             Action::Cancel,
             "Cancel",
-            "Stops a long drawing; or if there is none, closes messages, cancels loading and exporting, and deselects.",
+            "Stops a drawing that takes long. If there is none, closes messages, cancels loading and exporting, and \
+             deselects.",
         )
         .keys([plain(Key::Escape)]),
     ]
@@ -263,7 +264,7 @@ fn tessellation() -> Vec<Command> {
         Command::new(
             Action::Setting(Change::ToggleEdges),
             "Edges as published or shared",
-            "Switches between shared edges that are computed once (watertight) and by each patch (as published).",
+            "Switches between computing shared edges once (watertight) and by each patch (as published).",
         )
         .keys([plain(Key::E)]),
         Command::new(

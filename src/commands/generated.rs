@@ -73,7 +73,8 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     })
 }
 
-/// Commands for colours and overlays. All but the one for the material's colours are switches: a second time they switch off.
+/// Commands for colours and overlays. Each but the one for the material's colours is a switch: given again, it switches
+/// off.
 fn colors_and_overlays() -> Vec<Command> {
     let (material, colors) = (Colors::Material, "Colours");
     let own = format!("{colors}: {}", material.label());

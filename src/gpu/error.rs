@@ -36,6 +36,9 @@ pub enum GpuError {
     /// The mesh has more patches than one scan covers.
     #[error("the mesh has {patches} patches, and at most {limit} can be tessellated in a single run: split the mesh")]
     TooManyPatches { patches: u64, limit: u64 },
+    /// The pose was made with another rig than the mesh's.
+    #[error("the pose has {has} {what}, and the mesh's rig has {needs}: make the pose with that rig (Mesh::rig)")]
+    OtherRig { what: &'static str, has: usize, needs: usize },
     /// The device was made with lower limits than the passes need.
     #[error("the device allows {has} of {what}, and the passes need {needs}: request wgpu's default limits")]
     Limits { what: &'static str, has: u64, needs: u64 },

@@ -27,7 +27,7 @@ pub(super) struct FaceBuilder<'a> {
     materials: usize,
     triangles: usize,
     work: polygon::WorkBudget,
-    /// FaceBuilder with fewer than 3 corners.
+    /// Faces with fewer than 3 corners.
     too_small: usize,
     /// Corners at the position of the corner before them.
     repeated: usize,

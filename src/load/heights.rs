@@ -21,28 +21,36 @@ const MAX_SIZE: u32 = 16384;
 
 /// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum HeightError {
+    /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The image can't be read.
     #[error("{} can't be read as a height image: {reason}", shown_path(path))]
     Image { path: PathBuf, reason: String },
+    /// The image is wider or higher than is read.
     #[error(
         "{} has {} x {} px, but at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
         shown_path(path), size[0], size[1]
     )]
     TooLarge { path: PathBuf, size: [u32; 2] },
+    /// The image would take too much memory.
     #[error(
         "{} has {} x {} px and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
          interlaced",
         shown_path(path), size[0], size[1]
     )]
     TooMuch { path: PathBuf, size: [u32; 2], reason: String },
+    /// No material has an image that can be read.
     #[error(
         "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"
     )]
     NoImage { name: String, why: String },
+    /// The materials have more different images than can be used.
     #[error("{name} has {count} images to displace by, but at most {MAX_MAPS} can be used; name one height image")]
     TooMany { name: String, count: usize },
+    /// The materials' images would take too much memory together.
     #[error("the heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
     TooMuchOfMaterials { name: String, count: usize, reason: String },
 }

@@ -22,9 +22,10 @@ mod warnings;
 
 pub use crate::files::{FileError, Limits};
 pub use gltf::GltfError;
+pub use heights::HeightError;
 pub use loaded_mesh::LoadedMesh;
 pub use mesh_file::{LoadError, load};
-pub use read_error::ReadError;
+pub use read_error::{FilePosition, ReadError};
 
 pub(crate) use heights::HeightSource;
 pub(crate) use memory_budget::Budget;

@@ -191,7 +191,7 @@ struct StatementCounts {
     lines: usize,
     surfaces: usize,
     unknown: usize,
-    /// FaceBuilder with a corner that has no normal.
+    /// Faces with a corner that has no normal.
     without_normals: usize,
 }
 

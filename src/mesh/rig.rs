@@ -122,6 +122,13 @@ pub struct Pose {
     pub(crate) weights: Vec<f32>,
 }
 
+impl Pose {
+    /// Returns how many joint matrices and how many morph weights there are.
+    pub(crate) fn lengths(&self) -> [usize; 2] {
+        [self.palette.len(), self.weights.len()]
+    }
+}
+
 /// A time in a clip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
@@ -241,6 +248,12 @@ impl Rig {
             nodes: nodes.len() - joints,
             targets: morphs.iter().map(|&morph| self.morphs[morph].rest.len()).sum(),
         }
+    }
+
+    /// Returns how many joint matrices and how many morph weights a pose of this rig has.
+    pub(crate) fn pose_lengths(&self) -> [usize; 2] {
+        let weights: usize = self.morphs.iter().map(|morph| morph.rest.len()).sum();
+        [self.joints.len(), weights.max(1)]
     }
 
     fn rest_weights(&self) -> Vec<f32> {

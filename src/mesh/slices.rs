@@ -22,15 +22,15 @@ pub struct MeshSlices<'a> {
     pub indices: &'a [u32],
 }
 
-/// Why arrays are no mesh.
+/// Why arrays can't become a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
 pub enum SliceError {
     /// There are not as many normals or texture coordinates as positions.
     #[error("there are {found} {what} for {vertices} vertices: give one for each vertex, or none at all")]
     Lengths { what: &'static str, found: usize, vertices: usize },
-    /// The number of indices is no multiple of 3.
-    #[error("there are {0} indices, which is no multiple of 3")]
+    /// The number of indices isn't a multiple of 3.
+    #[error("there are {0} indices, which is not a multiple of 3")]
     NoTriangles(usize),
     /// An index is beyond the vertices.
     #[error("index {at} is {index}, but there are only {vertices} vertices")]
@@ -42,7 +42,7 @@ pub enum SliceError {
     #[error("vertex {0} has a texture coordinate that isn't finite")]
     Uv(usize),
     /// There are more triangles than a mesh can have.
-    #[error("there are {0} triangles, and at most {MAX_TRIANGLES} are possible")]
+    #[error("there are {0} triangles, but a mesh can have at most {MAX_TRIANGLES}")]
     TooManyTriangles(usize),
 }
 
@@ -86,9 +86,9 @@ impl MeshSlices<'_> {
 }
 
 impl Mesh {
-    /// Makes a mesh of one material, without height images and without a rig, from arrays. Vertices that are equal to the last bit become one corner, those that no
-    /// triangle uses are left out, and what was repaired is counted in [`Mesh::repairs`]. Takes time linear in the number of
-    /// triangles.
+    /// Makes a mesh of one material, without height images and without a rig, from arrays. It has the material even
+    /// without triangles. Equal vertices become one corner (-0 counts as 0), vertices that no triangle uses are left
+    /// out, and [`Mesh::repairs`] counts what was repaired. Takes time linear in the number of triangles.
     ///
     /// ```
     /// use pnaen::mesh::{Mesh, MeshSlices};
@@ -104,7 +104,7 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// [`SliceError`], and nothing is made.
+    /// [`SliceError`] says what is wrong with the arrays.
     pub fn from_slices(slices: &MeshSlices) -> Result<Self, SliceError> {
         slices.check()?;
         let mut builder = MeshBuilder::new();
@@ -113,7 +113,12 @@ impl Mesh {
             builder.triangle(material, [0, 1, 2].map(|k| slices.corner(triangle[k])));
         }
         // Nothing else holds this progress, so nothing cancels it; too many triangles were refused above.
-        Ok(builder.finish(String::new(), &Progress::new()).unwrap_or_default())
+        let mut mesh = builder.finish(String::new(), &Progress::new()).unwrap_or_default();
+        if mesh.materials.is_empty() {
+            // The builder leaves out materials without triangles, but hosts draw material 0 of whatever arrays they have.
+            mesh.materials.push(Material::plain("", [1.0; 4]));
+        }
+        Ok(mesh)
     }
 }
 
@@ -145,13 +150,14 @@ mod tests {
     }
 
     #[test]
-    fn no_triangles_are_an_empty_mesh() {
+    fn no_triangles_make_an_empty_mesh() {
         let mesh = Mesh::from_slices(&MeshSlices { indices: &[], ..SQUARE }).expect("nothing");
         assert!(mesh.triangles.is_empty() && mesh.corners.is_empty());
+        assert_eq!((mesh.materials.len(), mesh.materials[0].triangles.clone()), (1, 0..0));
     }
 
     #[test]
-    fn what_is_no_mesh_is_refused_with_its_place() {
+    fn invalid_arrays_are_refused_with_their_place() {
         let refused = |slices: MeshSlices| Mesh::from_slices(&slices).expect_err("refused");
         let lengths = |what, found| SliceError::Lengths { what, found, vertices: 4 };
         assert_eq!(refused(MeshSlices { normals: &[[0.0; 3]; 3], ..SQUARE }), lengths("normals", 3));

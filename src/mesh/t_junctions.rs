@@ -57,7 +57,7 @@ pub(crate) struct TJunction {
 /// A corner of the edge's own triangle is never its T-junction.
 ///
 /// Takes about n log n steps for n boundary edges, since only points near an edge are tried. Of the points in one cell
-/// with a width of two tolerances, and of the boundary edges at one point, the first 32 are tried. ChainSearch are searched
+/// with a width of two tolerances, and of the boundary edges at one point, the first 32 are tried. Chains are searched
 /// in 64 steps for each boundary edge on average, and the first 2^20 T-junctions are listed.
 ///
 /// # Errors

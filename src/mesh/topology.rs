@@ -145,16 +145,16 @@ impl Topology {
         Self::build_within(mesh, 0.0, progress)
     }
 
-    /// Builds the topology that [`build`](Self::build) does, and can't be cancelled.
+    /// Builds a topology in which only corners at exactly equal positions share a point.
     pub fn of(mesh: &Mesh) -> Self {
         // Nothing else holds this progress, so nothing cancels it.
         Self::build(mesh, &Progress::new()).unwrap_or_default()
     }
 
-    /// Welds corners within a tolerance and finds the edges. The tolerance is
-    /// relative to the mesh's bounding diagonal; 0 joins only exactly equal positions. A triangle with two corners on
-    /// one point is degenerate. Corners that a clip moves apart aren't joined. Takes time linear in the number of
-    /// triangles, times the logarithm of the greatest number of patches around a point.
+    /// Welds corners within a tolerance and finds the edges. The tolerance is relative to the mesh's bounding diagonal;
+    /// 0 joins only exactly equal positions. A triangle with two corners on one point is degenerate. Corners that a
+    /// clip moves apart aren't joined. Takes time linear in the number of triangles, times the logarithm of the
+    /// greatest number of patches around a point.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.

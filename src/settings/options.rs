@@ -138,8 +138,8 @@ pub(crate) static PARTITIONING: Declaration = Declaration {
 };
 
 /// Why LOD can't be chosen under subtriangulation.
-pub(crate) const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another partitioning brings back \
-                                the LOD that was chosen.";
+pub(crate) const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another \
+                                       partitioning brings back the LOD that was chosen.";
 
 pub(crate) static LOD: Declaration = Declaration {
     name: "lod",
@@ -235,7 +235,7 @@ pub(crate) static CONVENTION: Declaration = Declaration {
     name: "convention",
     label: "Convention",
     placeholder: "NAME",
-    text: "The order of the edge factors 0, 1, 2 and of the weights u, v, w. Hull and domain shader must use the same.",
+    text: "The order of the edge factors 0, 1, 2 and of the weights u, v, w. Hull and domain shader must agree on it.",
     kind: Kind::Choice(descriptions::<Convention>),
     unset: None,
     saved_as: &["convention"],

@@ -139,7 +139,7 @@ impl Kind {
         }
     }
 
-    /// The name of the value that a text names, which may be in HLSL's spelling.
+    /// Returns the name of the value that a text names. The text may spell it as HLSL does, with underscores.
     pub(crate) fn named(&self, text: &str) -> Option<&'static str> {
         self.descriptions().iter().find(|value| value.is_named(text)).map(|value| value.name)
     }

@@ -193,8 +193,8 @@ fn errors_in_a_file_are_one_line_with_their_numbers() {
         sentence(&["adjacency", "shape:cube-split", "--against", path], words);
     };
     let bin = run(&["adjacency", "shape:cube-split", "-o", "-", "--format", "bin"]).stdout;
-    wrong(&bare, &bin[1..], &["wrong.bin", "431 bytes", "12 patches of 9 indices", "432"]);
-    wrong(&bare, &bin[36..], &["wrong.bin", "396 bytes", "432"]);
+    wrong(&bare, &bin[1..], &["wrong.bin", "431 bytes", "12 patches of 9 indices", "take 432"]);
+    wrong(&bare, &bin[36..], &["wrong.bin", "396 bytes", "take 432"]);
     wrong(&bare, b"", &["it has 0 bytes"]);
     wrong(&bare, &[&bin[..], &bin[..144]].concat(), &["576 bytes", "(--indices 12 would fit)"]);
     wrong(&bare, &[&bin[..428], &[24, 0, 0, 0]].concat(), &["patch 11 has index 24", "corners are 0 to 23"]);
@@ -205,7 +205,7 @@ fn errors_in_a_file_are_one_line_with_their_numbers() {
     wrong(&text, six.as_bytes(), &["6 indices per patch", "--indices asks for 9"]);
     wrong(&bare, six.as_bytes(), &["6 indices per patch"]);
     let other = json("shape:icosahedron", "9").to_string();
-    wrong(&text, other.as_bytes(), &["20 patches", "12"]);
+    wrong(&text, other.as_bytes(), &["20 patches", "the mesh has 12"]);
     let smooth = json("shape:cube-smooth", "9").to_string();
     wrong(&text, smooth.as_bytes(), &["its positions differ", "first at index 8", "another mesh"]);
     wrong(&text, document.replacen("[[", "[[9,", 2).as_bytes(), &["wrong.json: this is not JSON"]);
@@ -229,7 +229,7 @@ fn a_file_with_patches_of_degenerate_triangles_is_recognised() {
     let folder = Folder::new();
     let (mesh, path) = (write_degenerate(&folder), folder.path("theirs.bin"));
     write_indices(&path, &[0; 27]);
-    sentence(&["adjacency", &mesh, "--against", &path], &["108 bytes", "72", "degenerate triangles"]);
+    sentence(&["adjacency", &mesh, "--against", &path], &["108 bytes", "take 72", "degenerate triangles"]);
 }
 
 #[test]

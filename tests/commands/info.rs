@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, failure, output, stats, write_seam, write_triangles};
+use crate::{Folder, failure, output, stats, vase, write_seam, write_triangles};
 
 #[test]
 fn info_is_printed_as_text_and_as_json() {
@@ -29,6 +29,16 @@ fn a_crease_band_is_in_info_and_in_adjacency() {
     let torus: Value = serde_json::from_str(&info("shape:torus")).expect("JSON");
     assert!(torus["warnings"][0].as_str().is_some_and(|warning| warning.contains("no crease")), "{torus}");
     assert!(!output(&["info", "shape:cube-split"]).contains("crease band"));
+}
+
+#[test]
+fn rim_is_another_name_of_the_crease_band() {
+    for mesh in ["shape:cube-split", vase()] {
+        let info = |option: &[&str]| output(&[&["info", mesh, "--json"], option].concat());
+        let band = info(&["--crease-band", "0.02"]);
+        assert_eq!(info(&["--rim", "0.02"]), band, "{mesh}");
+        assert_ne!(info(&[]), band, "{mesh}");
+    }
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn help_names_the_source_of_every_technique() {
     said("pn-aen", &["McDonald and Kilgard 2010"]);
     said("pn-crease", &["Vlachos et al. 2001, section 3.4"]);
     said("phong", &["Boubekeur and Alexa 2008"]);
-    said("nagata", &["2005"]);
+    said("nagata", &["Nagata 2005"]);
     said("quadratic", &["Vlachos et al. 2001, section 3.3"]);
     said("on", &["McDonald 2011"]);
     said("fractional-odd", &["Direct3D 11.3"]);

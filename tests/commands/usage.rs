@@ -169,8 +169,8 @@ fn a_mesh_of_degenerate_triangles_is_drawn_with_a_warning() {
 #[test]
 fn files_beyond_the_limit_are_refused() {
     let vase = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb");
-    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "10240", "--max-size"]);
-    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "10240"]);
+    sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "at most 10240 ", "--max-size"]);
+    sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "at most 10240 "]);
     sentence(
         &["render", "shape:torus", "--truth", vase, "--max-size", "1", "-o", "unwritten.png"],
         &["vase.glb has ", "at most 1 "],
@@ -208,10 +208,10 @@ fn hostile_files_are_one_line_and_exit_code_1() {
     };
     output(&["info", &write("sound.gltf", document("").as_bytes())]);
     let past = write("past.gltf", document(r#","byteOffset":4611686018427387904"#).as_bytes());
-    let expected = ["past.gltf: /accessors/0 (POSITION of /meshes/0/primitives/0)", "/bufferViews/0", "36"];
+    let expected = ["past.gltf: /accessors/0 (POSITION of /meshes/0/primitives/0)", "/bufferViews/0, which has 36;"];
     sentence(&["info", &past], &expected);
     let deep = write("deep.gltf", "[".repeat(100_000).as_bytes());
-    sentence(&["render", &deep, "-o", &folder.path("none.png")], &["deep.gltf", "100000", "100 levels"]);
+    sentence(&["render", &deep, "-o", &folder.path("none.png")], &["deep.gltf", "100000 levels", "at most 100 levels"]);
     let elsewhere = document("").replace("data:;base64,", "../%2e%2e/");
     sentence(&["info", &write("elsewhere.gltf", elsewhere.as_bytes())], &["/buffers/0", "leads out of a folder"]);
     let unknown = document("").replace(r#""nodes""#, r#""extensionsRequired":["EXT_unknown"],"nodes""#);

@@ -4,9 +4,9 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use pnaen::internals::{Format, read};
-use pnaen::internals::{HullFactors, domain_plan, domain_point, domain_triangle};
-use pnaen::internals::{outer_count, point_count, triangle_count};
+use pnaen::internals::{
+    Format, HullFactors, domain_plan, domain_point, domain_triangle, outer_count, point_count, read, triangle_count,
+};
 use pnaen::load::Limits;
 use pnaen::mesh::{Mesh, Topology};
 use pnaen::progress::Progress;

@@ -119,8 +119,7 @@ fn the_device_leaves_out_what_the_cpu_does() {
             }
         }
     }
-    println!("{same} of {all} patches agree without any allowance");
-    assert!(all > 5000, "{all} patches");
+    assert!(all > 5000 && same * 1000 >= all * 998, "{same} of {all} patches agree without any allowance");
 }
 
 /// Views that differ by no more than rounding. What lies on a plane of the view, or is seen edge-on, is on one side of it in

@@ -7,8 +7,8 @@ use glam::{Mat4, Vec2, Vec3};
 use pnaen::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
 use pnaen::engine::Engine;
 use pnaen::gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
-use pnaen::mesh::{Corner, Mesh, MeshSlices, Moment, Shape, Topology};
-use pnaen::tessellate::{Clip, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
+use pnaen::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
+use pnaen::tessellate::{Clip, Edges, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
 
 use crate::gpu_tests::engine;
 use crate::gpu_tests::pictures::differing;
@@ -23,10 +23,15 @@ mod embed_example;
 
 /// A device as a host has it: with WebGPU's default limits and no features.
 fn host() -> (wgpu::Device, wgpu::Queue) {
+    host_with(wgpu::Limits::default())
+}
+
+/// A device with these limits and no features.
+fn host_with(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-    let device = adapter.expect("an adapter").request_device(&wgpu::DeviceDescriptor::default());
-    pollster::block_on(device).expect("a device")
+    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
+    pollster::block_on(adapter.expect("an adapter").request_device(&descriptor)).expect("a device")
 }
 
 const ROOM: Room = Room { vertices: 40_000, triangles: 70_000 };
@@ -119,6 +124,20 @@ fn what_clipping_leaves_out_is_no_overflow() {
     assert_eq!((status.triangles, mesh.has_overflowed(&status)), (0, false));
 }
 
+#[test]
+fn a_mesh_without_triangles_draws_nothing() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let nothing = Mesh::from_slices(&MeshSlices::default()).expect("no triangles");
+    let mut mesh = TessellatedMesh::new(&context, nothing, ROOM).expect("a small mesh");
+    mesh.set(&uniform(4.0), LodView::default()).expect("a small mesh");
+    let (status, _) = emitted(&queue, &device, &mut mesh);
+    assert_eq!((status.vertices, status.triangles, mesh.has_overflowed(&status)), (0, 0, false));
+    let (arguments, offset) = mesh.draw_arguments(0);
+    let count = read_buffer(&pnaen::gpu::Gpu::borrowed(&device, &queue), arguments, offset, 4).expect("a readback");
+    assert_eq!(count, [0_u8; 4], "the number of indices");
+}
+
 /// The names of passes, which don't run.
 #[derive(Default)]
 struct Names(Vec<&'static str>);
@@ -152,11 +171,16 @@ fn only_what_changed_is_recorded() {
     assert_eq!(recorded(Some(flat)), [&["nets"], &after_nets[..]].concat());
 }
 
-#[test]
-fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
+/// A mesh with a skin, and without morph targets.
+fn tube() -> Mesh {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/tube.gltf");
     let tube = pnaen::load::load(&path, &pnaen::load::Limits::default(), &pnaen::progress::Progress::new());
-    let tube = tube.expect("a small file").mesh;
+    tube.expect("a small file").mesh
+}
+
+#[test]
+fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
+    let tube = tube();
     assert_eq!(tube.triangles.len(), 160);
     let rig = tube.rig.clone().expect("a skin");
     let (device, queue) = host();
@@ -174,6 +198,28 @@ fn a_pose_moves_what_is_emitted_and_none_puts_it_back() {
     assert!((top(&rest) - 3.0).abs() < 1e-6);
     // The upper half, 1.5 long and 0.35 thick, leans by 1.2 radians.
     assert!((top(&bent) - (1.5 + 1.5 * 1.2_f32.cos() + 0.35 * 1.2_f32.sin())).abs() < 0.1, "{}", top(&bent));
+}
+
+#[test]
+fn a_pose_of_another_rig_is_refused_with_both_numbers() {
+    let tube = tube();
+    let rig = tube.rig.clone().expect("a skin");
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, tube, ROOM).expect("a small mesh");
+    mesh.set(&uniform(3.0), LodView::default()).expect("a small mesh");
+    let rest = emitted(&queue, &device, &mut mesh).1;
+
+    let refused = mesh.set_pose(Some(Pose::default())).expect_err("it has no joints");
+    let GpuError::OtherRig { what: "joint matrices", has: 0, needs } = refused else { panic!("{refused}") };
+    assert!(needs > 1, "{refused}");
+    let targets = Pose { weights: vec![0.5; 7], ..rig.rest() };
+    let refused = mesh.set_pose(Some(targets)).expect_err("it has morph targets");
+    assert!(matches!(refused, GpuError::OtherRig { what: "morph weights", has: 7, needs: 1 }), "{refused}");
+
+    mesh.invalidate().expect("a small mesh");
+    assert_eq!(emitted(&queue, &device, &mut mesh).1.vertices, rest.vertices, "nothing has moved");
+    mesh.set_pose(Some(rig.rest())).expect("the mesh's own rig");
 }
 
 #[test]
@@ -201,28 +247,43 @@ fn the_hosts_own_handlers_stay() {
 
 #[test]
 fn a_device_that_allows_too_little_is_refused_by_name() {
-    let required_limits = wgpu::Limits { max_compute_invocations_per_workgroup: 128, ..wgpu::Limits::default() };
-    let descriptor = wgpu::DeviceDescriptor { required_limits, ..Default::default() };
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-    let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()));
-    let device = pollster::block_on(adapter.expect("an adapter").request_device(&descriptor));
-    let (device, queue) = device.expect("a device");
+    let (device, queue) = host_with(wgpu::Limits { max_compute_invocations_per_workgroup: 128, ..Default::default() });
     let error = Context::new(&device, &queue).err().expect("too little");
     let GpuError::Limits { what, has: 128, needs: 256 } = error else { panic!("{error}") };
     assert!(what.contains("invocations"), "{what}");
 }
 
-#[test]
-fn a_mesh_of_too_many_patches_is_refused_with_their_number() {
-    let count = (1 << 19) + 1;
-    // A strip of small triangles.
+/// A strip of so many triangles.
+fn strip(count: u32) -> Mesh {
     let positions: Vec<_> = (0..count + 2).map(|i| [i as f32, (i % 2) as f32, 0.0]).collect();
     let indices: Vec<u32> = (0..count).flat_map(|i| [i, i + 1, i + 2]).collect();
     let normals = vec![[0.0, 0.0, 1.0]; positions.len()];
     let slices = MeshSlices { positions: &positions, normals: &normals, indices: &indices, ..Default::default() };
+    Mesh::from_slices(&slices).expect("a strip")
+}
+
+#[test]
+fn what_was_set_stays_when_more_is_refused() {
+    // Curves take 32 bytes. There are 40,001 of them if each edge has one, and 60,000 if each side has one.
+    let (device, queue) = host_with(wgpu::Limits { max_storage_buffer_binding_size: 1_500_000, ..Default::default() });
+    let context = Context::new(&device, &queue).expect("these limits are enough");
+    let mut mesh = TessellatedMesh::new(&context, strip(20_000), ROOM).expect("a mesh that fits");
+    mesh.set(&uniform(1.0), LodView::default()).expect("a mesh that fits");
+    let (before, _) = emitted(&queue, &device, &mut mesh);
+    assert!(before.triangles > 10_000, "{before:?}");
+    let published = Tessellation { edges: Edges::AsPublished, ..uniform(1.0) };
+    let refused = mesh.set(&published, LodView::default()).expect_err("too many curves");
+    assert!(matches!(refused, GpuError::TooLarge { bytes: 1_920_000, limit: 1_500_000, .. }), "{refused}");
+    mesh.set_pose(None).expect("the edges are as they were");
+    mesh.invalidate().expect("the edges are as they were");
+    assert_eq!(emitted(&queue, &device, &mut mesh).0, before);
+}
+
+#[test]
+fn a_mesh_of_too_many_patches_is_refused_with_their_number() {
     let (device, queue) = host();
     let context = Context::new(&device, &queue).expect("default limits are enough");
-    let error = TessellatedMesh::new(&context, Mesh::from_slices(&slices).expect("a strip"), ROOM).err();
+    let error = TessellatedMesh::new(&context, strip((1 << 19) + 1), ROOM).err();
     let Some(GpuError::TooManyPatches { patches, limit }) = error else { panic!("{error:?}") };
     assert_eq!((patches, limit), (524_289, 524_288));
 }

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use plotters::prelude::*;
-use pnaen::internals::App;
-use pnaen::internals::{BLUE, FONT, INK, use_font};
+use pnaen::internals::{App, BLUE, FONT, INK, use_font};
 
 use crate::counting::taken;
 

@@ -17,9 +17,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
 use fastrand::Rng;
 use image::RgbaImage;
-use pnaen::internals::Shape;
-use pnaen::internals::Source;
-use pnaen::internals::{App, Persistence};
+use pnaen::internals::{App, Persistence, Shape, Source};
 use pnaen::load::Limits;
 
 use driver::settle;

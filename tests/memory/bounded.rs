@@ -4,8 +4,7 @@
 use std::path::Path;
 use std::sync::PoisonError;
 
-use pnaen::internals::{HeightSource, Source};
-use pnaen::internals::{Loaded, Preparation, load_and_prepare as load};
+use pnaen::internals::{HeightSource, Loaded, Preparation, Source, load_and_prepare as load};
 use pnaen::load::Limits;
 use pnaen::load::LoadError;
 use pnaen::progress::Progress;

@@ -4,8 +4,7 @@ use std::io::Cursor;
 use std::sync::PoisonError;
 
 use image::{DynamicImage, ImageFormat, RgbImage};
-use pnaen::internals::Shape;
-use pnaen::internals::{Budget, HeightError, HeightSource};
+use pnaen::internals::{Budget, HeightError, HeightSource, Shape};
 use pnaen::load::Limits;
 use pnaen::mesh::Heights;
 use pnaen::progress::Progress;

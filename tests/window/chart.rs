@@ -135,7 +135,7 @@ fn rows_stay_after_cancelling_and_are_out_of_date_after_the_camera_turned() {
     // Clipping isn't part of the measurement, so the chart isn't out of date.
     choose(&mut harness, "Clipping", "Off");
     assert!(harness.query_by_label_contains("out of date").is_none());
-    measure(&mut harness, "Measure on");
+    measure(&mut harness, "Measure rest");
     assert_eq!(harness.state().chart_rows().len(), 10);
     assert!(
         kept.iter().all(|row| harness.state().chart_rows().contains(row)),
@@ -204,5 +204,5 @@ fn methods_can_be_chosen_and_without_a_reference_surface_errors_are_in_px() {
     surfaces.dedup();
     assert!(rows.len() == 4 && !surfaces.contains(&Surface::Flat) && surfaces.contains(&Surface::Pn), "{surfaces:?}");
     assert!(rows.iter().all(|row| row.errors.is_none() && row.max_error_px.is_some()));
-    assert!(harness.query_all_by_label_contains("limit").count() > 0);
+    assert!(harness.query_all_by_label_contains("each surface's own limit").count() > 0);
 }

@@ -16,7 +16,8 @@ use pnaen::settings::SplitSide;
 
 use crate::window_tests::{choose, click, press, settle, uniform, window};
 
-const SENTENCE: &str = "The graphics device was lost (it was destroyed)";
+/// The start of the message if the window goes on, and of no other.
+const SENTENCE: &str = "The graphics device was lost (it was destroyed). The window goes on with a new one";
 
 /// Destroys the device, as a driver's reset does, and waits until the window has noticed.
 fn lose(harness: &mut Harness<App>) {

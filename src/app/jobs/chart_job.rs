@@ -49,7 +49,7 @@ pub(crate) struct Charted {
     pub subject: Subject,
     /// Settings that have too many triangles to be measured.
     pub left_out: Vec<Setting>,
-    /// The diagonal of the reference surface's bounding box, in object units. Errors are parts of it.
+    /// The diagonal of the reference surface's bounding box, in object units. Errors are given as fractions of it.
     pub diagonal: Option<f64>,
     /// The window's settings that were last measured beside the list; without a result if they have too many triangles.
     pub current: Option<(Settings, Option<Probe>)>,

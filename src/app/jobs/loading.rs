@@ -104,7 +104,8 @@ impl App {
         self.open_path(context, path.clone());
         if let Some(load) = self.jobs.load.as_mut().filter(|_| dropped.len() > 1) {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            load.remark = Some(format!("{} files were dropped, but only one can be open: {name}.", dropped.len()));
+            load.remark =
+                Some(format!("{} files were dropped. Only one can be open, so {name} was opened.", dropped.len()));
         }
     }
 }

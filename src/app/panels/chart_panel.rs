@@ -74,8 +74,8 @@ impl App {
         let bar = if done == 0 { bar.fill(egui::Color32::TRANSPARENT) } else { bar };
         let most = grouped(self.panels.chart.effort.most_triangles);
         ui.add(bar).on_hover_text(format!(
-            "Settings measured, of all. Measuring waits while a picture is drawn. Settings with more than {most} triangles \
-             are left out."
+            "How many of all settings are measured. Measuring waits while a picture is drawn. Settings with more than \
+             {most} triangles are left out."
         ));
         ui.separator();
         let cost = &mut self.panels.chart.cost;
@@ -126,7 +126,7 @@ impl App {
                 ("Measure", "Tries every method at many settings and times each. The window stays usable.")
             }
             0 => ("Measure again", "Measures all settings on what is shown now."),
-            known if known < settings.len() => ("Measure on", "Measures the settings that are missing."),
+            known if known < settings.len() => ("Measure rest", "Measures the settings that are missing."),
             _ => ("Measure again", "Measures all settings anew."),
         };
         let enabled = self.document.is_some() && !settings.is_empty();
@@ -256,7 +256,8 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let cost = if diagram.cost == Cost::Ms { "ms" } else { "tri" };
     ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
     columns(ui, &format!("{unit:>8} {cost:>8}  setting"), true).on_hover_text(
-        "The front: settings that no other setting beats in both error and cost, the cheapest first. A click applies one.",
+        "The front: settings that no other setting beats in both error and cost, the cheapest first. A click on one \
+         applies it.",
     );
     let mut applied = None;
     list(ui, "Front", front.len(), |ui, index| {

@@ -112,7 +112,7 @@ impl App {
             swatch(ui, T_JUNCTION_COLOR);
             ui.label("T-junctions").on_hover_text(
                 "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these gaps, \
-                 because the edge is cut without knowing of the point.",
+                 because the edge's segments don't depend on the point.",
             );
             number(ui, &grouped(junctions.len() as u64));
         });

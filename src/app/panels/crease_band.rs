@@ -12,12 +12,12 @@ impl App {
         let mut percent = 100.0 * self.panels.dragged_crease_band.unwrap_or(width);
         let wide = short(f64::from(percent / 100.0 * document.scene.bounds.diagonal()));
         let hover = format!(
-            "A band of small triangles along edges with split normals. They share one normal on the crease, so that PN triangles \
-             don't tear there (Vlachos et al. 2001; --crease-band). The width is in percent of the bounding diagonal; the band is \
-             narrower where triangles are small.{}",
+            "A band of small triangles along edges with split normals. They share one normal on the crease, so that PN \
+             triangles don't tear there (Vlachos et al. 2001; --crease-band). The width is in percent of the bounding \
+             diagonal; the band is narrower where triangles are small.{}",
             match document.loaded.crease_band.creases {
                 0 => String::new(),
-                creases => format!(" Here it is {wide} units wide, along {creases} creases."),
+                creases => format!(" Here it is {wide} object units wide, along {creases} creases."),
             }
         );
         let label = ui.label("Crease band").on_hover_text(&hover);

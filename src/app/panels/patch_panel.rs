@@ -113,8 +113,7 @@ fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Opti
         }
         let patch = selected.and_then(|triangle| topology.patch_of(triangle));
         let frame = ui.add_enabled(patch.is_some(), egui::Button::new("Frame").small());
-        if frame.on_hover_text("Turns the camera so that the patch is in the middle and faces it (Shift+F).").clicked()
-        {
+        if frame.on_hover_text("Puts the patch in the middle of the view, seen from its front (Shift+F).").clicked() {
             wish = Some(Wish::Frame);
         }
         let deselect = ui.add_enabled(selected.is_some(), egui::Button::new("Deselect").small());

@@ -102,8 +102,8 @@ impl App {
             egui::Checkbox::new(&mut self.settings.tessellation.cull_back_faces, options::CULL_BACK_FACES.label);
         ui.add_enabled(is_solid, check)
             .on_hover_text(format!(
-                "{} They are drawn all the same where backs can be seen: in an animation, while the near plane cuts the mesh, and \
-                 where PN, edges computed by each patch, or a wrong convention tear the surface.",
+                "{} They are drawn anyway where backs can be seen: in an animation, while the near plane cuts the \
+                 mesh, and where PN, edges computed by each patch, or a wrong convention tear the surface.",
                 option_hover(&options::CULL_BACK_FACES, "")
             ))
             .on_disabled_hover_text(BACKS_ARE_SEEN);
@@ -122,7 +122,8 @@ impl App {
                     for joins in all {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));
                         ui.selectable_value(&mut chosen, joins.tolerance, text).on_hover_text(format!(
-                            "Relative to the bounding diagonal: {} units here. The numbers are compared with the exact weld.",
+                            "The tolerance is relative to the bounding diagonal; here it is {} object units. The \
+                             counts are compared with the exact weld.",
                             short(f64::from(joins.tolerance * document.diagonal))
                         ));
                     }
@@ -226,11 +227,11 @@ fn distances_row(ui: &mut egui::Ui, settings: &mut Settings) {
     let label = ui.label("Near");
     ui.horizontal(|ui| {
         let hover =
-            "Edges up to this distance from the eye have the full factor. In bounding radii of the mesh (--distances).";
+            "Edges up to this distance to the eye, in bounding radii of the mesh, have the full factor (--distances).";
         drag(ui, label, &mut own.near, least..=far * 0.99, hover);
         let label = ui.label("far");
         let hover =
-            "Edges at this distance from the eye or farther have factor 1. In bounding radii of the mesh (--distances).";
+            "Edges from this distance to the eye on, in bounding radii of the mesh, have factor 1 (--distances).";
         drag(ui, label, &mut own.far, near * 1.01..=most, hover);
     });
     ui.end_row();

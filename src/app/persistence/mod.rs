@@ -66,7 +66,8 @@ impl Persistence {
         self.kept.files.iter().filter(|file| !file.is_gone).take(RECENT).map(|file| file.path.as_str())
     }
 
-    /// Puts a mesh that was opened first among the recent files. Returns the camera it was last seen with, if it still fits.
+    /// Puts the file of an opened mesh at the front of the recent files. Returns the camera that the mesh was last seen
+    /// with, if it still fits.
     pub(in crate::app) fn opened(&mut self, source: &Source, diagonal: f32) -> Option<Camera> {
         self.open = path_of(source);
         let path = self.open.clone()?;

@@ -1,7 +1,7 @@
 //! The report's advice: sentences that say which method to use when.
 
 use super::answers::{Answer, PARTS, answer, winners};
-use super::lods::{Saving, saving};
+use super::lods::{Range, Saving, saving};
 use super::{Part, fronts, limits};
 use crate::chart::words::plain;
 use crate::chart::{Cost, LodKind};
@@ -10,6 +10,9 @@ use crate::numbers::short;
 
 /// The most methods that are named in a list. Others are counted.
 const NAMED: usize = 3;
+
+/// The least ratio of two costs that differ; those with a smaller one are about equal.
+const DIFFERENT: f64 = 1.05;
 
 /// The sentences about all meshes together.
 pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
@@ -91,12 +94,10 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
     let Saving { times, count, alone } = saving(parts, other, Cost::Triangles)?;
     let against = match count {
         1 => format!("{name} (one comparison)"),
-        _ => {
-            let [least, most] = [times.least, times.most].map(short);
-            format!(
-                "{name} (geometric mean of {count} comparisons over surfaces, meshes and errors; {least} to {most} times fewer)"
-            )
-        }
+        _ => format!(
+            "{name} (geometric mean of {count} comparisons over surfaces, meshes and errors; {})",
+            ends(&times, ["fewer", "as many"])
+        ),
     };
     let triangles = compared(times.mean, ["fewer triangles than", "as many triangles as"]);
     let mut text = format!("At equal error, LOD by error takes {triangles} {against}");
@@ -115,11 +116,18 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
     Some(text)
 }
 
+/// The least and the greatest ratio, in the word that [`compared`] has for their mean.
+fn ends(times: &Range, [less, as_much]: [&str; 2]) -> String {
+    let Range { mean, least, most } = *times;
+    let (from, to, word) = if mean >= DIFFERENT { (least, most, less) } else { (1.0 / most, 1.0 / least, as_much) };
+    format!("{} to {} times {word}", short(from), short(to))
+}
+
 /// A ratio in words: above 1 as "times less", below 1 as "times as much".
 fn compared(ratio: f64, [less, as_much]: [&str; 2]) -> String {
     match ratio {
-        _ if ratio >= 1.05 => format!("{} times {less}", short(ratio)),
-        _ if ratio <= 1.0 / 1.05 => format!("{} times {as_much}", short(1.0 / ratio)),
+        _ if ratio >= DIFFERENT => format!("{} times {less}", short(ratio)),
+        _ if ratio <= 1.0 / DIFFERENT => format!("{} times {as_much}", short(1.0 / ratio)),
         _ => format!("about {as_much}"),
     }
 }

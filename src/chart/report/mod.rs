@@ -109,8 +109,8 @@ const ABOUT: &str = "A method is a surface with a level of detail (LOD): a unifo
      paper's LOD), or the error on screen in px. Its settings go from coarse to fine. The ms are the time of tessellating and \
      drawing the whole mesh. The largest error is the largest distance between what is drawn and the reference surface, in both \
      directions. The RMS error is the root of the mean square of these distances over the area. Both are in percent of the \
-     reference surface's bounding diagonal. Normals: the largest angle between a shading normal and the normal of the reference \
-     surface. All rows are in [results.csv](results.csv).";
+     reference surface's bounding diagonal. Normals are compared by the largest angle between a shading normal and the \
+     normal of the reference surface. All rows are in [results.csv](results.csv).";
 
 /// Warns about times on software adapters.
 const SOFTWARE: &str = "This adapter is software. Its triangles and errors are those of any other adapter, but its times \

@@ -89,6 +89,11 @@ fn what_lod_by_error_saves_is_the_ratio_of_costs() {
     let text = said(&[duel((2.0, 100), (2.0, 400))]);
     assert!(text.contains("takes 4.00 times as many triangles as a uniform factor"), "{text}");
     assert!(text.contains("and about as much time."), "{text}");
+    // The range has the word of the mean.
+    assert!(said(&parts).contains("; 1.00 to 4.00 times fewer), and"), "{}", said(&parts));
+    let text = said(&[duel((2.0, 100), (2.0, 400)), duel((4.0, 100), (4.0, 100))]);
+    assert!(text.contains("takes 2.00 times as many triangles as a uniform factor (geometric"), "{text}");
+    assert!(text.contains("; 1.00 to 4.00 times as many), and"), "{text}");
     assert_eq!(saving(&parts, Paper, Cost::Triangles), None, "the white paper's LOD wasn't tried");
     // Without a coarser setting of LOD by error, its least cost isn't known.
     let mut first = duel((8.0, 400), (2.0, 100));

@@ -20,7 +20,7 @@ pub(super) struct PrimitiveReader {
     read: usize,
     points: usize,
     lines: usize,
-    /// PrimitiveReader without normals.
+    /// Primitives without normals.
     without_normals: usize,
     /// Vertices with texture coordinates that aren't finite.
     bad_uvs: usize,

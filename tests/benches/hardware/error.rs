@@ -1,10 +1,7 @@
 //! Equal error on screen: our LOD by error with culling, compared with the peer with the white paper's LOD and clipping.
 
 use pnaen::embed::GpuError;
-use pnaen::internals::Settings;
-use pnaen::internals::TOLERANCE_RANGE;
-use pnaen::internals::Timing;
-use pnaen::internals::{Engine, Measurements};
+use pnaen::internals::{Engine, Measurements, Settings, TOLERANCE_RANGE, Timing};
 use pnaen::tessellate::{Clip, Lod, Partitioning, Tessellation};
 
 use super::Scale;

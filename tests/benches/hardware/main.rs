@@ -21,8 +21,7 @@ mod vulkan;
 
 use std::process::ExitCode;
 
-use pnaen::internals::ARENA_BYTES;
-use pnaen::internals::Engine;
+use pnaen::internals::{ARENA_BYTES, Engine};
 use pnaen::tessellate::Partitioning::{FractionalOdd, Integer};
 
 use copy::Copies;

@@ -4,11 +4,10 @@ use std::time::{Duration, Instant};
 
 use glam::Vec3;
 use pnaen::embed::GpuError;
-use pnaen::internals::Engine;
-use pnaen::internals::Settings;
-use pnaen::internals::{Camera, Scene, Target};
-use pnaen::internals::{CurveNet, PatchLayout as Patch};
-use pnaen::internals::{DRAWING, PassTime, Timing, read_buffer, take_times};
+use pnaen::internals::{
+    Camera, CurveNet, DRAWING, Engine, PassTime, PatchLayout as Patch, Scene, Settings, Target, Timing, read_buffer,
+    take_times,
+};
 use pnaen::tessellate::Vertex;
 use pnaen::tessellate::{Clip, Tessellation};
 

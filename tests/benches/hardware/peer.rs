@@ -5,8 +5,7 @@ use std::rc::Rc;
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 use image::RgbaImage;
-use pnaen::internals::Gpu;
-use pnaen::internals::HullFactors;
+use pnaen::internals::{Gpu, HullFactors};
 
 use super::memory::{Buffer, Owned};
 use super::pipelines::{Bound, FRAME_STAGES, Kind, Layout, tessellating};

@@ -5,11 +5,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 use pnaen::embed::GpuError;
-use pnaen::internals::Engine;
-use pnaen::internals::HullFactors;
-use pnaen::internals::MeshBuilder;
-use pnaen::internals::Settings;
-use pnaen::internals::{Camera, Target};
+use pnaen::internals::{Camera, Engine, HullFactors, MeshBuilder, Settings, Target};
 use pnaen::mesh::{Corner, Material, Mesh, Topology};
 use pnaen::progress::Progress;
 use pnaen::tessellate::{Lod, Partitioning, Tessellation};

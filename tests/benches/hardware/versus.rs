@@ -1,9 +1,7 @@
 //! Measures one subject with our passes and with the peer.
 
 use pnaen::embed::GpuError;
-use pnaen::internals::Engine;
-use pnaen::internals::Timing;
-use pnaen::internals::{CompareError, compare};
+use pnaen::internals::{CompareError, Engine, Timing, compare};
 use pnaen::tessellate::Partitioning;
 use thiserror::Error;
 
