@@ -168,7 +168,7 @@ struct Piece {
 }
 
 /// Returns the flat triangle with its corners at three places of the domain.
-fn piece(patch: &SeenPatch, at: [Vec2; 3]) -> Piece {
+fn piece_of(patch: &SeenPatch, at: [Vec2; 3]) -> Piece {
     let sides = [at[1] - at[0], at[2] - at[1], at[0] - at[2]];
     let second = [along_sides(patch, at[0], sides), along_sides(patch, at[1], sides), along_sides(patch, at[2], sides)];
     let mut differences = [Vec3::ZERO; 7];
@@ -279,7 +279,7 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, step
 /// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1).
 /// If it is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
 pub(super) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
-    let piece = piece(patch, at);
+    let piece = piece_of(patch, at);
     let (mut behind, mut before) = (0.0f32, 0.0f32);
     for difference in piece.differences {
         behind = behind.max(difference.z);

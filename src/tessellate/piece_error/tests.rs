@@ -117,10 +117,10 @@ proptest! {
             let error = piece_error(&patch, tolerance, at);
             prop_assert!(!(error <= tolerance) || px <= f64::from(error) * 1.0005 + 1e-3, "{error}, {px} px");
         }
-        // A tolerance that is larger by a tenth (and a tenth of a px) is kept, where all of the triangle is in view.
+        // A tolerance that is larger by a fifth (and a tenth of a px) is kept, where all of the triangle is in view.
         let corners = at.map(|at| view.clip_from_object * seen_object_point(&net, at).extend(1.0));
         if corners.iter().all(|clip| clip.x.abs() < 0.8 * clip.w && clip.y.abs() < 0.8 * clip.w) {
-            let tolerance = (px * 1.1 + 0.1) as f32;
+            let tolerance = (px * 1.2 + 0.1) as f32;
             let error = piece_error(&patch, tolerance, at);
             prop_assert!(error <= tolerance, "{error}, {px} px");
         }
