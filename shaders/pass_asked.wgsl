@@ -6,6 +6,9 @@
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> patches: array<Patch>;
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
+@group(0) @binding(5) var<storage, read> corners: array<Corner>;
+// A bit for each patch: whether it has a texture.
+@group(0) @binding(6) var<storage, read> textured: array<u32>;
 // Bits of numbers, whose order is that of the numbers since none is negative: the factors of edges; the least factor of each
 // edge; and for each patch first the factor that its heights need inside it (if it is displaced), then its inside factor.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
@@ -42,6 +45,18 @@ fn edges_of(patch_index: u32, first: u32) -> vec3<f32> {
     );
 }
 
+// Whether one triangle shows a patch within the tolerance though points of the surface slide: the patch is flat, and nothing on
+// it depends on where they do.
+fn slides(patch_index: u32, net: ControlNet) -> bool {
+    let has_texture = ((textured[patch_index / 32u] >> (patch_index % 32u)) & 1u) == 1u;
+    if params.displacement != 0u || has_texture {
+        return false;
+    }
+    let own = patches[patch_index].corners;
+    return normals_agree(corners[own[0]].normal, corners[own[1]].normal, corners[own[2]].normal)
+        && flat_error(params.view, net) <= BOUND_SHARE * params.tolerance;
+}
+
 @compute @workgroup_size(ASKED_WORKGROUP)
 fn asked_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -54,8 +69,11 @@ fn asked_factors_main(
     }
     // Patches that are left out ask, too: what others look like doesn't depend on it.
     var asked = edges_of(index, params.factor_count);
-    if params.surface != SURFACE_FLAT {
-        var seen = seen_patch(params.view, load_net(index));
+    let net = load_net(index);
+    if slides(index, net) {
+        asked = vec3<f32>(whole_segments(params.partitioning, 1.0));
+    } else if params.surface != SURFACE_FLAT {
+        var seen = seen_patch(params.view, net);
         asked = asked_factors(&seen, surface_tolerance(), params.partitioning, asked, heights_inside(index));
     }
     for (var i = 0u; i < 3u; i++) {
@@ -75,8 +93,9 @@ fn inside_factors_main(
         return;
     }
     var inside = whole_segments(params.partitioning, heights_inside(index));
-    if params.surface != SURFACE_FLAT {
-        var seen = seen_patch(params.view, load_net(index));
+    let net = load_net(index);
+    if params.surface != SURFACE_FLAT && !slides(index, net) {
+        var seen = seen_patch(params.view, net);
         inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges_of(index, 0u), inside);
     }
     atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));

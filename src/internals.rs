@@ -16,6 +16,7 @@ pub use crate::load::heights::{HeightError, HeightSource};
 pub use crate::load::memory_budget::Budget;
 pub use crate::load::mesh_file::{Format, read};
 pub use crate::load::source::Source;
+pub use crate::measure::optimum::{Compared, Optimum, compare_with_optimum};
 pub use crate::mesh::adjacency::Layout;
 pub use crate::mesh::mesh_builder::MeshBuilder;
 pub use crate::mesh::shapes::Shape;

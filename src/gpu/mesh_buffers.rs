@@ -18,6 +18,8 @@ pub struct MeshBuffers {
     pub curve_sides: wgpu::Buffer,
     pub factor_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
+    /// A bit for each patch: whether it has a texture.
+    pub textured: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
     /// One factor for each edge; then what LOD by error needs: the least factor that each edge may get, and for each patch
     /// its inside factor.
@@ -65,6 +67,7 @@ impl MeshBuffers {
             curve_sides: filled(gpu, "sides", &grouped.sides)?,
             factor_curves: filled(gpu, "edges", &grouped.factor_curves)?,
             material_patches: filled(gpu, "materials", &material_patches)?,
+            textured: filled(gpu, "textured", &textured(mesh, topology))?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             shares: filled(gpu, "shares", &all_shares)?,
@@ -89,6 +92,7 @@ impl MeshBuffers {
             &self.curve_sides,
             &self.factor_curves,
             &self.material_patches,
+            &self.textured,
             &self.curve_nets,
             &self.edge_factors,
             &self.shares,
@@ -108,6 +112,17 @@ fn corners(mesh: &Mesh) -> Vec<Corner> {
         _pad2: [0.0; 2],
     };
     mesh.corners.iter().map(corner).collect()
+}
+
+/// A bit for each patch: whether its material has a texture.
+fn textured(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
+    let mut bits = vec![0; topology.patches.len().div_ceil(32)];
+    for (range, material) in topology.material_patches.iter().zip(&mesh.materials) {
+        if material.texture.is_some() {
+            range.clone().for_each(|patch| bits[patch as usize / 32] |= 1 << (patch % 32));
+        }
+    }
+    bits
 }
 
 fn curve(curve: &crate::mesh::Curve) -> Curve {

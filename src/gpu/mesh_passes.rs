@@ -111,9 +111,17 @@ impl MeshPasses {
     }
 }
 
-fn asked_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 5] {
+fn asked_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 7] {
     let mesh = on.mesh;
-    [(0, on.params), (1, &mesh.points), (2, &mesh.patches), (3, &mesh.curve_nets), (4, &mesh.edge_factors)]
+    [
+        (0, on.params),
+        (1, &mesh.points),
+        (2, &mesh.patches),
+        (3, &mesh.curve_nets),
+        (4, &mesh.edge_factors),
+        (5, &mesh.corners),
+        (6, &mesh.textured),
+    ]
 }
 
 fn factor_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 8] {

@@ -9,17 +9,19 @@ use std::collections::HashMap;
 
 use glam::{DMat4, DVec2, DVec4};
 
+use super::screen_error::ScreenErrorMeasurement;
+use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
-    ControlNet, FIXED_ONE, Inputs, LimitSurface, NOT_CULLED, Partitioning, cull_reason, domain_plan, domain_point,
-    domain_triangle, process,
+    ControlNet, FIXED_ONE, HullFactors, Inputs, LimitSurface, NOT_CULLED, Partitioning, cull_reason, domain_plan,
+    domain_point, domain_triangle, hull_factors, process, tessellate,
 };
 
 /// The number of steps of the grid that each triangle is sampled on.
 const STEPS: u32 = 8;
 
 /// The fewest triangles that were found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Optimum {
     pub triangles: u64,
     /// With these factors of the edges.
@@ -222,7 +224,7 @@ fn ring_triangles(inside: u32) -> u64 {
 
 /// Searches the fewest triangles for these inputs. `starts` are factors of all edges to start from; the search always
 /// starts from what the patches would choose by themselves, too.
-pub fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>]) -> Optimum {
+fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>]) -> Optimum {
     let levels = levels(inputs.tessellation.partitioning);
     let limit = LimitSurface::new(mesh, topology, inputs);
     let mut patches = Vec::new();
@@ -234,14 +236,7 @@ pub fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<
         let sides = topology.patches[index as usize].sides.map(|side| topology.sides[side as usize].edge as usize);
         patches.push(Patch::new(inputs, &net, [sides[1], sides[2], sides[0]]));
     }
-    let threads = std::thread::available_parallelism().map_or(1, |cores| cores.get());
-    let share = patches.len().div_ceil(threads).max(1);
-    let alone: Vec<Option<([u32; 3], u64)>> = std::thread::scope(|scope| {
-        let levels = &levels;
-        let run = |part: &mut [Patch]| part.iter_mut().map(|patch| patch.alone(levels)).collect::<Vec<_>>();
-        let runs: Vec<_> = patches.chunks_mut(share).map(|part| scope.spawn(move || run(part))).collect();
-        runs.into_iter().flat_map(|run| run.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
-    });
+    let alone: Vec<_> = patches.iter_mut().map(|patch| patch.alone(&levels)).collect();
     let lower_bound = alone.iter().map(|own| own.map_or(1, |(_, triangles)| triangles)).sum();
     let mut own_start = vec![levels[0]; topology.edges.len()];
     for (patch, own) in patches.iter().zip(&alone) {
@@ -264,6 +259,33 @@ pub fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<
     }
     let (triangles, edges) = best.unwrap_or_default();
     Optimum { triangles, edges, lower_bound, uniform }
+}
+
+/// LOD by error beside the optimum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// The triangles of LOD by error.
+    pub triangles: u64,
+    /// None if it wasn't searched for.
+    pub best: Option<Optimum>,
+    /// The largest error in px; `None` where a factor is capped.
+    pub error_px: Option<f64>,
+}
+
+/// Tessellates a mesh under these inputs, whose LOD is by error, measures the error, and searches the optimum if asked to.
+pub fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, searches: bool) -> Compared {
+    let own = tessellate(mesh, topology, inputs, None);
+    let triangles = own.triangles.len() as u64;
+    let capped = |factors: &HullFactors| factors.inside > 64.0 || factors.edges.iter().any(|&factor| factor > 64.0);
+    let error_px = (!hull_factors(mesh, topology, inputs).iter().any(capped)).then(|| {
+        let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, triangles);
+        measurement.take(&EmittedChunk::whole(&own.vertices, &own.triangles));
+        measurement.worst().map_or(0.0, |worst| worst.px)
+    });
+    let last = levels(inputs.tessellation.partitioning).pop().unwrap_or(64) as f32;
+    let start = own.edge_factors.iter().map(|factor| factor.min(last) as u32).collect();
+    let best = searches.then(|| optimum(mesh, topology, inputs, &[start]));
+    Compared { triangles, best, error_px }
 }
 
 /// What a patch counts that has no factors within the tolerance.
@@ -387,72 +409,52 @@ impl Search {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
     use crate::mesh::Shape;
     use crate::progress::Progress;
     use crate::render::camera::Camera;
-    use crate::settings::Settings;
-    use crate::tessellate::{Lod, Tessellation, tessellate};
+    use crate::tessellate::{Lod, Tessellation};
     use glam::Vec2;
 
+    /// The optimum, and the triangles of LOD by error.
+    fn compared(shape: Shape, tolerance: f32, partitioning: Partitioning) -> (Optimum, u64) {
+        let (mesh, viewport) = (shape.build(), Vec2::new(640.0, 360.0));
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
+        let view = Camera::framing(&mesh.bounds(), viewport).lod_view(viewport, &mesh.bounds());
+        let inputs = Inputs::new(&tessellation, view);
+        let own = tessellate(&mesh, &topology, &inputs, None);
+        (optimum(&mesh, &topology, &inputs, &[]), own.triangles.len() as u64)
+    }
+
     #[test]
-    #[ignore = "exploration"]
-    fn explore() {
-        let viewport = Vec2::new(1280.0, 720.0);
-        let names: Vec<String> = std::env::var("TRY").unwrap_or("torus".into()).split(',').map(str::to_owned).collect();
-        let tolerances: Vec<f32> =
-            std::env::var("TOL").unwrap_or("1".into()).split(',').map(|t| t.parse().unwrap()).collect();
-        let odd = std::env::var("ODD").is_ok();
-        let opt = std::env::var("NOOPT").is_err();
-        for name in names {
-            let mesh = match Shape::ALL.into_iter().find(|shape| shape.name() == name) {
-                Some(shape) => shape.build(),
-                None => {
-                    crate::load::Source::File(name.clone().into())
-                        .load(&Default::default(), &Progress::new())
-                        .unwrap()
-                        .mesh
-                }
-            };
-            let topology = Topology::build(&mesh, &Progress::new()).unwrap();
-            for &tolerance in &tolerances {
-                let partitioning = if odd { Partitioning::FractionalOdd } else { Partitioning::Integer };
-                let settings = Settings::from(Tessellation {
-                    lod: Lod::Error,
-                    tolerance,
-                    partitioning,
-                    ..Tessellation::default()
-                });
-                let camera = Camera::framing(&mesh.bounds(), viewport);
-                let inputs = settings.inputs(camera.lod_view(viewport, &mesh.bounds()));
-                let time = std::time::Instant::now();
-                let out = tessellate(&mesh, &topology, &inputs, None);
-                let ms = time.elapsed().as_secs_f64() * 1e3;
-                let mut measurement = ScreenErrorMeasurement::new(&mesh, &topology, &inputs, 10000);
-                measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
-                let px = measurement.worst().map_or(0.0, |worst| worst.px);
-                let got = out.triangles.len() as f64;
-                print!(
-                    "{name} {tolerance}: patches {} triangles {got} px/tol {:.3} cpu {ms:.0} ms",
-                    topology.patches.len(),
-                    px / f64::from(tolerance)
-                );
-                if opt {
-                    let start = out.edge_factors.iter().map(|&f| f.min(64.0) as u32).collect();
-                    let time = std::time::Instant::now();
-                    let best = optimum(&mesh, &topology, &inputs, &[start]);
-                    print!(
-                        " optimum {} ratio {:.3} lower {} (opt/lower {:.3}) uniform {:?} {:.1} s",
-                        best.triangles,
-                        got / best.triangles as f64,
-                        best.lower_bound,
-                        best.triangles as f64 / best.lower_bound as f64,
-                        best.uniform,
-                        time.elapsed().as_secs_f64()
-                    );
-                }
-                println!();
-            }
+    fn lod_by_error_has_hardly_more_triangles_than_the_optimum_and_never_more_than_one_factor() {
+        for (shape, tolerance, partitioning) in [
+            (Shape::CubeSplit, 1.0, Partitioning::Integer),
+            (Shape::Icosahedron, 2.0, Partitioning::Integer),
+            (Shape::Cylinder, 0.5, Partitioning::Integer),
+            (Shape::Saddle, 0.25, Partitioning::FractionalOdd),
+            (Shape::Cone, 1.0, Partitioning::FractionalEven),
+            (Shape::CubeSmooth, 1.0, Partitioning::Pow2),
+        ] {
+            let (best, own) = compared(shape, tolerance, partitioning);
+            let what = format!("{shape:?} {tolerance} px {partitioning:?}: {own} triangles, {best:?}");
+            assert!(own as f64 <= 1.2 * best.triangles as f64 && own as f64 >= 0.97 * best.triangles as f64, "{what}");
+            assert!(
+                best.lower_bound <= best.triangles && best.triangles as f64 <= 1.1 * best.lower_bound as f64,
+                "{what}"
+            );
+            assert!(best.uniform.is_none_or(|(_, triangles)| own <= triangles), "{what}");
         }
+    }
+
+    #[test]
+    fn what_is_flat_needs_one_triangle_a_patch() {
+        let (mesh, viewport) = (Shape::CubeSplit.build(), Vec2::new(640.0, 360.0));
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let tessellation =
+            Tessellation { surface: crate::tessellate::Surface::Flat, lod: Lod::Error, ..Tessellation::default() };
+        let view = Camera::framing(&mesh.bounds(), viewport).lod_view(viewport, &mesh.bounds());
+        let best = optimum(&mesh, &topology, &Inputs::new(&tessellation, view), &[]);
+        assert_eq!((best.triangles, best.lower_bound, best.uniform), (12, 12, Some((1, 12))));
     }
 }

@@ -4,7 +4,8 @@
 use glam::Vec3;
 
 use super::control_nets::ControlNets;
-use super::least_factors::{asked_factors, least_edge_factor, least_inside_factor, whole_segments};
+use super::flat_patch::{flat_error, normals_agree};
+use super::least_factors::{BOUND_SHARE, asked_factors, least_edge_factor, least_inside_factor, whole_segments};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::seen_patch;
 use super::texel_lengths::Maps;
@@ -54,7 +55,9 @@ impl ControlNets<'_> {
         for patch in 0..self.topology.patches.len() as u32 {
             let factors = [1, 2, 0].map(|k| self.patch_factor(patch, k) as usize);
             let mut own = factors.map(|factor| least[factor]);
-            if surface != Surface::Flat {
+            if self.slides(inputs, displacement, patch) {
+                own = [whole_segments(partitioning, 1.0); 3];
+            } else if surface != Surface::Flat {
                 let inside = self.heights_inside(inputs, displacement, patch);
                 let tolerance = surface_tolerance(inputs, displacement);
                 own = asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, own, inside);
@@ -64,6 +67,17 @@ impl ControlNets<'_> {
             }
         }
         asked
+    }
+
+    /// Returns whether one triangle shows a patch within the tolerance of LOD by error though points of the surface slide:
+    /// the patch is flat, and nothing on it depends on where they do.
+    pub(super) fn slides(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> bool {
+        let material = self.mesh.materials.get(self.topology.material_of(patch));
+        let corners = self.topology.patch_corners(patch);
+        displacement.is_none()
+            && material.is_none_or(|material| material.texture.is_none())
+            && normals_agree(corners.map(|corner| self.mesh.corners[corner as usize].normal))
+            && flat_error(&inputs.view, &self.patch(patch)) <= BOUND_SHARE * inputs.tessellation.tolerance
     }
 
     /// Returns the index of the factor of a patch's side.
@@ -123,7 +137,7 @@ impl ControlNets<'_> {
         let mut inside = sides[0].max(sides[1]).max(sides[2]);
         if lod == Lod::Error {
             inside = whole_segments(partitioning, self.heights_inside(inputs, displacement, patch));
-            if surface != Surface::Flat {
+            if surface != Surface::Flat && !self.slides(inputs, displacement, patch) {
                 let (seen, tolerance) = (seen_patch(view, net), surface_tolerance(inputs, displacement));
                 let edges = [sides[1], sides[2], sides[0]];
                 inside = least_inside_factor(&seen, tolerance, partitioning, edges, inside);

@@ -1,0 +1,164 @@
+//! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
+//! `--` are mesh files that are measured too, and `cameras=N`, the number of random cameras beside the default one.
+
+mod meshes;
+
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::{Vec2, Vec3};
+use pnaen::internals::{Camera, Compared, Limits, Shape, Source, compare_with_optimum};
+use pnaen::mesh::{Mesh, Topology};
+use pnaen::progress::Progress;
+use pnaen::tessellate::{Inputs, Lod, Partitioning, Tessellation};
+
+const VIEWPORT: Vec2 = Vec2::new(1280.0, 720.0);
+/// In px.
+const TOLERANCES: [f32; 4] = [0.25, 0.5, 1.0, 2.0];
+/// Meshes of more patches are compared with the lower bound alone, since a search takes too long.
+const MOST_PATCHES: usize = 4000;
+
+/// One mesh under one view.
+struct Case {
+    mesh: usize,
+    camera: Camera,
+    tolerance: f32,
+    partitioning: Partitioning,
+}
+
+/// What was measured of a case.
+struct Row {
+    mesh: usize,
+    odd: bool,
+    tolerance: f32,
+    compared: Compared,
+}
+
+impl Row {
+    /// How many times as many triangles as the optimum LOD by error has; `None` if the optimum wasn't searched for.
+    fn times(&self) -> Option<f64> {
+        let best = self.compared.best.as_ref()?;
+        Some(self.compared.triangles as f64 / best.triangles.max(1) as f64)
+    }
+
+    /// How many times as many triangles as its lower bound the optimum has.
+    fn bound(&self) -> Option<f64> {
+        let best = self.compared.best.as_ref()?;
+        Some(best.triangles as f64 / best.lower_bound.max(1) as f64)
+    }
+
+    /// Whether one factor for all edges needs fewer triangles.
+    fn exceeds_uniform(&self) -> bool {
+        let uniform = self.compared.best.as_ref().and_then(|best| best.uniform);
+        uniform.is_some_and(|(_, triangles)| self.compared.triangles > triangles)
+    }
+}
+
+fn meshes(files: &[PathBuf]) -> Vec<(String, Mesh)> {
+    let shapes = Shape::ALL.into_iter().map(|shape| (shape.name().to_owned(), shape.build()));
+    let mut all: Vec<_> = shapes.chain(meshes::all()).collect();
+    for file in files {
+        match Source::File(file.clone()).load(&Limits::default(), &Progress::new()) {
+            Ok(loaded) => all.push((file.file_name().unwrap_or_default().to_string_lossy().into_owned(), loaded.mesh)),
+            Err(error) => eprintln!("{}: {error}", file.display()),
+        }
+    }
+    all
+}
+
+/// The default camera, then random ones: around the mesh, close to it, inside, and without perspective.
+fn cameras(mesh: &Mesh, count: usize) -> Vec<Camera> {
+    let bounds = mesh.bounds();
+    let framing = Camera::framing(&bounds, VIEWPORT);
+    let mut random = fastrand::Rng::with_seed(1);
+    let other = |index: usize| {
+        let near = [2.5, 1.2, 0.6, 0.25, 4.0][index % 5];
+        let part = |random: &mut fastrand::Rng| random.f32() * 2.0 - 1.0;
+        let aside = Vec3::new(part(&mut random), part(&mut random), part(&mut random));
+        Camera {
+            target: bounds.center() + aside * (0.4 * bounds.radius()),
+            azimuth: 360.0 * random.f32(),
+            elevation: 80.0 * part(&mut random),
+            distance: near * bounds.radius(),
+            orthographic: index % 4 == 3,
+        }
+    };
+    std::iter::once(framing).chain((0..count).map(other)).collect()
+}
+
+fn cases(meshes: &[(String, Mesh)], cameras_each: usize) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (index, (_, mesh)) in meshes.iter().enumerate() {
+        for (number, camera) in cameras(mesh, cameras_each).into_iter().enumerate() {
+            for (k, tolerance) in TOLERANCES.into_iter().enumerate() {
+                // The default camera with every tolerance, the others with one each.
+                if number == 0 || number % 4 == k {
+                    for partitioning in [Partitioning::Integer, Partitioning::FractionalOdd] {
+                        cases.push(Case { mesh: index, camera, tolerance, partitioning });
+                    }
+                }
+            }
+        }
+    }
+    cases
+}
+
+fn measure(mesh: &Mesh, topology: &Topology, case: &Case) -> Row {
+    let Case { camera, tolerance, partitioning, .. } = *case;
+    let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
+    let inputs = Inputs::new(&tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()));
+    let compared = compare_with_optimum(mesh, topology, &inputs, topology.patches.len() <= MOST_PATCHES);
+    Row { mesh: case.mesh, odd: partitioning == Partitioning::FractionalOdd, tolerance, compared }
+}
+
+fn geometric_mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value.ln(), count + 1));
+    (sum / f64::from(count.max(1))).exp()
+}
+
+fn print_row(name: &str, rows: &[&Row]) {
+    let times: Vec<f64> = rows.iter().filter_map(|row| row.times()).collect();
+    let bound = geometric_mean(rows.iter().filter_map(|row| row.bound()));
+    let more = rows.iter().filter(|row| row.exceeds_uniform()).count();
+    let part = |row: &&&Row| row.compared.error_px.map(|px| px / f64::from(row.tolerance));
+    let error = rows.iter().filter_map(|row| part(&row)).fold(0.0, f64::max);
+    let capped = rows.iter().filter(|row| row.compared.error_px.is_none()).count();
+    let largest = times.iter().copied().fold(0.0, f64::max);
+    let mean = geometric_mean(times.iter().copied());
+    println!("| {name} | {} | {mean:.3} | {largest:.3} | {bound:.3} | {more} | {error:.3} | {capped} |", rows.len());
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let cameras_each =
+        arguments.iter().find_map(|argument| argument.strip_prefix("cameras=")?.parse().ok()).unwrap_or(20);
+    let files: Vec<PathBuf> = arguments.iter().filter(|argument| !argument.contains('=')).map(PathBuf::from).collect();
+    let meshes = meshes(&files);
+    let topologies: Vec<Topology> = meshes.iter().map(|(_, mesh)| Topology::of(mesh)).collect();
+    let cases = cases(&meshes, cameras_each);
+    let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {
+            scope.spawn(|| {
+                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let row = measure(&meshes[case.mesh].1, &topologies[case.mesh], case);
+                    rows.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(row);
+                }
+            });
+        }
+    });
+    let rows = rows.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    for odd in [false, true] {
+        println!("\n{}, {}x{} px\n", if odd { "Fractional-odd" } else { "Integer" }, VIEWPORT.x, VIEWPORT.y);
+        println!(
+            "| mesh | cases | triangles over the optimum, geometric mean | largest | optimum over its lower bound | cases with more than one factor for all | largest error over the tolerance | capped cases |"
+        );
+        println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+        for (index, (name, mesh)) in meshes.iter().enumerate() {
+            let own: Vec<&Row> = rows.iter().filter(|row| row.mesh == index && row.odd == odd).collect();
+            print_row(&format!("{name} ({})", mesh.triangles.len()), &own);
+        }
+        print_row("all", &rows.iter().filter(|row| row.odd == odd).collect::<Vec<_>>());
+    }
+}
