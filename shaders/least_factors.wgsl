@@ -118,7 +118,33 @@ fn domain_place(plan: DomainPlan, i: u32) -> vec2<f32> {
     return vec2<f32>(domain_point(plan, i)) / f32(FIXED_ONE);
 }
 
-// Returns the largest error, in px, of the triangles `first` to `end` of a pattern. It ends early with the first error that
+// Returns the error of triangle `t` of a pattern, in px; a large number in place of NaN.
+fn triangle_error_at(seen: ptr<function, SeenPatch>, tolerance: f32, plan: DomainPlan, t: u32) -> f32 {
+    let at = domain_triangle(plan, t);
+    let p = domain_place(plan, at.x);
+    let error = piece_error(seen, tolerance, p, domain_place(plan, at.y), domain_place(plan, at.z));
+    return select(3.4e38, error, error < 3.4e38);
+}
+
+// Returns whether one triangle is within the tolerance in place of the patch, with these least factors of its edges and of its
+// inside.
+fn single_suffices(
+    seen: ptr<function, SeenPatch>,
+    tolerance: f32,
+    partitioning: u32,
+    edges: vec3<f32>,
+    inside: f32,
+) -> bool {
+    let factors = process(partitioning, vec3<f32>(1.0), 1.0);
+    let whole = max(max(max(edges.x, edges.y), edges.z), inside) <= 1.0;
+    if !(whole && patch_is_minimal(factors)) {
+        return false;
+    }
+    return triangle_error_at(seen, tolerance, domain_plan(factors), 0u) <= tolerance;
+}
+
+// Returns the largest error, in px, of the triangles `first` to `end` of a pattern, each computed by one invocation of the
+// workgroup (see search_group.wgsl); or of the first TOGETHER with one that
 // isn't within the tolerance.
 fn triangles_error(
     seen: ptr<function, SeenPatch>,
@@ -129,26 +155,16 @@ fn triangles_error(
 ) -> f32 {
     let plan = domain_plan(factors);
     var worst = 0.0;
-    for (var t = first; t < end; t++) {
-        let at = domain_triangle(plan, t);
-        let p = domain_place(plan, at.x);
-        let error = piece_error(seen, tolerance, p, domain_place(plan, at.y), domain_place(plan, at.z));
-        // Written like this, NaN isn't within the tolerance.
-        if !(error <= tolerance) {
-            return error;
+    var start = first;
+    while start < end && worst <= tolerance {
+        var own = 0.0;
+        if start + lane < end {
+            own = triangle_error_at(seen, tolerance, plan, start + lane);
         }
-        worst = max(worst, error);
+        worst = max(worst, largest_of_group(own));
+        start += TOGETHER;
     }
     return worst;
-}
-
-// Returns the error of one triangle in place of the patch, if the partitioning allows that.
-fn single_error(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning: u32) -> f32 {
-    let factors = process(partitioning, vec3<f32>(1.0), 1.0);
-    if !patch_is_minimal(factors) {
-        return 3.4e38;
-    }
-    return triangles_error(seen, tolerance, factors, 0u, 1u);
 }
 
 // Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
@@ -183,7 +199,7 @@ fn least_inner_factor(seen: ptr<function, SeenPatch>, tolerance: f32, partitioni
 }
 
 // Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and 2.
+// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and 4.
 fn least_row_factor(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -192,7 +208,7 @@ fn least_row_factor(
     least: f32,
     inside: f32,
 ) -> f32 {
-    let most = min(max(least, inside) + 2.0, last_factor(partitioning));
+    let most = min(factor_from(partitioning, max(least, inside) + 4.0), last_factor(partitioning));
     var factor = least;
     // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match.
     while factor <= most {
@@ -207,7 +223,8 @@ fn least_row_factor(
 }
 
 // Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0. `least` are the least that these may
-// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`.
+// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`. Not for patches of which
+// one triangle suffices, or with a least factor above 64.
 fn asked_factors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -216,10 +233,6 @@ fn asked_factors(
     least_inside: f32,
 ) -> vec3<f32> {
     let within = BOUND_SHARE * tolerance;
-    let largest = max(max(max(least.x, least.y), least.z), least_inside);
-    if largest > 64.0 || (largest <= 1.0 && single_error(seen, within, partitioning) <= within) {
-        return least;
-    }
     var best = least;
     var fewest = 3.4e38;
     var inside = least_inner_factor(seen, within, partitioning, least_inside);
@@ -247,7 +260,8 @@ fn asked_factors(
 }
 
 // Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these
-// factors of the edges U == 0, V == 0 and W == 0; BEYOND_LAST if none does.
+// factors of the edges U == 0, V == 0 and W == 0; BEYOND_LAST if none does. Not for patches of which one triangle suffices, or
+// with a factor above 64.
 fn least_inside_factor(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -256,13 +270,6 @@ fn least_inside_factor(
     least: f32,
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
-    let largest = max(max(max(edges.x, edges.y), edges.z), least);
-    if largest <= 1.0 && single_error(seen, within, partitioning) <= within {
-        return 1.0;
-    }
-    if largest > 64.0 {
-        return BEYOND_LAST;
-    }
     var inside = least_inner_factor(seen, within, partitioning, least);
     while inside <= 64.0 {
         let factors = process(partitioning, edges, inside);

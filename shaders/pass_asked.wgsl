@@ -1,5 +1,6 @@
 // LOD by error: every patch asks its edges for factors, of which they get the largest; then every patch takes the least inside
-// factor that is enough beside them.
+// factor that is enough beside them. Both take two passes: one with an invocation for each patch, which is enough for those
+// that one triangle shows; and one in which a workgroup searches the factors of one of the other patches after another.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -10,11 +11,9 @@
 // A bit for each patch: whether it has a texture.
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
 // Bits of numbers, whose order is that of the numbers since none is negative: the factors of edges; the least factor of each
-// edge; and for each patch first the factor that its heights need inside it (if it is displaced), then its inside factor.
+// edge; for each patch first the factor that its heights need inside it (if it is displaced), then its inside factor; the
+// numbers of patches that are searched in each of the two passes; and those patches.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-
-// Invocations of a workgroup: few, since one patch may take much longer than another.
-const ASKED_WORKGROUP: u32 = 64u;
 
 // Where the inside factor of a patch is.
 fn inside_at(patch_index: u32) -> u32 {
@@ -57,46 +56,141 @@ fn slides(patch_index: u32, net: ControlNet) -> bool {
         && flat_error(params.view, net) <= BOUND_SHARE * params.tolerance;
 }
 
-@compute @workgroup_size(ASKED_WORKGROUP)
+// Where the number of patches is that the first (0) or the second (1) search is for.
+fn searched_count_at(search: u32) -> u32 {
+    return 2u * params.factor_count + params.patch_count + search;
+}
+
+// Where the `i`-th of those patches is.
+fn searched_at(i: u32) -> u32 {
+    return searched_count_at(2u) + i;
+}
+
+fn search_later(search: u32, patch_index: u32) {
+    let i = atomicAdd(&edge_factors[searched_count_at(search)], 1u);
+    atomicStore(&edge_factors[searched_at(i)], patch_index);
+}
+
+fn ask(patch_index: u32, asked: vec3<f32>) {
+    for (var i = 0u; i < 3u; i++) {
+        let edge = patches[patch_index].factors[(i + 1u) % 3u] >> 3u;
+        atomicMax(&edge_factors[edge], bitcast<u32>(asked[i]));
+    }
+}
+
+// Patches that are left out ask, too: what others look like doesn't depend on it.
+@compute @workgroup_size(256)
 fn asked_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let index = (workgroup.y * workgroups.x + workgroup.x) * ASKED_WORKGROUP + local;
+    let index = grid_index(workgroup, workgroups, local);
     if index >= params.patch_count {
         return;
     }
-    // Patches that are left out ask, too: what others look like doesn't depend on it.
-    var asked = edges_of(index, params.factor_count);
+    let least = edges_of(index, params.factor_count);
     let net = load_net(index);
     if slides(index, net) {
-        asked = vec3<f32>(whole_segments(params.partitioning, 1.0));
-    } else if params.surface != SURFACE_FLAT {
-        var seen = seen_patch(params.view, net);
-        asked = asked_factors(&seen, surface_tolerance(), params.partitioning, asked, heights_inside(index));
+        ask(index, vec3<f32>(whole_segments(params.partitioning, 1.0)));
+        return;
     }
-    for (var i = 0u; i < 3u; i++) {
-        let edge = patches[index].factors[(i + 1u) % 3u] >> 3u;
-        atomicMax(&edge_factors[edge], bitcast<u32>(asked[i]));
+    let inside = heights_inside(index);
+    var seen = seen_patch(params.view, net);
+    let within = BOUND_SHARE * surface_tolerance();
+    let is_known = params.surface == SURFACE_FLAT || max(max(max(least.x, least.y), least.z), inside) > 64.0;
+    if is_known || single_suffices(&seen, within, params.partitioning, least, inside) {
+        ask(index, least);
+    } else {
+        search_later(0u, index);
     }
 }
 
-@compute @workgroup_size(ASKED_WORKGROUP)
+// The patch that a workgroup searches.
+var<workgroup> group_patch: u32;
+
+const NO_MORE: u32 = 0xffffffffu;
+
+// Returns the `i`-th patch that is searched, the same for all invocations of the workgroup; NO_MORE if there are fewer.
+fn searched_patch(search: u32, i: u32) -> u32 {
+    if lane == 0u {
+        group_patch = NO_MORE;
+        if i < atomicLoad(&edge_factors[searched_count_at(search)]) {
+            group_patch = atomicLoad(&edge_factors[searched_at(i)]);
+        }
+    }
+    return workgroupUniformLoad(&group_patch);
+}
+
+@compute @workgroup_size(TOGETHER)
+fn search_asked_factors_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    var i = workgroup.x;
+    var index = searched_patch(0u, i);
+    while index != NO_MORE {
+        var seen = seen_patch(params.view, load_net(index));
+        let least = edges_of(index, params.factor_count);
+        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
+        if lane == 0u {
+            ask(index, asked);
+        }
+        i += workgroups.x;
+        index = searched_patch(0u, i);
+    }
+}
+
+@compute @workgroup_size(256)
 fn inside_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let index = (workgroup.y * workgroups.x + workgroup.x) * ASKED_WORKGROUP + local;
+    let index = grid_index(workgroup, workgroups, local);
     if index >= params.patch_count {
         return;
     }
-    var inside = whole_segments(params.partitioning, heights_inside(index));
+    let heights = heights_inside(index);
+    let edges = edges_of(index, 0u);
     let net = load_net(index);
+    var inside = whole_segments(params.partitioning, heights);
     if params.surface != SURFACE_FLAT && !slides(index, net) {
         var seen = seen_patch(params.view, net);
-        inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges_of(index, 0u), inside);
+        if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, edges, heights) {
+            inside = 1.0;
+        } else if max(max(max(edges.x, edges.y), edges.z), heights) > 64.0 {
+            inside = BEYOND_LAST;
+        } else {
+            search_later(1u, index);
+            return;
+        }
     }
     atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
+}
+
+@compute @workgroup_size(TOGETHER)
+fn search_inside_factors_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    var i = workgroup.x;
+    var index = searched_patch(1u, i);
+    while index != NO_MORE {
+        var seen = seen_patch(params.view, load_net(index));
+        let edges = edges_of(index, 0u);
+        let heights = heights_inside(index);
+        // The inside factor takes the place of the heights', which all invocations have read now.
+        workgroupBarrier();
+        let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights);
+        if lane == 0u {
+            atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
+        }
+        i += workgroups.x;
+        index = searched_patch(1u, i);
+    }
 }

@@ -315,6 +315,7 @@ impl Shot {
             results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));
         stats.leaks = leaks;
         stats.max_error_px = results.screen_error.map(|worst| worst.px);
+        stats.patches_flat = results.flat_patches;
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(SplitSide::Right);

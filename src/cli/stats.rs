@@ -50,6 +50,9 @@ pub(super) struct Stats {
     /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
     /// nothing is in view.
     pub max_error_px: Option<f64>,
+    /// Patches that LOD by error shows as one triangle because their surface is flat, though its points slide: their error is
+    /// the distance to the nearest point of the surface. None if errors weren't measured.
+    pub patches_flat: Option<u64>,
     /// Factors that ask for more segments than the partitioning has: those of edges, or of sides if factors are as published
     /// or from a file; under LOD by error, inside factors as well.
     pub factors_capped: u64,
@@ -215,6 +218,7 @@ impl Stats {
             folds: measured.folds,
             not_finite: measured.not_finite,
             max_error_px: None,
+            patches_flat: None,
             factors_capped: 0,
             factors_file: None,
             accuracy: None,

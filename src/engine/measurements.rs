@@ -34,6 +34,9 @@ pub struct MeasurementResults {
     pub survey: Option<Measured>,
     /// None also if nothing is in view.
     pub screen_error: Option<ScreenError>,
+    /// The patches that LOD by error found to be flat, whose error is the distance to the nearest point of the surface;
+    /// counted with the error.
+    pub flat_patches: Option<u64>,
     pub deviation: Option<DeviationField>,
     /// None also if nothing is emitted that has an area.
     pub accuracy: Option<Accuracy>,
@@ -75,6 +78,7 @@ impl Engine {
         self.visit(scene, &mut visitors)?;
         Ok(MeasurementResults {
             survey: survey.map(Survey::finish),
+            flat_patches: screen_error.as_ref().map(ScreenErrorMeasurement::flat_patches),
             screen_error: screen_error.and_then(|measurement| measurement.worst()),
             deviation: deviation.and_then(|measurement| measurement.finish().ok()),
             accuracy: accuracy.and_then(AccuracyMeasurement::finish),

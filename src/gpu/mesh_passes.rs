@@ -16,7 +16,9 @@ pub(super) struct MeshPasses {
     edge_factors: OnceLock<BoundPass>,
     heights_inside: OnceLock<BoundPass>,
     asked_factors: OnceLock<BoundPass>,
+    search_asked_factors: OnceLock<BoundPass>,
     inside_factors: OnceLock<BoundPass>,
+    search_inside_factors: OnceLock<BoundPass>,
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
 }
@@ -78,14 +80,18 @@ impl MeshPasses {
         BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
     }
 
-    /// The factors of every edge under LOD by error: the largest that its patches ask for.
-    pub(super) fn asked_factors(&self, on: &PassInputs) -> Bound<'_> {
-        BoundPass::once(&self.asked_factors, on.gpu, &on.pipelines.asked_factors, &asked_buffers(on))
-    }
-
-    /// The inside factor of every patch under LOD by error.
-    pub(super) fn inside_factors(&self, on: &PassInputs) -> Bound<'_> {
-        BoundPass::once(&self.inside_factors, on.gpu, &on.pipelines.inside_factors, &asked_buffers(on))
+    /// The passes of LOD by error, in their order: what patches ask their edges for, where one triangle is enough; the search
+    /// for the other patches; and the same for the factors inside.
+    pub(super) fn asked<'a>(&'a self, on: &PassInputs) -> Result<[&'a BoundPass; 4], GpuError> {
+        let (buffers, pipelines) = (asked_buffers(on), on.pipelines);
+        // What searches needs neither normals nor textures.
+        let searching = &buffers[..5];
+        Ok([
+            BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?,
+            BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, searching)?,
+            BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?,
+            BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, searching)?,
+        ])
     }
 
     /// The level at which heights are looked up on every edge.

@@ -41,7 +41,7 @@ pub use error::GpuError;
 pub(crate) use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
 #[cfg(test)]
-pub(crate) use pipelines::{ASKED_WORKGROUP, GRID_WIDTH};
+pub(crate) use pipelines::GRID_WIDTH;
 pub(crate) use pipelines::{ComputePipeline, ComputePipelines, ShaderModule, WORKGROUP, bind_group, grid};
 pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
 #[cfg(test)]

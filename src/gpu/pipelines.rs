@@ -7,8 +7,8 @@ use wgpu::util::DeviceExt;
 use super::lazy::Lazy;
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, FLAT_PATCH,
-    LEAST_FACTORS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, PIECE_ERROR, SURFACE, TYPES, WORKGROUP_SCAN,
-    WgslFile, wgsl,
+    LEAST_FACTORS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, PIECE_ERROR, SEARCH_GROUP, SURFACE, TYPES,
+    WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -22,8 +22,18 @@ pub(super) static PASS_DEFORM: WgslFile = wgsl!("pass_deform", DEFORM, NORMAL, T
 pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_NET, LOADS, SURFACE, TYPES);
 pub(super) static PASS_FACTORS: WgslFile =
     wgsl!("pass_factors", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOD, SURFACE, TYPES);
-pub(super) static PASS_ASKED: WgslFile =
-    wgsl!("pass_asked", DISPLACEMENT_FACTOR, FLAT_PATCH, LEAST_FACTORS, LOAD_NET, LOADS, PIECE_ERROR, SURFACE, TYPES);
+pub(super) static PASS_ASKED: WgslFile = wgsl!(
+    "pass_asked",
+    DISPLACEMENT_FACTOR,
+    FLAT_PATCH,
+    LEAST_FACTORS,
+    LOAD_NET,
+    LOADS,
+    PIECE_ERROR,
+    SEARCH_GROUP,
+    SURFACE,
+    TYPES
+);
 pub(super) static PASS_LEVELS: WgslFile =
     wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, DISPLACEMENT_SHARES, TYPES);
 pub(super) static PASS_COUNTS: WgslFile =
@@ -139,7 +149,9 @@ pub struct ComputePipelines {
     pub edge_factors: ComputePipeline,
     pub heights_inside: ComputePipeline,
     pub asked_factors: ComputePipeline,
+    pub search_asked_factors: ComputePipeline,
     pub inside_factors: ComputePipeline,
+    pub search_inside_factors: ComputePipeline,
     pub factor_levels: ComputePipeline,
     pub point_levels: ComputePipeline,
     pub counts: ComputePipeline,
@@ -177,7 +189,9 @@ impl ComputePipelines {
             edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
             heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
             asked_factors: ComputePipeline::new(&asked, "asked_factors_main"),
+            search_asked_factors: ComputePipeline::new(&asked, "search_asked_factors_main"),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
+            search_inside_factors: ComputePipeline::new(&asked, "search_inside_factors_main"),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),
@@ -224,17 +238,9 @@ pub(crate) fn bind_group(
 /// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
 pub(crate) const WORKGROUP: u32 = 256;
 
-/// `ASKED_WORKGROUP` in `shaders/pass_asked.wgsl`: few invocations, since one patch may take much longer than another.
-pub(crate) const ASKED_WORKGROUP: u32 = 64;
-
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
 pub(crate) fn grid(items: u32) -> [u32; 3] {
-    grid_of(items, WORKGROUP)
-}
-
-/// The same for workgroups of another size.
-pub(super) fn grid_of(items: u32, workgroup: u32) -> [u32; 3] {
-    let workgroups = items.div_ceil(workgroup);
+    let workgroups = items.div_ceil(WORKGROUP);
     [workgroups.min(GRID_WIDTH), workgroups.div_ceil(GRID_WIDTH), 1]
 }
 

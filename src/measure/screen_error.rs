@@ -9,9 +9,12 @@ use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Vertex};
 
 /// Measures the largest distance on screen between an emitted point and the point of the limit surface at the same place of the
-/// domain. It is at least the distance to the nearest point of that surface, and is the distance that LOD by error bounds.
+/// domain. It is at least the distance to the nearest point of that surface, and is the distance that LOD by error bounds. On flat
+/// patches whose points may slide, the nearest point of the surface is taken, as LOD by error does.
 pub(crate) struct ScreenErrorMeasurement<'a> {
     limit: LimitSurface<'a>,
+    inputs: Inputs,
+    patches: u32,
     screen: Screen,
     /// The number of segments that each edge of a triangle is divided into for sampling.
     steps: u32,
@@ -46,7 +49,9 @@ impl<'a> ScreenErrorMeasurement<'a> {
             triangles if triangles <= 10 * FINE => 4,
             _ => 2,
         };
-        Self { limit: LimitSurface::new(mesh, topology, inputs), screen: Screen::new(&inputs.view), steps, worst: None }
+        let limit = LimitSurface::new(mesh, topology, inputs);
+        let patches = topology.patches.len() as u32;
+        Self { limit, inputs: *inputs, patches, screen: Screen::new(&inputs.view), steps, worst: None }
     }
 
     /// The worst place so far; `None` if nothing was in view.
@@ -54,22 +59,27 @@ impl<'a> ScreenErrorMeasurement<'a> {
         self.worst
     }
 
+    /// The number of patches whose points may slide.
+    pub(crate) fn flat_patches(&self) -> u64 {
+        (0..self.patches).filter(|&patch| self.limit.slides(&self.inputs, patch)).count() as u64
+    }
+
     fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Option<ScreenError> {
-        let mut known = None;
+        let mut known: Option<(u32, ControlNet, bool)> = None;
         let worst = triangles.iter().filter_map(|triangle| {
             let corners = triangle.map(|i| &vertices[i as usize]);
             // Triangles come patch after patch.
             let patch = corners[0].patch();
-            let (_, net) =
-                known.take().filter(|(of, _)| *of == patch).unwrap_or_else(|| (patch, self.limit.net(patch)));
-            let worst = self.worst_on(corners, &net);
-            known = Some((patch, net));
+            let found = || (patch, self.limit.net(patch), self.limit.slides(&self.inputs, patch));
+            let (_, net, slides) = known.take().filter(|(of, ..)| *of == patch).unwrap_or_else(found);
+            let worst = self.worst_on(corners, &net, slides);
+            known = Some((patch, net, slides));
             worst
         });
         worst.reduce(worse)
     }
 
-    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet) -> Option<ScreenError> {
+    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, slides: bool) -> Option<ScreenError> {
         let (patch, steps) = (corners[0].patch(), self.steps);
         let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
         let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
@@ -82,7 +92,10 @@ impl<'a> ScreenErrorMeasurement<'a> {
                 let weights = [i, j, steps - i - j].map(|x| f64::from(x) / f64::from(steps));
                 let [u, v] = [0, 1].map(|k| (0..3).map(|c| weights[c] * domains[c][k]).sum());
                 let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
-                let limit = self.limit.position(patch, net, u, v);
+                let limit = match slides {
+                    true => self.limit.nearest(net, u, v, emitted),
+                    false => self.limit.position(patch, net, u, v),
+                };
                 let px = self.screen.distance_px(emitted, limit);
                 worst = worst.into_iter().chain(px.map(|px| ScreenError { px, patch, emitted, limit })).reduce(worse);
             }

@@ -209,8 +209,8 @@ impl Choice for Lod {
             Self::Error => (
                 "error",
                 "Error",
-                "The fewest segments that keep the triangles within a tolerance, in px, of the surface (Wang 1984; Filip \
-                 et al. 1986). Edges have 1 to 5, 8, 16, 32 or 64 segments, and flat places stay untessellated.",
+                "About the fewest triangles that stay within a tolerance, in px, of the surface (bounds on second \
+                 derivatives: Filip et al. 1986). Flat places stay untessellated.",
             ),
             Self::EdgeLength => (
                 "edge-length",

@@ -110,29 +110,42 @@ fn domain_place(plan: &DomainPlan, i: u32) -> Vec2 {
     Vec2::new(u as f32, v as f32) / FIXED_ONE as f32
 }
 
-/// Returns the largest error, in px, of the triangles `first` to `end` of a pattern. It ends early with the first error
+/// Returns the error of triangle `t` of a pattern, in px; a large number in place of NaN.
+fn triangle_error_at(patch: &SeenPatch, tolerance: f32, plan: &DomainPlan, t: u32) -> f32 {
+    let error = piece_error(patch, tolerance, domain_triangle(plan, t).map(|i| domain_place(plan, i)));
+    if error < 3.4e38 { error } else { 3.4e38 }
+}
+
+/// Returns whether one triangle is within the tolerance in place of the patch, with these least factors of its edges and of
+/// its inside.
+fn single_suffices(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    edges: [f32; 3],
+    inside: f32,
+) -> bool {
+    let factors = process(partitioning, [1.0; 3], 1.0);
+    let whole = edges[0].max(edges[1]).max(edges[2]).max(inside) <= 1.0;
+    whole && patch_is_minimal(factors) && triangle_error_at(patch, tolerance, &domain_plan(factors), 0) <= tolerance
+}
+
+/// How many triangles are looked at together, before the first that isn't within the tolerance ends the search.
+pub(crate) const TOGETHER: u32 = 32;
+
+/// Returns the largest error, in px, of the triangles `first` to `end` of a pattern; or of the first [`TOGETHER`] with one
 /// that isn't within the tolerance.
 fn triangles_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, first: u32, end: u32) -> f32 {
     let plan = domain_plan(factors);
     let mut worst = 0.0f32;
-    for t in first..end {
-        let error = piece_error(patch, tolerance, domain_triangle(&plan, t).map(|i| domain_place(&plan, i)));
-        // Written like this, NaN isn't within the tolerance.
-        if !(error <= tolerance) {
-            return error;
+    let mut start = first;
+    while start < end && worst <= tolerance {
+        for t in start..end.min(start + TOGETHER) {
+            worst = worst.max(triangle_error_at(patch, tolerance, &plan, t));
         }
-        worst = worst.max(error);
+        start += TOGETHER;
     }
     worst
-}
-
-/// Returns the error of one triangle in place of the patch, if the partitioning allows that.
-fn single_error(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning) -> f32 {
-    let factors = process(partitioning, [1.0; 3], 1.0);
-    if !patch_is_minimal(factors) {
-        return 3.4e38;
-    }
-    triangles_error(patch, tolerance, factors, 0, 1)
 }
 
 /// Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
@@ -165,7 +178,7 @@ fn least_inner_factor(patch: &SeenPatch, tolerance: f32, partitioning: Partition
 }
 
 /// Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and 2.
+/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and 4.
 fn least_row_factor(
     patch: &SeenPatch,
     tolerance: f32,
@@ -174,7 +187,7 @@ fn least_row_factor(
     least: f32,
     inside: f32,
 ) -> f32 {
-    let most = (least.max(inside) + 2.0).min(last_factor(partitioning));
+    let most = factor_from(partitioning, least.max(inside) + 4.0).min(last_factor(partitioning));
     let mut factor = least;
     // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match.
     while factor <= most {
@@ -199,7 +212,7 @@ pub(super) fn asked_factors(
 ) -> [f32; 3] {
     let within = BOUND_SHARE * tolerance;
     let largest = least[0].max(least[1]).max(least[2]).max(least_inside);
-    if largest > 64.0 || (largest <= 1.0 && single_error(patch, within, partitioning) <= within) {
+    if largest > 64.0 || single_suffices(patch, within, partitioning, least, least_inside) {
         return least;
     }
     let mut best = least;
@@ -239,7 +252,7 @@ pub(super) fn least_inside_factor(
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
     let largest = edges[0].max(edges[1]).max(edges[2]).max(least);
-    if largest <= 1.0 && single_error(patch, within, partitioning) <= within {
+    if single_suffices(patch, within, partitioning, edges, least) {
         return 1.0;
     }
     if largest > 64.0 {

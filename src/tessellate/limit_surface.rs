@@ -1,11 +1,11 @@
 //! The limit surface of a tessellation, which it converges to as its factors grow, with displacement.
 
-use glam::{DVec3, Vec3};
+use glam::{DMat2, DVec2, DVec3, Vec3};
 
 use super::Inputs;
 use super::control_nets::ControlNets;
 use super::mesh_displacement::MeshDisplacement;
-use super::{ControlNet, Surface};
+use super::{ControlNet, Lod, Surface};
 use crate::mesh::{Mesh, Topology};
 
 /// The surface that a tessellation approximates, evaluated in f64 at any point.
@@ -35,6 +35,42 @@ impl<'a> LimitSurface<'a> {
         let moved =
             self.displacement.as_ref().map(|displacement| displacement.exact_displacement(patch, [u, v, 1.0 - u - v]));
         self.surface(net, u, v) + moved.unwrap_or_default()
+    }
+
+    /// Returns whether LOD by error shows a patch as one triangle since its surface is flat, though its points slide: see
+    /// `flat_patch.rs`. The distance that counts there is the one to the nearest point.
+    pub(crate) fn slides(&self, inputs: &Inputs, patch: u32) -> bool {
+        inputs.tessellation.lod == Lod::Error && self.nets.slides(inputs, self.displacement.as_ref(), patch)
+    }
+
+    /// Returns the point of a patch that is nearest to `target`, without displacement: by Newton's method, starting from
+    /// the weights `u` and `v`. A point that is farther than where it started is never returned.
+    pub(crate) fn nearest(&self, net: &ControlNet, u: f64, v: f64, target: DVec3) -> DVec3 {
+        const STEP: f64 = 1e-4;
+        let (mut best, mut at) = (self.surface(net, u, v), DVec2::new(u, v));
+        for _ in 0..12 {
+            let point = self.surface(net, at.x, at.y);
+            if point.distance(target) < best.distance(target) {
+                best = point;
+            }
+            let along_u = (self.surface(net, at.x + STEP, at.y) - point) / STEP;
+            let along_v = (self.surface(net, at.x, at.y + STEP) - point) / STEP;
+            let metric = DMat2::from_cols_array(&[
+                along_u.dot(along_u),
+                along_u.dot(along_v),
+                along_u.dot(along_v),
+                along_v.dot(along_v),
+            ]);
+            let aside = target - point;
+            let step = metric.inverse() * DVec2::new(along_u.dot(aside), along_v.dot(aside));
+            if !step.is_finite() {
+                break;
+            }
+            // Back into the patch.
+            at = (at + step).max(DVec2::ZERO);
+            at /= (at.x + at.y).max(1.0);
+        }
+        best
     }
 
     /// Returns the point without displacement.

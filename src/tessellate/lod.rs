@@ -1,5 +1,5 @@
 //! Level of detail: the tessellation factor of an edge, by its length on screen or its distance from the eye. Twin:
-//! `shaders/lod.wgsl`. LOD by error is in `error.rs`.
+//! `shaders/lod.wgsl`. LOD by error is in `least_factors.rs`.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
@@ -15,8 +15,7 @@ pub enum Lod {
     Paper = 1,
     /// As the white paper's, but edges that are not all in front of the eye are measured where they come nearest.
     EdgeLength = 2,
-    /// The fewest segments that keep every edge and every inside within a tolerance in px of their surface (Wang 1984; Filip
-    /// et al. 1986), of numbers whose rows nest: 1 to 5, 8, 16, 32, 64. What is flat stays whole.
+    /// About the fewest triangles that stay within a tolerance in px of their surface: see `least_factors.rs`.
     Error = 3,
     /// The factor up to a near distance from the eye, 1 from a far one on, and linear between; an edge takes the mean of its
     /// ends. What engines commonly do (Unity's `UnityDistanceBasedTess`, say).

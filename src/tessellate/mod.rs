@@ -108,7 +108,7 @@ pub(crate) mod shared_constants {
         FACTOR_VALUE, FIXED_HALF, FIXED_ONE, SUBTRIANGULATED,
     };
     pub(crate) use super::flat_patch::AGREEING;
-    pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE};
+    pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, TOGETHER};
     pub(crate) use super::normal::CANCELLED;
     pub(crate) use super::piece_error::FINEST_GRID;
     pub(crate) use super::surface::UNIT;

@@ -131,5 +131,5 @@ fn help_names_the_source_of_every_technique() {
     said("on", &["McDonald 2011"]);
     said("fractional-odd", &["Direct3D 11.3"]);
     said("subtriangulation", &["Vlachos et al. 2001, figure 4"]);
-    said("error", &["Wang 1984", "Filip et al. 1986"]);
+    said("error", &["Filip et al. 1986"]);
 }

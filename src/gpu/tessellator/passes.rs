@@ -4,11 +4,14 @@ use super::Tessellator;
 use crate::gpu::GpuError;
 use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
-use crate::gpu::pipelines::{ASKED_WORKGROUP, grid, grid_of};
+use crate::gpu::pipelines::grid;
 use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
 use crate::tessellate::{Displacement, Lod, Tessellation};
+
+/// The workgroups that search factors, each for one patch after another: enough for the largest GPUs.
+const SEARCH_WORKGROUPS: u32 = 8192;
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
@@ -65,8 +68,7 @@ impl Tessellator {
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
         if tessellation.used_lod() == Lod::Error {
-            passes.asked_factors(&on)?;
-            passes.inside_factors(&on)?;
+            passes.asked(&on)?;
         }
         if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
             passes.directions(&on, relief)?;
@@ -124,16 +126,15 @@ impl Tessellator {
             let by_error = self.params.lod == Lod::Error as u32;
             let by_heights = by_error && self.displacing_images().is_some();
             let heights_inside = if by_heights { Some(passes.heights_inside(&on)?) } else { None };
-            let asked = if by_error { Some((passes.asked_factors(&on)?, passes.inside_factors(&on)?)) } else { None };
-            let patches = grid_of(self.buffers.patch_count, ASKED_WORKGROUP);
+            let asked = if by_error { Some(passes.asked(&on)?) } else { None };
             recorder.compute("factors", |pass| {
                 edge_factors.dispatch(pass, grid(self.buffers.factor_count));
                 if let Some(heights_inside) = heights_inside {
                     heights_inside.dispatch(pass, grid(self.buffers.patch_count));
                 }
-                if let Some((asked_factors, inside_factors)) = asked {
-                    asked_factors.dispatch(pass, patches);
-                    inside_factors.dispatch(pass, patches);
+                for (number, step) in asked.into_iter().flatten().enumerate() {
+                    let searches = [self.buffers.patch_count.min(SEARCH_WORKGROUPS), 1, 1];
+                    step.dispatch(pass, if number % 2 == 0 { grid(self.buffers.patch_count) } else { searches });
                 }
             });
         }

@@ -6,7 +6,7 @@ use super::modules;
 use crate::gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use crate::gpu::layout::LOD_GIVEN;
 use crate::gpu::relief_buffers::HEIGHTS_ACROSS;
-use crate::gpu::{ASKED_WORKGROUP, GRID_WIDTH, WORKGROUP};
+use crate::gpu::{GRID_WIDTH, WORKGROUP};
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
 use crate::render::coverage::TILE;
 use crate::render::layout::{
@@ -18,7 +18,7 @@ use crate::tessellate::shared_constants::{
     AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP,
     BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD,
     FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, NOT_CULLED, OUT_OF_VIEW, PARALLEL,
-    PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_SAMPLES, SUBTRIANGULATED, SURFACE_SHARE,
+    PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_SAMPLES, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
     TURN_SHARE, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
@@ -28,7 +28,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED"], "in Rust, an enum without numbers"),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
-    (&["ALL_MAPS", "NO_PATCH"], "markers within one pass"),
+    (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass"),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",
@@ -120,7 +120,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("BEYOND_LAST", number(BEYOND_LAST)),
         ("BOUND_SHARE", number(BOUND_SHARE)),
         ("FINEST_GRID", number(FINEST_GRID)),
-        ("ASKED_WORKGROUP", number(ASKED_WORKGROUP)),
+        ("TOGETHER", number(TOGETHER)),
         ("SURFACE_SHARE", number(SURFACE_SHARE)),
         ("DETAIL_SHARE", number(DETAIL_SHARE)),
         ("TURN_SHARE", number(TURN_SHARE)),

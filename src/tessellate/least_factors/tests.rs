@@ -103,7 +103,7 @@ fn what_is_not_a_number_ends_the_search() {
 fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning) -> Option<f32> {
     let within = BOUND_SHARE * tolerance;
     let least = factor_from(partitioning, 1.0);
-    if least <= 1.0 && single_error(patch, within, partitioning) <= within {
+    if single_suffices(patch, within, partitioning, [least; 3], 1.0) {
         return Some(6.0);
     }
     let factors = || (1..=14u8).map(f32::from).filter(|&factor| factor_from(partitioning, factor) == factor);
