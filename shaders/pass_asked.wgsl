@@ -1,6 +1,9 @@
 // LOD by error: every patch asks its edges for factors, of which they get the largest; then every patch takes the least inside
 // factor that is enough beside them. Both take two passes: one with an invocation for each patch, which is enough for those
 // that one triangle shows; and one in which a workgroup searches the factors of one of the other patches after another.
+//
+// Beside factors that other patches asked for, a patch may find no inside factor that is enough. Such patches ask once more,
+// for no less than what their edges have, and all patches take their inside factors anew.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -10,14 +13,14 @@
 @group(0) @binding(5) var<storage, read> corners: array<Corner>;
 // A bit for each patch: whether it has a texture.
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
-// Bits of numbers, whose order is that of the numbers since none is negative: the factors of edges; the least factor of each
-// edge; for each patch first the factor that its heights need inside it (if it is displaced), then its inside factor; the
-// numbers of patches that are searched in each of the two passes; and those patches.
+// Bits of numbers, whose order is that of the numbers since none is negative. One after another: the factors of edges; the
+// least factor of each edge; the factor that each patch's heights need inside it, if it is displaced; the inside factors of
+// patches; the numbers of patches of three searches; the patches of the first two, one after the other; those of the third.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
 
 // Where the inside factor of a patch is.
 fn inside_at(patch_index: u32) -> u32 {
-    return 2u * params.factor_count + patch_index;
+    return 2u * params.factor_count + params.patch_count + patch_index;
 }
 
 // The factor that a patch's heights need inside it.
@@ -25,7 +28,7 @@ fn heights_inside(patch_index: u32) -> f32 {
     if params.displacement == 0u {
         return 1.0;
     }
-    return bitcast<f32>(atomicLoad(&edge_factors[inside_at(patch_index)]));
+    return bitcast<f32>(atomicLoad(&edge_factors[2u * params.factor_count + patch_index]));
 }
 
 // The part of the tolerance that is for the surface without displacement, in px.
@@ -56,19 +59,27 @@ fn slides(patch_index: u32, net: ControlNet) -> bool {
         && flat_error(params.view, net) <= BOUND_SHARE * params.tolerance;
 }
 
-// Where the number of patches is that the first (0) or the second (1) search is for.
+// The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for once more.
+const SEARCH_ASKED: u32 = 0u;
+const SEARCH_INSIDE: u32 = 1u;
+const SEARCH_AGAIN: u32 = 2u;
+
+// Where the number of patches is that a search is for.
 fn searched_count_at(search: u32) -> u32 {
-    return 2u * params.factor_count + params.patch_count + search;
+    return 2u * (params.factor_count + params.patch_count) + search;
 }
 
 // Where the `i`-th of those patches is.
-fn searched_at(i: u32) -> u32 {
-    return searched_count_at(2u) + i;
+fn searched_at(search: u32, i: u32) -> u32 {
+    return searched_count_at(3u) + select(0u, params.patch_count, search == SEARCH_AGAIN) + i;
 }
 
 fn search_later(search: u32, patch_index: u32) {
     let i = atomicAdd(&edge_factors[searched_count_at(search)], 1u);
-    atomicStore(&edge_factors[searched_at(i)], patch_index);
+    // The inside factors are searched twice at most, and only the first time a patch may ask once more.
+    if i < params.patch_count {
+        atomicStore(&edge_factors[searched_at(search, i)], patch_index);
+    }
 }
 
 fn ask(patch_index: u32, asked: vec3<f32>) {
@@ -102,7 +113,7 @@ fn asked_factors_main(
     if is_known || single_suffices(&seen, within, params.partitioning, least, inside) {
         ask(index, least);
     } else {
-        search_later(0u, index);
+        search_later(SEARCH_ASKED, index);
     }
 }
 
@@ -115,11 +126,27 @@ const NO_MORE: u32 = 0xffffffffu;
 fn searched_patch(search: u32, i: u32) -> u32 {
     if lane == 0u {
         group_patch = NO_MORE;
-        if i < atomicLoad(&edge_factors[searched_count_at(search)]) {
-            group_patch = atomicLoad(&edge_factors[searched_at(i)]);
+        if i < min(atomicLoad(&edge_factors[searched_count_at(search)]), params.patch_count) {
+            group_patch = atomicLoad(&edge_factors[searched_at(search, i)]);
         }
     }
     return workgroupUniformLoad(&group_patch);
+}
+
+// Searches what patches ask for: this workgroup every so many of them.
+fn search_asked(search: u32, first: u32, step: u32) {
+    var i = first;
+    var index = searched_patch(search, i);
+    while index != NO_MORE {
+        var seen = seen_patch(params.view, load_net(index));
+        let least = edges_of(index, params.factor_count);
+        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
+        if lane == 0u {
+            ask(index, asked);
+        }
+        i += step;
+        index = searched_patch(search, i);
+    }
 }
 
 @compute @workgroup_size(TOGETHER)
@@ -129,30 +156,10 @@ fn search_asked_factors_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     lane = local;
-    var i = workgroup.x;
-    var index = searched_patch(0u, i);
-    while index != NO_MORE {
-        var seen = seen_patch(params.view, load_net(index));
-        let least = edges_of(index, params.factor_count);
-        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
-        if lane == 0u {
-            ask(index, asked);
-        }
-        i += workgroups.x;
-        index = searched_patch(0u, i);
-    }
+    search_asked(SEARCH_ASKED, workgroup.x, workgroups.x);
 }
 
-@compute @workgroup_size(256)
-fn inside_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
-    if index >= params.patch_count {
-        return;
-    }
+fn take_inside(index: u32) {
     let heights = heights_inside(index);
     let edges = edges_of(index, 0u);
     let net = load_net(index);
@@ -164,11 +171,23 @@ fn inside_factors_main(
         } else if max(max(max(edges.x, edges.y), edges.z), heights) > 64.0 {
             inside = BEYOND_LAST;
         } else {
-            search_later(1u, index);
+            search_later(SEARCH_INSIDE, index);
             return;
         }
     }
     atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
+}
+
+@compute @workgroup_size(256)
+fn inside_factors_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index < params.patch_count {
+        take_inside(index);
+    }
 }
 
 @compute @workgroup_size(TOGETHER)
@@ -179,18 +198,61 @@ fn search_inside_factors_main(
 ) {
     lane = local;
     var i = workgroup.x;
-    var index = searched_patch(1u, i);
+    var index = searched_patch(SEARCH_INSIDE, i);
     while index != NO_MORE {
         var seen = seen_patch(params.view, load_net(index));
         let edges = edges_of(index, 0u);
-        let heights = heights_inside(index);
-        // The inside factor takes the place of the heights', which all invocations have read now.
-        workgroupBarrier();
-        let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights);
+        let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights_inside(index));
         if lane == 0u {
             atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
+            if inside > 64.0 {
+                search_later(SEARCH_AGAIN, index);
+            }
         }
         i += workgroups.x;
-        index = searched_patch(1u, i);
+        index = searched_patch(SEARCH_INSIDE, i);
+    }
+}
+
+// Whether some patches ask once more.
+fn asks_again() -> bool {
+    return atomicLoad(&edge_factors[searched_count_at(SEARCH_AGAIN)]) > 0u;
+}
+
+// What edges have becomes the least that they may get.
+@compute @workgroup_size(256)
+fn keep_factors_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index == 0u {
+        atomicStore(&edge_factors[searched_count_at(SEARCH_INSIDE)], 0u);
+    }
+    if index < params.factor_count && asks_again() {
+        atomicStore(&edge_factors[params.factor_count + index], atomicLoad(&edge_factors[index]));
+    }
+}
+
+@compute @workgroup_size(TOGETHER)
+fn search_again_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    search_asked(SEARCH_AGAIN, workgroup.x, workgroups.x);
+}
+
+@compute @workgroup_size(256)
+fn inside_again_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    if index < params.patch_count && asks_again() {
+        take_inside(index);
     }
 }

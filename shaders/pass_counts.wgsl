@@ -6,7 +6,7 @@
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
-// Of edges; under LOD by error then the least factor of each edge, and the inside factor of each patch.
+// Of edges; under LOD by error then what pass_asked.wgsl says, the inside factors of patches among it.
 @group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
 @group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;
@@ -41,7 +41,7 @@ fn hull_factors(patch_index: u32) -> vec4<f32> {
     }
     var inside = max(max(sides.x, sides.y), sides.z);
     if params.lod == LOD_ERROR {
-        inside = edge_factors[2u * params.factor_count + patch_index];
+        inside = edge_factors[2u * params.factor_count + params.patch_count + patch_index];
     }
     return vec4<f32>(
         sides[factor_side(params.convention, 0u)],

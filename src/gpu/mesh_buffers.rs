@@ -21,8 +21,7 @@ pub struct MeshBuffers {
     /// A bit for each patch: whether it has a texture.
     pub textured: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
-    /// One factor for each edge; then what LOD by error needs: the least factor that each edge may get, and for each patch
-    /// its inside factor and room in the list of those that are searched.
+    /// One factor for each edge; then room for what LOD by error needs, see `shaders/pass_asked.wgsl`.
     pub edge_factors: wgpu::Buffer,
     /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
     pub shares: wgpu::Buffer,
@@ -57,7 +56,7 @@ impl MeshBuffers {
             let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
-        let factor_room = 2 * (grouped.factor_count() as usize + topology.patches.len() + 1);
+        let factor_room = 2 * grouped.factor_count() as usize + 4 * topology.patches.len() + 3;
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,

@@ -19,8 +19,19 @@ pub(super) struct MeshPasses {
     search_asked_factors: OnceLock<BoundPass>,
     inside_factors: OnceLock<BoundPass>,
     search_inside_factors: OnceLock<BoundPass>,
+    keep_factors: OnceLock<BoundPass>,
+    search_again: OnceLock<BoundPass>,
+    inside_again: OnceLock<BoundPass>,
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
+}
+
+/// What a pass of LOD by error has an invocation for, or in a search a workgroup.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Each {
+    Edge,
+    Patch,
+    SearchedPatch,
 }
 
 type Bound<'a> = Result<&'a BoundPass, GpuError>;
@@ -80,17 +91,26 @@ impl MeshPasses {
         BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
     }
 
-    /// The passes of LOD by error, in their order: what patches ask their edges for, where one triangle is enough; the search
-    /// for the other patches; and the same for the factors inside.
-    pub(super) fn asked<'a>(&'a self, on: &PassInputs) -> Result<[&'a BoundPass; 4], GpuError> {
+    /// The passes of LOD by error in their order, and what each has an invocation or a workgroup for: see
+    /// `shaders/pass_asked.wgsl`.
+    pub(super) fn asked(&self, on: &PassInputs) -> Result<[(&BoundPass, Each); 8], GpuError> {
         let (buffers, pipelines) = (asked_buffers(on), on.pipelines);
         // What searches needs neither normals nor textures.
         let searching = &buffers[..5];
+        let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
+        let again = BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, searching)?;
         Ok([
-            BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?,
-            BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, searching)?,
-            BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?,
-            BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, searching)?,
+            (BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?, Each::Patch),
+            (
+                BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, searching)?,
+                Each::SearchedPatch,
+            ),
+            (BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?, Each::Patch),
+            (again, Each::SearchedPatch),
+            (BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?, Each::Edge),
+            (BoundPass::once(&self.search_again, on.gpu, &pipelines.search_again, searching)?, Each::SearchedPatch),
+            (BoundPass::once(&self.inside_again, on.gpu, &pipelines.inside_again, &buffers)?, Each::Patch),
+            (again, Each::SearchedPatch),
         ])
     }
 

@@ -7,14 +7,14 @@
 
 use std::collections::HashMap;
 
-use glam::{DMat4, DVec2, DVec4};
+use glam::{DMat4, DVec2, DVec4, Vec2};
 
 use super::screen_error::ScreenErrorMeasurement;
 use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
-    ControlNet, FIXED_ONE, HullFactors, Inputs, LimitSurface, NOT_CULLED, Partitioning, cull_reason, domain_plan,
-    domain_point, domain_triangle, hull_factors, process, tessellate,
+    ControlNet, FIXED_ONE, HullFactors, Inputs, LimitSurface, NOT_CULLED, Partitioning, SeenPatch, cull_reason,
+    domain_plan, domain_point, domain_triangle, hull_factors, piece_error, process, seen_patch, tessellate,
 };
 
 /// The number of steps of the grid that each triangle is sampled on.
@@ -35,6 +35,7 @@ pub struct Optimum {
 /// A patch whose factors are searched.
 struct Patch {
     clip: [DVec4; 10],
+    seen: SeenPatch,
     half: DVec2,
     tolerance: f64,
     partitioning: Partitioning,
@@ -64,6 +65,7 @@ impl Patch {
         let [a, b, c] = net.corners;
         let points = [a, b, c, ab, ba, bc, cb, ca, ac, net.center];
         Self {
+            seen: seen_patch(&inputs.view, net),
             clip: points.map(|p| matrix * p.as_dvec3().extend(1.0)),
             half: inputs.view.half_viewport.as_dvec2(),
             tolerance: f64::from(inputs.tessellation.tolerance),
@@ -89,6 +91,12 @@ impl Patch {
 
     /// Whether a flat triangle is within the tolerance wherever it is seen.
     fn suffices(&self, corners: [[f64; 3]; 3]) -> bool {
+        // What the bound decides needs no samples.
+        let at = corners.map(|corner| Vec2::new(corner[0] as f32, corner[1] as f32));
+        let tolerance = 0.99 * self.tolerance as f32;
+        if piece_error(&self.seen, tolerance, at) <= tolerance {
+            return true;
+        }
         let flat = corners.map(|corner| self.surface(corner));
         let seen = |clip: DVec4| clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w;
         let sample = |weights: [f64; 3]| {

@@ -10,8 +10,8 @@ use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::seen_patch;
 use super::texel_lengths::Maps;
 use super::{
-    ControlNet, HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor,
-    edge_length_factor, paper_edge_factor, round_pow2,
+    HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor, edge_length_factor,
+    paper_edge_factor, round_pow2,
 };
 
 impl ControlNets<'_> {
@@ -47,26 +47,46 @@ impl ControlNets<'_> {
 
     /// Returns the factors of LOD by error: the largest that the patches of each edge ask for. Patches that are left out
     /// ask, too: what others look like doesn't depend on it.
+    ///
+    /// Beside factors that other patches asked for, a patch may find no inside factor that suffices. Such patches ask once
+    /// more, for no less than what their edges have.
     fn asked_edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
-        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
+        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let edges = 0..self.curves.factor_curves.len() as u32 - 1;
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
         let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
-        for patch in 0..self.topology.patches.len() as u32 {
-            let factors = [1, 2, 0].map(|k| self.patch_factor(patch, k) as usize);
-            let mut own = factors.map(|factor| least[factor]);
-            if self.slides(inputs, displacement, patch) {
-                own = [whole_segments(partitioning, 1.0); 3];
-            } else if surface != Surface::Flat {
-                let inside = self.heights_inside(inputs, displacement, patch);
-                let tolerance = surface_tolerance(inputs, displacement);
-                own = asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, own, inside);
-            }
-            for (factor, own) in factors.into_iter().zip(own) {
-                asked[factor] = asked[factor].max(own);
-            }
+        let all = 0..self.topology.patches.len() as u32;
+        all.clone().for_each(|patch| self.ask(inputs, displacement, patch, &least, &mut asked));
+        if surface != Surface::Flat {
+            let first = asked.clone();
+            let fails = |&patch: &u32| self.inside_factor(inputs, displacement, &first, patch) > 64.0;
+            all.filter(fails).for_each(|patch| self.ask(inputs, displacement, patch, &first, &mut asked));
         }
         asked
+    }
+
+    /// Raises the factors of a patch's edges to what the patch asks for. `least` are the least that edges may get.
+    fn ask(
+        &self,
+        inputs: &Inputs,
+        displacement: Option<&MeshDisplacement>,
+        patch: u32,
+        least: &[f32],
+        asked: &mut [f32],
+    ) {
+        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
+        let factors = [1, 2, 0].map(|k| self.patch_factor(patch, k) as usize);
+        let mut own = factors.map(|factor| least[factor]);
+        if self.slides(inputs, displacement, patch) {
+            own = [whole_segments(partitioning, 1.0); 3];
+        } else if surface != Surface::Flat {
+            let inside = self.heights_inside(inputs, displacement, patch);
+            let tolerance = surface_tolerance(inputs, displacement);
+            own = asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, own, inside);
+        }
+        for (factor, own) in factors.into_iter().zip(own) {
+            asked[factor] = asked[factor].max(own);
+        }
     }
 
     /// Returns whether one triangle shows a patch within the tolerance of LOD by error though points of the surface slide:
@@ -119,31 +139,40 @@ impl ControlNets<'_> {
         own(0).max(own(1)).max(own(2))
     }
 
+    /// Returns the inside factor of a patch under LOD by error: the least that suffices beside the factors of its edges. Each
+    /// of those is taken by the opposite corner, whatever the convention.
+    fn inside_factor(
+        &self,
+        inputs: &Inputs,
+        displacement: Option<&MeshDisplacement>,
+        edge_factors: &[f32],
+        patch: u32,
+    ) -> f32 {
+        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
+        let heights = whole_segments(partitioning, self.heights_inside(inputs, displacement, patch));
+        if surface == Surface::Flat || self.slides(inputs, displacement, patch) {
+            return heights;
+        }
+        let edges = [1, 2, 0].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
+        let (seen, tolerance) = (seen_patch(view, &self.patch(patch)), surface_tolerance(inputs, displacement));
+        least_inside_factor(&seen, tolerance, partitioning, edges, heights)
+    }
+
     /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
-    /// convention.
-    ///
-    /// The inside factor is the largest of the three, or under LOD by error the least that suffices. The latter takes
-    /// each edge's factor by the opposite corner, whatever the convention.
+    /// convention. The inside factor is the largest of the three, or that of LOD by error.
     pub(super) fn hull_factors(
         &self,
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
         edge_factors: &[f32],
         patch: u32,
-        net: &ControlNet,
     ) -> HullFactors {
-        let Inputs { tessellation: Tessellation { lod, surface, partitioning, convention, .. }, ref view } = *inputs;
         let sides = [0, 1, 2].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
-        let mut inside = sides[0].max(sides[1]).max(sides[2]);
-        if lod == Lod::Error {
-            inside = whole_segments(partitioning, self.heights_inside(inputs, displacement, patch));
-            if surface != Surface::Flat && !self.slides(inputs, displacement, patch) {
-                let (seen, tolerance) = (seen_patch(view, net), surface_tolerance(inputs, displacement));
-                let edges = [sides[1], sides[2], sides[0]];
-                inside = least_inside_factor(&seen, tolerance, partitioning, edges, inside);
-            }
-        }
-        HullFactors::of_sides(convention, sides, inside)
+        let inside = match inputs.tessellation.lod {
+            Lod::Error => self.inside_factor(inputs, displacement, edge_factors, patch),
+            _ => sides[0].max(sides[1]).max(sides[2]),
+        };
+        HullFactors::of_sides(inputs.tessellation.convention, sides, inside)
     }
 }
 

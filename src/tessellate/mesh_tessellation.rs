@@ -51,7 +51,7 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let edge_factors = factors.map_or_else(made, <[f32]>::to_vec);
     let displacement = displacement.map(|displacement| displacement.with_levels(&edge_factors));
     let displacement = displacement.as_ref();
-    let written = |patch, net: &ControlNet| nets.hull_factors(inputs, displacement, &edge_factors, patch, net);
+    let written = |patch| nets.hull_factors(inputs, displacement, &edge_factors, patch);
     let out = nets.emit(inputs, displacement, culls_back, written);
     Tessellated { edge_factors, ..out }
 }
@@ -80,7 +80,7 @@ pub(crate) fn tessellate_given(
         let factors = displacement.given_factors(inputs.tessellation.convention, given);
         displacement.with_levels(&factors)
     });
-    let written = |patch: u32, _: &ControlNet| given[patch as usize].rounded(inputs.tessellation.partitioning);
+    let written = |patch: u32| given[patch as usize].rounded(inputs.tessellation.partitioning);
     nets.emit(inputs, displacement.as_ref(), false, written)
 }
 
@@ -94,7 +94,7 @@ pub(crate) fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) ->
     let written = |patch| {
         let net = nets.patch(patch);
         match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-            NOT_CULLED => nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch, &net),
+            NOT_CULLED => nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch),
             _ => HullFactors::default(),
         }
     };
@@ -108,8 +108,7 @@ pub(crate) fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64,
     let displacement = MeshDisplacement::new(&nets, inputs);
     let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
     let patches = 0..topology.patches.len() as u32;
-    let written =
-        patches.map(|patch| nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch, &nets.patch(patch)));
+    let written = patches.map(|patch| nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch));
     sums(written.map(|written| written.process(inputs.tessellation.partitioning)))
 }
 
@@ -143,13 +142,13 @@ impl ControlNets<'_> {
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
         culls_back: bool,
-        written: impl Fn(u32, &ControlNet) -> HullFactors,
+        written: impl Fn(u32) -> HullFactors,
     ) -> Tessellated {
         let mut out = Tessellated::default();
         for patch in 0..self.topology.patches.len() as u32 {
             let net = self.patch(patch);
             let factors = match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-                NOT_CULLED => written(patch, &net).process(inputs.tessellation.partitioning),
+                NOT_CULLED => written(patch).process(inputs.tessellation.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
             let plan = domain_plan(factors);

@@ -278,7 +278,7 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, step
 
 /// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1).
 /// If it is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
-pub(super) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
+pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
     let piece = piece_of(patch, at);
     let (mut behind, mut before) = (0.0f32, 0.0f32);
     for difference in piece.differences {

@@ -4,6 +4,7 @@ use super::Tessellator;
 use crate::gpu::GpuError;
 use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
+use crate::gpu::mesh_passes::Each;
 use crate::gpu::pipelines::grid;
 use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
@@ -132,9 +133,13 @@ impl Tessellator {
                 if let Some(heights_inside) = heights_inside {
                     heights_inside.dispatch(pass, grid(self.buffers.patch_count));
                 }
-                for (number, step) in asked.into_iter().flatten().enumerate() {
-                    let searches = [self.buffers.patch_count.min(SEARCH_WORKGROUPS), 1, 1];
-                    step.dispatch(pass, if number % 2 == 0 { grid(self.buffers.patch_count) } else { searches });
+                for (step, each) in asked.into_iter().flatten() {
+                    let count = match each {
+                        Each::Edge => grid(self.buffers.factor_count),
+                        Each::Patch => grid(self.buffers.patch_count),
+                        Each::SearchedPatch => [self.buffers.patch_count.min(SEARCH_WORKGROUPS), 1, 1],
+                    };
+                    step.dispatch(pass, count);
                 }
             });
         }

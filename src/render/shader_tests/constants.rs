@@ -28,7 +28,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED"], "in Rust, an enum without numbers"),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
-    (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass"),
+    (&["ALL_MAPS", "NO_PATCH", "NO_MORE", "SEARCH_ASKED", "SEARCH_INSIDE", "SEARCH_AGAIN"], "markers within one pass"),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",

@@ -17,7 +17,7 @@ const VIEWPORT: Vec2 = Vec2::new(1280.0, 720.0);
 /// In px.
 const TOLERANCES: [f32; 4] = [0.25, 0.5, 1.0, 2.0];
 /// Meshes of more patches are compared with the lower bound alone, since a search takes too long.
-const MOST_PATCHES: usize = 4000;
+const MOST_PATCHES: usize = 1500;
 
 /// One mesh under one view.
 struct Case {
