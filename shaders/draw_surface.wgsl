@@ -19,6 +19,8 @@
 // How far triangles are from the true surface, from src/measure/field.rs: the number of steps that each edge is divided
 // into, then the samples of one triangle after another. A sample below 0 is unknown.
 @group(3) @binding(0) var<storage, read> deviations: array<f32>;
+// The own least of every patch of the mesh: see pass_least.wgsl. One element if it isn't known.
+@group(3) @binding(1) var<storage, read> least_triangles: array<u32>;
 
 struct Varyings {
     @builtin(position) clip: vec4<f32>,
@@ -39,6 +41,8 @@ struct Varyings {
     @location(9) @interpolate(flat) size: f32,
     // Number of the emitted triangle in its chunk, or of the input triangle.
     @location(10) @interpolate(flat) triangle: u32,
+    // How many times as many triangles the patch has as its own least; 0 for input triangles.
+    @location(11) @interpolate(flat) excess: f32,
 }
 
 fn varyings(
@@ -111,6 +115,10 @@ fn with_factors(varyings: Varyings, patch_index: u32) -> Varyings {
         }
         out.factors.w = factor_value(own.inside);
         out.low = u32(patch_is_low(own));
+    }
+    if (frame.overlays & OVERLAY_EXCESS) != 0u && patch_index < arrayLength(&least_triangles) {
+        let count = triangle_count(patch_factors[patch_index - slab.first_patch]);
+        out.excess = f32(count) / f32(max(least_triangles[patch_index], 1u));
     }
     return out;
 }
@@ -298,6 +306,9 @@ fn meaning(in: Varyings, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f
     if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
         return vec4<f32>(select(scale_color(in.size), WASTE_COLOR, in.size < frame.scale_least), 1.0);
     }
+    if (frame.overlays & OVERLAY_EXCESS) != 0u {
+        return vec4<f32>(scale_color(max(in.excess, frame.scale_least)), f32(in.excess > 0.0));
+    }
     if (frame.overlays & OVERLAY_DEVIATION) != 0u {
         return deviation_color(in);
     }
@@ -313,7 +324,7 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
     let to_sides = in.corner * side_heights;
     let texel = textureSample(base_texture, base_sampler, in.uv);
     var base = material.base_color.rgb * texel.rgb;
-    if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_DEVIATION)) != 0u {
+    if (frame.overlays & (OVERLAY_LOW_FACTORS | OVERLAY_EXCESS | OVERLAY_DEVIATION)) != 0u {
         // Grey, since the mesh's own colours could be mistaken for the overlay's.
         base = vec3<f32>(0.5);
     }

@@ -222,6 +222,44 @@ fn least_row_factor(
     return BEYOND_LAST;
 }
 
+// Returns the factors of the edges U == 0, V == 0 and W == 0 and inside with which a patch is within the tolerance and has the
+// fewest triangles, if a segment of an edge counts as `segment` triangles. `least` are the least factors that the edges may
+// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least` and BEYOND_LAST. Not for
+// patches of which one triangle suffices, or with a least factor above 64.
+fn fewest_triangles(
+    seen: ptr<function, SeenPatch>,
+    tolerance: f32,
+    partitioning: u32,
+    least: vec3<f32>,
+    least_inside: f32,
+    segment: f32,
+) -> vec4<f32> {
+    let within = BOUND_SHARE * tolerance;
+    var best = vec4<f32>(least, BEYOND_LAST);
+    var fewest = 3.4e38;
+    var inside = least_inner_factor(seen, within, partitioning, least_inside);
+    while inside <= 64.0 {
+        let rings = inside - 2.0;
+        var cost = 3.0 * rings + 1.5 * rings * rings + segment * (least.x + least.y + least.z);
+        if cost >= fewest {
+            break;
+        }
+        var asked = least;
+        for (var k = 0u; k < 3u; k++) {
+            if cost < fewest {
+                asked[k] = least_row_factor(seen, within, partitioning, k, least[k], inside);
+                cost += select(segment * (asked[k] - least[k]), 3.4e38, asked[k] > 64.0);
+            }
+        }
+        if cost < fewest {
+            fewest = cost;
+            best = vec4<f32>(asked, inside);
+        }
+        inside = least_inner_factor(seen, within, partitioning, inside + 1.0);
+    }
+    return best;
+}
+
 // Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0. `least` are the least that these may
 // get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`. Not for patches of which
 // one triangle suffices, or with a least factor above 64.
@@ -232,31 +270,20 @@ fn asked_factors(
     least: vec3<f32>,
     least_inside: f32,
 ) -> vec3<f32> {
-    let within = BOUND_SHARE * tolerance;
-    var best = least;
-    var fewest = 3.4e38;
-    var inside = least_inner_factor(seen, within, partitioning, least_inside);
-    while inside <= 64.0 {
-        let rings = inside - 2.0;
-        // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-        var cost = 3.0 * rings + 1.5 * rings * rings + 2.0 * (least.x + least.y + least.z);
-        if cost >= fewest {
-            break;
-        }
-        var asked = least;
-        for (var k = 0u; k < 3u; k++) {
-            if cost < fewest {
-                asked[k] = least_row_factor(seen, within, partitioning, k, least[k], inside);
-                cost += select(2.0 * (asked[k] - least[k]), 3.4e38, asked[k] > 64.0);
-            }
-        }
-        if cost < fewest {
-            fewest = cost;
-            best = asked;
-        }
-        inside = least_inner_factor(seen, within, partitioning, inside + 1.0);
-    }
-    return best;
+    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
+    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 2.0).xyz;
+}
+
+// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch has the fewest triangles if no
+// neighbour asks for anything. See fewest_triangles.
+fn own_least_factors(
+    seen: ptr<function, SeenPatch>,
+    tolerance: f32,
+    partitioning: u32,
+    least: vec3<f32>,
+    least_inside: f32,
+) -> vec4<f32> {
+    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 1.0);
 }
 
 // Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these

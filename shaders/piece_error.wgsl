@@ -20,6 +20,11 @@ struct SeenPatch {
     across: vec2<f32>,
 }
 
+// Returns whether an error is within a tolerance. NaN never is.
+fn is_within(error: f32, tolerance: f32) -> bool {
+    return error <= tolerance;
+}
+
 // Returns the control point with these three indices (0 to 2), in any order: (0, 0, 1) is b210.
 fn control_point(net: ControlNet, i: u32, j: u32, l: u32) -> vec3<f32> {
     if i == j && j == l {
@@ -266,8 +271,7 @@ fn grid_error(
             let distance = length(difference.xy - sum / depth * difference.z) + moved * abs(difference.z);
             let own = distance / (depth + difference.z - (*seen).deep);
             worst.y = max(worst.y, abs(difference.z));
-            // Written like this, NaN isn't within the tolerance.
-            if !(own <= tolerance) {
+            if !is_within(own, tolerance) {
                 return vec2<f32>(own, worst.y);
             }
             worst.x = max(worst.x, own);
@@ -318,10 +322,10 @@ fn piece_error(
     let ratio = farthest / nearest;
     var steps = 1u;
     var upper = bound;
-    while !(upper <= tolerance) && steps < FINEST_GRID {
+    while !is_within(upper, tolerance) && steps < FINEST_GRID {
         steps *= 2u;
         let worst = grid_error(seen, &piece, moved, tolerance, steps);
-        if !(worst.x <= tolerance) {
+        if !is_within(worst.x, tolerance) {
             return worst.x;
         }
         // Between points of the grid: depth and place change, and the difference isn't linear.

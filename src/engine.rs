@@ -19,7 +19,7 @@ use crate::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_ba
 use crate::progress::{Progress, Stage};
 use crate::render::{Camera, LeakCounter, Picker, Renderer, Scene, Target};
 use crate::settings::{Settings, SplitSide};
-use crate::tessellate::{Inputs, PatchFactors, PosedMesh, Tessellated};
+use crate::tessellate::{Inputs, Lod, Partitioning, PatchFactors, PosedMesh, Tessellated, Tessellation};
 
 pub(crate) use measurements::{MeasurementResults, Measurements};
 
@@ -315,6 +315,68 @@ impl Engine {
         let (buffer, edges) = scene.tessellator.edge_factors();
         let bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
         Ok(AskedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
+    }
+
+    /// The number of triangles that LOD by error emits at a tolerance of `tolerance_px` px, with all other inputs as they are;
+    /// none if the tessellator hasn't enough segments for it. Subtriangulation has one number of segments everywhere, so
+    /// that integer partitioning stands in for it. The scene is counted with `inputs` again when this returns.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn triangles_by_error(
+        &self,
+        scene: &mut Scene,
+        inputs: &Inputs,
+        tolerance_px: f32,
+    ) -> Result<Option<u64>, GpuError> {
+        let own = inputs.tessellation;
+        let partitioning = match own.partitioning {
+            Partitioning::Subtriangulation => Partitioning::Integer,
+            other => other,
+        };
+        let by_error = Tessellation { lod: Lod::Error, tolerance: tolerance_px, partitioning, ..own };
+        let given = scene.tessellator.given().map(<[_]>::to_vec);
+        if given.is_some() {
+            scene.tessellator.give(None)?;
+        }
+        self.count(scene, &Inputs { tessellation: by_error, ..*inputs }, &mut Timing::Off)?;
+        let (_, triangles) = scene.tessellator.totals();
+        let is_enough = self.factors_capped(scene, &by_error)? == 0;
+        if given.is_some() {
+            scene.tessellator.give(given)?;
+        }
+        self.count(scene, inputs, &mut Timing::Off)?;
+        Ok(is_enough.then_some(triangles))
+    }
+
+    /// The number of factors that ask for more segments than the partitioning has: of edges (sides, if factors are as
+    /// published or given), and under LOD by error of insides. The counts must be known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    pub fn factors_capped(&self, scene: &Scene, tessellation: &Tessellation) -> Result<u64, GpuError> {
+        let edges = self.asked_factors(scene)?.beyond(tessellation.partitioning);
+        if tessellation.used_lod() != Lod::Error {
+            return Ok(edges);
+        }
+        let written = scene.tessellator.hull_factors()?;
+        Ok(edges + written.iter().filter(|factors| factors.inside > 64.0).count() as u64)
+    }
+
+    /// The own least of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error,
+    /// whichever LOD is used. The counts must be known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    #[cfg(test)]
+    pub fn own_least(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(&self.gpu, &mut timing);
+        scene.tessellator.record_own_least(&mut recorder)?;
+        recorder.submit();
+        let Some(buffer) = scene.tessellator.own_least() else { return Ok(Vec::new()) };
+        let bytes = u64::from(scene.tessellator.buffers().patch_count) * size_of::<u32>() as u64;
+        Ok(cast(&read_buffer(&self.gpu, buffer, 0, bytes)?))
     }
 
     /// The whole tessellated mesh, read back. The counts must be known.

@@ -143,12 +143,22 @@ impl App {
     pub fn is_busy(&self) -> bool {
         let loads = self.jobs.load.is_some() || self.jobs.truth_load.is_some();
         let measures = self.jobs.measure.is_busy() || self.jobs.deviation.is_busy() || self.viewport.left.is_busy();
-        loads || measures || self.viewport.picture.is_busy() || self.viewport.selection.is_busy()
+        loads
+            || measures
+            || self.jobs.explain.is_busy()
+            || self.viewport.picture.is_busy()
+            || self.viewport.selection.is_busy()
     }
 
     /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.
     pub fn is_checking(&self) -> bool {
         self.document.as_ref().is_some_and(|document| document.checks.is_busy())
+    }
+
+    fn take_explained(&mut self) {
+        if let Err(stopped) = self.jobs.explain.take() {
+            self.dialogs.error = Some(format!("explaining the patch {stopped}; another patch starts it again"));
+        }
     }
 
     fn take_checks(&mut self) {
@@ -171,6 +181,7 @@ impl eframe::App for App {
         self.take_loaded(context);
         self.take_truth();
         self.take_checks();
+        self.take_explained();
         self.take_dialog(context);
         self.take_chart(context);
         self.take_written();

@@ -12,6 +12,17 @@ pub(super) fn heading(ui: &mut egui::Ui, text: &str) {
     ui.separator();
 }
 
+/// Small monospaced text, so that a position's three coordinates fit on one line.
+pub(super) fn dense(text: impl Into<String>) -> RichText {
+    RichText::new(text).monospace().size(12.0)
+}
+
+/// The name of a small table.
+pub(super) fn title(ui: &mut egui::Ui, text: &str, hover: &str) {
+    ui.add_space(6.0);
+    ui.label(text).on_hover_text(hover);
+}
+
 /// A row with a name and a list to choose from.
 pub(super) fn chooser<T: Copy + PartialEq>(
     ui: &mut egui::Ui,

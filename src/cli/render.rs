@@ -19,7 +19,7 @@ use crate::render::{
     Camera, LineSegment, Scale, Scene, Target, crack_lines, deviation_scale, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{Colors, Settings, SplitSide};
-use crate::tessellate::{HullFactors, Inputs, Lod};
+use crate::tessellate::{HullFactors, Inputs};
 use crate::view::ScreenView;
 
 #[derive(Debug, clap::Args)]
@@ -304,11 +304,7 @@ impl Shot {
         let alone = Settings { split_surface: None, ..*settings };
         let passes = engine.time(scene, target, camera, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
-        let mut factors_capped = engine.asked_factors(scene)?.beyond(settings.tessellation.partitioning);
-        if settings.tessellation.used_lod() == Lod::Error {
-            let written = scene.tessellator.hull_factors()?;
-            factors_capped += written.iter().filter(|factors| factors.inside > 64.0).count() as u64;
-        }
+        let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
         let name = args.surface.animation.animation.clone();
         let mut stats = Stats::new(engine, &self.loaded, scene, measured, settings, view, &passes);
         (stats.triangles_in_view, stats.triangles_below_3_px) =
@@ -316,6 +312,11 @@ impl Shot {
         stats.leaks = leaks;
         stats.max_error_px = results.screen_error.map(|worst| worst.px);
         stats.patches_flat = results.flat_patches;
+        if let Some(tolerance_px) = stats.max_error_px.map(|px| px as f32).filter(|px| *px > 0.0) {
+            let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
+            let triangles = engine.triangles_by_error(scene, &inputs, tolerance_px)?;
+            stats.lod_comparison = triangles.map(|triangles| stats.compared(tolerance_px, triangles));
+        }
         stats.factors_capped = factors_capped;
         stats.accuracy = accuracy;
         stats.deviation = self.deviation(SplitSide::Right);

@@ -53,6 +53,9 @@ pub(super) struct Stats {
     /// Patches that LOD by error shows as one triangle because their surface is flat, though its points slide: their error is
     /// the distance to the nearest point of the surface. None if errors weren't measured.
     pub patches_flat: Option<u64>,
+    /// What LOD by error would have needed; none if the error wasn't measured, is 0, or is less than LOD by error reaches
+    /// with the segments that there are.
+    pub lod_comparison: Option<LodComparison>,
     /// Factors that ask for more segments than the partitioning has: those of edges, or of sides if factors are as published
     /// or from a file; under LOD by error, inside factors as well.
     pub factors_capped: u64,
@@ -219,6 +222,7 @@ impl Stats {
             not_finite: measured.not_finite,
             max_error_px: None,
             patches_flat: None,
+            lod_comparison: None,
             factors_capped: 0,
             factors_file: None,
             accuracy: None,
@@ -227,6 +231,25 @@ impl Stats {
             animation: None,
             ms,
         }
+    }
+}
+
+/// What was emitted beside what LOD by error would have emitted for the same largest error.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct LodComparison {
+    /// The measured error, taken as LOD by error's tolerance, in px.
+    tolerance_px: f32,
+    /// What LOD by error emits.
+    triangles: u64,
+    /// How many times as many triangles were emitted; none if LOD by error emits none.
+    times: Option<f64>,
+}
+
+impl Stats {
+    /// Compares with LOD by error, which emits so many triangles at this tolerance.
+    pub(super) fn compared(&self, tolerance_px: f32, triangles: u64) -> LodComparison {
+        let times = (triangles > 0).then(|| self.triangles_out as f64 / triangles as f64);
+        LodComparison { tolerance_px, triangles, times }
     }
 }
 

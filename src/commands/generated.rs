@@ -68,6 +68,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::Factors => Key::H,
         Overlay::TriangleSize => Key::X,
         Overlay::LowFactors => Key::U,
+        Overlay::Excess => Key::M,
         Overlay::Normals => Key::N,
         Overlay::Deviation => Key::V,
     })

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use super::GpuError;
 use super::bound_pass::{BoundPass, PassInputs};
+use super::mesh_buffers::MeshBuffers;
 use super::relief_buffers::{HeightImages, ReliefBuffers};
 
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.
@@ -82,19 +83,25 @@ impl MeshPasses {
 
     /// LOD's factor of every edge.
     pub(super) fn edge_factors(&self, on: &PassInputs) -> Bound<'_> {
-        BoundPass::once(&self.edge_factors, on.gpu, &on.pipelines.edge_factors, &factor_buffers(on))
+        BoundPass::once(
+            &self.edge_factors,
+            on.gpu,
+            &on.pipelines.edge_factors,
+            &factor_buffers(on.mesh, on.params, &on.mesh.edge_factors),
+        )
     }
 
     /// The factor that the heights of every patch need inside it.
     pub(super) fn heights_inside(&self, on: &PassInputs) -> Bound<'_> {
-        let buffers = [&factor_buffers(on)[..], &[(7, &on.mesh.patches)]].concat();
+        let edges = factor_buffers(on.mesh, on.params, &on.mesh.edge_factors);
+        let buffers = [&edges[..], &[(7, &on.mesh.patches)]].concat();
         BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
     }
 
     /// The passes of LOD by error in their order, and what each has an invocation or a workgroup for: see
     /// `shaders/pass_asked.wgsl`.
     pub(super) fn asked(&self, on: &PassInputs) -> Result<[(&BoundPass, Each); 8], GpuError> {
-        let (buffers, pipelines) = (asked_buffers(on), on.pipelines);
+        let (buffers, pipelines) = (asked_buffers(on.mesh, on.params, &on.mesh.edge_factors), on.pipelines);
         // What searches needs neither normals nor textures.
         let searching = &buffers[..5];
         let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
@@ -137,28 +144,36 @@ impl MeshPasses {
     }
 }
 
-fn asked_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 7] {
-    let mesh = on.mesh;
+/// What passes over patches read under LOD by error. `factors` are laid out as [`MeshBuffers::edge_factors`].
+pub(super) fn asked_buffers<'a>(
+    mesh: &'a MeshBuffers,
+    params: &'a wgpu::Buffer,
+    factors: &'a wgpu::Buffer,
+) -> [(u32, &'a wgpu::Buffer); 7] {
     [
-        (0, on.params),
+        (0, params),
         (1, &mesh.points),
         (2, &mesh.patches),
         (3, &mesh.curve_nets),
-        (4, &mesh.edge_factors),
+        (4, factors),
         (5, &mesh.corners),
         (6, &mesh.textured),
     ]
 }
 
-fn factor_buffers<'a>(on: &PassInputs<'a>) -> [(u32, &'a wgpu::Buffer); 8] {
-    let mesh = on.mesh;
+/// What passes over edges read, and the factors that they write.
+pub(super) fn factor_buffers<'a>(
+    mesh: &'a MeshBuffers,
+    params: &'a wgpu::Buffer,
+    factors: &'a wgpu::Buffer,
+) -> [(u32, &'a wgpu::Buffer); 8] {
     [
-        (0, on.params),
+        (0, params),
         (1, &mesh.points),
         (2, &mesh.curves),
         (3, &mesh.curve_nets),
         (4, &mesh.factor_curves),
-        (5, &mesh.edge_factors),
+        (5, factors),
         (6, &mesh.shares),
         (22, &mesh.details),
     ]

@@ -19,6 +19,7 @@ pub(crate) mod layout;
 mod lazy;
 mod mesh_buffers;
 mod mesh_passes;
+mod own_least;
 mod params;
 mod pipelines;
 pub(crate) mod readback;
@@ -52,11 +53,12 @@ pub(crate) use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
 #[cfg(test)]
-pub(crate) static MODULES: [&WgslFile; 11] = [
+pub(crate) static MODULES: [&WgslFile; 12] = [
     &pipelines::PASS_DEFORM,
     &pipelines::PASS_NETS,
     &pipelines::PASS_FACTORS,
     &pipelines::PASS_ASKED,
+    &pipelines::PASS_LEAST,
     &pipelines::PASS_LEVELS,
     &pipelines::PASS_COUNTS,
     &pipelines::PASS_SCAN,

@@ -6,9 +6,9 @@ use wgpu::util::DeviceExt;
 
 use super::lazy::Lazy;
 use super::wgsl::{
-    CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, FLAT_PATCH,
-    LEAST_FACTORS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, PIECE_ERROR, SEARCH_GROUP, SURFACE, TYPES,
-    WORKGROUP_SCAN, WgslFile, wgsl,
+    CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, LEAST_FACTORS,
+    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, PIECE_ERROR, SEARCH_GROUP, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN,
+    WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -25,12 +25,25 @@ pub(super) static PASS_FACTORS: WgslFile =
 pub(super) static PASS_ASKED: WgslFile = wgsl!(
     "pass_asked",
     DISPLACEMENT_FACTOR,
-    FLAT_PATCH,
     LEAST_FACTORS,
     LOAD_NET,
     LOADS,
     PIECE_ERROR,
     SEARCH_GROUP,
+    SLIDES,
+    SURFACE,
+    TYPES
+);
+pub(super) static PASS_LEAST: WgslFile = wgsl!(
+    "pass_least",
+    DISPLACEMENT_FACTOR,
+    FACTORS,
+    LEAST_FACTORS,
+    LOAD_NET,
+    LOADS,
+    PIECE_ERROR,
+    SEARCH_GROUP,
+    SLIDES,
     SURFACE,
     TYPES
 );
@@ -155,6 +168,9 @@ pub struct ComputePipelines {
     pub keep_factors: ComputePipeline,
     pub search_again: ComputePipeline,
     pub inside_again: ComputePipeline,
+    /// Whose results no other pass needs, like those of the next.
+    pub least_triangles: ComputePipeline,
+    pub search_least_triangles: ComputePipeline,
     pub factor_levels: ComputePipeline,
     pub point_levels: ComputePipeline,
     pub counts: ComputePipeline,
@@ -180,7 +196,7 @@ impl ComputePipelines {
     pub fn new() -> Self {
         let module = |file| Arc::new(ShaderModule::new(file));
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
-        let asked = module(&PASS_ASKED);
+        let (asked, least) = (module(&PASS_ASKED), module(&PASS_LEAST));
         let (factors, counts, emit) = (module(&PASS_FACTORS), module(&PASS_COUNTS), module(&PASS_EMIT));
         Self {
             deform_corners: ComputePipeline::new(&deform, "deform_corners_main"),
@@ -198,6 +214,8 @@ impl ComputePipelines {
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
             search_again: ComputePipeline::new(&asked, "search_again_main"),
             inside_again: ComputePipeline::new(&asked, "inside_again_main"),
+            least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
+            search_least_triangles: ComputePipeline::new(&least, "search_least_triangles_main"),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),
@@ -243,6 +261,9 @@ pub(crate) fn bind_group(
 
 /// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
 pub(crate) const WORKGROUP: u32 = 256;
+
+/// The workgroups that search factors, each for one patch after another: enough for the largest GPUs.
+pub(super) const SEARCH_WORKGROUPS: u32 = 8192;
 
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
 pub(crate) fn grid(items: u32) -> [u32; 3] {

@@ -167,7 +167,7 @@ fn summed(times: impl Iterator<Item = PassTime>) -> Vec<PassTime> {
 }
 
 /// The names of all passes that are timed, in the order in which they run.
-pub const PASSES: [&str; 12] = [
+pub const PASSES: [&str; 13] = [
     "deform",
     "nets",
     "directions",
@@ -178,12 +178,13 @@ pub const PASSES: [&str; 12] = [
     "chunks",
     "emit",
     "displace",
+    "least",
     "coverage",
     "draw",
 ];
 
-/// Those of [`PASSES`] that draw what was emitted; the others emit it.
-pub const DRAWING: [&str; 2] = ["coverage", "draw"];
+/// Those of [`PASSES`] that draw what was emitted, or compute what an overlay shows; the others emit it.
+pub const DRAWING: [&str; 3] = ["least", "coverage", "draw"];
 
 /// The profiler returns labels as owned text; this finds the static name again.
 fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {

@@ -11,6 +11,7 @@ use super::arena::Arena;
 use super::buffer::{filled, uniform_buffer};
 use super::layout::{Chunk, Params};
 use super::mesh_passes::MeshPasses;
+use super::own_least::OwnLeast;
 use super::params::params_of;
 use super::readback::Readback;
 use super::relief_buffers::HeightImages;
@@ -47,6 +48,8 @@ pub struct Tessellator {
     arena: Arena,
     slabs: Vec<SlabPasses>,
     mesh_passes: MeshPasses,
+    /// Made when it is first asked for.
+    own_least: Option<OwnLeast>,
     /// None if the mesh has no heights.
     images: Option<HeightImages>,
     /// The surface that the nets were made for, and how strong it is ([`Params::surface`] and [`Params::alpha`]).
@@ -144,6 +147,7 @@ impl Tessellator {
             arena,
             slabs,
             mesh_passes: MeshPasses::default(),
+            own_least: None,
             images,
             nets_done: None,
             counts_done: false,
@@ -233,6 +237,7 @@ impl Tessellator {
     /// Lets go of what passes are bound to, since some of those buffers were replaced.
     fn unbind(&mut self) {
         self.mesh_passes = MeshPasses::default();
+        self.own_least = None;
         self.slabs.iter_mut().for_each(SlabPasses::unbind);
     }
 
@@ -240,6 +245,9 @@ impl Tessellator {
     pub fn forget(&mut self) {
         self.is_deformed = false;
         self.nets_done = None;
+        if let Some(own_least) = &mut self.own_least {
+            own_least.forget();
+        }
     }
 
     /// Whether patches that face away can be left out of this mesh at all.
@@ -315,6 +323,12 @@ impl Tessellator {
         Ok(())
     }
 
+    /// The own least of every patch: the number of triangles with which it alone would keep the tolerance. None until
+    /// [`Self::record_own_least`] has run.
+    pub fn own_least(&self) -> Option<&wgpu::Buffer> {
+        self.own_least.as_ref().map(|own_least| &own_least.triangles)
+    }
+
     /// The factors that LOD gave, and whether they are the edges' or the sides'.
     pub fn edge_factors(&self) -> (&wgpu::Buffer, Edges) {
         let published = self.buffers.sharing.is_per_patch();
@@ -366,6 +380,7 @@ impl Tessellator {
     pub fn work_bytes(&self) -> u64 {
         let images = self.images.as_ref().map_or(0, HeightImages::bytes);
         let rig = self.rig.as_ref().map_or(0, RigBuffers::bytes);
-        images + rig + self.slabs.iter().map(SlabPasses::bytes).sum::<u64>()
+        let least = self.own_least.as_ref().map_or(0, OwnLeast::bytes);
+        images + rig + least + self.slabs.iter().map(SlabPasses::bytes).sum::<u64>()
     }
 }

@@ -41,6 +41,8 @@ pub(crate) static TYPES: WgslFile = wgsl!("types", LOD);
 pub(crate) static DISPLACEMENT_FACTOR: WgslFile = wgsl!("displacement_factor", LOD, TYPES);
 pub(crate) static PIECE_ERROR: WgslFile = wgsl!("piece_error", LOD, SURFACE);
 pub(crate) static FLAT_PATCH: WgslFile = wgsl!("flat_patch", LOD, PIECE_ERROR, SURFACE);
+/// The module that has it declares the buffers that it reads.
+pub(crate) static SLIDES: WgslFile = wgsl!("slides", FLAT_PATCH, LEAST_FACTORS, SURFACE);
 pub(crate) static SEARCH_GROUP: WgslFile = wgsl!("search_group");
 pub(crate) static LEAST_FACTORS: WgslFile =
     wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR, SEARCH_GROUP);

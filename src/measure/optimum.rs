@@ -353,7 +353,8 @@ impl Search {
             let now = edges[edge];
             let at = self.levels.iter().position(|&level| level == now).unwrap_or(0);
             let (mut best, mut fewest) = (now, before);
-            for level in self.levels[at.saturating_sub(6)..(at + 7).min(self.levels.len())].to_vec() {
+            for index in at.saturating_sub(6)..(at + 7).min(self.levels.len()) {
+                let level = self.levels[index];
                 edges[edge] = level;
                 let mut after = 0;
                 for &patch in &around {
@@ -384,7 +385,8 @@ impl Search {
             let Some((inside, _)) = self.patches[patch].least(now, &self.levels) else { continue };
             let at = self.levels.iter().position(|&level| level == inside).unwrap_or(0);
             let (mut best, mut fewest) = (now, before);
-            for inside in self.levels[at.saturating_sub(4)..(at + 3).min(self.levels.len())].to_vec() {
+            for index in at.saturating_sub(4)..(at + 3).min(self.levels.len()) {
+                let inside = self.levels[index];
                 if inside < self.patches[patch].levels_first() || !self.patches[patch].inside(inside) {
                     continue;
                 }

@@ -55,12 +55,24 @@ impl Curves {
     /// Groups the sides of every edge into curves. Takes time linear in the number of sides, except for edges with many
     /// sides.
     pub fn build(mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Self {
+        Self::build_some(mesh, topology, sharing, 0..topology.edges.len() as u32)
+    }
+
+    /// Does the same for some edges alone, in ascending order. The other edges have no curves.
+    pub(crate) fn build_some(
+        mesh: &Mesh,
+        topology: &Topology,
+        sharing: Sharing,
+        edges: impl Iterator<Item = u32>,
+    ) -> Self {
         let per_patch = sharing.is_per_patch();
         let mut curves = Curves { side_curves: vec![0; topology.sides.len()], per_patch, ..Curves::default() };
-        for edge in &topology.edges {
-            if !per_patch {
-                curves.factor_curves.push(curves.curves.len() as u32);
-            }
+        if !per_patch {
+            curves.factor_curves = vec![0; topology.edges.len()];
+        }
+        for index in edges {
+            let edge = &topology.edges[index as usize];
+            let first = curves.curves.len() as u32;
             match sharing {
                 Sharing::AllSides => {
                     let sides = topology.side_range(edge);
@@ -69,6 +81,14 @@ impl Curves {
                 Sharing::EqualNormals => curves.push_by_normals(mesh, topology, edge),
                 Sharing::None | Sharing::NoneAveraged => {
                     curves.push_own(topology, edge, sharing == Sharing::NoneAveraged);
+                }
+            }
+            if !per_patch {
+                // The next edge starts where this one ends.
+                let end = curves.curves.len() as u32;
+                curves.factor_curves[index as usize] = first;
+                if let Some(next) = curves.factor_curves.get_mut(index as usize + 1) {
+                    *next = end;
                 }
             }
         }

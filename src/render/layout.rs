@@ -73,6 +73,7 @@ pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
         | u32::from(overlays.colors == Colors::TriangleSize) << 7
         | u32::from(overlays.colors == Colors::LowFactors) << 8
         | u32::from(overlays.colors == Colors::Deviation) << 9
+        | u32::from(overlays.colors == Colors::Excess) << 10
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface.wgsl` has the same in linear light.

@@ -25,7 +25,7 @@ pub(crate) use leaks::LeakCounter;
 pub(crate) use marks::{crack_lines, crack_lines_in, patch_lines, t_junction_lines, worst_lines};
 pub(crate) use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub(crate) use renderer::Renderer;
-pub(crate) use scale::{FACTOR_SCALE, SIZE_SCALE, Scale};
+pub(crate) use scale::{EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
 pub(crate) use scene::{LineSegment, Scene};
 pub(crate) use target::Target;
 #[cfg(test)]

@@ -144,8 +144,9 @@ pub(super) struct DrawPipelines {
     pub material_layout: wgpu::BindGroupLayout,
     /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
     pub chunk_layout: wgpu::BindGroupLayout,
-    /// Group 3: the distances from a chunk's triangles to the reference surface.
-    pub deviation_layout: wgpu::BindGroupLayout,
+    /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
+    /// least.
+    pub measured_layout: wgpu::BindGroupLayout,
     plain: ShaderModule,
     surface: ShaderModule,
     lines: ShaderModule,
@@ -159,7 +160,7 @@ impl DrawPipelines {
             scene_layout: scene_layout(gpu),
             material_layout,
             chunk_layout: chunk_layout(gpu),
-            deviation_layout: deviation_layout(gpu),
+            measured_layout: measured_layout(gpu),
             plain: ShaderModule::new(&DRAW_PLAIN),
             surface: ShaderModule::new(&DRAW_SURFACE),
             lines: ShaderModule::new(&DRAW_LINES),
@@ -186,7 +187,7 @@ impl DrawPipelines {
     /// The layouts of the groups that a pipeline binds.
     fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
         let (scene, material) = (Some(&self.scene_layout), Some(&self.material_layout));
-        let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.deviation_layout));
+        let (chunk, deviation) = (Some(&self.chunk_layout), Some(&self.measured_layout));
         match draw {
             Draw::Plain(_) | Draw::Textured(_) => vec![scene, material],
             Draw::Indexed(_) | Draw::Pulled(_) => vec![scene, material, chunk, deviation],
@@ -211,10 +212,10 @@ fn chunk_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("chunk"), entries: &entries })
 }
 
-fn deviation_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let entries = [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT)];
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("deviation"), entries: &entries })
+fn measured_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let entries =
+        [buffer_entry(0, READ, wgpu::ShaderStages::FRAGMENT), buffer_entry(1, READ, wgpu::ShaderStages::VERTEX)];
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("measured"), entries: &entries })
 }
 
 const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };

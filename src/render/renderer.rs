@@ -22,7 +22,7 @@ pub struct Renderer {
     materials: Materials,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
-    /// The buffer that is bound where deviations aren't known.
+    /// The buffer that is bound where deviations, or patches' own least, aren't known.
     unknown: wgpu::Buffer,
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
@@ -78,6 +78,9 @@ impl Renderer {
             .collect();
         if settings.split.is_some() && settings.half(SplitSide::Left).is_none() {
             draws.push(Draw::Source);
+        }
+        if settings.overlays.colors == Colors::Excess {
+            scene.tessellator.prepare_own_least()?;
         }
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));
@@ -138,6 +141,9 @@ impl Renderer {
             let Some(drawn) = scene.half_mut(half) else { continue };
             if let Some(chunk) = step.chunk() {
                 drawn.tessellator.emit(recorder, chunk)?;
+                if settings.overlays.colors == Colors::Excess {
+                    drawn.tessellator.record_own_least(recorder)?;
+                }
             }
             let (first, last) = (index == 0, index + 1 == steps.len());
             let color = target.color(linear_color(settings.background), first, last);
@@ -163,7 +169,7 @@ impl Renderer {
                 }
                 match *step {
                     Step::Surface(_, chunk) => {
-                        pass.set_bind_group(3, &self.deviation_group(drawn, Some(chunk)), &[]);
+                        pass.set_bind_group(3, &self.measured_group(drawn, Some(chunk)), &[]);
                         self.draw_chunk(pass, drawn, rect, &surfaces, &drawn.tessellator.chunk(chunk));
                     }
                     Step::Normals(_, chunk) => {
@@ -253,7 +259,7 @@ impl Renderer {
         }
         pass.set_scissor_rect(x, y, width, height);
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(3, &self.deviation_group(scene, None), &[]);
+        pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
         for (material, patches) in scene.materials.iter().zip(&scene.tessellator.topology().material_patches) {
             pass.set_bind_group(1, material, &[]);
             pass.draw(3 * patches.start..3 * patches.end, 0..1);
@@ -324,10 +330,11 @@ impl Renderer {
         bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, &bound)
     }
 
-    fn deviation_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
+    fn measured_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
         let known = scene.known_deviation().zip(chunk).and_then(|(deviation, chunk)| deviation.chunks.get(chunk));
-        let bound = [(0, known.unwrap_or(&self.unknown))];
-        bind_group(&self.gpu, "deviation", &self.pipelines.deviation_layout, &bound)
+        let least = scene.tessellator.own_least();
+        let bound = [(0, known.unwrap_or(&self.unknown)), (1, least.unwrap_or(&self.unknown))];
+        bind_group(&self.gpu, "measured", &self.pipelines.measured_layout, &bound)
     }
 
     fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {

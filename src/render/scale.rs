@@ -45,6 +45,22 @@ pub(crate) const SIZE_SCALE: Scale = Scale {
     ],
 };
 
+/// The scale for how many times as many triangles a patch has as its own least. It runs from cream to a dark red (ColorBrewer's
+/// OrRd, its dark end lightened, so that lines stay visible on it).
+pub(crate) const EXCESS_SCALE: Scale = Scale {
+    least: 1.0,
+    most: 16.0,
+    colors: [
+        [0xfe, 0xf0, 0xd9],
+        [0xfd, 0xd4, 0x9e],
+        [0xfd, 0xbb, 0x84],
+        [0xfc, 0x8d, 0x59],
+        [0xef, 0x65, 0x48],
+        [0xd7, 0x30, 0x1f],
+        [0xb0, 0x00, 0x10],
+    ],
+};
+
 impl Scale {
     pub const STOPS: usize = 7;
 
@@ -53,6 +69,7 @@ impl Scale {
         match colors {
             Colors::Factors => Some(&FACTOR_SCALE),
             Colors::TriangleSize => Some(&SIZE_SCALE),
+            Colors::Excess => Some(&EXCESS_SCALE),
             Colors::Material | Colors::Barycentric | Colors::LowFactors | Colors::Deviation => None,
         }
     }
@@ -99,6 +116,8 @@ mod tests {
         assert!(steps(&FACTOR_SCALE).windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{:?}", steps(&FACTOR_SCALE));
         let rising = steps(&DEVIATION_PX_SCALE);
         assert!(rising.windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{rising:?}");
-        assert!(steps(&SIZE_SCALE).windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{:?}", steps(&SIZE_SCALE));
+        for falling in [&SIZE_SCALE, &EXCESS_SCALE] {
+            assert!(steps(falling).windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{:?}", steps(falling));
+        }
     }
 }

@@ -175,12 +175,14 @@ pub(crate) static TOLERANCE: Declaration = Declaration {
     name: "tolerance",
     label: "Tolerance",
     placeholder: "PX",
-    text: "Largest distance on screen between the triangles and the surface under LOD by error.",
+    text: "Largest distance on screen between the triangles and the surface under LOD by error. The overlay of excess \
+           triangles compares with it under any LOD.",
     kind: Kind::Number(TOLERANCE_RANGE),
     unset: None,
     saved_as: &["tolerance"],
     no_effect: |settings| {
-        (settings.tessellation.used_lod() != Lod::Error).then_some("Only LOD by error has a tolerance.")
+        let is_used = settings.tessellation.used_lod() == Lod::Error || settings.overlays.colors == Colors::Excess;
+        (!is_used).then_some("Only LOD by error and the overlay of excess triangles have a tolerance.")
     },
     access: field!(tessellation.tolerance),
 };
@@ -288,8 +290,8 @@ pub(crate) static OVERLAY: Declaration = Declaration {
     name: "overlay",
     label: "Overlays",
     placeholder: "OVERLAY,..",
-    text: "What is drawn over the surface. At most one of barycentric, factors, triangle-size, low-factors and deviation, \
-           which colour all of it.",
+    text: "What is drawn over the surface. At most one of barycentric, factors, triangle-size, low-factors, excess and \
+           deviation, which colour all of it.",
     kind: Kind::Several(descriptions::<Overlay>),
     unset: None,
     saved_as: &["overlays"],

@@ -17,6 +17,8 @@ pub enum Colors {
     TriangleSize,
     /// Patches whose factors are all below 2.
     LowFactors,
+    /// How many times as many triangles each patch has as it needs by itself.
+    Excess,
     /// The distance to the reference surface.
     Deviation,
 }
@@ -57,14 +59,15 @@ pub enum Overlay {
     Factors,
     TriangleSize,
     LowFactors,
+    Excess,
     Normals,
     Deviation,
 }
 
 impl Overlay {
-    pub const ALL: [Self; 13] = every![Overlay:
+    pub const ALL: [Self; 14] = every![Overlay:
         Wireframe, Patches, Barycentric, Adjacency, Cracks, Folds, TJunctions, BackFaces, Factors, TriangleSize, LowFactors,
-        Normals, Deviation,
+        Excess, Normals, Deviation,
     ];
 }
 
@@ -115,6 +118,12 @@ impl Choice for Overlay {
                 "Colours patches whose edge and inside factors are all below 2: without tessellation they would look almost \
                  the same and cost less.",
             ),
+            Self::Excess => (
+                "excess",
+                "Excess triangles",
+                "Colours patches by how many times as many triangles they have as their own least: the fewest with which a \
+                 patch alone would keep the tolerance of LOD by error.",
+            ),
             Self::Normals => (
                 "normals",
                 "Normals",
@@ -133,7 +142,9 @@ impl Choice for Overlay {
 }
 
 impl Choice for Colors {
-    const ALL: &'static [Self] = &every![Colors: Material, Barycentric, Factors, TriangleSize, LowFactors, Deviation];
+    const ALL: &'static [Self] = &every![Colors:
+        Material, Barycentric, Factors, TriangleSize, LowFactors, Excess, Deviation,
+    ];
 
     fn description(self) -> Description {
         match self {
@@ -142,6 +153,7 @@ impl Choice for Colors {
             Self::Factors => Overlay::Factors.description(),
             Self::TriangleSize => Overlay::TriangleSize.description(),
             Self::LowFactors => Overlay::LowFactors.description(),
+            Self::Excess => Overlay::Excess.description(),
             Self::Deviation => Overlay::Deviation.description(),
         }
     }
@@ -161,6 +173,7 @@ impl Overlays {
             Overlay::Factors => return Control::Colors(&mut self.colors, Colors::Factors),
             Overlay::TriangleSize => return Control::Colors(&mut self.colors, Colors::TriangleSize),
             Overlay::LowFactors => return Control::Colors(&mut self.colors, Colors::LowFactors),
+            Overlay::Excess => return Control::Colors(&mut self.colors, Colors::Excess),
             Overlay::Deviation => return Control::Colors(&mut self.colors, Colors::Deviation),
             Overlay::Wireframe => &mut self.wireframe,
             Overlay::Patches => &mut self.patches,

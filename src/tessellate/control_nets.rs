@@ -24,8 +24,18 @@ pub(super) struct ControlNets<'a> {
 impl<'a> ControlNets<'a> {
     /// Computes the control points of all curves.
     pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
+        Self::of_edges(mesh, topology, inputs, 0..topology.edges.len() as u32)
+    }
+
+    /// Computes the control points of the curves of some edges alone, in ascending order.
+    pub(super) fn of_edges(
+        mesh: &'a Mesh,
+        topology: &'a Topology,
+        inputs: &Inputs,
+        some: impl Iterator<Item = u32>,
+    ) -> Self {
         let Tessellation { surface, alpha, normals, edges, .. } = inputs.tessellation;
-        let curves = Curves::build(mesh, topology, sharing(surface, edges));
+        let curves = Curves::build_some(mesh, topology, sharing(surface, edges), some);
         let net = |curve: &crate::mesh::Curve| {
             let [a, b] = curve.points.map(|p| topology.points[p as usize]);
             let sides = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];

@@ -201,6 +201,51 @@ fn least_row_factor(
     BEYOND_LAST
 }
 
+/// Returns the factors of the edges U == 0, V == 0 and W == 0 and inside with which a patch is within the tolerance and
+/// has the fewest triangles, if a segment of an edge counts as `segment` triangles. `least` are the least factors that
+/// the edges may get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least` and
+/// [`BEYOND_LAST`].
+fn fewest_triangles(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    least: [f32; 3],
+    least_inside: f32,
+    segment: f32,
+) -> [f32; 4] {
+    let within = BOUND_SHARE * tolerance;
+    let mut best = [least[0], least[1], least[2], BEYOND_LAST];
+    let largest = least[0].max(least[1]).max(least[2]).max(least_inside);
+    if largest > 64.0 {
+        return best;
+    }
+    if single_suffices(patch, within, partitioning, least, least_inside) {
+        return [least[0], least[1], least[2], 1.0];
+    }
+    let mut fewest = 3.4e38;
+    let mut inside = least_inner_factor(patch, within, partitioning, least_inside);
+    while inside <= 64.0 {
+        let rings = inside - 2.0;
+        let mut cost = 3.0 * rings + 1.5 * rings * rings + segment * (least[0] + least[1] + least[2]);
+        if cost >= fewest {
+            break;
+        }
+        let mut asked = least;
+        for k in 0..3 {
+            if cost < fewest {
+                asked[k] = least_row_factor(patch, within, partitioning, k as u32, least[k], inside);
+                cost += if asked[k] > 64.0 { 3.4e38 } else { segment * (asked[k] - least[k]) };
+            }
+        }
+        if cost < fewest {
+            fewest = cost;
+            best = [asked[0], asked[1], asked[2], inside];
+        }
+        inside = least_inner_factor(patch, within, partitioning, inside + 1.0);
+    }
+    best
+}
+
 /// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0. `least` are the least that these may
 /// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`.
 pub(super) fn asked_factors(
@@ -210,35 +255,21 @@ pub(super) fn asked_factors(
     least: [f32; 3],
     least_inside: f32,
 ) -> [f32; 3] {
-    let within = BOUND_SHARE * tolerance;
-    let largest = least[0].max(least[1]).max(least[2]).max(least_inside);
-    if largest > 64.0 || single_suffices(patch, within, partitioning, least, least_inside) {
-        return least;
-    }
-    let mut best = least;
-    let mut fewest = 3.4e38;
-    let mut inside = least_inner_factor(patch, within, partitioning, least_inside);
-    while inside <= 64.0 {
-        let rings = inside - 2.0;
-        // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-        let mut cost = 3.0 * rings + 1.5 * rings * rings + 2.0 * (least[0] + least[1] + least[2]);
-        if cost >= fewest {
-            break;
-        }
-        let mut asked = least;
-        for k in 0..3 {
-            if cost < fewest {
-                asked[k] = least_row_factor(patch, within, partitioning, k as u32, least[k], inside);
-                cost += if asked[k] > 64.0 { 3.4e38 } else { 2.0 * (asked[k] - least[k]) };
-            }
-        }
-        if cost < fewest {
-            fewest = cost;
-            best = asked;
-        }
-        inside = least_inner_factor(patch, within, partitioning, inside + 1.0);
-    }
-    best
+    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
+    let [u, v, w, _] = fewest_triangles(patch, tolerance, partitioning, least, least_inside, 2.0);
+    [u, v, w]
+}
+
+/// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch has the fewest triangles
+/// if no neighbour asks for anything. See [`fewest_triangles`].
+pub(super) fn own_least_factors(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    least: [f32; 3],
+    least_inside: f32,
+) -> [f32; 4] {
+    fewest_triangles(patch, tolerance, partitioning, least, least_inside, 1.0)
 }
 
 /// Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these

@@ -5,7 +5,9 @@ use glam::Vec3;
 
 use super::control_nets::ControlNets;
 use super::flat_patch::{flat_error, normals_agree};
-use super::least_factors::{BOUND_SHARE, asked_factors, least_edge_factor, least_inside_factor, whole_segments};
+use super::least_factors::{
+    BOUND_SHARE, asked_factors, least_edge_factor, least_inside_factor, own_least_factors, whole_segments,
+};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::seen_patch;
 use super::texel_lengths::Maps;
@@ -56,37 +58,64 @@ impl ControlNets<'_> {
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
         let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
         let all = 0..self.topology.patches.len() as u32;
-        all.clone().for_each(|patch| self.ask(inputs, displacement, patch, &least, &mut asked));
+        let ask = |patch: u32, least: &[f32], asked: &mut [f32]| {
+            let own = self.asked_by_patch(inputs, displacement, patch, |factor| least[factor as usize]);
+            for (k, own) in [1, 2, 0].into_iter().zip(own) {
+                let factor = self.patch_factor(patch, k) as usize;
+                asked[factor] = asked[factor].max(own);
+            }
+        };
+        all.clone().for_each(|patch| ask(patch, &least, &mut asked));
         if surface != Surface::Flat {
             let first = asked.clone();
             let fails = |&patch: &u32| self.inside_factor(inputs, displacement, &first, patch) > 64.0;
-            all.filter(fails).for_each(|patch| self.ask(inputs, displacement, patch, &first, &mut asked));
+            all.filter(fails).for_each(|patch| ask(patch, &first, &mut asked));
         }
         asked
     }
 
-    /// Raises the factors of a patch's edges to what the patch asks for. `least` are the least that edges may get.
-    fn ask(
+    /// Returns the factors that a patch asks for under LOD by error, of the edges U == 0, V == 0 and W == 0. `least`
+    /// returns the least factor that an edge may get.
+    pub(super) fn asked_by_patch(
         &self,
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
         patch: u32,
-        least: &[f32],
-        asked: &mut [f32],
-    ) {
+        least: impl Fn(u32) -> f32,
+    ) -> [f32; 3] {
         let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
-        let factors = [1, 2, 0].map(|k| self.patch_factor(patch, k) as usize);
-        let mut own = factors.map(|factor| least[factor]);
         if self.slides(inputs, displacement, patch) {
-            own = [whole_segments(partitioning, 1.0); 3];
-        } else if surface != Surface::Flat {
-            let inside = self.heights_inside(inputs, displacement, patch);
-            let tolerance = surface_tolerance(inputs, displacement);
-            own = asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, own, inside);
+            return [whole_segments(partitioning, 1.0); 3];
         }
-        for (factor, own) in factors.into_iter().zip(own) {
-            asked[factor] = asked[factor].max(own);
+        let least = [1, 2, 0].map(|k| least(self.patch_factor(patch, k)));
+        if surface == Surface::Flat {
+            return least;
         }
+        let inside = self.heights_inside(inputs, displacement, patch);
+        let tolerance = surface_tolerance(inputs, displacement);
+        asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, least, inside)
+    }
+
+    /// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch alone would keep the
+    /// tolerance with the fewest triangles: its *own least*. `least` returns the least factor that an edge may get.
+    pub(super) fn own_least_factors(
+        &self,
+        inputs: &Inputs,
+        displacement: Option<&MeshDisplacement>,
+        patch: u32,
+        least: impl Fn(u32) -> f32,
+    ) -> [f32; 4] {
+        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
+        if self.slides(inputs, displacement, patch) {
+            return [whole_segments(partitioning, 1.0); 4];
+        }
+        let least = [1, 2, 0].map(|k| least(self.patch_factor(patch, k)));
+        let inside = self.heights_inside(inputs, displacement, patch);
+        if surface == Surface::Flat {
+            return [least[0], least[1], least[2], whole_segments(partitioning, inside)];
+        }
+        let tolerance = surface_tolerance(inputs, displacement);
+        own_least_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, least, inside)
     }
 
     /// Returns whether one triangle shows a patch within the tolerance of LOD by error though points of the surface slide:
@@ -101,13 +130,18 @@ impl ControlNets<'_> {
     }
 
     /// Returns the index of the factor of a patch's side.
-    fn patch_factor(&self, patch: u32, side: usize) -> u32 {
+    pub(super) fn patch_factor(&self, patch: u32, side: usize) -> u32 {
         self.curves.factor(self.topology, self.topology.patches[patch as usize].sides[side])
     }
 
     /// Returns the least factor that an edge may get: for its curves and, with displacement, for all heights on its
     /// sides.
-    fn least_edge_factor(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, factor: u32) -> f32 {
+    pub(super) fn least_edge_factor(
+        &self,
+        inputs: &Inputs,
+        displacement: Option<&MeshDisplacement>,
+        factor: u32,
+    ) -> f32 {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let curves = &self.curves.factor_curves[factor as usize..factor as usize + 2];
         let own = |curve: u32| match surface {
@@ -177,6 +211,6 @@ impl ControlNets<'_> {
 }
 
 /// Returns the part of LOD by error's tolerance that is for the surface without displacement, in px.
-fn surface_tolerance(inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> f32 {
+pub(super) fn surface_tolerance(inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> f32 {
     inputs.tessellation.tolerance * if displacement.is_some() { SURFACE_SHARE } else { 1.0 }
 }

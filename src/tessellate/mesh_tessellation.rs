@@ -57,7 +57,7 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
 }
 
 /// Returns the inputs with the view's `reach` set to how far the mesh is displaced.
-fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
+pub(super) fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
     Inputs { view: LodView { reach: displacement_reach(mesh, inputs), ..inputs.view }, ..*inputs }
 }
 

@@ -19,6 +19,7 @@ mod deform;
 mod displace;
 mod displacement_factor;
 pub(crate) mod domain;
+mod explained_patch;
 pub(crate) mod factors;
 mod flat_patch;
 pub(crate) mod hull_factors;
@@ -66,6 +67,11 @@ pub(crate) use coverage::{covers_nothing, screen_corner};
 pub(crate) use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
 pub(crate) use displacement_factor::SURFACE_SHARE;
 pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
+#[cfg(test)]
+pub(crate) use explained_patch::own_least_triangles;
+pub(crate) use explained_patch::{
+    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, is_enough, own_least_inputs,
+};
 #[cfg(test)]
 pub(crate) use factors::FACTOR_ODD;
 pub(crate) use factors::{

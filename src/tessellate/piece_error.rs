@@ -38,6 +38,11 @@ pub(crate) struct SeenPatch {
     across: Vec2,
 }
 
+/// Returns whether an error is within a tolerance. NaN never is.
+fn is_within(error: f32, tolerance: f32) -> bool {
+    error <= tolerance
+}
+
 /// Returns the control point with these three indices (0 to 2), in any order: (0, 0, 1) is b210.
 fn control_point(net: &ControlNet, i: usize, j: usize, l: usize) -> Vec3 {
     if i == j && j == l {
@@ -109,11 +114,11 @@ pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
     }
     let scale = depth_scale(deepest);
     let mut points = [Vec3::ZERO; 10];
-    for i in 0..3 {
-        points[i] = clip_point(view, scale, net.corners[i]);
+    for (point, corner) in points.iter_mut().zip(net.corners) {
+        *point = clip_point(view, scale, corner);
     }
-    for i in 0..6 {
-        points[3 + i] = clip_point(view, scale, net.edges[i]);
+    for (point, on_edge) in points[3..].iter_mut().zip(net.edges) {
+        *point = clip_point(view, scale, on_edge);
     }
     points[9] = clip_point(view, scale, net.center);
     let second = [0, 1, 2].map(|i| second_derivatives(view, scale, net, i));
@@ -232,12 +237,9 @@ fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
 /// by an eye that sees it within `spread` px of `middle`.
 fn derivative_bound(piece: &Piece, middle: Vec2, spread: f32) -> f32 {
     let mut most = [0.0f32; 3];
-    for i in 0..3 {
-        for k in 0..3 {
-            let second = piece.second[i][k];
-            let seen = (second.truncate() - middle * second.z).length() + spread * second.z.abs();
-            // Not `max`, which may lose a NaN.
-            most[k] = if seen <= most[k] { most[k] } else { seen };
+    for at_corner in piece.second {
+        for (most, second) in most.iter_mut().zip(at_corner) {
+            *most = most.max((second.truncate() - middle * second.z).length() + spread * second.z.abs());
         }
     }
     triangle_error(most[0], most[1], most[2])
@@ -266,8 +268,7 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, step
             let seen = (difference.truncate() - place * difference.z).length() + moved * difference.z.abs();
             let own = seen / (depth + difference.z - patch.deep);
             deep = deep.max(difference.z.abs());
-            // Written like this, NaN isn't within the tolerance.
-            if !(own <= tolerance) {
+            if !is_within(own, tolerance) {
                 return [own, deep];
             }
             error = error.max(own);
@@ -310,10 +311,10 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
     let ratio = farthest / nearest;
     let mut steps = 1;
     let mut upper = bound;
-    while !(upper <= tolerance) && steps < FINEST_GRID {
+    while !is_within(upper, tolerance) && steps < FINEST_GRID {
         steps *= 2;
         let [error, deep] = grid_error(patch, &piece, moved, tolerance, steps);
-        if !(error <= tolerance) {
+        if !is_within(error, tolerance) {
             return error;
         }
         // Between points of the grid: depth and place change, and the difference isn't linear.

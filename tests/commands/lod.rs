@@ -29,10 +29,17 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
     assert!(reached > 0.01, "{paper}");
     let tolerance = reached.to_string();
     let by_error = of(&["--lod", "error", "--tolerance", &tolerance]);
+    assert_eq!(number(&paper, "/lod_comparison/tolerance_px") as f32, reached as f32);
+    assert_eq!(number(&paper, "/lod_comparison/triangles"), number(&by_error, "/triangles_out"));
+    let times = number(&paper, "/triangles_out") / number(&by_error, "/triangles_out");
+    assert_eq!(number(&paper, "/lod_comparison/times"), times);
+    // LOD by error is compared with itself at the error that it reached, which is below its tolerance.
+    assert!(number(&by_error, "/lod_comparison/times") <= 1.0, "{by_error}");
     assert!(number(&by_error, "/max_error_px") <= reached, "{by_error}");
     assert!(2.0 * number(&by_error, "/triangles_out") < number(&paper, "/triangles_out"), "{by_error}");
     assert_eq!((number(&by_error, "/factors_capped"), number(&by_error, "/cracks/different_bits")), (0.0, 0.0));
     let distance = of(&["--lod", "distance", "--factor", "9", "--distances", "2,5", "--measure-error", "false"]);
+    assert!(distance["lod_comparison"].is_null(), "{distance}");
     assert!(distance["max_error_px"].is_null() && number(&distance, "/triangles_out") > 256.0, "{distance}");
 }
 

@@ -1,17 +1,19 @@
 //! LOD by error: what is emitted is within the tolerance of the surface, and not much finer.
 
 use glam::Vec2;
-use pnaen::gpu::Timing;
+use pnaen::gpu::{Timing, take_times};
 use pnaen::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
-use pnaen::render::{Camera, Scene};
-use pnaen::settings::Settings;
+use pnaen::render::{Camera, Scene, Target};
+use pnaen::settings::{Colors, Overlays, Settings};
 use pnaen::tessellate::{
-    self, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation, hull_factors, tessellate,
+    self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
+    hull_factors, own_least_triangles, tessellate,
 };
 use proptest::prelude::*;
 
+use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::passes::edge_factors;
 use crate::gpu_tests::stability::{Trial, any_trial};
 use crate::gpu_tests::{engine, scene};
@@ -169,4 +171,104 @@ fn what_is_flat_costs_one_triangle_a_patch() {
             assert_eq!(out.triangles.len(), loaded.mesh.triangles.len(), "{shape:?} {partitioning:?}");
         }
     }
+}
+
+#[test]
+fn the_device_finds_the_own_least_that_the_cpu_does() {
+    let (torus, mut plain) = scene(Shape::Torus);
+    let (waved, mut displaced) = wavy(Shape::Torus);
+    let [camera, close, ..] = cameras(&plain);
+    let base = Tessellation { tolerance: 0.5, ..Tessellation::default() };
+    let on = Displacement::On;
+    let tried = [
+        Tessellation { lod: Lod::Error, partitioning: Partitioning::Integer, ..base },
+        Tessellation { lod: Lod::Uniform, partitioning: Partitioning::Subtriangulation, ..base },
+        Tessellation { lod: Lod::Paper, surface: Surface::Pn, ..base },
+        Tessellation {
+            lod: Lod::EdgeLength,
+            partitioning: Partitioning::Pow2,
+            convention: Convention::EdgeOrder,
+            ..base
+        },
+        Tessellation { lod: Lod::Uniform, surface: Surface::Flat, partitioning: Partitioning::FractionalEven, ..base },
+        Tessellation { lod: Lod::Distance, edges: Edges::AsPublished, partitioning: Partitioning::Integer, ..base },
+        Tessellation { lod: Lod::Uniform, displacement: on, partitioning: Partitioning::Integer, ..base },
+        Tessellation { lod: Lod::Error, displacement: on, surface: Surface::Flat, ..base },
+    ];
+    let (mut same, mut all) = (0, 0);
+    for tessellation in tried {
+        let is_displaced = tessellation.displacement == on;
+        let (loaded, scene) = if is_displaced { (&waved, &mut displaced) } else { (&torus, &mut plain) };
+        for camera in [camera, close] {
+            let settings = Settings::from(tessellation);
+            let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
+            engine().count(scene, &inputs, &mut Timing::Off).expect("counts");
+            let least = engine().own_least(scene).expect("a readback");
+            let near = [1.0, 1.0 - ROUNDING, 1.0 + ROUNDING].map(|part| {
+                let own = Tessellation { tolerance: tessellation.tolerance * part, ..inputs.tessellation };
+                own_least_triangles(&loaded.mesh, &loaded.topology, &Inputs { tessellation: own, ..inputs })
+            });
+            assert_eq!(least.len(), loaded.topology.patches.len());
+            for (patch, own) in least.iter().enumerate() {
+                let known = near.each_ref().map(|near| near[patch]);
+                assert!(known.contains(own), "{tessellation:?}, patch {patch}: {own}, not {known:?}");
+                same += usize::from(known[0] == *own);
+                all += 1;
+            }
+            assert!(is_displaced || least.iter().any(|own| *own != least[0]) || tessellation.surface == Surface::Flat);
+        }
+    }
+    println!("{same} of {all} patches agree without any allowance");
+    assert!(all > 3000, "{all} patches");
+}
+
+#[test]
+fn the_own_least_is_computed_only_if_it_is_shown_and_something_has_changed() {
+    let (_, mut scene) = scene(Shape::Torus);
+    let target = Target::new(&engine().gpu, [64, 64]).expect("a small picture");
+    let mut timing = Timing::Submissions(Vec::new());
+    let mut ran = |settings: &Settings, camera: &Camera| {
+        engine().draw(&mut scene, &target, camera, settings, &mut timing).expect("a draw");
+        take_times(&engine().gpu, &mut timing).iter().any(|time| time.pass == "least")
+    };
+    let camera = Camera::framing(&Shape::Torus.build().bounds(), target.viewport());
+    let plain = Settings::default();
+    let shown = Settings { overlays: Overlays { colors: Colors::Excess, ..Overlays::default() }, ..plain };
+    assert!(!ran(&plain, &camera), "it isn't shown");
+    assert!(ran(&shown, &camera));
+    assert!(!ran(&shown, &camera), "nothing has changed");
+    let finer = shown.with(Tessellation { factor: 12.0, ..shown.tessellation });
+    assert!(!ran(&finer, &camera), "it doesn't depend on the factors that are used");
+    assert!(ran(&shown.with(Tessellation { tolerance: 2.0, ..shown.tessellation }), &camera));
+    assert!(ran(&shown, &Camera { azimuth: 80.0, ..camera }), "another view");
+    assert!(ran(&shown.with(Tessellation { surface: Surface::Pn, ..shown.tessellation }), &camera));
+}
+
+#[test]
+fn lod_by_error_needs_fewer_triangles_for_the_error_that_another_lod_has() {
+    let (_, mut scene) = scene(Shape::Torus);
+    let [camera, ..] = cameras(&scene);
+    let uniform = Settings::from(Tessellation { partitioning: Partitioning::Integer, ..Tessellation::default() });
+    let inputs = uniform.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
+    let count = |scene: &mut Scene, inputs: &Inputs| {
+        engine().count(scene, inputs, &mut Timing::Off).expect("counts");
+        scene.tessellator.totals().1
+    };
+    let all = count(&mut scene, &inputs);
+    let by_error = by_error(uniform, 0.5).inputs(inputs.view);
+    let expected = count(&mut scene, &by_error);
+    assert_eq!(count(&mut scene, &inputs), all);
+    let compared =
+        |scene: &mut Scene, inputs: &Inputs, px| engine().triangles_by_error(scene, inputs, px).expect("counts");
+    assert_eq!(compared(&mut scene, &inputs, 0.5), Some(expected));
+    assert_eq!(scene.tessellator.totals().1, all, "the scene is counted as before");
+    assert_eq!(compared(&mut scene, &by_error, 0.5), Some(expected), "with itself");
+    assert_eq!(compared(&mut scene, &inputs, 1e-5), None, "64 segments aren't enough");
+    let whole = Tessellation { partitioning: Partitioning::Subtriangulation, ..inputs.tessellation };
+    assert_eq!(compared(&mut scene, &Inputs { tessellation: whole, ..inputs }, 0.5), Some(expected));
+    let given = vec![HullFactors { edges: [3.0; 3], inside: 3.0 }; scene.tessellator.topology().patches.len()];
+    scene.tessellator.give(Some(given.clone())).expect("small");
+    let of_given = count(&mut scene, &inputs);
+    assert_eq!(compared(&mut scene, &inputs, 0.5), Some(expected));
+    assert_eq!((scene.tessellator.given(), scene.tessellator.totals().1), (Some(&given[..]), of_given));
 }

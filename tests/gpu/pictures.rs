@@ -10,10 +10,11 @@ use pnaen::load::Source;
 use pnaen::mesh::{EdgeKind, Shape, t_junctions};
 use pnaen::progress::Progress;
 use pnaen::render::layout::{CRACK_COLOR, FOLD_COLOR, NORMAL_COLOR, T_JUNCTION_COLOR, WASTE_COLOR, edge_color};
-use pnaen::render::{Camera, FACTOR_SCALE, Scene, Target, t_junction_lines};
+use pnaen::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target, t_junction_lines};
 use pnaen::settings::{ARENA_BYTES, Choice, Colors, Overlay, Overlays, Settings};
 use pnaen::tessellate::{
     Convention, Displacement, FACTOR_ODD, FIXED_ONE, Lod, Normals, Partitioning, Surface, Tessellation, domain_side,
+    triangle_count,
 };
 use pnaen::view::project;
 
@@ -162,6 +163,12 @@ fn colours_look_as_they_did() {
             Shape::Torus,
             Colors::LowFactors,
             Settings::from(Tessellation { lod: Lod::EdgeLength, ..Tessellation::default() }),
+        ),
+        (
+            "excess",
+            Shape::Torus,
+            Colors::Excess,
+            Settings::from(Tessellation { lod: Lod::EdgeLength, tolerance: 1.0, ..Tessellation::default() }),
         ),
     ] {
         let (_, mut scene) = scene(shape);
@@ -340,6 +347,37 @@ fn every_edge_has_the_colour_of_its_own_factor() {
     }
     assert!(differ > loaded.topology.patches.len() / 2, "factors of {differ} patches differ");
     assert_eq!(wrong, []);
+}
+
+#[test]
+fn every_patch_has_the_colour_of_its_excess_triangles() {
+    let (loaded, mut saddle) = scene(Shape::Saddle);
+    let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
+    let camera = Camera { elevation: 70.0, ..Camera::framing(&saddle.bounds, target.viewport()) };
+    let settings = Settings {
+        tessellation: Tessellation { lod: Lod::EdgeLength, tolerance: 0.5, ..Tessellation::default() },
+        overlays: Overlays { colors: Colors::Excess, ..Overlays::default() },
+        ..Settings::default()
+    };
+    let picture = seen(&mut saddle, &target, &settings, &camera);
+    let factors = engine().patch_factors(&saddle).expect("a readback");
+    let least = engine().own_least(&mut saddle).expect("a readback");
+    let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
+    let times = |patch: usize| triangle_count(factors[patch]) as f32 / least[patch] as f32;
+    let mut largest = 0.0f32;
+    for (patch, corners) in loaded.topology.patches.iter().map(|patch| loaded.topology.corners(patch)).enumerate() {
+        let [a, b, c] = corners.map(|corner| loaded.mesh.corners[corner as usize].position);
+        let at = project(clip, target.viewport(), (a + b + c) / 3.0).expect("in front of the eye");
+        let colour = picture.get_pixel(at.x as u32, at.y as u32).0;
+        let expected = EXCESS_SCALE.color(EXCESS_SCALE.place(times(patch)));
+        // Slopes are a little darker: see `shade_flat`.
+        let bright = (0..3).filter(|&k| expected[k] > 40);
+        let mut shares = bright.map(|k| f32::from(colour[k]) / f32::from(expected[k]));
+        assert!(shares.all(|share| (0.8..1.02).contains(&share)), "patch {patch}: {colour:?}, not {expected:?}");
+        largest = largest.max(times(patch));
+    }
+    let [first, last] = [0, EXCESS_SCALE.colors.len() - 1].map(|stop| EXCESS_SCALE.colors[stop]);
+    assert!(largest > 2.0 && first != last, "{largest}");
 }
 
 #[test]

@@ -2,13 +2,13 @@
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 use pnaen::load::Source;
 use pnaen::mesh::{EdgeKind, Shape};
 use pnaen::tessellate::Surface;
 
-use crate::window_tests::{choose, click, press, settle, uniform};
+use crate::window_tests::{choose, click, press, settle, uniform, window};
 
 fn cube() -> Harness<'static, App> {
     uniform(Some(Source::Shape(Shape::CubeSplit)))
@@ -202,4 +202,55 @@ fn the_pattern_says_why_a_patch_is_left_out() {
     settle(&mut harness);
     harness.get_by_role_and_label(Role::Image, "Domain pattern, facing away, so nothing is emitted");
     assert_eq!(harness.state().selected_triangle(), Some(triangle));
+}
+
+/// The text of the one label that starts like this.
+fn row(harness: &Harness<App>, start: &str) -> String {
+    let labels = harness.query_all_by_label_contains(start).filter_map(|node| node.accesskit_node().value());
+    let found: Vec<_> = labels.filter(|label| label.starts_with(start)).collect();
+    assert_eq!(found.len(), 1, "{start}: {found:?}");
+    found[0].clone()
+}
+
+/// The numbers in a row.
+fn numbers(text: &str) -> Vec<f64> {
+    text.split_whitespace().filter_map(|word| word.trim_end_matches('x').parse().ok()).collect()
+}
+
+#[test]
+fn a_patch_says_why_it_has_its_factors() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    let mut decided = Vec::new();
+    for triangle in [0, 33, 90, 150] {
+        harness.state_mut().select_triangle(Some(triangle));
+        settle(&mut harness);
+        if harness.query_by_label_contains("culled").is_some() {
+            continue;
+        }
+        harness.get_by_label("Why these factors");
+        let tolerance = numbers(&row(&harness, "tolerance  "))[0];
+        assert!((tolerance - f64::from(harness.state().settings().tessellation.tolerance)).abs() < 1e-3);
+        for edge in ["0-1 ", "1-2 ", "2-0 "] {
+            let text = row(&harness, edge);
+            let words: Vec<_> = text.split_whitespace().collect();
+            let [_, own, others, got, by, px] = words[..] else { panic!("{text}") };
+            let [own, others, got, px] = [own, others, got, px].map(|word| word.parse::<f64>().expect("a number"));
+            assert_eq!(got, own.max(others), "{text}");
+            assert!(px <= tolerance, "{text}");
+            decided.push(by.to_owned());
+        }
+        assert!(numbers(&row(&harness, "inside         "))[1] <= tolerance);
+        let (least, has) = (row(&harness, "own least"), row(&harness, "has  "));
+        let (least, has) = (numbers(&least)[0], numbers(&has));
+        assert!(has[0] >= least && (has[1] - has[0] / least).abs() < 0.01, "{least} {has:?}");
+        assert!(row(&harness, "Pattern: ").ends_with(&format!(" {} triangles", has[0])));
+    }
+    assert!(decided.iter().any(|by| by == "curve") || decided.iter().any(|by| by == "own"), "{decided:?}");
+    assert!(decided.len() >= 6, "{decided:?}");
+    // Under another LOD the same patch is compared with the same tolerance.
+    let least = row(&harness, "own least");
+    choose(&mut harness, "LOD", "Uniform");
+    harness.get_by_label("Against LOD by error");
+    assert_eq!(row(&harness, "own least"), least);
+    assert!(numbers(&row(&harness, "has  "))[1] > 1.0);
 }

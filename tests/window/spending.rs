@@ -16,15 +16,21 @@ use crate::window_tests::{PATIENCE, choose, click, press, run_command, settle, u
 #[test]
 fn only_one_colouring_is_shown_and_numbers_have_a_legend() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
-    let legends = ["Legend: Factor", "Legend: Triangle size, px", "Legend: Factors below 2"];
+    let legends = [
+        "Legend: Factor",
+        "Legend: Triangle size, px",
+        "Legend: Factors below 2",
+        "Legend: Triangles, times the own least",
+    ];
     let shown = |harness: &Harness<App>| legends.map(|legend| harness.query_by_label(legend).is_some());
-    assert_eq!(shown(&harness), [false; 3]);
+    assert_eq!(shown(&harness), [false; 4]);
     for (entry, colors, expected) in [
-        ("Factors", Colors::Factors, [true, false, false]),
-        ("Triangle size", Colors::TriangleSize, [false, true, false]),
-        ("Factors below 2", Colors::LowFactors, [false, false, true]),
-        ("Barycentric", Colors::Barycentric, [false; 3]),
-        ("Material", Colors::Material, [false; 3]),
+        ("Factors", Colors::Factors, [true, false, false, false]),
+        ("Triangle size", Colors::TriangleSize, [false, true, false, false]),
+        ("Factors below 2", Colors::LowFactors, [false, false, true, false]),
+        ("Excess triangles", Colors::Excess, [false, false, false, true]),
+        ("Barycentric", Colors::Barycentric, [false; 4]),
+        ("Material", Colors::Material, [false; 4]),
     ] {
         let pictures = harness.state().pictures();
         choose(&mut harness, "Colours", entry);
@@ -36,6 +42,7 @@ fn only_one_colouring_is_shown_and_numbers_have_a_legend() {
         (egui::Key::H, Colors::Factors),
         (egui::Key::X, Colors::TriangleSize),
         (egui::Key::U, Colors::LowFactors),
+        (egui::Key::M, Colors::Excess),
         (egui::Key::B, Colors::Barycentric),
         (egui::Key::B, Colors::Material),
     ] {

@@ -9,6 +9,7 @@ mod crease_band;
 mod deviation;
 pub(super) mod displacement;
 mod option_rows;
+mod patch_explanation;
 mod patch_panel;
 mod patch_pattern;
 mod settings_panel;

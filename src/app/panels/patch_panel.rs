@@ -3,12 +3,14 @@
 use egui::{RichText, Ui};
 
 use super::crack_list::kind_name;
+use super::patch_explanation::ShownExplanation;
 use super::patch_pattern::{pattern_plot, weights_text};
 use super::statistics::EDGE_KINDS;
 use crate::app::App;
+use crate::app::jobs::explain_job::EmittedPatch;
 use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
 use crate::app::text::{factor, short};
-use crate::app::widgets::{SWATCH, swatch};
+use crate::app::widgets::{SWATCH, dense, swatch, title};
 use crate::commands::{Action, with_key};
 use crate::measure::EdgeSide;
 use crate::mesh::{Mesh, Topology, adjacency};
@@ -16,8 +18,8 @@ use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
 use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
 use crate::tessellate::{
-    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex, domain_plan, domain_side,
-    domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
+    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh, Vertex, domain_plan,
+    domain_side, domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
 };
 
 /// What was clicked in the section.
@@ -51,11 +53,12 @@ impl App {
         let at_rest = || (document.loaded.mesh.clone(), document.loaded.topology.clone());
         let (mesh, topology) = &self.selected_triangle().map_or_else(at_rest, |_| document.shown());
         let mut wish = chosen_triangle(ui, mesh, topology, self.selected_triangle());
-        let found = self.jobs.measure.found();
         match (self.selected_triangle(), self.selected_patch()) {
             (None, _) => drop(ui.weak("Click a triangle, or type its number.")),
             (Some(triangle), None) => drop(ui.label(format!("Triangle {triangle} is degenerate: it has no patch."))),
             (Some(triangle), Some(patch)) => {
+                let question = self.emitted_patch(patch);
+                let found = self.jobs.measure.found();
                 let shown = SelectedPatch {
                     mesh,
                     topology,
@@ -74,6 +77,10 @@ impl App {
                     ui.spacing_mut().item_spacing.y = 3.0;
                     ui.spacing_mut().interact_size.y = 16.0;
                     shown.factor_rows(ui);
+                    let explain = &mut self.jobs.explain;
+                    let explained = question.and_then(|(question, posed)| explain.of(ui.ctx(), &posed, question));
+                    let by_error = shown.lod == Lod::Error;
+                    ShownExplanation { topology, explained, by_error, factors: shown.factors }.rows(ui);
                     shown.plot(ui);
                     shown.edge_rows(ui, &mut wish);
                     shown.corner_rows(ui);
@@ -89,6 +96,22 @@ impl App {
             Some(Wish::Frame) => self.frame_patch(),
             Some(Wish::Deselect) => self.deselect(),
         }
+    }
+
+    /// What the selected patch's explanation is about: how the patch was emitted, and the mesh in its pose. None until that is
+    /// measured, and if nothing was emitted.
+    fn emitted_patch(&self, patch: u32) -> Option<(EmittedPatch, PosedMesh)> {
+        let (document, drawn) = (self.document.as_ref()?, self.viewport.picture.drawn.as_ref()?);
+        let factors = self.jobs.measure.found()?.outlines.factors(patch);
+        let tessellator = &document.scene.tessellator;
+        let emitted = EmittedPatch {
+            document: document.generation,
+            tessellation: tessellator.generation(),
+            patch,
+            inputs: drawn.inputs,
+            factors,
+        };
+        (!self.is_playing() && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))
     }
 }
 
@@ -333,15 +356,4 @@ fn factor_row(ui: &mut Ui, color: Option<[u8; 3]>, text: &str, is_weak: bool) ->
         ui.label(if is_weak { dense(text).weak() } else { dense(text) })
     });
     row.inner
-}
-
-/// Small monospaced text, so that a position's three coordinates fit on one line.
-fn dense(text: impl Into<String>) -> RichText {
-    RichText::new(text).monospace().size(12.0)
-}
-
-/// The name of a table.
-fn title(ui: &mut Ui, text: &str, hover: &str) {
-    ui.add_space(6.0);
-    ui.label(text).on_hover_text(hover);
 }

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Pos2, Rect, Sense, pos2, vec2};
 
 use crate::app::widgets::rgb;
 use crate::render::layout::WASTE_COLOR;
-use crate::render::{DEVIATION_PX_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
+use crate::render::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
 use crate::settings::{Colors, DeviationUnit};
 
 /// Sizes in points: the bar of the scale at its widest, the block of one colour before it, the margin, and the text.
@@ -64,6 +64,12 @@ fn legend_of(colors: Colors, distances: &Distances) -> Option<Legend> {
             waste: true,
             ..legend("Factors below 2", "One colour for patches whose factors are all below 2, edges and inside.", None)
         }),
+        Colors::Excess => Some(legend(
+            "Triangles, times the own least",
+            "Colours of patches by how many times as many triangles they have as their own least, 1 to 16: the fewest with \
+             which a patch alone would keep the tolerance of LOD by error.",
+            Some((EXCESS_SCALE, &[1.0, 2.0, 4.0, 8.0, 16.0])),
+        )),
         Colors::Deviation => Some(deviation_legend(distances)),
     }
 }

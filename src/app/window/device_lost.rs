@@ -146,6 +146,7 @@ impl App {
         if let Some(export) = &mut self.jobs.export {
             export.wake(context);
         }
+        self.jobs.explain.go_on_in(context);
         self.jobs.picture_file = self.jobs.picture_file.take().map(|job| job.waking(context));
         self.dialogs.pending = self.dialogs.pending.take().map(|dialog| PendingDialog {
             job: dialog.job.waking(context),

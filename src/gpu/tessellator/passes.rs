@@ -5,14 +5,13 @@ use crate::gpu::GpuError;
 use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
 use crate::gpu::mesh_passes::Each;
-use crate::gpu::pipelines::grid;
+use crate::gpu::own_least::{self, OwnLeast};
+use crate::gpu::params::params_of;
+use crate::gpu::pipelines::{SEARCH_WORKGROUPS, grid};
 use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
-use crate::tessellate::{Displacement, Lod, Tessellation};
-
-/// The workgroups that search factors, each for one patch after another: enough for the largest GPUs.
-const SEARCH_WORKGROUPS: u32 = 8192;
+use crate::tessellate::{Displacement, Lod, Tessellation, own_least_inputs};
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
@@ -88,6 +87,31 @@ impl Tessellator {
             slab.emit_triangles(&on)?;
         }
         Ok(())
+    }
+
+    /// Records the passes that compute the own least of every patch ([`Self::own_least`]), unless that is known for the
+    /// inputs that were last set. The nets must be recorded.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a pipeline can't be made.
+    pub fn record_own_least(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
+        let Some(inputs) = &self.inputs else { return Ok(()) };
+        let params = params_of(&own_least_inputs(inputs), &self.mesh, &self.buffers, false, false);
+        let mut own_least = match self.own_least.take() {
+            Some(own_least) => own_least,
+            None => OwnLeast::new(&self.inputs_of_passes())?,
+        };
+        let recorded = own_least.record(&self.inputs_of_passes(), &params, recorder);
+        self.own_least = Some(own_least);
+        recorded
+    }
+
+    /// Makes the pipelines of those passes. May run on any thread.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn prepare_own_least(&self) -> Result<(), GpuError> {
+        own_least::prepare(&self.gpu, &self.pipelines)
     }
 
     /// What passes over the mesh and its slabs are bound to.

@@ -88,6 +88,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_FACTORS", colors(Colors::Factors)),
         ("OVERLAY_TRIANGLE_SIZE", colors(Colors::TriangleSize)),
         ("OVERLAY_LOW_FACTORS", colors(Colors::LowFactors)),
+        ("OVERLAY_EXCESS", colors(Colors::Excess)),
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),

@@ -165,6 +165,9 @@ fn unused_options_have_no_effect() {
     assert_eq!(idle(&lod(Lod::Paper)), with(&["alpha", "factor", "tolerance", "distances"]));
     assert_eq!(idle(&lod(Lod::EdgeLength)), with(&["alpha", "factor", "tolerance", "distances"]));
     assert_eq!(idle(&lod(Lod::Error)), with(&["alpha", "factor", "pixels", "distances"]));
+    let mut excess = lod(Lod::Paper);
+    excess.overlays.colors = Colors::Excess;
+    assert_eq!(idle(&excess), with(&["alpha", "factor", "distances"]));
     let mut phong_left = lod(Lod::Uniform);
     phong_left.tessellation.displacement = Displacement::On;
     phong_left.tessellation.partitioning = Partitioning::Subtriangulation;

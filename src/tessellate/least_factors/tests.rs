@@ -85,6 +85,7 @@ fn an_inside_factor_above_64_says_that_none_is_enough() {
         let edges = asked_factors(&patch, 1e-6, partitioning, least, 1.0);
         assert_eq!(edges, least, "{partitioning:?}");
         assert_eq!(least_inside_factor(&patch, 1e-6, partitioning, edges, 1.0), BEYOND_LAST, "{partitioning:?}");
+        assert_eq!(own_least_factors(&patch, 1e-6, partitioning, least, 1.0)[3], BEYOND_LAST, "{partitioning:?}");
         assert_eq!(least_inside_factor(&patch, 1.0, partitioning, [BEYOND_LAST; 3], 1.0), BEYOND_LAST);
     }
 }
@@ -99,12 +100,13 @@ fn what_is_not_a_number_ends_the_search() {
     }
 }
 
-/// Returns the fewest triangles of a patch, each segment of its edges counted twice, by trying all factors up to 14.
-fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning) -> Option<f32> {
+/// Returns the fewest triangles of a patch, where each segment of its edges counts as `segment` triangles, by trying all
+/// factors up to 14.
+fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, segment: f32) -> Option<f32> {
     let within = BOUND_SHARE * tolerance;
     let least = factor_from(partitioning, 1.0);
     if single_suffices(patch, within, partitioning, [least; 3], 1.0) {
-        return Some(6.0);
+        return Some(3.0 * segment);
     }
     let factors = || (1..=14u8).map(f32::from).filter(|&factor| factor_from(partitioning, factor) == factor);
     let of = |inside: f32| {
@@ -119,7 +121,7 @@ fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning) -> Opti
         let rings = inside - 2.0;
         let cost = 3.0 * rings + 1.5 * rings * rings;
         (error <= within).then_some(())?;
-        Some(cost + 2.0 * (edge(0)? + edge(1)? + edge(2)?))
+        Some(cost + segment * (edge(0)? + edge(1)? + edge(2)?))
     };
     factors().filter(|&inside| inside >= 2.0).filter_map(of).reduce(f32::min)
 }
@@ -134,13 +136,21 @@ proptest! {
     ) {
         let partitioning = Partitioning::DIRECT3D[index];
         let patch = seen_patch(&VIEW, &lifted(CORNERS, heights));
-        if let Some(fewest) = fewest(&patch, tolerance, partitioning) {
-            let asked = asked_factors(&patch, tolerance, partitioning, [factor_from(partitioning, 1.0); 3], 1.0);
+        let least = [factor_from(partitioning, 1.0); 3];
+        let count = |[u, v, w]: [f32; 3], inside: f32, segment: f32| {
+            let rings = (inside - 2.0).max(0.0);
+            3.0 * rings + 1.5 * rings * rings + segment * (u + v + w)
+        };
+        if let Some(fewest) = fewest(&patch, tolerance, partitioning, 2.0) {
+            let asked = asked_factors(&patch, tolerance, partitioning, least, 1.0);
             let inside = least_inside_factor(&patch, tolerance, partitioning, asked, 1.0);
             prop_assert!(inside <= 64.0, "{asked:?}");
-            let rings = (inside - 2.0).max(0.0);
-            let own = 3.0 * rings + 1.5 * rings * rings + 2.0 * asked.into_iter().sum::<f32>();
-            prop_assert_eq!(own, fewest, "{:?}, {}", asked, inside);
+            prop_assert_eq!(count(asked, inside, 2.0), fewest, "{:?}, {}", asked, inside);
+        }
+        if let Some(fewest) = fewest(&patch, tolerance, partitioning, 1.0) {
+            let [u, v, w, inside] = own_least_factors(&patch, tolerance, partitioning, least, 1.0);
+            prop_assert!(inside <= 64.0);
+            prop_assert_eq!(count([u, v, w], inside, 1.0), fewest, "{} {} {}, {}", u, v, w, inside);
         }
     }
 }

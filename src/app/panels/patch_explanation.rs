@@ -1,0 +1,210 @@
+//! The part of the patch's section that says why the patch has its factors: what was asked for, how far its triangles are from
+//! the surface, and how many it needs by itself.
+
+use egui::Ui;
+
+use crate::app::patch_names::ends_text;
+use crate::app::widgets::{dense, title};
+use crate::mesh::Topology;
+use crate::tessellate::factors::{inside_segments, patch_is_minimal};
+use crate::tessellate::{DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, is_enough, triangle_count};
+
+/// An explanation, and the patch that it is about.
+pub(super) struct ShownExplanation<'a> {
+    pub topology: &'a Topology,
+    /// None until it is made, and if nothing is emitted. The rows then have ellipses, so that they don't jump.
+    pub explained: Option<&'a ExplainedPatch>,
+    pub by_error: bool,
+    pub factors: Option<PatchFactors>,
+}
+
+impl ShownExplanation<'_> {
+    pub(super) fn rows(&self, ui: &mut Ui) {
+        let (name, hover) = if self.by_error {
+            ("Why these factors", "What LOD by error was asked for, and how far the triangles are from the surface.")
+        } else {
+            ("Against LOD by error", "How the patch's triangles compare with the tolerance of LOD by error.")
+        };
+        title(ui, name, hover);
+        self.header(ui);
+        for k in 0..3 {
+            self.edge_row(ui, k);
+        }
+        self.inside_row(ui);
+        self.tolerance_row(ui);
+        self.least_rows(ui);
+    }
+
+    fn header(&self, ui: &mut Ui) {
+        let px = "Px: an upper bound of how far the triangles in the row along the edge, or along no edge, are from the surface on \
+                  screen.";
+        let (text, hover) = if self.by_error {
+            let asked = "Own: the factor that this patch asks the edge for. Others: the largest that a patch across the edge asks \
+                         for. Got: the largest of both. By: whose request that was; \u{201c}curve\u{201d} if nobody asked for more \
+                         than the edge's curve, or the heights on it, need by themselves.";
+            (row("edge", "own", "others", "got", "by", "px"), format!("{asked} {px}"))
+        } else {
+            (row("edge", "", "", "", "", "px"), px.to_owned())
+        };
+        ui.label(dense(text).weak()).on_hover_text(hover);
+    }
+
+    fn edge_row(&self, ui: &mut Ui, k: usize) {
+        let name = ends_text(k as u32);
+        let px = self.explained.and_then(|explained| explained.errors?.rows).map(|rows| rows[k]);
+        let seen = match (self.explained, px) {
+            (None, _) => UNKNOWN.to_owned(),
+            (Some(_), px) => px.map_or_else(|| "-".to_owned(), px_text),
+        };
+        let edge = self.explained.and_then(|explained| explained.edges.as_ref()).map(|edges| &edges[k]);
+        let (text, hover) = match edge {
+            Some(edge) => {
+                let others = edge.other().map_or_else(|| "-".to_owned(), factor_text);
+                let asked = [factor_text(edge.own), others, factor_text(edge.got)];
+                (row(&name, &asked[0], &asked[1], &asked[2], by_text(edge), &seen), self.requests(&name, edge))
+            }
+            None => {
+                let asked = if self.by_error { UNKNOWN } else { "" };
+                (row(&name, asked, asked, asked, asked, &seen), format!("The row of triangles along edge {name}."))
+            }
+        };
+        self.label(ui, &text, px).on_hover_text(hover);
+    }
+
+    /// Who asked for what, in sentences.
+    fn requests(&self, name: &str, edge: &ExplainedEdge) -> String {
+        let mut lines = vec![
+            format!(
+                "The curve of edge {name}, or the heights on it, need a factor of {} at least.",
+                factor_text(edge.least)
+            ),
+            format!("This patch asks for {}.", factor_text(edge.own)),
+        ];
+        lines.extend(edge.others.iter().take(LISTED).map(|&(patch, factor)| {
+            let triangle = self.topology.patches[patch as usize].triangle;
+            format!("Triangle {triangle} asks for {}.", factor_text(factor))
+        }));
+        if edge.others.len() > LISTED {
+            lines.push(format!("{} more triangles ask, too.", edge.others.len() - LISTED));
+        }
+        lines.join("\n")
+    }
+
+    fn inside_row(&self, ui: &mut Ui) {
+        let errors = self.explained.and_then(|explained| explained.errors);
+        let (name, hover) = match errors {
+            Some(_) if self.explained.is_some_and(|explained| explained.is_flat) => (
+                "flat",
+                "All triangles of the patch. Its surface is flat, so that one triangle shows it although points of the surface \
+                 slide along it; px is the distance to the nearest point of the surface.",
+            ),
+            Some(errors) if errors.rows.is_none() => {
+                ("whole", "All triangles of the patch, which has no rows along its edges.")
+            }
+            _ => (
+                "inside",
+                "The number of segments inside, and the triangles along no edge. LOD by error takes the least inside factor \
+                 that suffices beside the factors of the edges.",
+            ),
+        };
+        let cut = match self.factors.filter(|_| errors.is_some()) {
+            None => UNKNOWN.to_owned(),
+            Some(factors) if patch_is_minimal(factors) => "1".to_owned(),
+            Some(factors) => inside_segments(factors.inside).to_string(),
+        };
+        let px = errors.map(|errors| errors.inside);
+        let seen = px.map_or_else(|| UNKNOWN.to_owned(), px_text);
+        self.label(ui, &format!("{name:<15}{cut:>5} {:<6}{seen:>7}", ""), px).on_hover_text(hover);
+    }
+
+    fn tolerance_row(&self, ui: &mut Ui) {
+        let tolerance = self.explained.map_or_else(|| UNKNOWN.to_owned(), |explained| px_text(explained.tolerance));
+        let mut hover =
+            "The largest distance to the surface that LOD by error allows, in px. With displacement it is the part \
+                         of the tolerance that is for the surface without heights."
+                .to_owned();
+        if !self.by_error {
+            hover += " The LOD that is used doesn't keep it.";
+        }
+        ui.label(dense(format!("{:<27}{tolerance:>7}", "tolerance"))).on_hover_text(hover);
+    }
+
+    fn least_rows(&self, ui: &mut Ui) {
+        let Some((explained, factors)) = self.explained.zip(self.factors) else {
+            ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "own least")));
+            ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "has")));
+            return;
+        };
+        let least = explained.own_least;
+        let [a, b, c] = least.sides.map(factor_text);
+        let mut hover = format!(
+            "The fewest triangles with which this patch alone would keep the tolerance, if it chose all its factors itself: {a}, \
+             {b} and {c} on edges 0-1, 1-2 and 2-0, and {} inside.",
+            factor_text(least.inside)
+        );
+        if !is_enough(least.inside) {
+            hover += " 64 segments aren't enough for it, so that these are the most that there are.";
+        }
+        ui.label(dense(format!("{:<12}{:>6} triangles", "own least", least.triangles))).on_hover_text(hover);
+        let has = triangle_count(factors);
+        let times = f64::from(has) / f64::from(least.triangles.max(1));
+        let hover = "The triangles that are emitted, and how many times as many as the own least they are. The overlay of excess \
+                     triangles shows this number for all patches.";
+        ui.label(dense(format!("{:<12}{has:>6} triangles{times:>5.2}x", "has"))).on_hover_text(hover);
+    }
+
+    /// A row, in the colour of warnings if its triangles are beyond the tolerance.
+    fn label(&self, ui: &mut Ui, text: &str, px: Option<f32>) -> egui::Response {
+        let is_beyond = self.explained.is_some_and(|explained| px.is_some_and(|px| px > explained.tolerance));
+        let color = ui.visuals().warn_fg_color;
+        ui.label(if is_beyond { dense(text).color(color) } else { dense(text) })
+    }
+}
+
+/// In place of a number that isn't known yet.
+const UNKNOWN: &str = "…";
+
+/// How many patches across an edge are listed.
+const LISTED: usize = 8;
+
+/// The columns of a row: the edge, what the patch and others ask for, what the edge got by whom, and px.
+fn row(edge: &str, own: &str, others: &str, got: &str, by: &str, px: &str) -> String {
+    format!("{edge:<4}{own:>4}{others:>7}{got:>5} {by:<6}{px:>7}")
+}
+
+fn by_text(edge: &ExplainedEdge) -> &'static str {
+    match edge.decided_by() {
+        DecidedBy::Curve => "curve",
+        DecidedBy::Own => "own",
+        DecidedBy::Other => "other",
+        DecidedBy::Both => "both",
+        DecidedBy::Again => "again",
+    }
+}
+
+/// A factor that LOD by error asks for: a whole number, or more than there are.
+fn factor_text(factor: f32) -> String {
+    if is_enough(factor) { format!("{factor:.0}") } else { ">64".to_owned() }
+}
+
+fn px_text(px: f32) -> String {
+    match px {
+        px if !px.is_finite() => "∞".to_owned(),
+        px if px < 10.0 => format!("{px:.3}"),
+        px if px < 1000.0 => format!("{px:.1}"),
+        px => format!("{px:.0e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_fit_their_columns() {
+        assert_eq!([0.0, 0.4871, 12.34, 4321.0, f32::INFINITY].map(px_text), ["0.000", "0.487", "12.3", "4e3", "∞"]);
+        assert_eq!([1.0, 64.0, 64.5].map(factor_text), ["1", "64", ">64"]);
+        let rows = [row("edge", "own", "others", "got", "by", "px"), row("0-1", ">64", ">64", ">64", "curve", "0.487")];
+        assert!(rows.iter().all(|row| row.chars().count() == 34), "{rows:?}");
+    }
+}
