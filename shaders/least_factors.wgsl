@@ -237,25 +237,26 @@ fn fewest_triangles(
     let within = BOUND_SHARE * tolerance;
     var best = vec4<f32>(least, BEYOND_LAST);
     var fewest = 3.4e38;
-    var inside = least_inner_factor(seen, within, partitioning, least_inside);
-    while inside <= 64.0 {
+    // Written so that each function is called in one place only: drivers compile a copy for each call.
+    var inside = least_inside;
+    var goes_on = true;
+    while goes_on {
+        inside = least_inner_factor(seen, within, partitioning, inside);
         let rings = inside - 2.0;
         var cost = 3.0 * rings + 1.5 * rings * rings + segment * (least.x + least.y + least.z);
-        if cost >= fewest {
-            break;
-        }
+        goes_on = inside <= 64.0 && cost < fewest;
         var asked = least;
         for (var k = 0u; k < 3u; k++) {
-            if cost < fewest {
+            if goes_on && cost < fewest {
                 asked[k] = least_row_factor(seen, within, partitioning, k, least[k], inside);
                 cost += select(segment * (asked[k] - least[k]), 3.4e38, asked[k] > 64.0);
             }
         }
-        if cost < fewest {
+        if goes_on && cost < fewest {
             fewest = cost;
             best = vec4<f32>(asked, inside);
         }
-        inside = least_inner_factor(seen, within, partitioning, inside + 1.0);
+        inside += 1.0;
     }
     return best;
 }
@@ -297,17 +298,19 @@ fn least_inside_factor(
     least: f32,
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
-    var inside = least_inner_factor(seen, within, partitioning, least);
-    while inside <= 64.0 {
+    var inside = least;
+    var result = 0.0;
+    while result == 0.0 {
+        inside = least_inner_factor(seen, within, partitioning, inside);
         let factors = process(partitioning, edges, inside);
         var k = 0u;
-        while k < 3u && row_error(seen, within, factors, k) <= within {
+        while k < 3u && inside <= 64.0 && row_error(seen, within, factors, k) <= within {
             k++;
         }
-        if k == 3u {
-            return inside;
+        if k == 3u || inside > 64.0 {
+            result = inside;
         }
-        inside = least_inner_factor(seen, within, partitioning, inside + 1.0);
+        inside += 1.0;
     }
-    return BEYOND_LAST;
+    return result;
 }

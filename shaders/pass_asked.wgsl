@@ -15,7 +15,8 @@
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
 // Bits of numbers, whose order is that of the numbers since none is negative. One after another: the factors of edges; the
 // least factor of each edge; the factor that each patch's heights need inside it, if it is displaced; the inside factors of
-// patches; the numbers of patches of three searches; the patches of the first two, one after the other; those of the third.
+// patches; the numbers of patches of three searches; the number of rounds that are over; the patches of the first two
+// searches, one after the other; those of the third.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
 
 // Where the inside factor of a patch is.
@@ -52,6 +53,11 @@ const SEARCH_ASKED: u32 = 0u;
 const SEARCH_INSIDE: u32 = 1u;
 const SEARCH_AGAIN: u32 = 2u;
 
+// Where the number of rounds is that are over: 0 or 1.
+fn rounds_at() -> u32 {
+    return searched_count_at(3u);
+}
+
 // Where the number of patches is that a search is for.
 fn searched_count_at(search: u32) -> u32 {
     return 2u * (params.factor_count + params.patch_count) + search;
@@ -59,7 +65,7 @@ fn searched_count_at(search: u32) -> u32 {
 
 // Where the `i`-th of those patches is.
 fn searched_at(search: u32, i: u32) -> u32 {
-    return searched_count_at(3u) + select(0u, params.patch_count, search == SEARCH_AGAIN) + i;
+    return searched_count_at(4u) + select(0u, params.patch_count, search == SEARCH_AGAIN) + i;
 }
 
 fn search_later(search: u32, patch_index: u32) {
@@ -121,9 +127,16 @@ fn searched_patch(search: u32, i: u32) -> u32 {
     return workgroupUniformLoad(&group_patch);
 }
 
-// Searches what patches ask for: this workgroup every so many of them.
-fn search_asked(search: u32, first: u32, step: u32) {
-    var i = first;
+// Searches what patches ask for, or ask for once more.
+@compute @workgroup_size(TOGETHER)
+fn search_asked_factors_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    let search = select(SEARCH_ASKED, SEARCH_AGAIN, atomicLoad(&edge_factors[rounds_at()]) > 0u);
+    var i = workgroup.x;
     var index = searched_patch(search, i);
     while index != NO_MORE {
         var seen = seen_patch(params.view, load_net(index));
@@ -132,22 +145,28 @@ fn search_asked(search: u32, first: u32, step: u32) {
         if lane == 0u {
             ask(index, asked);
         }
-        i += step;
+        i += workgroups.x;
         index = searched_patch(search, i);
     }
 }
 
-@compute @workgroup_size(TOGETHER)
-fn search_asked_factors_main(
+// Whether some patches ask once more.
+fn asks_again() -> bool {
+    return atomicLoad(&edge_factors[searched_count_at(SEARCH_AGAIN)]) > 0u;
+}
+
+@compute @workgroup_size(256)
+fn inside_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    lane = local;
-    search_asked(SEARCH_ASKED, workgroup.x, workgroups.x);
-}
-
-fn take_inside(index: u32) {
+    let index = grid_index(workgroup, workgroups, local);
+    // In the second round edges have what they had, unless some patches asked once more.
+    let is_done = atomicLoad(&edge_factors[rounds_at()]) > 0u && !asks_again();
+    if index >= params.patch_count || is_done {
+        return;
+    }
     let heights = heights_inside(index);
     let edges = edges_of(index, 0u);
     let net = load_net(index);
@@ -164,18 +183,6 @@ fn take_inside(index: u32) {
         }
     }
     atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
-}
-
-@compute @workgroup_size(256)
-fn inside_factors_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
-    if index < params.patch_count {
-        take_inside(index);
-    }
 }
 
 @compute @workgroup_size(TOGETHER)
@@ -202,12 +209,7 @@ fn search_inside_factors_main(
     }
 }
 
-// Whether some patches ask once more.
-fn asks_again() -> bool {
-    return atomicLoad(&edge_factors[searched_count_at(SEARCH_AGAIN)]) > 0u;
-}
-
-// What edges have becomes the least that they may get.
+// Ends the first round: what edges have becomes the least that they may get.
 @compute @workgroup_size(256)
 fn keep_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -217,30 +219,9 @@ fn keep_factors_main(
     let index = grid_index(workgroup, workgroups, local);
     if index == 0u {
         atomicStore(&edge_factors[searched_count_at(SEARCH_INSIDE)], 0u);
+        atomicStore(&edge_factors[rounds_at()], 1u);
     }
     if index < params.factor_count && asks_again() {
         atomicStore(&edge_factors[params.factor_count + index], atomicLoad(&edge_factors[index]));
-    }
-}
-
-@compute @workgroup_size(TOGETHER)
-fn search_again_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    lane = local;
-    search_asked(SEARCH_AGAIN, workgroup.x, workgroups.x);
-}
-
-@compute @workgroup_size(256)
-fn inside_again_main(
-    @builtin(workgroup_id) workgroup: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let index = grid_index(workgroup, workgroups, local);
-    if index < params.patch_count && asks_again() {
-        take_inside(index);
     }
 }

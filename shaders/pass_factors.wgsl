@@ -106,7 +106,7 @@ fn edge_factors_main(
     let factor = lod_factor(index);
     if params.lod == LOD_ERROR {
         // No patch is searched yet.
-        if index < 3u {
+        if index < 4u {
             edge_factors[2u * (params.factor_count + params.patch_count) + index] = 0.0;
         }
         edge_factors[index] = whole_segments(params.partitioning, 1.0);

@@ -235,7 +235,9 @@ fn derivative_bound(piece: ptr<function, Piece>, middle: vec2<f32>, spread: f32)
     for (var i = 0u; i < 3u; i++) {
         for (var k = 0u; k < 3u; k++) {
             let second = (*piece).second[i][k];
-            most[k] = max(most[k], length(second.xy - middle * second.z) + spread * abs(second.z));
+            let distance = length(second.xy - middle * second.z) + spread * abs(second.z);
+            // NaN counts as infinite.
+            most[k] = max(most[k], select(3.4e38, distance, distance < 3.4e38));
         }
     }
     return triangle_error(most.x, most.y, most.z);

@@ -21,8 +21,6 @@ pub(super) struct MeshPasses {
     inside_factors: OnceLock<BoundPass>,
     search_inside_factors: OnceLock<BoundPass>,
     keep_factors: OnceLock<BoundPass>,
-    search_again: OnceLock<BoundPass>,
-    inside_again: OnceLock<BoundPass>,
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
 }
@@ -105,19 +103,22 @@ impl MeshPasses {
         // What searches needs neither normals nor textures.
         let searching = &buffers[..5];
         let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
-        let again = BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, searching)?;
+        let asked = BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?;
+        let search_asked =
+            BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, searching)?;
+        let inside = BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?;
+        let search_inside =
+            BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, searching)?;
+        let keep = BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?;
         Ok([
-            (BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?, Each::Patch),
-            (
-                BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, searching)?,
-                Each::SearchedPatch,
-            ),
-            (BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?, Each::Patch),
-            (again, Each::SearchedPatch),
-            (BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?, Each::Edge),
-            (BoundPass::once(&self.search_again, on.gpu, &pipelines.search_again, searching)?, Each::SearchedPatch),
-            (BoundPass::once(&self.inside_again, on.gpu, &pipelines.inside_again, &buffers)?, Each::Patch),
-            (again, Each::SearchedPatch),
+            (asked, Each::Patch),
+            (search_asked, Each::SearchedPatch),
+            (inside, Each::Patch),
+            (search_inside, Each::SearchedPatch),
+            (keep, Each::Edge),
+            (search_asked, Each::SearchedPatch),
+            (inside, Each::Patch),
+            (search_inside, Each::SearchedPatch),
         ])
     }
 

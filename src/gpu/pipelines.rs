@@ -166,8 +166,6 @@ pub struct ComputePipelines {
     pub inside_factors: ComputePipeline,
     pub search_inside_factors: ComputePipeline,
     pub keep_factors: ComputePipeline,
-    pub search_again: ComputePipeline,
-    pub inside_again: ComputePipeline,
     /// Whose results no other pass needs, like those of the next.
     pub least_triangles: ComputePipeline,
     pub search_least_triangles: ComputePipeline,
@@ -212,8 +210,6 @@ impl ComputePipelines {
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
             search_inside_factors: ComputePipeline::new(&asked, "search_inside_factors_main"),
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
-            search_again: ComputePipeline::new(&asked, "search_again_main"),
-            inside_again: ComputePipeline::new(&asked, "inside_again_main"),
             least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
             search_least_triangles: ComputePipeline::new(&least, "search_least_triangles_main"),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),

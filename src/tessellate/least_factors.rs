@@ -223,25 +223,25 @@ fn fewest_triangles(
         return [least[0], least[1], least[2], 1.0];
     }
     let mut fewest = 3.4e38;
-    let mut inside = least_inner_factor(patch, within, partitioning, least_inside);
-    while inside <= 64.0 {
+    let mut inside = least_inside;
+    let mut goes_on = true;
+    while goes_on {
+        inside = least_inner_factor(patch, within, partitioning, inside);
         let rings = inside - 2.0;
         let mut cost = 3.0 * rings + 1.5 * rings * rings + segment * (least[0] + least[1] + least[2]);
-        if cost >= fewest {
-            break;
-        }
+        goes_on = inside <= 64.0 && cost < fewest;
         let mut asked = least;
         for k in 0..3 {
-            if cost < fewest {
+            if goes_on && cost < fewest {
                 asked[k] = least_row_factor(patch, within, partitioning, k as u32, least[k], inside);
                 cost += if asked[k] > 64.0 { 3.4e38 } else { segment * (asked[k] - least[k]) };
             }
         }
-        if cost < fewest {
+        if goes_on && cost < fewest {
             fewest = cost;
             best = [asked[0], asked[1], asked[2], inside];
         }
-        inside = least_inner_factor(patch, within, partitioning, inside + 1.0);
+        inside += 1.0;
     }
     best
 }
@@ -289,19 +289,21 @@ pub(super) fn least_inside_factor(
     if largest > 64.0 {
         return BEYOND_LAST;
     }
-    let mut inside = least_inner_factor(patch, within, partitioning, least);
-    while inside <= 64.0 {
+    let mut inside = least;
+    let mut result = 0.0;
+    while result == 0.0 {
+        inside = least_inner_factor(patch, within, partitioning, inside);
         let factors = process(partitioning, edges, inside);
         let mut k = 0;
-        while k < 3 && row_error(patch, within, factors, k) <= within {
+        while k < 3 && inside <= 64.0 && row_error(patch, within, factors, k) <= within {
             k += 1;
         }
-        if k == 3 {
-            return inside;
+        if k == 3 || inside > 64.0 {
+            result = inside;
         }
-        inside = least_inner_factor(patch, within, partitioning, inside + 1.0);
+        inside += 1.0;
     }
-    BEYOND_LAST
+    result
 }
 
 #[cfg(test)]

@@ -239,7 +239,9 @@ fn derivative_bound(piece: &Piece, middle: Vec2, spread: f32) -> f32 {
     let mut most = [0.0f32; 3];
     for at_corner in piece.second {
         for (most, second) in most.iter_mut().zip(at_corner) {
-            *most = most.max((second.truncate() - middle * second.z).length() + spread * second.z.abs());
+            let seen = (second.truncate() - middle * second.z).length() + spread * second.z.abs();
+            // NaN counts as infinite.
+            *most = most.max(if seen < 3.4e38 { seen } else { 3.4e38 });
         }
     }
     triangle_error(most[0], most[1], most[2])

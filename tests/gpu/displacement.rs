@@ -346,7 +346,9 @@ fn a_mesh_that_moves_is_displaced_in_every_pose() {
         let times = engine.time(&mut scene, &target, &camera, &settings, Runs::default()).expect("a draw");
         passes = times.iter().map(|time| time.pass).collect();
     }
-    assert_eq!(passes, pnaen::gpu::PASSES, "every pass has something to do");
+    // Least triangles are computed for an overlay alone.
+    let wanted: Vec<_> = pnaen::gpu::PASSES.into_iter().filter(|&pass| pass != "least").collect();
+    assert_eq!(passes, wanted, "every other pass has something to do");
 }
 
 /// A torus in two halves of a material each, under these images; a row of edges between the halves twice.
