@@ -99,8 +99,13 @@ impl Triangles {
                 continue;
             }
             for place in node.first_index..node.first_index + node.prim_count {
-                let corners = self.corners[place as usize].map(Vec3::as_dvec3);
-                let (weights, point) = closest_on_triangle(corners, p);
+                // Most triangles of a leaf are farther than the limit, which their boxes tell faster.
+                let [a, b, c] = self.corners[place as usize];
+                let [min, max] = [a.min(b).min(c), a.max(b).max(c)].map(Vec3::as_dvec3);
+                if p.distance_squared(p.clamp(min, max)) >= limit {
+                    continue;
+                }
+                let (weights, point) = closest_on_triangle([a, b, c].map(Vec3::as_dvec3), p);
                 let squared = p.distance_squared(point);
                 if squared >= limit {
                     continue;
