@@ -67,7 +67,8 @@ pub(crate) struct Args {
     /// Leave out settings with more triangles than this; standard error tells how many
     #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = clap::value_parser!(u64).range(1..))]
     pub max_triangles: u64,
-    /// Sample points on the reference surface; at least as many are taken on the emitted triangles
+    /// Sample points on the reference surface, besides its vertices and points on its edges; at least as many are taken on the
+    /// emitted triangles
     #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = samples)]
     pub samples: usize,
     /// Width and height of the view, in px

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::{CliError, SurfaceOptions, options};
 use crate::engine::Loaded;
 use crate::load::Source;
-use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances};
+use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Sampling};
 use crate::progress::Progress;
 use crate::render::Scale;
 use crate::tessellate::{Displacement, Inputs};
@@ -105,6 +105,10 @@ struct DistanceStats {
     rms: f64,
     max_of_diagonal: f64,
     rms_of_diagonal: f64,
+    /// The number of points that were measured.
+    samples: u64,
+    /// The largest spacing of these points.
+    spacing: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -116,16 +120,17 @@ struct AngleStats {
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
     pub(super) fn new(truth: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
-        let distances = |distances: Distances| {
-            let (Distances { largest, rms }, relative) = (distances, accuracy.relative(distances));
-            DistanceStats { max: largest, rms, max_of_diagonal: relative.largest, rms_of_diagonal: relative.rms }
+        let distances = |distances: Distances, Sampling { samples, spacing }| {
+            let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
+            let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
+            DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, samples, spacing }
         };
         let Angles { largest, rms } = accuracy.normals;
         Self {
             truth: truth.to_owned(),
             diagonal: accuracy.diagonal,
-            to_truth: distances(accuracy.to_truth),
-            from_truth: is_whole.then(|| distances(accuracy.from_truth)),
+            to_truth: distances(accuracy.to_truth, accuracy.to_truth_sampling),
+            from_truth: is_whole.then(|| distances(accuracy.from_truth, accuracy.from_truth_sampling)),
             max_px: accuracy.worst_px.map(|worst| worst.value),
             normals: AngleStats { max: largest, rms },
         }

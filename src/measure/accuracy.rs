@@ -1,6 +1,11 @@
 //! Accuracy: the distances between what was emitted and a reference surface, in both directions, and the angles between their
 //! normals.
 
+mod emitted;
+mod from_truth;
+mod peaks;
+mod to_truth;
+
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -9,13 +14,17 @@ use glam::{DVec3, Vec3};
 
 use super::screen_error::Screen;
 use super::visitor::{EmittedChunk, Visitor};
-use crate::tessellate::{LodView, Vertex, unpack_normal};
-use crate::truth::{Sample, Triangles, Truth};
+use crate::tessellate::{LodView, Vertex};
+use crate::truth::{EdgePoints, Truth};
+use emitted::Emitted;
+use peaks::{Peaks, climb};
+use to_truth::Sums;
 
 /// How finely accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccuracyOptions {
-    /// The number of samples on the reference surface. What was emitted gets about as many, but at least four per triangle.
+    /// The number of samples that are spread over the reference surface by area. Its vertices, and points along its edges, are
+    /// taken besides. What was emitted gets about as many, but at least four per triangle and the middle of every edge.
     pub samples: usize,
     /// The number of threads. The result doesn't depend on it.
     pub threads: usize,
@@ -34,9 +43,37 @@ pub(crate) struct AccuracyMeasurement<'a> {
     truth: &'a Truth,
     options: AccuracyOptions,
     screen: Option<Screen>,
-    /// Points of the reference surface, each with the nearest emitted point so far.
-    samples: Vec<(Sample, Option<WorstPoint>)>,
+    /// What collects the worst places, still without any.
+    no_peaks: Peaks,
+    /// Points of the reference surface: first those that are spread by area, then those of its vertices and edges.
+    points: Vec<DVec3>,
+    spread: usize,
+    /// The spacing of points that are spread by area, in object units: the side of the square that each stands for.
+    spacing: f64,
+    /// How finely `points` sample the reference surface.
+    sampling: Sampling,
+    /// What was emitted so far, while it is no more than [`MOST_KEPT`] triangles.
+    emitted: Emitted,
+    most_kept: usize,
+    /// The emitted point that is nearest to each of `points`, in the chunks that aren't kept. Empty if all are kept.
+    nearest: Vec<Option<WorstPoint>>,
     sums: Sums,
+}
+
+/// How finely one direction was sampled.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sampling {
+    /// The number of points whose distance was measured, before the search around the worst of them.
+    pub samples: u64,
+    /// Their largest spacing, in object units: that of neighbours on an edge, or the side of the square that a point inside a
+    /// triangle stands for.
+    pub spacing: f64,
+}
+
+impl Sampling {
+    fn with(self, other: Self) -> Self {
+        Self { samples: self.samples + other.samples, spacing: self.spacing.max(other.spacing) }
+    }
 }
 
 /// Distances in one direction, in object units.
@@ -68,6 +105,13 @@ pub struct WorstPoint {
     pub truth: DVec3,
 }
 
+impl WorstPoint {
+    /// The place with its distance on screen, in px; `None` if it isn't in view.
+    fn in_px(self, screen: &Screen) -> Option<Self> {
+        screen.distance_px(self.emitted, self.truth).map(|value| Self { value, ..self })
+    }
+}
+
 /// The results of the comparison with a reference surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
@@ -75,9 +119,11 @@ pub struct Accuracy {
     pub diagonal: f64,
     /// From what was emitted to the reference surface.
     pub to_truth: Distances,
+    pub to_truth_sampling: Sampling,
     pub worst_to_truth: WorstPoint,
     /// From the reference surface to what was emitted.
     pub from_truth: Distances,
+    pub from_truth_sampling: Sampling,
     pub worst_from_truth: WorstPoint,
     /// The largest distance on screen between an emitted point and the nearest point of the reference surface; `None` if no
     /// point is in view, or there is no view.
@@ -107,88 +153,110 @@ impl Accuracy {
 /// they don't depend on the number of threads.
 const BLOCKS: usize = 256;
 const LARGEST_BLOCK: usize = 1024;
-/// The most segments that a triangle's edges are cut into for sampling.
-const MAX_STEPS: u32 = 200;
+/// The most triangles that are kept until all are emitted: as many as a chunk has under the largest limit of output memory.
+/// They take about 100 bytes each.
+const MOST_KEPT: usize = 1 << 23;
+/// One place in so many samples is searched for a larger distance nearby, [`MOST_CLIMBS`] at most.
+const SAMPLES_A_CLIMB: usize = 3000;
+const MOST_CLIMBS: usize = 32;
+/// The number of regions along the reference surface's diagonal, each of which counts with its worst place.
+const REGIONS: f64 = 32.0;
 
 impl<'a> AccuracyMeasurement<'a> {
     /// Starts a measurement. With a view, distances are also measured in px.
     pub(crate) fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
-        let samples = truth.samples(options.samples).into_iter().map(|sample| (sample, None)).collect();
-        Self { truth, options, screen: view.map(Screen::new), samples, sums: Sums::default() }
-    }
-
-    /// Measures from the emitted triangles to the reference surface.
-    fn take_triangles(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
-        let this = &*self;
-        let mut used = vec![false; vertices.len()];
-        triangles.iter().flatten().for_each(|index| used[*index as usize] = true);
-        let corners = blocks(vertices.len(), this.options.threads, |range| {
-            let mut sums = Sums::default();
-            for vertex in range.filter(|vertex| used[*vertex]).map(|vertex| &vertices[vertex]) {
-                let point = Point { position: position(vertex), normal: normal(vertex), patch: vertex.patch() };
-                sums.add(&point, 0.0, this.truth, this.screen.as_ref());
-            }
-            sums
-        });
-        let insides = blocks(triangles.len(), this.options.threads, |range| {
-            let mut sums = Sums::default();
-            let sampled = triangles[range].iter().map(|triangle| triangle.map(|index| &vertices[index as usize]));
-            sampled.for_each(|corners| this.sample(corners, &mut sums));
-            sums
-        });
-        self.sums = corners.into_iter().chain(insides).fold(std::mem::take(&mut self.sums), Sums::with);
-    }
-
-    /// Cuts a triangle into equal ones, n along each edge, and takes the middle of each. n isn't a multiple of 3, since then no
-    /// sample would lie in the middle of the triangle itself.
-    fn sample(&self, corners: [&Vertex; 3], sums: &mut Sums) {
-        let positions = corners.map(position);
-        let [a, b, c] = positions;
-        let area = (b - a).cross(c - a).length() / 2.0;
-        if area <= 0.0 {
-            return;
+        let spread = truth.samples(options.samples).into_iter().map(|sample| sample.point);
+        let EdgePoints { points: of_edges, spacing: of_neighbours } = truth.edge_points(options.samples);
+        let points: Vec<DVec3> = spread.chain(of_edges).collect();
+        let spacing = truth.spacing(options.samples);
+        let most = (options.samples / SAMPLES_A_CLIMB).clamp(1, MOST_CLIMBS);
+        let no_peaks = Peaks::new(most, truth.diagonal() / REGIONS);
+        Self {
+            truth,
+            options,
+            screen: view.map(Screen::new),
+            spread: options.samples,
+            spacing,
+            sampling: Sampling { samples: points.len() as u64, spacing: spacing.max(of_neighbours) },
+            points,
+            emitted: Emitted::default(),
+            most_kept: MOST_KEPT,
+            nearest: Vec::new(),
+            sums: Sums::new(&no_peaks),
+            no_peaks,
         }
-        let asked = (area * self.options.samples as f64 / self.truth.area()).sqrt().ceil();
-        let n = (asked as u32).clamp(2, MAX_STEPS);
-        let n = if n.is_multiple_of(3) { n + 1 } else { n };
-        let (normals, patch) = (corners.map(normal), corners[0].patch());
-        let mut take = |thirds: [u32; 2]| {
-            let [u, v] = thirds.map(|x| f64::from(x) / f64::from(3 * n));
-            let weights = [1.0 - u - v, u, v];
-            let mixed = |of: [DVec3; 3]| of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2];
-            let normal = mixed(normals).try_normalize().unwrap_or(normals[0]);
-            let point = Point { position: mixed(positions), normal, patch };
-            sums.add(&point, area / f64::from(n * n), self.truth, self.screen.as_ref());
+    }
+
+    /// The worst place on the way uphill from every one of `peaks`, or the worst of these if triangles weren't kept. `at` is the
+    /// point of a place that is moved.
+    fn summit(
+        &self,
+        peaks: &Peaks,
+        at: impl Fn(&WorstPoint) -> DVec3 + Sync,
+        measure: impl Fn(DVec3, f64) -> Option<WorstPoint> + Sync,
+    ) -> Option<WorstPoint> {
+        if !self.nearest.is_empty() {
+            return peaks.places().next();
+        }
+        let starts: Vec<WorstPoint> = peaks.places().collect();
+        let climbed = blocks(starts.len(), self.options.threads, |range| {
+            starts[range].iter().map(|start| climb(*start, self.spacing, &at, &measure)).collect::<Vec<_>>()
+        });
+        climbed.into_iter().flatten().reduce(worse)
+    }
+
+    /// The worst place from what was emitted to the reference surface, among those on the way uphill from `peaks`. `value` is the
+    /// value of a place with a distance.
+    fn worst_to_truth(
+        &self,
+        peaks: &Peaks,
+        value: impl Fn(WorstPoint) -> Option<WorstPoint> + Sync,
+    ) -> Option<WorstPoint> {
+        let measure = |p: DVec3, _: f64| {
+            let place = self.emitted.closest(p, f64::INFINITY)?;
+            let (truth, distance) = self.truth.closest_point(place.point);
+            value(WorstPoint { value: distance, patch: place.patch, emitted: place.point, truth })
         };
-        for i in 0..n {
-            for j in 0..n - i {
-                take([3 * i + 1, 3 * j + 1]);
-                if i + j + 1 < n {
-                    take([3 * i + 2, 3 * j + 2]);
-                }
-            }
-        }
+        self.summit(peaks, |place| place.emitted, measure)
+    }
+
+    /// The worst place from the reference surface to what was emitted, among those on the way uphill from `peaks`.
+    fn worst_from_truth(&self, peaks: &Peaks) -> Option<WorstPoint> {
+        let measure = |p: DVec3, enough: f64| {
+            let (truth, _) = self.truth.closest_point(p);
+            self.emitted.closest_or_within(truth, enough, &mut Vec::new()).map(|found| found.from(truth))
+        };
+        self.summit(peaks, |place| place.truth, measure)
     }
 
     /// The results; `None` if nothing with an area was emitted.
-    pub(crate) fn finish(self) -> Option<Accuracy> {
-        let Sums { area, squares, angles, worst, worst_px, worst_normal, not_finite } = self.sums;
-        let (worst_to_truth, worst_normal) = (worst?, worst_normal?);
+    pub(crate) fn finish(mut self) -> Option<Accuracy> {
+        if !self.nearest.is_empty() {
+            self.drop_kept();
+        }
+        let (squares_from_truth, peaks) = self.from_truth();
+        let worst_from_truth = self.worst_from_truth(&peaks)?;
+        let worst_to_truth = self.worst_to_truth(&self.sums.peaks, Some)?;
+        let in_px = |place: WorstPoint| place.in_px(self.screen.as_ref()?);
+        let worst_px = self.worst_to_truth(&self.sums.peaks_px, in_px);
+        let Sums { area, squares, angles, sampling, worst_normal, not_finite, .. } = self.sums;
         if area <= 0.0 {
             return None;
         }
-        let missed: Vec<WorstPoint> = self.samples.iter().filter_map(|(_, place)| *place).collect();
-        let worst_from_truth = missed.iter().copied().reduce(worse)?;
-        let mean = missed.iter().map(|place| place.value * place.value).sum::<f64>() / missed.len() as f64;
         Some(Accuracy {
             diagonal: self.truth.diagonal(),
             to_truth: Distances { largest: worst_to_truth.value, rms: (squares / area).sqrt() },
+            to_truth_sampling: sampling,
             worst_to_truth,
-            from_truth: Distances { largest: worst_from_truth.value, rms: mean.sqrt() },
+            from_truth: Distances {
+                largest: worst_from_truth.value,
+                rms: (squares_from_truth / self.spread as f64).sqrt(),
+            },
+            from_truth_sampling: self.sampling,
             worst_from_truth,
             worst_px,
-            normals: Angles { largest: worst_normal.value, rms: (angles / area).sqrt() },
-            worst_normal,
+            normals: Angles { largest: worst_normal?.value, rms: (angles / area).sqrt() },
+            worst_normal: worst_normal?,
             not_finite,
         })
     }
@@ -201,81 +269,10 @@ impl Visitor for AccuracyMeasurement<'_> {
         self.sums.not_finite += vertices.iter().filter(|vertex| !is_finite(vertex)).count() as u64;
         let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
         let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
-        let corners = |triangle: &[u32; 3]| triangle.map(|index| Vec3::from(vertices[index as usize].position));
-        let Some(tree) = Triangles::new(triangles.iter().map(corners)) else { return };
         self.take_triangles(vertices, &triangles);
-        let samples = std::mem::take(&mut self.samples);
-        self.samples = blocks(samples.len(), self.options.threads, |range| {
-            let nearer = |(sample, known): &(Sample, Option<WorstPoint>)| {
-                let within = known.map_or(f64::INFINITY, |place| place.value);
-                let found = tree.closest(sample.point, within).map(|closest| WorstPoint {
-                    value: closest.distance,
-                    patch: vertices[triangles[closest.triangle as usize][0] as usize].patch(),
-                    emitted: closest.point,
-                    truth: sample.point,
-                });
-                (*sample, found.or(*known))
-            };
-            samples[range].iter().map(nearer).collect::<Vec<_>>()
-        })
-        .concat();
-    }
-}
-
-/// An emitted point, and its shading normal.
-struct Point {
-    position: DVec3,
-    normal: DVec3,
-    patch: u32,
-}
-
-fn position(vertex: &Vertex) -> DVec3 {
-    Vec3::from(vertex.position).as_dvec3()
-}
-
-fn normal(vertex: &Vertex) -> DVec3 {
-    unpack_normal(vertex.normal).as_dvec3()
-}
-
-/// The sums and worst points so far, from what was emitted to the reference surface.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    area: f64,
-    /// The squares of distances, and of angles in degrees, each times the area.
-    squares: f64,
-    angles: f64,
-    worst: Option<WorstPoint>,
-    worst_px: Option<WorstPoint>,
-    worst_normal: Option<WorstPoint>,
-    not_finite: u64,
-}
-
-impl Sums {
-    /// Adds a point that stands for some area.
-    fn add(&mut self, point: &Point, area: f64, truth: &Truth, screen: Option<&Screen>) {
-        let nearest = truth.closest_facing(point.position, point.normal);
-        // Unlike the arc cosine, this is exact for angles near 0.
-        let angle = point.normal.cross(nearest.normal).length().atan2(point.normal.dot(nearest.normal)).to_degrees();
-        let place = |value| WorstPoint { value, patch: point.patch, emitted: point.position, truth: nearest.point };
-        let px = screen.and_then(|screen| screen.distance_px(point.position, nearest.point));
-        self.area += area;
-        self.squares += area * nearest.distance * nearest.distance;
-        self.angles += area * angle * angle;
-        self.worst = self.worst.into_iter().chain([place(nearest.distance)]).reduce(worse);
-        self.worst_normal = self.worst_normal.into_iter().chain([place(angle)]).reduce(worse);
-        self.worst_px = self.worst_px.into_iter().chain(px.map(place)).reduce(worse);
-    }
-
-    fn with(self, other: Self) -> Self {
-        let worst = |a: Option<WorstPoint>, b: Option<WorstPoint>| a.into_iter().chain(b).reduce(worse);
-        Self {
-            area: self.area + other.area,
-            squares: self.squares + other.squares,
-            angles: self.angles + other.angles,
-            worst: worst(self.worst, other.worst),
-            worst_px: worst(self.worst_px, other.worst_px),
-            worst_normal: worst(self.worst_normal, other.worst_normal),
-            not_finite: self.not_finite + other.not_finite,
+        self.emitted.add(vertices, &triangles);
+        if self.emitted.triangles() > self.most_kept {
+            self.drop_kept();
         }
     }
 }

@@ -15,7 +15,7 @@ mod survey;
 mod sweep;
 mod visitor;
 
-pub(crate) use accuracy::{Accuracy, AccuracyMeasurement, AccuracyOptions, Angles, Distances, WorstPoint};
+pub(crate) use accuracy::{Accuracy, AccuracyMeasurement, AccuracyOptions, Angles, Distances, Sampling, WorstPoint};
 pub(crate) use agreement::{Agreement, Disagreement, Order};
 pub(crate) use asked_factors::AskedFactors;
 pub(crate) use cracks::{CrackedEdge, Cracks};

@@ -8,11 +8,14 @@ use super::revolved::{Profile, Torus};
 use super::saddle::Saddle;
 use super::spread::{Spread, radical_inverse};
 use super::surface::Surface;
-use super::{Nearest, Sample};
+use super::{EdgePoints, Nearest, Sample, segments};
 use crate::mesh::Shape;
 use crate::mesh::shapes::polyhedra::ELLIPSOID;
 use crate::mesh::shapes::revolved::{HALF_HEIGHT, MAJOR, MINOR, RADIUS};
 use crate::mesh::shapes::sheets::SADDLE_HALF;
+
+/// The number of segments that approximate a border to find its length.
+const LENGTH_SEGMENTS: usize = 64;
 
 /// A surface whose nearest points are computed to about 1e-12 of its size.
 pub struct Exact {
@@ -69,5 +72,29 @@ impl Exact {
             self.surface.at(chart, s, t).0
         };
         (0..count).map(sample).collect()
+    }
+
+    /// Returns points along the borders of all charts. All borders and creases of the surface are among these.
+    pub(super) fn edge_points(&self, spacing: f64) -> EdgePoints {
+        let mut edges = EdgePoints { points: Vec::new(), spacing: 0.0 };
+        for chart in 0..self.surface.charts() {
+            for side in [0.0, 1.0] {
+                edges.add(spacing, |t| self.surface.at(chart, side, t).0.point);
+                edges.add(spacing, |s| self.surface.at(chart, s, side).0.point);
+            }
+        }
+        edges
+    }
+}
+
+impl EdgePoints {
+    /// Adds points of a curve, whose parameter runs from 0 to 1.
+    fn add(&mut self, spacing: f64, at: impl Fn(f64) -> DVec3) {
+        let cut = |count: usize| -> Vec<DVec3> { (0..=count).map(|i| at(i as f64 / count as f64)).collect() };
+        let length: f64 = cut(LENGTH_SEGMENTS).windows(2).map(|ends| ends[0].distance(ends[1])).sum();
+        let points = cut(segments(length, spacing));
+        let widest = points.windows(2).map(|ends| ends[0].distance(ends[1])).fold(0.0, f64::max);
+        self.spacing = self.spacing.max(widest);
+        self.points.extend(points);
     }
 }

@@ -19,7 +19,7 @@ use glam::DVec3;
 pub(crate) use exact::{Exact, of_shape};
 pub(crate) use reference::Reference;
 pub(crate) use spread::radical_inverse;
-pub(crate) use triangles::Triangles;
+pub(crate) use triangles::{Closest, Triangles};
 
 use crate::files::Limits;
 use crate::load::{LoadError, Source};
@@ -41,6 +41,13 @@ pub struct Nearest {
 pub struct Sample {
     pub point: DVec3,
     pub normal: DVec3,
+}
+
+/// Places on a surface that points spread by area miss.
+pub(crate) struct EdgePoints {
+    pub points: Vec<DVec3>,
+    /// The largest distance between neighbouring points of an edge, in object units.
+    pub spacing: f64,
 }
 
 /// A reference surface: the surface that a tessellation should be.
@@ -87,6 +94,33 @@ impl Truth {
         }
     }
 
+    /// Returns the nearest point of the surface, and its distance. For a mesh this is faster than [`Self::closest`].
+    pub(crate) fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
+        match self {
+            Self::Exact(exact) => {
+                let nearest = exact.closest(p);
+                (nearest.point, nearest.distance)
+            }
+            Self::Mesh(mesh) => mesh.closest_point(p),
+        }
+    }
+
+    /// Returns a mesh's vertices, and points along its edges; or points along the borders and creases of an exact
+    /// surface. Neighbouring points of an edge are about as far apart as the neighbours among `count` points that are
+    /// spread by area, or farther if edges are so long that these would be more than about `count` points.
+    pub(crate) fn edge_points(&self, count: usize) -> EdgePoints {
+        match self {
+            Self::Exact(exact) => exact.edge_points(self.spacing(count)),
+            Self::Mesh(mesh) => mesh.edge_points(self.spacing(count), count),
+        }
+    }
+
+    /// Returns the spacing of `count` points that are spread by area, in object units: the side of the square that each stands
+    /// for.
+    pub(crate) fn spacing(&self, count: usize) -> f64 {
+        (self.area() / count.max(1) as f64).sqrt()
+    }
+
     /// Returns `count` points, spread evenly by area. They are the same every time.
     pub fn samples(&self, count: usize) -> Vec<Sample> {
         match self {
@@ -111,6 +145,12 @@ impl Truth {
         };
         min.distance(max)
     }
+}
+
+/// Returns the number of segments, an even one, that cut an edge into pieces of at most `spacing`. Its middle is then one
+/// of the points between them. An edge that is no longer than `spacing` is one segment.
+fn segments(length: f64, spacing: f64) -> usize {
+    if length <= spacing { 1 } else { 2 * (length / (2.0 * spacing)).ceil() as usize }
 }
 
 /// The distance from a crease, relative to the surface's size, within which all normals of the crease count: a few

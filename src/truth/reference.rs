@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::spread::{find, radical_inverse};
 use super::triangles::{Closest, Triangles};
-use super::{Nearest, ON_CREASE, Sample};
+use super::{EdgePoints, Nearest, ON_CREASE, Sample, segments};
 use crate::mesh::{Corner, Mesh};
 
 /// A mesh's flat triangles, with interpolated shading normals.
@@ -55,6 +55,13 @@ impl Reference {
         Nearest { normal, ..found }
     }
 
+    /// Returns the nearest point and its distance.
+    pub(super) fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
+        let found = self.triangles.closest(p, f64::INFINITY);
+        // There is a nearest triangle, unless the place has a NaN coordinate.
+        found.map_or((p, f64::NAN), |closest| (closest.point, closest.distance))
+    }
+
     /// Returns the unit shading normal, or the face's normal if that has no direction, or a corner's if the face has
     /// none either.
     fn normal(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
@@ -79,6 +86,40 @@ impl Reference {
             Sample { point, normal: self.normal(triangle, weights) }
         };
         (0..count).map(sample).collect()
+    }
+
+    /// Returns the position of every corner that a triangle has, and points along the edges that are longer than
+    /// `spacing`. If that would be more than about `most` points on edges, these are farther apart.
+    pub(super) fn edge_points(&self, spacing: f64, most: usize) -> EdgePoints {
+        let at = |corner: u32| self.corners[corner as usize].position;
+        let position = |corner: u32| at(corner).as_dvec3();
+        let length = |[a, b]: [u32; 2]| position(a).distance(position(b));
+        let mut long = Vec::new();
+        for face in self.faces.iter() {
+            let [a, b, c] = face.map(at);
+            for (i, [from, to]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
+                if from.as_dvec3().distance_squared(to.as_dvec3()) > spacing * spacing {
+                    let [from, to] = [face[i], face[(i + 1) % 3]];
+                    long.push([from.min(to), from.max(to)]);
+                }
+            }
+        }
+        long.sort_unstable();
+        long.dedup();
+        let whole: f64 = long.iter().map(|edge| length(*edge)).sum();
+        let spacing = spacing.max(whole / most.max(1) as f64);
+
+        let mut used = vec![false; self.corners.len()];
+        self.faces.iter().flatten().for_each(|corner| used[*corner as usize] = true);
+        let corners = (0..self.corners.len() as u32).filter(|corner| used[*corner as usize]);
+        let mut points: Vec<DVec3> = corners.map(position).collect();
+        let mut widest = 0.0_f64;
+        for edge in long {
+            let ([a, b], count) = (edge.map(position), segments(length(edge), spacing));
+            points.extend((1..count).map(|i| a.lerp(b, i as f64 / count as f64)));
+            widest = widest.max(length(edge) / count as f64);
+        }
+        EdgePoints { points, spacing: widest }
     }
 
     pub(super) fn area(&self) -> f64 {

@@ -23,6 +23,8 @@ pub(crate) struct Triangles {
 pub(crate) struct Closest {
     /// The index of the triangle.
     pub triangle: u32,
+    /// Where the triangle stands in the hierarchy, as a hint for the next search.
+    pub place: u32,
     /// The weights of the triangle's corners.
     pub weights: [f64; 3],
     /// The point, and its distance from the place, in object units.
@@ -62,22 +64,43 @@ impl Triangles {
     /// Returns the nearest point, if one is nearer than `within`.
     pub(crate) fn closest(&self, p: DVec3, within: f64) -> Option<Closest> {
         let mut best = None;
-        self.search(p, within, 0.0, |closest| best = Some(closest));
+        self.search(p, within, 0.0, |closest| {
+            best = Some(closest);
+            false
+        });
+        best
+    }
+
+    /// Returns the nearest point; or if points are at most `enough` away, any of those, which is found faster. `hint` is
+    /// the [`Closest::place`] that was found for a place nearby, and becomes that of this one.
+    pub(crate) fn closest_or_within(&self, p: DVec3, enough: f64, hint: &mut u32) -> Option<Closest> {
+        let mut best = self.corners.get(*hint as usize).map(|_| self.closest_of(*hint, p * self.scale));
+        let within = best.map_or(f64::INFINITY, |closest| closest.distance);
+        if within > enough {
+            self.search(p, within, 0.0, |closest| {
+                best = Some(closest);
+                closest.distance <= enough
+            });
+        }
+        *hint = best.map_or(*hint, |closest| closest.place);
         best
     }
 
     /// Returns the nearest points of all triangles that are at most `slack` farther away than the nearest triangle.
     pub(crate) fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
         let mut all: Vec<Closest> = Vec::new();
-        self.search(p, f64::INFINITY, slack, |closest| all.push(closest));
+        self.search(p, f64::INFINITY, slack, |closest| {
+            all.push(closest);
+            false
+        });
         let nearest = all.iter().map(|closest| closest.distance).fold(f64::INFINITY, f64::min);
         all.retain(|closest| closest.distance <= nearest + slack);
         all
     }
 
     /// Calls `take` with each nearest point of a triangle that is nearer than `within` and at most `slack` farther than
-    /// the nearest one so far.
-    fn search(&self, p: DVec3, within: f64, slack: f64, mut take: impl FnMut(Closest)) {
+    /// the nearest one so far, until `take` returns that this is enough.
+    fn search(&self, p: DVec3, within: f64, slack: f64, mut take: impl FnMut(Closest) -> bool) {
         let (p, slack) = (p * self.scale, slack * self.scale);
         let mut nearest = within * self.scale;
         let mut limit = (nearest + slack) * (nearest + slack);
@@ -115,10 +138,23 @@ impl Triangles {
                     nearest = distance;
                     limit = (nearest + slack) * (nearest + slack);
                 }
-                let triangle = self.tree.primitive_indices[place as usize];
-                take(Closest { triangle, weights, point: point / self.scale, distance: distance / self.scale });
+                if take(self.found(place, weights, point, distance)) {
+                    return;
+                }
             }
         }
+    }
+
+    /// Returns the nearest point of the triangle at a place of the hierarchy. `p` is scaled.
+    fn closest_of(&self, place: u32, p: DVec3) -> Closest {
+        let (weights, point) = closest_on_triangle(self.corners[place as usize].map(Vec3::as_dvec3), p);
+        self.found(place, weights, point, p.distance(point))
+    }
+
+    /// Returns a point of a triangle, without the scale.
+    fn found(&self, place: u32, weights: [f64; 3], point: DVec3, distance: f64) -> Closest {
+        let triangle = self.tree.primitive_indices[place as usize];
+        Closest { triangle, place, weights, point: point / self.scale, distance: distance / self.scale }
     }
 }
 

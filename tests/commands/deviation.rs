@@ -95,6 +95,12 @@ fn deviation_is_measured_against_a_given_mesh_or_the_limit_surface() {
     let (mesh, limit) = (against(&["--truth", &high]), against(&[]));
     assert_eq!(mesh["accuracy"]["truth"], high.as_str());
     assert_eq!(limit["accuracy"], Value::Null, "a limit surface gives no accuracy");
+    let of_accuracy = |key: &str| number(&mesh, &format!("/accuracy/{key}"));
+    assert!(of_accuracy("to_truth/max") >= 0.9999 * number(&mesh, "/deviation/max"), "{mesh}");
+    for direction in ["to_truth", "from_truth"] {
+        let [samples, spacing] = ["samples", "spacing"].map(|key| of_accuracy(&format!("{direction}/{key}")));
+        assert!(samples > 100_000.0 && spacing > 0.0 && spacing < 0.01 * of_accuracy("diagonal"), "{mesh}");
+    }
     let [mesh, limit] = [mesh, limit].map(|stats| number(&stats, "/deviation/max"));
     // The nearest point of the given mesh is no farther than the limit's point at the same domain point.
     assert!(mesh > 1e-4 && mesh < 1.1 * limit, "{mesh} and {limit}");

@@ -210,3 +210,152 @@ fn distances_fall_with_the_level() {
         }
     }
 }
+
+/// A mesh of these triangles, with normals upwards.
+fn mesh_of(triangles: &[[[f32; 3]; 3]]) -> Mesh {
+    let corner =
+        |position: &[f32; 3]| crate::mesh::Corner { position: (*position).into(), normal: Vec3::Y, uv: Vec2::ZERO };
+    let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Mesh {
+        corners: triangles.as_flattened().iter().map(corner).collect(),
+        triangles: indices.into(),
+        ..Mesh::default()
+    }
+}
+
+/// Triangles as they would be emitted, each by a patch of its own.
+fn emitted_triangles(triangles: &[[[f32; 3]; 3]]) -> (Vec<Vertex>, Vec<[u32; 3]>) {
+    let vertex = |(i, position): (usize, &[f32; 3])| Vertex {
+        position: *position,
+        key: pack_key(i as u32 / 3, [0, 0]),
+        normal: pack_normal(Vec3::Y),
+        uv: [0.0; 2],
+    };
+    let vertices = triangles.as_flattened().iter().enumerate().map(vertex).collect();
+    (vertices, (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
+}
+
+fn compared(truth: &[[[f32; 3]; 3]], emitted: &[[[f32; 3]; 3]], samples: usize) -> Accuracy {
+    let truth = Truth::of_mesh(&mesh_of(truth)).unwrap();
+    let (vertices, triangles) = emitted_triangles(emitted);
+    // Seen from above, 150 px are a unit.
+    let from_above = Mat4::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let view = LodView::new(from_above, Vec2::splat(150.0));
+    let mut measurement = AccuracyMeasurement::new(&truth, Some(&view), options(samples));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    measurement.finish().unwrap()
+}
+
+#[test]
+fn the_tip_of_a_spike_counts_though_samples_miss_it() {
+    let ground = [
+        [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [1.0, 0.0, 1.0]],
+        [[-1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0]],
+    ];
+    // A needle of a millionth of the ground's area.
+    let spike = [[0.1, 0.0, 0.2], [0.100_01, 0.0, 0.2], [0.1, 0.5, 0.2]];
+    let with_spike = [ground[0], ground[1], spike];
+    let missing = compared(&with_spike, &ground, 5000);
+    near(missing.from_truth.largest, 0.5, 1e-9);
+    assert_eq!(missing.worst_from_truth.truth, vec3(0.1, 0.5, 0.2).as_dvec3());
+    near(missing.worst_from_truth.emitted.y, 0.0, 1e-9);
+    let surplus = compared(&ground, &with_spike, 5000);
+    near(surplus.to_truth.largest, 0.5, 1e-9);
+}
+
+#[test]
+fn a_place_on_an_edge_counts_wherever_it_lies() {
+    let [a, b, tip] = [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]];
+    // A gap that is widest on the triangle's longest edge and ends at its tip: around the middle, and somewhere else.
+    for [left, right] in [[-0.5, 0.5], [-0.5, 0.3]] {
+        let whole = [[a, b, tip]];
+        let with_gap = [[a, [left, 0.0, 0.0], tip], [[right, 0.0, 0.0], b, tip]];
+        // The farthest point is as far from the line between left and tip as from that between right and tip.
+        let slant = |x: f32| f64::from(x).hypot(1.0);
+        let expected = (f64::from(right) - f64::from(left)) / (slant(left) + slant(right));
+        let at = f64::from(left) + expected * slant(left);
+        for samples in [100, 3000] {
+            let missing = compared(&whole, &with_gap, samples);
+            near(missing.from_truth.largest, expected, 1e-4);
+            near(missing.worst_from_truth.truth.distance(DVec3::X * at), 0.0, 1e-3);
+            let surplus = compared(&with_gap, &whole, samples);
+            near(surplus.to_truth.largest, expected, 1e-4);
+            near(surplus.worst_to_truth.emitted.distance(DVec3::X * at), 0.0, 1e-3);
+            near(surplus.worst_px.unwrap().value, 150.0 * expected, 150.0 * 1e-4);
+        }
+    }
+}
+
+#[test]
+fn a_low_poly_mesh_is_as_far_from_a_scan_as_the_farthest_vertex_of_the_scan() {
+    let scan = Shape::Torus.build_at(3);
+    let (truth, out) = (Truth::of_mesh(&scan).unwrap(), as_it_is(&Shape::Torus.build()));
+    let corners = |triangle: &[u32; 3]| triangle.map(|i| Vec3::from(out.vertices[i as usize].position));
+    let tree = crate::truth::Triangles::new(out.triangles.iter().map(corners)).unwrap();
+    let distance = |corner: &crate::mesh::Corner| {
+        tree.closest(corner.position.as_dvec3(), f64::INFINITY).map_or(0.0, |closest| closest.distance)
+    };
+    let of_vertices = scan.corners.iter().map(distance).fold(0.0, f64::max);
+    for samples in [1000, 20_000] {
+        let largest = measured(&truth, &out, samples).from_truth.largest;
+        assert!(largest >= of_vertices && largest < 1.001 * of_vertices, "{largest} for {of_vertices}");
+    }
+}
+
+#[test]
+fn sampling_says_how_many_points_there_are_and_how_far_apart() {
+    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let mut measurement = AccuracyMeasurement::new(&truth, None, options(100));
+    measurement.take(&EmittedChunk::whole(&vertices, &triangles));
+    let accuracy = measurement.finish().unwrap();
+    // Spread by area, each of 100 points has 0.2 by 0.2 units. Sides of 2 units get 9 points between their ends, and the
+    // diagonal of 2.83 units gets 15.
+    let Sampling { samples, spacing } = accuracy.from_truth_sampling;
+    assert_eq!(samples, 100 + 4 + 4 * 9 + 15);
+    near(spacing, 0.2, 1e-6);
+    // Each of two triangles is cut into 64.
+    let Sampling { samples, spacing } = accuracy.to_truth_sampling;
+    assert_eq!(samples, 2 * 64 + 4 + 4 * 9 + 15);
+    near(spacing, 0.2, 1e-6);
+    // A sliver has little area, and its edges are cut into few segments.
+    let sliver = [[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1e-3]]];
+    let other = [[[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 0.0, 1.0]]];
+    near(compared(&other, &sliver, 1000).to_truth_sampling.spacing, 0.5, 1e-9);
+}
+
+#[test]
+fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
+    let (truth, out) = (Truth::of_shape(Shape::Torus).unwrap(), emitted(&Shape::Torus.build(), Surface::Flat, 2.0));
+    let measure = |most_kept, chunks: usize| {
+        let mut measurement =
+            AccuracyMeasurement { most_kept, ..AccuracyMeasurement::new(&truth, None, options(3000)) };
+        let size = out.triangles.len().div_ceil(chunks);
+        let take = |part| measurement.take(&EmittedChunk::whole(&out.vertices, part));
+        out.triangles.chunks(size).for_each(take);
+        measurement.finish().unwrap()
+    };
+    let kept = measure(usize::MAX, 3);
+    for (most_kept, chunks) in [(0, 1), (0, 3), (out.triangles.len() / 2, 3)] {
+        let sampled = measure(most_kept, chunks);
+        near(sampled.from_truth.rms, kept.from_truth.rms, 1e-12);
+        assert_eq!(sampled.from_truth_sampling, kept.from_truth_sampling);
+        for [sampled, kept] in [[sampled.to_truth, kept.to_truth], [sampled.from_truth, kept.from_truth]] {
+            assert!(sampled.largest <= kept.largest && sampled.largest > 0.99 * kept.largest, "{sampled:?} {kept:?}");
+        }
+    }
+}
+
+#[test]
+fn the_border_of_an_exact_surface_counts() {
+    // The border of the saddle is farthest from flat triangles that end inside of it.
+    let truth = Truth::of_shape(Shape::Saddle).unwrap();
+    let mut out = as_it_is(&Shape::Saddle.build_at(5));
+    let half = f64::from(crate::mesh::shapes::sheets::SADDLE_HALF);
+    out.vertices.iter_mut().for_each(|vertex| {
+        let [x, _, z] = vertex.position.map(|x| 0.5 * x);
+        vertex.position = [x, (x * x - z * z) / 2.0, z];
+    });
+    let accuracy = measured(&truth, &out, 2000);
+    // From a corner of the saddle, where its height is 0, to that of the smaller square.
+    near(accuracy.from_truth.largest, half / 2.0_f64.sqrt(), 1e-6);
+}
