@@ -1,4 +1,4 @@
-// Flat patches: those whose surface is a flat triangle, though its parametrisation may not be linear. Twin:
+// Flat patches: those whose surface lies in a plane, though its parametrisation may not be linear. Twin:
 // src/tessellate/flat_patch.rs, which explains the bound.
 
 // The least cosine of the angle between two corners' unit normals (1 degree) at which sliding changes no shading.
@@ -9,13 +9,6 @@ fn normals_agree(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> bool {
     return min(min(dot(a, b), dot(b, c)), dot(c, a)) >= AGREEING;
 }
 
-// Returns the part of a control point's difference from the straight edge that sliding along the edge doesn't take back; all of
-// it, if the control point isn't beside the edge. `along` leads from the edge's start to its end.
-fn beside_edge(along: vec3<f32>, difference: vec3<f32>) -> vec3<f32> {
-    let share = dot(difference, along) / dot(along, along);
-    return select(difference, difference - along * share, abs(share) <= 1.0 / 3.0);
-}
-
 // Returns the larger of `most` and the length of a difference in object units on screen, in px times depth, by an eye that
 // sees it within `spread` px of the middle of the view.
 fn longer_on_screen(view: LodView, most: f32, spread: f32, difference: vec3<f32>) -> f32 {
@@ -23,9 +16,9 @@ fn longer_on_screen(view: LodView, most: f32, spread: f32, difference: vec3<f32>
     return max(most, length(across) + spread * abs(dot(clip_row(view, 3u), difference)));
 }
 
-// Returns a bound on the distance between a patch's triangle and the nearest points of its surface, in px. Large if the patch
-// has no area.
-fn flat_error(view: LodView, net: ControlNet) -> f32 {
+// Returns a bound on the distance in px, across the plane of a patch's triangle, between points of the patch that have the same
+// place in that plane. Large if the patch has no area.
+fn plane_error(view: LodView, net: ControlNet) -> f32 {
     let a = net.corners[0];
     let b = net.corners[1];
     let c = net.corners[2];
@@ -49,15 +42,10 @@ fn flat_error(view: LodView, net: ControlNet) -> f32 {
         nearest = near;
         spread = length(view.half_viewport);
     }
-    let center = net.center - (a + b + c) * (1.0 / 3.0);
-    var most = longer_on_screen(view, 0.0, spread, normal * dot(normal, center));
-    for (var k = 0u; k < 3u; k++) {
-        let start = net.corners[k];
-        let end = net.corners[(k + 1u) % 3u];
-        let at_start = net.edges[2u * k] - (start * 2.0 + end) * (1.0 / 3.0);
-        let at_end = net.edges[2u * k + 1u] - (start + end * 2.0) * (1.0 / 3.0);
-        most = longer_on_screen(view, most, spread, beside_edge(end - start, at_start));
-        most = longer_on_screen(view, most, spread, beside_edge(end - start, at_end));
+    var most = longer_on_screen(view, 0.0, spread, normal * dot(normal, net.center - a));
+    for (var i = 0u; i < 6u; i++) {
+        most = longer_on_screen(view, most, spread, normal * dot(normal, net.edges[i] - a));
     }
-    return most / nearest;
+    // No point is farther off than 8/9 of the control points are, and two points are on both sides of the plane at worst.
+    return 16.0 / 9.0 * most / nearest;
 }

@@ -199,7 +199,7 @@ fn least_inner_factor(seen: ptr<function, SeenPatch>, tolerance: f32, partitioni
 }
 
 // Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and 4.
+// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and 4. Where points may slide it tries all.
 fn least_row_factor(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -208,16 +208,24 @@ fn least_row_factor(
     least: f32,
     inside: f32,
 ) -> f32 {
-    let most = min(factor_from(partitioning, max(least, inside) + 4.0), last_factor(partitioning));
+    let slides = (*seen).off_plane <= tolerance;
+    let last = select(max(least, inside) + 4.0, BEYOND_LAST, slides);
+    let most = min(factor_from(partitioning, last), last_factor(partitioning));
     var factor = least;
-    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match.
     while factor <= most {
         var edges = vec3<f32>(2.0);
         edges[k] = factor;
-        if row_error(seen, tolerance, process(partitioning, edges, inside), k) <= tolerance {
+        let error = row_error(seen, tolerance, process(partitioning, edges, inside), k);
+        if error <= tolerance {
             return factor;
         }
-        factor = factor_from(partitioning, factor + 1.0);
+        // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
+        // may slide, that doesn't matter.
+        if slides {
+            factor = next_factor(partitioning, factor, error, tolerance);
+        } else {
+            factor = factor_from(partitioning, factor + 1.0);
+        }
     }
     return BEYOND_LAST;
 }

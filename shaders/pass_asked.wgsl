@@ -94,14 +94,9 @@ fn asked_factors_main(
     if index >= params.patch_count {
         return;
     }
-    let least = edges_of(index, params.factor_count);
-    let net = load_net(index);
-    if slides(index, net) {
-        ask(index, vec3<f32>(whole_segments(params.partitioning, 1.0)));
-        return;
-    }
+    var seen = load_seen(index);
+    let least = first_least(&seen, edges_of(index, params.factor_count));
     let inside = heights_inside(index);
-    var seen = seen_patch(params.view, net);
     let within = BOUND_SHARE * surface_tolerance();
     let is_known = params.surface == SURFACE_FLAT || max(max(max(least.x, least.y), least.z), inside) > 64.0;
     if is_known || single_suffices(&seen, within, params.partitioning, least, inside) {
@@ -139,8 +134,11 @@ fn search_asked_factors_main(
     var i = workgroup.x;
     var index = searched_patch(search, i);
     while index != NO_MORE {
-        var seen = seen_patch(params.view, load_net(index));
-        let least = edges_of(index, params.factor_count);
+        var seen = load_seen(index);
+        var least = edges_of(index, params.factor_count);
+        if search == SEARCH_ASKED {
+            least = first_least(&seen, least);
+        }
         let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
         if lane == 0u {
             ask(index, asked);
@@ -169,10 +167,9 @@ fn inside_factors_main(
     }
     let heights = heights_inside(index);
     let edges = edges_of(index, 0u);
-    let net = load_net(index);
     var inside = whole_segments(params.partitioning, heights);
-    if params.surface != SURFACE_FLAT && !slides(index, net) {
-        var seen = seen_patch(params.view, net);
+    if params.surface != SURFACE_FLAT {
+        var seen = load_seen(index);
         if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, edges, heights) {
             inside = 1.0;
         } else if max(max(max(edges.x, edges.y), edges.z), heights) > 64.0 {
@@ -195,7 +192,7 @@ fn search_inside_factors_main(
     var i = workgroup.x;
     var index = searched_patch(SEARCH_INSIDE, i);
     while index != NO_MORE {
-        var seen = seen_patch(params.view, load_net(index));
+        var seen = load_seen(index);
         let edges = edges_of(index, 0u);
         let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights_inside(index));
         if lane == 0u {

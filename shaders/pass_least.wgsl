@@ -54,22 +54,16 @@ fn least_triangles_main(
     if index >= params.patch_count {
         return;
     }
-    let least = least_of_edges(index);
+    var seen = load_seen(index);
+    let least = first_least(&seen, least_of_edges(index));
     let inside = heights_inside(index);
-    let net = load_net(index);
     var triangles = 0u;
-    if slides(index, net) {
-        let whole = whole_segments(params.partitioning, 1.0);
-        triangles = triangles_of(vec3<f32>(whole), whole);
-    } else if params.surface == SURFACE_FLAT {
+    if params.surface == SURFACE_FLAT {
         triangles = triangles_of(least, whole_segments(params.partitioning, inside));
     } else if max(max(max(least.x, least.y), least.z), inside) > 64.0 {
         triangles = triangles_of(least, BEYOND_LAST);
-    } else {
-        var seen = seen_patch(params.view, net);
-        if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, least, inside) {
-            triangles = triangles_of(least, 1.0);
-        }
+    } else if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, least, inside) {
+        triangles = triangles_of(least, 1.0);
     }
     least_triangles[index] = triangles;
 }
@@ -92,8 +86,8 @@ fn search_least_triangles_main(
         if workgroupUniformLoad(&is_searched) == 0u {
             continue;
         }
-        var seen = seen_patch(params.view, load_net(index));
-        let least = least_of_edges(index);
+        var seen = load_seen(index);
+        let least = first_least(&seen, least_of_edges(index));
         let own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
         if lane == 0u {
             least_triangles[index] = triangles_of(own.xyz, own.w);

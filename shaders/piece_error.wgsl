@@ -18,6 +18,10 @@ struct SeenPatch {
     // How far displacement may move a point: in depth, and across the view in px times depth.
     deep: f32,
     across: vec2<f32>,
+    // Which way its triangle turns: see turn_of.
+    turn: f32,
+    // Where points may slide along the surface, how far in px it may be off the plane of its triangle; else a large number.
+    off_plane: f32,
 }
 
 // Returns whether an error is within a tolerance. NaN never is.
@@ -93,7 +97,13 @@ fn second_derivatives(view: LodView, scale: f32, net: ControlNet, i: u32) -> arr
     );
 }
 
-// Returns a patch as it is seen.
+// Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in
+// clip space.
+fn turn_of(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> f32 {
+    return dot(a, cross(b - a, c - a));
+}
+
+// Returns a patch as it is seen, whose points may not slide.
 fn seen_patch(view: LodView, net: ControlNet) -> SeenPatch {
     var deepest = deeper(view, 0.0, net.center);
     for (var i = 0u; i < 3u; i++) {
@@ -118,7 +128,9 @@ fn seen_patch(view: LodView, net: ControlNet) -> SeenPatch {
     );
     let across = vec2<f32>(length(clip_row(view, 0u)), length(clip_row(view, 1u))) * view.half_viewport;
     let deep = length(clip_row(view, 3u)) * view.reach * scale;
-    return SeenPatch(points, second, view.half_viewport, near_depth(view) * scale, deep, across * (view.reach * scale));
+    let turn = turn_of(points[0], points[1], points[2]);
+    let reach = view.reach * scale;
+    return SeenPatch(points, second, view.half_viewport, near_depth(view) * scale, deep, across * reach, turn, 3.4e38);
 }
 
 // Returns the point of the surface at a place of the domain.
@@ -243,6 +255,55 @@ fn derivative_bound(piece: ptr<function, Piece>, middle: vec2<f32>, spread: f32)
     return triangle_error(most.x, most.y, most.z);
 }
 
+// Returns whether the side between two places of the domain is part of an edge of the patch.
+fn is_on_edge(p: vec2<f32>, q: vec2<f32>) -> bool {
+    return max(p.x, q.x) == 0.0 || max(p.y, q.y) == 0.0 || min(p.x + p.y, q.x + q.y) == 1.0;
+}
+
+// Returns the length of a difference that sliding along a side doesn't take back; all of it, if its control point isn't beside
+// the side. In px times depth, by an eye that sees it within `spread` px of `middle`. `along` leads from the side's start to
+// its end.
+fn beside_edge(middle: vec2<f32>, spread: f32, along: vec3<f32>, difference: vec3<f32>) -> f32 {
+    let on_screen = along.xy - middle * along.z;
+    let share = dot(difference.xy - middle * difference.z, on_screen) / dot(on_screen, on_screen);
+    let rest = select(difference, difference - along * share, abs(share) <= 1.0 / 3.0);
+    return length(rest.xy - middle * rest.z) + spread * abs(rest.z);
+}
+
+// Returns a bound on the distance in px between a flat triangle and the nearest points of the surface, where points may slide
+// and as far as no other triangle's sides come into it; large if that bound doesn't hold. All that counts of it is seen within
+// `spread` px of `middle` and no nearer than `nearest`.
+fn sliding_error(
+    seen: ptr<function, SeenPatch>,
+    piece: ptr<function, Piece>,
+    at: array<vec2<f32>, 3>,
+    middle: vec2<f32>,
+    spread: f32,
+    nearest: f32,
+) -> f32 {
+    var places = at;
+    var corners: array<vec3<f32>, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        corners[i] = vec3<f32>((*piece).places[i] * (*piece).depths[i], (*piece).depths[i]);
+    }
+    let p = at[1] - at[0];
+    let q = at[2] - at[0];
+    let turned = turn_of(corners[0], corners[1], corners[2]) * (p.x * q.y - p.y * q.x) * (*seen).turn;
+    if !is_within(0.0, turned) {
+        return 3.4e38;
+    }
+    var most = 0.0;
+    for (var k = 0u; k < 3u; k++) {
+        let next = (k + 1u) % 3u;
+        if is_on_edge(places[k], places[next]) {
+            let along = corners[next] - corners[k];
+            most = max(most, beside_edge(middle, spread, along, (*piece).differences[2u * k]));
+            most = max(most, beside_edge(middle, spread, along, (*piece).differences[2u * k + 1u]));
+        }
+    }
+    return (*seen).off_plane + 0.75 * most / nearest;
+}
+
 // Returns the difference at the weights `x`, `y` and `z` of a piece's corners.
 fn piece_difference(piece: ptr<function, Piece>, x: f32, y: f32, z: f32) -> vec3<f32> {
     return ((*piece).differences[0] * x + (*piece).differences[1] * y) * (3.0 * x * y)
@@ -282,6 +343,40 @@ fn grid_error(
     return worst;
 }
 
+// Returns the error of a flat triangle at the same places of the domain: an upper bound if it is at most `tolerance`. `piece` is
+// in front of the near plane. All of it is seen within `spread` px of `middle`, wherever displacement moves it by `moved` px.
+fn same_place_error(
+    seen: ptr<function, SeenPatch>,
+    piece: ptr<function, Piece>,
+    tolerance: f32,
+    middle: vec2<f32>,
+    spread: f32,
+    moved: f32,
+    depths: vec2<f32>,
+) -> f32 {
+    let nearest = depths.x;
+    let bound = derivative_bound(piece, middle, spread) / nearest;
+    let a = (*piece).places[0];
+    let b = (*piece).places[1];
+    let c = (*piece).places[2];
+    let longest = max(max(distance(a, b), distance(b, c)), distance(c, a));
+    let ratio = depths.y / nearest;
+    var steps = 1u;
+    var upper = bound;
+    while !is_within(upper, tolerance) && steps < FINEST_GRID {
+        steps *= 2u;
+        let worst = grid_error(seen, piece, moved, tolerance, steps);
+        if !is_within(worst.x, tolerance) {
+            return worst.x;
+        }
+        // Between points of the grid: depth and place change, and the difference isn't linear.
+        let share = 1.0 / f32(steps);
+        let between = bound * share * share + longest * ratio * share * worst.y / nearest;
+        upper = worst.x * (1.0 + (ratio - 1.0) * share) + between;
+    }
+    return upper;
+}
+
 // Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1). If it
 // is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
 fn piece_error(
@@ -303,37 +398,37 @@ fn piece_error(
     if farthest < (*seen).near {
         return 0.0;
     }
-    // Written like this, NaN is no depth in front of the eye.
-    if !(nearest > 0.0 && nearest >= (*seen).near) {
-        // What is seen of it is anywhere in the view, and no nearer than the near plane.
-        return derivative_bound(&piece, vec2<f32>(0.0), length((*seen).half_viewport)) / (*seen).near;
-    }
-    if is_beside_view(seen, &piece) {
+    // NaN is no depth in front of the eye.
+    let is_before_eye = nearest > 0.0 && nearest >= (*seen).near;
+    if is_before_eye && is_beside_view(seen, &piece) {
         return 0.0;
     }
     let a = piece.places[0];
     let b = piece.places[1];
     let c = piece.places[2];
-    let middle = (a + b + c) / 3.0;
-    // How far displacement moves it on screen.
-    let most = max(max(abs(a), abs(b)), abs(c));
-    let moved = length(((*seen).across + most * (*seen).deep) / nearest);
-    let radius = max(max(distance(a, middle), distance(b, middle)), distance(c, middle));
-    let bound = derivative_bound(&piece, middle, radius + moved) / nearest;
-    let longest = max(max(distance(a, b), distance(b, c)), distance(c, a));
-    let ratio = farthest / nearest;
-    var steps = 1u;
-    var upper = bound;
-    while !is_within(upper, tolerance) && steps < FINEST_GRID {
-        steps *= 2u;
-        let worst = grid_error(seen, &piece, moved, tolerance, steps);
-        if !is_within(worst.x, tolerance) {
-            return worst.x;
-        }
-        // Between points of the grid: depth and place change, and the difference isn't linear.
-        let share = 1.0 / f32(steps);
-        let between = bound * share * share + longest * ratio * share * worst.y / nearest;
-        upper = worst.x * (1.0 + (ratio - 1.0) * share) + between;
+    var middle = vec2<f32>(0.0);
+    var spread = length((*seen).half_viewport);
+    var depth = (*seen).near;
+    var moved = 0.0;
+    if is_before_eye {
+        middle = (a + b + c) / 3.0;
+        // How far displacement moves it on screen.
+        let most = max(max(abs(a), abs(b)), abs(c));
+        moved = length(((*seen).across + most * (*seen).deep) / nearest);
+        spread = max(max(distance(a, middle), distance(b, middle)), distance(c, middle)) + moved;
+        depth = nearest;
     }
-    return upper;
+    var error = 3.4e38;
+    if (*seen).off_plane <= tolerance {
+        error = sliding_error(seen, &piece, array<vec2<f32>, 3>(p, q, r), middle, spread, depth);
+    }
+    if is_within(error, tolerance) {
+        return error;
+    }
+    if !is_before_eye {
+        // What is seen of it is anywhere in the view, and no nearer than the near plane.
+        return min(error, derivative_bound(&piece, middle, spread) / depth);
+    }
+    let depths = vec2<f32>(nearest, farthest);
+    return min(error, same_place_error(seen, &piece, tolerance, middle, spread, moved, depths));
 }

@@ -1,13 +1,30 @@
 // Flat patches under LOD by error. The module declares the buffers.
 
-// Whether one triangle shows a patch within the tolerance though points of the surface slide: the patch is flat, and nothing on
-// it depends on where they do.
-fn slides(patch_index: u32, net: ControlNet) -> bool {
+// Returns how far in px the surface of a patch may be off its plane, if points may slide along it: it is nearly flat, and
+// nothing on it depends on where they do. Otherwise it returns a large number.
+fn off_plane(patch_index: u32, net: ControlNet) -> f32 {
     let has_texture = ((textured[patch_index / 32u] >> (patch_index % 32u)) & 1u) == 1u;
-    if params.displacement != 0u || has_texture {
-        return false;
-    }
     let own = patches[patch_index].corners;
-    return normals_agree(corners[own[0]].normal, corners[own[1]].normal, corners[own[2]].normal)
-        && flat_error(params.view, net) <= BOUND_SHARE * params.tolerance;
+    let agree = normals_agree(corners[own[0]].normal, corners[own[1]].normal, corners[own[2]].normal);
+    if params.displacement != 0u || has_texture || !agree {
+        return 3.4e38;
+    }
+    return plane_error(params.view, net);
+}
+
+// Returns a patch as it is seen.
+fn load_seen(patch_index: u32) -> SeenPatch {
+    let net = load_net(patch_index);
+    var seen = seen_patch(params.view, net);
+    seen.off_plane = off_plane(patch_index, net);
+    return seen;
+}
+
+// Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: `least`. Where points may slide
+// along an edge, what the edge needs at the same places doesn't count.
+fn first_least(seen: ptr<function, SeenPatch>, least: vec3<f32>) -> vec3<f32> {
+    if (*seen).off_plane <= params.tolerance {
+        return vec3<f32>(whole_segments(params.partitioning, 1.0));
+    }
+    return least;
 }

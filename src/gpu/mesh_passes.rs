@@ -100,15 +100,13 @@ impl MeshPasses {
     /// `shaders/pass_asked.wgsl`.
     pub(super) fn asked(&self, on: &PassInputs) -> Result<[(&BoundPass, Each); 8], GpuError> {
         let (buffers, pipelines) = (asked_buffers(on.mesh, on.params, &on.mesh.edge_factors), on.pipelines);
-        // What searches needs neither normals nor textures.
-        let searching = &buffers[..5];
         let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
         let asked = BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?;
         let search_asked =
-            BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, searching)?;
+            BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, &buffers)?;
         let inside = BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?;
         let search_inside =
-            BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, searching)?;
+            BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, &buffers)?;
         let keep = BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?;
         Ok([
             (asked, Each::Patch),

@@ -41,11 +41,9 @@ impl OwnLeast {
         let factors = empty::<f32>(gpu, "least factors", room)?;
         let triangles = empty::<u32>(gpu, "least triangles", mesh.patch_count as usize)?;
         let of_patches = [&asked_buffers(mesh, &params, &factors)[..], &[(7, &triangles)]].concat();
-        // What searches needs neither normals nor textures.
-        let searching = [&of_patches[..5], &of_patches[7..]].concat();
         let edge_factors = BoundPass::new(gpu, &pipelines.edge_factors, &factor_buffers(mesh, &params, &factors))?;
         let least_triangles = BoundPass::new(gpu, &pipelines.least_triangles, &of_patches)?;
-        let search_least_triangles = BoundPass::new(gpu, &pipelines.search_least_triangles, &searching)?;
+        let search_least_triangles = BoundPass::new(gpu, &pipelines.search_least_triangles, &of_patches)?;
         Ok(Self {
             params,
             factors,

@@ -7,8 +7,8 @@ use wgpu::util::DeviceExt;
 use super::lazy::Lazy;
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, LEAST_FACTORS,
-    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, PIECE_ERROR, SEARCH_GROUP, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN,
-    WgslFile, wgsl,
+    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile,
+    wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -22,31 +22,10 @@ pub(super) static PASS_DEFORM: WgslFile = wgsl!("pass_deform", DEFORM, NORMAL, T
 pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_NET, LOADS, SURFACE, TYPES);
 pub(super) static PASS_FACTORS: WgslFile =
     wgsl!("pass_factors", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOD, SURFACE, TYPES);
-pub(super) static PASS_ASKED: WgslFile = wgsl!(
-    "pass_asked",
-    DISPLACEMENT_FACTOR,
-    LEAST_FACTORS,
-    LOAD_NET,
-    LOADS,
-    PIECE_ERROR,
-    SEARCH_GROUP,
-    SLIDES,
-    SURFACE,
-    TYPES
-);
-pub(super) static PASS_LEAST: WgslFile = wgsl!(
-    "pass_least",
-    DISPLACEMENT_FACTOR,
-    FACTORS,
-    LEAST_FACTORS,
-    LOAD_NET,
-    LOADS,
-    PIECE_ERROR,
-    SEARCH_GROUP,
-    SLIDES,
-    SURFACE,
-    TYPES
-);
+pub(super) static PASS_ASKED: WgslFile =
+    wgsl!("pass_asked", DISPLACEMENT_FACTOR, LEAST_FACTORS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
+pub(super) static PASS_LEAST: WgslFile =
+    wgsl!("pass_least", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
 pub(super) static PASS_LEVELS: WgslFile =
     wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, DISPLACEMENT_SHARES, TYPES);
 pub(super) static PASS_COUNTS: WgslFile =

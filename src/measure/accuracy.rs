@@ -234,7 +234,7 @@ impl<'a> AccuracyMeasurement<'a> {
         if !self.nearest.is_empty() {
             self.drop_kept();
         }
-        let (squares_from_truth, peaks) = self.from_truth();
+        let (squares_from_truth, peaks) = self.measure_from_truth();
         let worst_from_truth = self.worst_from_truth(&peaks)?;
         let worst_to_truth = self.worst_to_truth(&self.sums.peaks, Some)?;
         let in_px = |place: WorstPoint| place.in_px(self.screen.as_ref()?);

@@ -14,7 +14,7 @@ use super::visitor::{EmittedChunk, Visitor};
 use crate::mesh::{Mesh, Topology};
 use crate::tessellate::{
     ControlNet, FIXED_ONE, HullFactors, Inputs, LimitSurface, NOT_CULLED, Partitioning, SeenPatch, cull_reason,
-    domain_plan, domain_point, domain_triangle, hull_factors, piece_error, process, seen_patch, tessellate,
+    domain_plan, domain_point, domain_triangle, hull_factors, piece_error, process, tessellate,
 };
 
 /// The number of steps of the grid that each triangle is sampled on.
@@ -59,13 +59,13 @@ fn levels(partitioning: Partitioning) -> Vec<u32> {
 }
 
 impl Patch {
-    fn new(inputs: &Inputs, net: &ControlNet, edges: [usize; 3]) -> Self {
+    fn new(inputs: &Inputs, seen: SeenPatch, net: &ControlNet, edges: [usize; 3]) -> Self {
         let matrix: DMat4 = inputs.view.clip_from_object.as_dmat4();
         let [ab, ba, bc, cb, ca, ac] = net.edges;
         let [a, b, c] = net.corners;
         let points = [a, b, c, ab, ba, bc, cb, ca, ac, net.center];
         Self {
-            seen: seen_patch(&inputs.view, net),
+            seen,
             clip: points.map(|p| matrix * p.as_dvec3().extend(1.0)),
             half: inputs.view.half_viewport.as_dvec2(),
             tolerance: f64::from(inputs.tessellation.tolerance),
@@ -242,7 +242,7 @@ fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>
             continue;
         }
         let sides = topology.patches[index as usize].sides.map(|side| topology.sides[side as usize].edge as usize);
-        patches.push(Patch::new(inputs, &net, [sides[1], sides[2], sides[0]]));
+        patches.push(Patch::new(inputs, limit.seen_patch(inputs, index), &net, [sides[1], sides[2], sides[0]]));
     }
     let alone: Vec<_> = patches.iter_mut().map(|patch| patch.alone(&levels)).collect();
     let lower_bound = alone.iter().map(|own| own.map_or(1, |(_, triangles)| triangles)).sum();

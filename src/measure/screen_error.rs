@@ -93,7 +93,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
                 let [u, v] = [0, 1].map(|k| (0..3).map(|c| weights[c] * domains[c][k]).sum());
                 let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
                 let limit = match slides {
-                    true => self.limit.nearest(net, u, v, emitted),
+                    true => self.limit.nearest(net, [u, v], emitted, |p| self.screen.place(p)),
                     false => self.limit.position(patch, net, u, v),
                 };
                 let px = self.screen.distance_px(emitted, limit);
@@ -136,8 +136,16 @@ impl Screen {
         if !(in_view(a) || in_view(b)) || !beyond_near(a) || !beyond_near(b) {
             return None;
         }
-        let place = |clip: DVec4| clip.truncate().truncate() / clip.w * self.half_viewport;
-        Some(place(a).distance(place(b)))
+        Some(self.place_of(a).distance(self.place_of(b)))
+    }
+
+    /// The place of a point on screen, in px from the middle.
+    fn place(&self, p: DVec3) -> DVec2 {
+        self.place_of(self.clip_from_object * p.extend(1.0))
+    }
+
+    fn place_of(&self, clip: DVec4) -> DVec2 {
+        clip.truncate().truncate() / clip.w * self.half_viewport
     }
 }
 

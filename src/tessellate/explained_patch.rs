@@ -3,12 +3,11 @@
 
 use super::control_nets::ControlNets;
 use super::factors::{inside_segments, patch_is_culled, patch_is_minimal, patch_is_subtriangulated, segments};
-use super::flat_patch::flat_error;
 use super::least_factors::BEYOND_LAST;
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::surface_tolerance;
 use super::mesh_tessellation::seen_with_reach;
-use super::piece_error::{SeenPatch, piece_error, seen_patch};
+use super::piece_error::{SeenPatch, piece_error};
 use super::{
     Clip, Convention, FIXED_ONE, Inputs, Lod, Normals, Partitioning, PatchFactors, Tessellation, corner_weights,
     domain_plan, domain_point, domain_side, domain_triangle, process, triangle_count,
@@ -24,8 +23,8 @@ pub(crate) struct ExplainedPatch {
     pub tolerance: f32,
     /// What was asked of the edges of sides 0, 1 and 2; `None` under other LODs.
     pub edges: Option<[ExplainedEdge; 3]>,
-    /// Whether one triangle shows the patch though points of its surface slide: see `flat_patch.rs`. The errors then are
-    /// distances to the nearest point of the surface.
+    /// Whether LOD by error allows points to slide along the surface: see `flat_patch.rs`. The errors then are distances to
+    /// the nearest point of the surface.
     pub is_flat: bool,
     /// How far the triangles are from the surface at the factors that are used; `None` if nothing is emitted.
     pub errors: Option<PatternErrors>,
@@ -154,17 +153,15 @@ pub(crate) fn explain_patch(
     let displacement = MeshDisplacement::new(&nets, searched);
     let displacement = displacement.as_ref();
     let least = |factor| nets.least_edge_factor(searched, displacement, factor);
-    let own = nets.own_least_factors(searched, displacement, patch, least);
+    let seen = nets.seen_patch(searched, displacement, patch);
+    let first = nets.first_least(searched, patch, &seen, least);
+    let own = nets.own_least_factors(searched, displacement, patch, &seen, first);
     let by_error = inputs.tessellation.lod == Lod::Error;
-    let net = nets.patch(patch);
-    let is_flat = by_error && nets.slides(searched, displacement, patch);
-    let errors = match is_flat {
-        true => {
-            let inside = flat_error(&inputs.view, &net);
-            (!patch_is_culled(used)).then_some(PatternErrors { rows: None, inside })
-        }
-        false => pattern_errors(&seen_patch(&inputs.view, &net), inputs.tessellation.convention, used),
-    };
+    let is_flat = by_error && seen.off_plane <= searched.tessellation.tolerance;
+    let mut measured = seen;
+    if !is_flat {
+        measured.off_plane = 3.4e38;
+    }
     ExplainedPatch {
         tolerance: surface_tolerance(inputs, displacement),
         edges: by_error.then(|| {
@@ -179,7 +176,7 @@ pub(crate) fn explain_patch(
             })
         }),
         is_flat,
-        errors,
+        errors: pattern_errors(&measured, inputs.tessellation.convention, used),
         own_least: own_least(searched.tessellation.partitioning, own),
     }
 }
@@ -191,7 +188,11 @@ pub(crate) fn own_least_triangles(mesh: &Mesh, topology: &Topology, inputs: &Inp
     let nets = ControlNets::new(mesh, topology, searched);
     let displacement = MeshDisplacement::new(&nets, searched);
     let least = |factor| nets.least_edge_factor(searched, displacement.as_ref(), factor);
-    let own = |patch| nets.own_least_factors(searched, displacement.as_ref(), patch, least);
+    let own = |patch| {
+        let seen = nets.seen_patch(searched, displacement.as_ref(), patch);
+        let first = nets.first_least(searched, patch, &seen, least);
+        nets.own_least_factors(searched, displacement.as_ref(), patch, &seen, first)
+    };
     let patches = 0..topology.patches.len() as u32;
     patches.map(|patch| own_least(searched.tessellation.partitioning, own(patch)).triangles).collect()
 }
@@ -220,7 +221,11 @@ impl ControlNets<'_> {
     ) -> ExplainedEdge {
         let factor = self.patch_factor(patch, side);
         let least = |factor| self.least_edge_factor(inputs, displacement, factor);
-        let asked = |patch: u32, side: usize| self.asked_by_patch(inputs, displacement, patch, least)[(side + 2) % 3];
+        let asked = |patch: u32, side: usize| {
+            let seen = self.seen_patch(inputs, displacement, patch);
+            let first = self.first_least(inputs, patch, &seen, least);
+            self.asked_by_patch(inputs, displacement, patch, &seen, first)[(side + 2) % 3]
+        };
         let own_side = self.topology.sides[self.topology.patches[patch as usize].sides[side] as usize];
         let sides = self.topology.edge_sides(&self.topology.edges[own_side.edge as usize]).iter();
         let others = sides.filter(|other| (other.patch(), other.index()) != (patch, side));
@@ -278,11 +283,14 @@ fn largest_error(seen: &SeenPatch, convention: Convention, factors: PatchFactors
     largest
 }
 
+/// A larger error is no error: where there is no bound, it is the number that stands for infinity.
+const LARGEST: f32 = 3.3e38;
+
 /// Returns the least bound that [`piece_error`] gives for a triangle, to a hundredth of the bound without a grid; infinity
 /// if there is none.
 fn finest_bound(seen: &SeenPatch, at: [Vec2; 3]) -> f32 {
-    let bound = piece_error(seen, f32::MAX, at);
-    if !bound.is_finite() {
+    let bound = piece_error(seen, LARGEST, at);
+    if bound > LARGEST || bound.is_nan() {
         return f32::INFINITY;
     }
     let (mut beyond, mut within) = (0.0, bound);

@@ -1,14 +1,15 @@
-//! Flat patches: those whose surface is a flat triangle, though its parametrisation may not be linear. Twin:
+//! Flat patches: those whose surface lies in a plane, though its parametrisation may not be linear. Twin:
 //! `shaders/flat_patch.wgsl`.
 //!
 //! Control points may lie along an edge or within the triangle's plane elsewhere than a linear patch has them, as normals
-//! that lean along an edge put them. If nothing on the patch depends on where its points slide, it's the distance to the
-//! surface that counts, not to the same place of the domain.
+//! that lean along an edge put them; or edges bend within the plane, as those of a cylinder's cap do. If nothing on the patch
+//! depends on where its points slide, it's the distance to the surface that counts, not to the same place of the domain.
 //!
-//! Let all control points of an edge be within a distance d of the straight edge, and all control points of the patch
-//! within d of the triangle's plane. Then every point of the triangle is within d of the surface. Points that are farther
-//! than d from the edges are surrounded by the outline of the surface, so that the surface has a point above each. Where
-//! the outline leaves out a point closer to an edge, it passes between that point and those, within d of the point.
+//! Why triangles that all turn the same way stay close to the surface: seen from the plane's normal, their outline is made
+//! of straight segments of edges, each within a distance d of the piece of the edge that it stands for. A point that is
+//! farther than d from the edges is thus surrounded by the outline of the triangles as often as by that of the surface. If a
+//! triangle covers the point, it is surrounded at least once, since no triangle turns back; so the surface covers it, too.
+//! A triangle that does turn back is allowed where it is close to the surface at the same places of the domain.
 
 use glam::{Vec2, Vec3};
 
@@ -24,13 +25,6 @@ pub(super) fn normals_agree([a, b, c]: [Vec3; 3]) -> bool {
     a.dot(b).min(b.dot(c)).min(c.dot(a)) >= AGREEING
 }
 
-/// Returns the part of a control point's difference from the straight edge that sliding along the edge doesn't take back;
-/// all of it, if the control point isn't beside the edge. `along` leads from the edge's start to its end.
-fn beside_edge(along: Vec3, difference: Vec3) -> Vec3 {
-    let share = difference.dot(along) / along.dot(along);
-    if share.abs() <= 1.0 / 3.0 { difference - along * share } else { difference }
-}
-
 /// Returns the larger of `most` and the length of a difference in object units on screen, in px times depth, by an eye that
 /// sees it within `spread` px of the middle of the view.
 fn longer_on_screen(view: &LodView, most: f32, spread: f32, difference: Vec3) -> f32 {
@@ -38,9 +32,9 @@ fn longer_on_screen(view: &LodView, most: f32, spread: f32, difference: Vec3) ->
     most.max(across.length() + spread * clip_row(view, 3).dot(difference).abs())
 }
 
-/// Returns a bound on the distance between a patch's triangle and the nearest points of its surface, in px. Large if the
-/// patch has no area.
-pub(super) fn flat_error(view: &LodView, net: &ControlNet) -> f32 {
+/// Returns a bound on the distance in px, across the plane of a patch's triangle, between points of the patch that have the
+/// same place in that plane. Large if the patch has no area.
+pub(super) fn plane_error(view: &LodView, net: &ControlNet) -> f32 {
     let [a, b, c] = net.corners;
     let area = (b - a).cross(c - a);
     let size = area.length();
@@ -61,25 +55,27 @@ pub(super) fn flat_error(view: &LodView, net: &ControlNet) -> f32 {
         nearest = near;
         spread = view.half_viewport.length();
     }
-    let center = net.center - (a + b + c) * (1.0 / 3.0);
-    let mut most = longer_on_screen(view, 0.0, spread, normal * normal.dot(center));
-    for k in 0..3 {
-        let (start, end) = (net.corners[k], net.corners[(k + 1) % 3]);
-        let at_start = net.edges[2 * k] - (start * 2.0 + end) * (1.0 / 3.0);
-        let at_end = net.edges[2 * k + 1] - (start + end * 2.0) * (1.0 / 3.0);
-        most = longer_on_screen(view, most, spread, beside_edge(end - start, at_start));
-        most = longer_on_screen(view, most, spread, beside_edge(end - start, at_end));
+    let mut most = longer_on_screen(view, 0.0, spread, normal * normal.dot(net.center - a));
+    for i in 0..6 {
+        most = longer_on_screen(view, most, spread, normal * normal.dot(net.edges[i] - a));
     }
-    most / nearest
+    // No point is farther off than 8/9 of the control points are, and two points are on both sides of the plane at worst.
+    16.0 / 9.0 * most / nearest
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tessellate::factors::{Partitioning, process};
+    use crate::tessellate::least_factors::{asked_factors, least_inside_factor};
+    use crate::tessellate::piece_error::{SeenPatch, piece_error, seen_patch};
+    use crate::tessellate::{FIXED_ONE, domain_plan, domain_point, domain_triangle, triangle_count};
     use glam::{Mat4, vec3};
+    use proptest::prelude::*;
 
     const VIEW: LodView = LodView::new(Mat4::IDENTITY, Vec2::splat(100.0));
     const CORNERS: [Vec3; 3] = [vec3(0.0, 0.0, 0.5), vec3(0.6, 0.0, 0.5), vec3(0.0, 0.6, 0.5)];
+    const WHOLE: [Vec2; 3] = [Vec2::X, Vec2::Y, Vec2::ZERO];
 
     fn linear() -> ControlNet {
         let [a, b, c] = CORNERS;
@@ -88,14 +84,26 @@ mod tests {
         ControlNet { corners: CORNERS, edges, center: (a + b + c) / 3.0 }
     }
 
+    fn seen(view: &LodView, net: &ControlNet) -> SeenPatch {
+        let mut seen = seen_patch(view, net);
+        seen.off_plane = plane_error(view, net);
+        seen
+    }
+
+    /// The error of one triangle in place of the patch.
+    fn whole_error(net: &ControlNet) -> f32 {
+        piece_error(&seen(&VIEW, net), 1000.0, WHOLE)
+    }
+
     #[test]
     fn points_may_slide_along_edges_and_within_the_plane() {
-        assert!(flat_error(&VIEW, &linear()) < 1e-4);
+        assert!(whole_error(&linear()) < 1e-4);
         let mut slid = linear();
         slid.edges[0] += Vec3::X * 0.15;
         slid.edges[2] += vec3(-0.1, 0.1, 0.0);
         slid.center += vec3(0.1, -0.1, 0.0);
-        assert!(flat_error(&VIEW, &slid) < 1e-4);
+        assert!(whole_error(&slid) < 1e-4);
+        assert!(piece_error(&seen_patch(&VIEW, &slid), 1000.0, WHOLE) > 1.0, "they may not slide");
     }
 
     #[test]
@@ -103,26 +111,26 @@ mod tests {
         // An edge that leaves its straight line within the plane, by 0.05 or 5 px.
         let mut bent = linear();
         bent.edges[1] += Vec3::Y * 0.05;
-        assert!((flat_error(&VIEW, &bent) - 5.0).abs() < 1e-3);
+        assert!((whole_error(&bent) - 0.75 * 5.0).abs() < 1e-3);
         // A control point that isn't beside its edge any more.
         let mut outside = linear();
         outside.edges[0] -= Vec3::X * 0.3;
-        assert!((flat_error(&VIEW, &outside) - 30.0).abs() < 1e-3);
+        assert!(whole_error(&outside) > 10.0);
         // A centre above the plane is seen from the side.
         let mut raised = linear();
         raised.center += Vec3::Z * 0.1;
         let turned = LodView::new(Mat4::from_rotation_x(1.2), Vec2::splat(100.0));
-        let expected = 100.0 * 0.1 * 1.2f32.sin();
-        assert!((flat_error(&turned, &raised) - expected).abs() < 1e-2);
+        let expected = 16.0 / 9.0 * 100.0 * 0.1 * 1.2f32.sin();
+        assert!((plane_error(&turned, &raised) - expected).abs() < 1e-2);
     }
 
     #[test]
     fn patches_without_an_area_are_not_flat() {
         let mut line = linear();
         line.corners[2] = line.corners[1];
-        assert!(flat_error(&VIEW, &line) > 1e30);
+        assert!(plane_error(&VIEW, &line) > 1e30);
         line.corners[2] = Vec3::NAN;
-        assert!(flat_error(&VIEW, &line) > 1e30);
+        assert!(plane_error(&VIEW, &line) > 1e30);
     }
 
     #[test]
@@ -131,5 +139,80 @@ mod tests {
         assert!(normals_agree([Vec3::Z, leaning(0.9), Vec3::Z]));
         assert!(!normals_agree([Vec3::Z, leaning(1.1), Vec3::Z]));
         assert!(!normals_agree([leaning(-0.6), Vec3::Z, leaning(0.6)]));
+    }
+
+    fn cubic(a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: f32) -> Vec2 {
+        let s = 1.0 - t;
+        let p = a * (s * s * s) + ab * (3.0 * s * s * t) + ba * (3.0 * s * t * t) + b * (t * t * t);
+        p.truncate() * 100.0
+    }
+
+    /// Returns the outline of a flat patch on screen.
+    fn outline(net: &ControlNet) -> Vec<Vec2> {
+        let side = |k: usize| {
+            let (a, b) = (net.corners[k], net.corners[(k + 1) % 3]);
+            (0..400).map(move |i| cubic(a, net.edges[2 * k], net.edges[2 * k + 1], b, i as f32 / 400.0))
+        };
+        (0..3).flat_map(side).collect()
+    }
+
+    /// Returns how far a point is outside an outline; 0 within.
+    fn outside(outline: &[Vec2], p: Vec2) -> f32 {
+        let (mut winding, mut nearest) = (0.0, f32::MAX);
+        for (i, &a) in outline.iter().enumerate() {
+            let b = outline[(i + 1) % outline.len()];
+            winding += (a - p).angle_to(b - p);
+            let share = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            nearest = nearest.min(p.distance(a.lerp(b, share)));
+        }
+        if winding.abs() > 3.0 { 0.0 } else { nearest }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(60))]
+        #[test]
+        fn triangles_of_bent_patches_stay_within_the_tolerance(
+            moves in prop::array::uniform14(-0.08f32..0.08),
+            tolerance in 0.3f32..2.0,
+        ) {
+            let mut net = linear();
+            for i in 0..6 {
+                net.edges[i] += vec3(moves[2 * i], moves[2 * i + 1], 0.0);
+            }
+            net.center += vec3(moves[12], moves[13], 0.0);
+            let patch = seen(&VIEW, &net);
+            let edges = asked_factors(&patch, tolerance, Partitioning::Integer, [1.0; 3], 1.0);
+            let inside = least_inside_factor(&patch, tolerance, Partitioning::Integer, edges, 1.0);
+            prop_assert!(inside <= 64.0);
+            let same_place = asked_factors(&seen_patch(&VIEW, &net), tolerance, Partitioning::Integer, [1.0; 3], 1.0);
+            prop_assert!(edges.iter().sum::<f32>() <= same_place.iter().sum::<f32>() + 2.0);
+            let factors = process(Partitioning::Integer, edges, inside);
+            let (plan, outline) = (domain_plan(factors), outline(&net));
+            for t in 0..triangle_count(factors) {
+                let corners = domain_triangle(&plan, t).map(|i| {
+                    let [x, y] = domain_point(&plan, i).map(|x| x as f32 / FIXED_ONE as f32);
+                    point(&net, [x, y, 1.0 - x - y])
+                });
+                for (i, j) in (0..=6).flat_map(|i| (0..=6 - i).map(move |j| (i, j))) {
+                    let weights = [i, j, 6 - i - j].map(|x| x as f32 / 6.0);
+                    let p: Vec2 = (0..3).map(|k| corners[k] * weights[k]).sum();
+                    prop_assert!(outside(&outline, p) <= tolerance + 0.01, "triangle {t} of {factors:?}, {p}");
+                }
+            }
+        }
+    }
+
+    /// Returns a point of a patch in px.
+    fn point(net: &ControlNet, [x, y, z]: [f32; 3]) -> Vec2 {
+        let [a, b, c] = net.corners;
+        let [ab, ba, bc, cb, ca, ac] = net.edges;
+        let p = a * (x * x * x)
+            + b * (y * y * y)
+            + c * (z * z * z)
+            + (ab * x + ba * y) * (3.0 * x * y)
+            + (bc * y + cb * z) * (3.0 * y * z)
+            + (ca * z + ac * x) * (3.0 * z * x)
+            + net.center * (6.0 * x * y * z);
+        p.truncate() * 100.0
     }
 }

@@ -178,7 +178,7 @@ fn least_inner_factor(patch: &SeenPatch, tolerance: f32, partitioning: Partition
 }
 
 /// Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and 4.
+/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and 4. Where points may slide it tries all.
 fn least_row_factor(
     patch: &SeenPatch,
     tolerance: f32,
@@ -187,16 +187,23 @@ fn least_row_factor(
     least: f32,
     inside: f32,
 ) -> f32 {
-    let most = factor_from(partitioning, least.max(inside) + 4.0).min(last_factor(partitioning));
+    let slides = patch.off_plane <= tolerance;
+    let last = if slides { BEYOND_LAST } else { least.max(inside) + 4.0 };
+    let most = factor_from(partitioning, last).min(last_factor(partitioning));
     let mut factor = least;
-    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match.
     while factor <= most {
         let mut edges = [2.0; 3];
         edges[k as usize] = factor;
-        if row_error(patch, tolerance, process(partitioning, edges, inside), k) <= tolerance {
+        let error = row_error(patch, tolerance, process(partitioning, edges, inside), k);
+        if error <= tolerance {
             return factor;
         }
-        factor = factor_from(partitioning, factor + 1.0);
+        // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where
+        // points may slide, that doesn't matter.
+        factor = match slides {
+            true => next_factor(partitioning, factor, error, tolerance),
+            false => factor_from(partitioning, factor + 1.0),
+        };
     }
     BEYOND_LAST
 }

@@ -5,6 +5,7 @@ use glam::{DMat2, DVec2, DVec3, Vec3};
 use super::Inputs;
 use super::control_nets::ControlNets;
 use super::mesh_displacement::MeshDisplacement;
+use super::piece_error::SeenPatch;
 use super::{ControlNet, Lod, Surface};
 use crate::mesh::{Mesh, Topology};
 
@@ -37,40 +38,45 @@ impl<'a> LimitSurface<'a> {
         self.surface(net, u, v) + moved.unwrap_or_default()
     }
 
-    /// Returns whether LOD by error shows a patch as one triangle since its surface is flat, though its points slide: see
-    /// `flat_patch.rs`. The distance that counts there is the one to the nearest point.
+    /// Returns a patch as it is seen.
+    pub(crate) fn seen_patch(&self, inputs: &Inputs, patch: u32) -> SeenPatch {
+        self.nets.seen_patch(inputs, self.displacement.as_ref(), patch)
+    }
+
+    /// Returns whether LOD by error allows points of a patch to slide along its surface, which is flat: see `flat_patch.rs`.
+    /// The distance that counts there is the one to the nearest point.
     pub(crate) fn slides(&self, inputs: &Inputs, patch: u32) -> bool {
         inputs.tessellation.lod == Lod::Error && self.nets.slides(inputs, self.displacement.as_ref(), patch)
     }
 
-    /// Returns the point of a patch that is nearest to `target`, without displacement: by Newton's method, starting from
-    /// the weights `u` and `v`. A point that is farther than where it started is never returned.
-    pub(crate) fn nearest(&self, net: &ControlNet, u: f64, v: f64, target: DVec3) -> DVec3 {
+    /// Returns the point of a patch that is nearest to `target` as `on_screen` shows both, without displacement: by Newton's
+    /// method, starting from the weights `u` and `v`. A point that is farther than where it started is never returned.
+    pub(crate) fn nearest(
+        &self,
+        net: &ControlNet,
+        [u, v]: [f64; 2],
+        target: DVec3,
+        on_screen: impl Fn(DVec3) -> DVec2,
+    ) -> DVec3 {
         const STEP: f64 = 1e-4;
-        let (mut best, mut at) = (self.surface(net, u, v), DVec2::new(u, v));
-        for _ in 0..12 {
-            let point = self.surface(net, at.x, at.y);
-            if point.distance(target) < best.distance(target) {
-                best = point;
+        let seen = |at: DVec2| on_screen(self.surface(net, at.x, at.y));
+        let target = on_screen(target);
+        let start = DVec2::new(u, v);
+        let (mut best, mut least, mut at) = (start, seen(start).distance(target), start);
+        for _ in 0..20 {
+            let place = seen(at);
+            let aside = target - place;
+            if aside.length() < least {
+                (best, least) = (at, aside.length());
             }
-            let along_u = (self.surface(net, at.x + STEP, at.y) - point) / STEP;
-            let along_v = (self.surface(net, at.x, at.y + STEP) - point) / STEP;
-            let metric = DMat2::from_cols_array(&[
-                along_u.dot(along_u),
-                along_u.dot(along_v),
-                along_u.dot(along_v),
-                along_v.dot(along_v),
-            ]);
-            let aside = target - point;
-            let step = metric.inverse() * DVec2::new(along_u.dot(aside), along_v.dot(aside));
-            if !step.is_finite() {
+            let along = [DVec2::X, DVec2::Y].map(|axis| (seen(at + axis * STEP) - place) / STEP);
+            let next = next_weights(at, along, aside);
+            if !next.is_finite() {
                 break;
             }
-            // Back into the patch.
-            at = (at + step).max(DVec2::ZERO);
-            at /= (at.x + at.y).max(1.0);
+            at = next;
         }
-        best
+        self.surface(net, best.x, best.y)
     }
 
     /// Returns the point without displacement.
@@ -88,6 +94,34 @@ impl<'a> LimitSurface<'a> {
             + edge(c, ca, ac, z, x)
             + net.center.as_dvec3() * (6.0 * x * y * z)
     }
+}
+
+/// Returns the weights of corners 0 and 1 after a step of Newton's method that doesn't leave the patch. `along` says how the
+/// point changes with each of the two weights, and `aside` what is missing. On a side that the step would lead out of, the step
+/// goes along the side.
+fn next_weights(at: DVec2, along: [DVec2; 2], aside: DVec2) -> DVec2 {
+    let jacobian = DMat2::from_cols(along[0], along[1]);
+    let metric = jacobian.transpose() * jacobian;
+    // A patch that is seen from the side has no inverse without this.
+    let damped = metric + DMat2::from_diagonal(DVec2::splat(1e-9 * (metric.x_axis.x + metric.y_axis.y)));
+    let step = damped.inverse() * (jacobian.transpose() * aside);
+    let (share, side) = share_within(at, step);
+    if share > 1e-9 {
+        return at + step * share;
+    }
+    let side = [DVec2::Y, DVec2::X, DVec2::new(1.0, -1.0)][side];
+    let on_screen = jacobian * side;
+    let step = side * (on_screen.dot(aside) / on_screen.length_squared());
+    at + step * share_within(at, step).0
+}
+
+/// Returns the share of a step, 1 at most, that leads no farther than to a side of the patch, and that side: the number of the
+/// corner whose weight is 0 there.
+fn share_within(at: DVec2, step: DVec2) -> (f64, usize) {
+    let (weights, changes) = ([at.x, at.y, 1.0 - at.x - at.y], [step.x, step.y, -step.x - step.y]);
+    let share = |k: usize| if changes[k] < 0.0 { weights[k].max(0.0) / -changes[k] } else { f64::INFINITY };
+    let side = (0..3).min_by(|&a, &b| share(a).total_cmp(&share(b))).unwrap_or(0);
+    (share(side).min(1.0), side)
 }
 
 #[cfg(test)]
@@ -122,5 +156,30 @@ mod tests {
         assert!((cubic - expected).abs() < 1e-9, "{cubic}, not {expected}");
         let flat = at_a_half_and_a_third(Surface::Flat, corners, edges, center);
         assert!((flat - (1.0 / 2.0 + 2.0 / 3.0 + 4.0 / 6.0)).abs() < 1e-12, "{flat}: a flat surface has corners alone");
+    }
+
+    #[test]
+    fn the_nearest_point_is_found_within_and_on_the_border() {
+        let mesh = Shape::Icosahedron.build();
+        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
+        let inputs = Settings::default().inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        let limit = LimitSurface::new(&mesh, &topology, &inputs);
+        // Flat, with one edge bent outwards.
+        let at = |x: f32, y: f32| Vec3::new(x, y, 0.5);
+        let corners = [at(0.0, 0.0), at(3.0, 0.0), at(0.0, 3.0)];
+        let edges = [at(1.0, -0.8), at(2.0, -0.5), at(2.0, 1.0), at(1.0, 2.0), at(0.0, 2.0), at(0.0, 1.0)];
+        let net = ControlNet { corners, edges, center: at(1.0, 0.8) };
+        let on_screen = |p: DVec3| p.truncate();
+        let mut random = fastrand::Rng::with_seed(1);
+        let weights = || (0..=60).flat_map(|i| (0..=60 - i).map(move |j| [f64::from(i) / 60.0, f64::from(j) / 60.0]));
+        let grid: Vec<DVec3> = weights().map(|[u, v]| limit.surface(&net, u, v)).collect();
+        for _ in 0..300 {
+            let start = weights().nth(random.usize(0..grid.len())).expect("as many as points");
+            let aside = DVec3::new(random.f64() - 0.5, random.f64() - 0.5, 0.0);
+            let target = limit.surface(&net, start[0], start[1]) + aside * 0.6;
+            let sampled = grid.iter().map(|p| p.distance(target)).fold(f64::INFINITY, f64::min);
+            let nearest = limit.nearest(&net, start, target, on_screen).distance(target);
+            assert!(nearest <= sampled + 1e-3 || nearest < 1e-6, "{target}: {nearest}, {sampled} on a grid");
+        }
     }
 }

@@ -4,12 +4,10 @@
 use glam::Vec3;
 
 use super::control_nets::ControlNets;
-use super::flat_patch::{flat_error, normals_agree};
-use super::least_factors::{
-    BOUND_SHARE, asked_factors, least_edge_factor, least_inside_factor, own_least_factors, whole_segments,
-};
+use super::flat_patch::{normals_agree, plane_error};
+use super::least_factors::{asked_factors, least_edge_factor, least_inside_factor, own_least_factors, whole_segments};
 use super::mesh_displacement::MeshDisplacement;
-use super::piece_error::seen_patch;
+use super::piece_error::{SeenPatch, seen_patch};
 use super::texel_lengths::Maps;
 use super::{
     HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor, edge_length_factor,
@@ -58,75 +56,102 @@ impl ControlNets<'_> {
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
         let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
         let all = 0..self.topology.patches.len() as u32;
-        let ask = |patch: u32, least: &[f32], asked: &mut [f32]| {
-            let own = self.asked_by_patch(inputs, displacement, patch, |factor| least[factor as usize]);
+        let ask = |patch: u32, seen: &SeenPatch, least: [f32; 3], asked: &mut [f32]| {
+            let own = self.asked_by_patch(inputs, displacement, patch, seen, least);
             for (k, own) in [1, 2, 0].into_iter().zip(own) {
                 let factor = self.patch_factor(patch, k) as usize;
                 asked[factor] = asked[factor].max(own);
             }
         };
-        all.clone().for_each(|patch| ask(patch, &least, &mut asked));
+        for patch in all.clone() {
+            let seen = self.seen_patch(inputs, displacement, patch);
+            let least = self.first_least(inputs, patch, &seen, |factor| least[factor as usize]);
+            ask(patch, &seen, least, &mut asked);
+        }
         if surface != Surface::Flat {
             let first = asked.clone();
-            let fails = |&patch: &u32| self.inside_factor(inputs, displacement, &first, patch) > 64.0;
-            all.filter(fails).for_each(|patch| ask(patch, &first, &mut asked));
+            for patch in all.filter(|&patch| self.inside_factor(inputs, displacement, &first, patch) > 64.0) {
+                let least = [1, 2, 0].map(|k| first[self.patch_factor(patch, k) as usize]);
+                ask(patch, &self.seen_patch(inputs, displacement, patch), least, &mut asked);
+            }
         }
         asked
     }
 
-    /// Returns the factors that a patch asks for under LOD by error, of the edges U == 0, V == 0 and W == 0. `least`
-    /// returns the least factor that an edge may get.
+    /// Returns a patch as it is seen.
+    pub(super) fn seen_patch(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> SeenPatch {
+        let mut seen = seen_patch(&inputs.view, &self.patch(patch));
+        seen.off_plane = self.off_plane(inputs, displacement, patch);
+        seen
+    }
+
+    /// Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: what `least` returns for
+    /// each. Where points may slide along an edge, what the edge needs at the same places doesn't count.
+    pub(super) fn first_least(
+        &self,
+        inputs: &Inputs,
+        patch: u32,
+        seen: &SeenPatch,
+        least: impl Fn(u32) -> f32,
+    ) -> [f32; 3] {
+        let Tessellation { partitioning, tolerance, .. } = inputs.tessellation;
+        match seen.off_plane <= tolerance {
+            true => [whole_segments(partitioning, 1.0); 3],
+            false => [1, 2, 0].map(|k| least(self.patch_factor(patch, k))),
+        }
+    }
+
+    /// Returns the factors that a patch asks for under LOD by error, of the edges U == 0, V == 0 and W == 0. `least` are
+    /// the least that these may get.
     pub(super) fn asked_by_patch(
         &self,
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
         patch: u32,
-        least: impl Fn(u32) -> f32,
+        seen: &SeenPatch,
+        least: [f32; 3],
     ) -> [f32; 3] {
-        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
-        if self.slides(inputs, displacement, patch) {
-            return [whole_segments(partitioning, 1.0); 3];
-        }
-        let least = [1, 2, 0].map(|k| least(self.patch_factor(patch, k)));
+        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         if surface == Surface::Flat {
             return least;
         }
         let inside = self.heights_inside(inputs, displacement, patch);
-        let tolerance = surface_tolerance(inputs, displacement);
-        asked_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, least, inside)
+        asked_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
     }
 
     /// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch alone would keep the
-    /// tolerance with the fewest triangles: its *own least*. `least` returns the least factor that an edge may get.
+    /// tolerance with the fewest triangles: its *own least*. `least` are the least factors that its edges may get.
     pub(super) fn own_least_factors(
         &self,
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
         patch: u32,
-        least: impl Fn(u32) -> f32,
+        seen: &SeenPatch,
+        least: [f32; 3],
     ) -> [f32; 4] {
-        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
-        if self.slides(inputs, displacement, patch) {
-            return [whole_segments(partitioning, 1.0); 4];
-        }
-        let least = [1, 2, 0].map(|k| least(self.patch_factor(patch, k)));
+        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let inside = self.heights_inside(inputs, displacement, patch);
         if surface == Surface::Flat {
             return [least[0], least[1], least[2], whole_segments(partitioning, inside)];
         }
-        let tolerance = surface_tolerance(inputs, displacement);
-        own_least_factors(&seen_patch(view, &self.patch(patch)), tolerance, partitioning, least, inside)
+        own_least_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
     }
 
-    /// Returns whether one triangle shows a patch within the tolerance of LOD by error though points of the surface slide:
-    /// the patch is flat, and nothing on it depends on where they do.
-    pub(super) fn slides(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> bool {
+    /// Returns how far in px the surface of a patch may be off its plane, if points may slide along it: it is nearly flat,
+    /// and nothing on it depends on where they do. Otherwise it returns a large number.
+    fn off_plane(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> f32 {
         let material = self.mesh.materials.get(self.topology.material_of(patch));
         let corners = self.topology.patch_corners(patch);
-        displacement.is_none()
-            && material.is_none_or(|material| material.texture.is_none())
-            && normals_agree(corners.map(|corner| self.mesh.corners[corner as usize].normal))
-            && flat_error(&inputs.view, &self.patch(patch)) <= BOUND_SHARE * inputs.tessellation.tolerance
+        let is_plain = displacement.is_none() && material.is_none_or(|material| material.texture.is_none());
+        match is_plain && normals_agree(corners.map(|corner| self.mesh.corners[corner as usize].normal)) {
+            true => plane_error(&inputs.view, &self.patch(patch)),
+            false => 3.4e38,
+        }
+    }
+
+    /// Returns whether points of a patch may slide along its surface under LOD by error.
+    pub(super) fn slides(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> bool {
+        self.off_plane(inputs, displacement, patch) <= inputs.tessellation.tolerance
     }
 
     /// Returns the index of the factor of a patch's side.
@@ -182,14 +207,14 @@ impl ControlNets<'_> {
         edge_factors: &[f32],
         patch: u32,
     ) -> f32 {
-        let Inputs { tessellation: Tessellation { surface, partitioning, .. }, ref view } = *inputs;
+        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let heights = whole_segments(partitioning, self.heights_inside(inputs, displacement, patch));
-        if surface == Surface::Flat || self.slides(inputs, displacement, patch) {
+        if surface == Surface::Flat {
             return heights;
         }
         let edges = [1, 2, 0].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
-        let (seen, tolerance) = (seen_patch(view, &self.patch(patch)), surface_tolerance(inputs, displacement));
-        least_inside_factor(&seen, tolerance, partitioning, edges, heights)
+        let seen = self.seen_patch(inputs, displacement, patch);
+        least_inside_factor(&seen, surface_tolerance(inputs, displacement), partitioning, edges, heights)
     }
 
     /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the

@@ -88,7 +88,7 @@ pub(crate) use mesh_tessellation::edge_factors;
 pub(crate) use mesh_tessellation::{given_totals, hull_factors, tessellate_given, totals};
 pub(crate) use normal::{edge_normal, linear_normal, quadratic_edge_normal, quadratic_normal, surface_normal};
 pub(crate) use octahedral_normal::pack_normal;
-pub(crate) use piece_error::{SeenPatch, piece_error, seen_patch};
+pub(crate) use piece_error::{SeenPatch, piece_error};
 #[cfg(test)]
 pub(crate) use posed_mesh::deform;
 pub(crate) use posed_mesh::{Deformed, PosedMesh, bounds_through};

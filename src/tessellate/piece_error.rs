@@ -11,6 +11,9 @@
 //! from its linear interpolation as its second derivatives allow (D. Filip, R. Magedson, R. Markot: *Surface algorithms
 //! using bounds on derivatives*, 1986), divided by the square of the grid's number of steps. So what is on the grid
 //! is a lower bound, and with that margin an upper bound. Grids get finer until one of the two decides.
+//!
+//! On patches that are nearly flat, and where nothing depends on where their points slide, the distance to the nearest point
+//! of the surface is enough: see `flat_patch.rs`.
 
 use glam::{Vec2, Vec3};
 
@@ -36,6 +39,10 @@ pub(crate) struct SeenPatch {
     /// How far displacement may move a point: in depth, and across the view in px times depth.
     deep: f32,
     across: Vec2,
+    /// Which way its triangle turns: see [`turn_of`].
+    turn: f32,
+    /// Where points may slide along the surface, how far in px it may be off the plane of its triangle; else a large number.
+    pub off_plane: f32,
 }
 
 /// Returns whether an error is within a tolerance. NaN never is.
@@ -103,7 +110,13 @@ fn second_derivatives(view: &LodView, scale: f32, net: &ControlNet, i: usize) ->
     [clip_difference(view, aa * scale), clip_difference(view, ab * scale), clip_difference(view, bb * scale)]
 }
 
-/// Returns a patch as it is seen.
+/// Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in
+/// clip space.
+fn turn_of(a: Vec3, b: Vec3, c: Vec3) -> f32 {
+    a.dot((b - a).cross(c - a))
+}
+
+/// Returns a patch as it is seen, whose points may not slide.
 pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
     let mut deepest = deeper(view, 0.0, net.center);
     for corner in net.corners {
@@ -130,6 +143,8 @@ pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
         near: near_depth(view) * scale,
         deep: clip_row(view, 3).length() * view.reach * scale,
         across: across * (view.reach * scale),
+        turn: turn_of(points[0], points[1], points[2]),
+        off_plane: 3.4e38,
     }
 }
 
@@ -247,6 +262,41 @@ fn derivative_bound(piece: &Piece, middle: Vec2, spread: f32) -> f32 {
     triangle_error(most[0], most[1], most[2])
 }
 
+/// Returns whether the side between two places of the domain is part of an edge of the patch.
+fn is_on_edge(p: Vec2, q: Vec2) -> bool {
+    p.x.max(q.x) == 0.0 || p.y.max(q.y) == 0.0 || (p.x + p.y).min(q.x + q.y) == 1.0
+}
+
+/// Returns the length of a difference that sliding along a side doesn't take back; all of it, if its control point isn't
+/// beside the side. In px times depth, by an eye that sees it within `spread` px of `middle`. `along` leads from the side's
+/// start to its end.
+fn beside_edge(middle: Vec2, spread: f32, along: Vec3, difference: Vec3) -> f32 {
+    let on_screen = along.truncate() - middle * along.z;
+    let share = (difference.truncate() - middle * difference.z).dot(on_screen) / on_screen.dot(on_screen);
+    let rest = if share.abs() <= 1.0 / 3.0 { difference - along * share } else { difference };
+    (rest.truncate() - middle * rest.z).length() + spread * rest.z.abs()
+}
+
+/// Returns a bound on the distance in px between a flat triangle and the nearest points of the surface, where points may
+/// slide and as far as no other triangle's sides come into it; large if that bound doesn't hold. All that counts of it is
+/// seen within `spread` px of `middle` and no nearer than `nearest`.
+fn sliding_error(patch: &SeenPatch, piece: &Piece, at: [Vec2; 3], middle: Vec2, spread: f32, nearest: f32) -> f32 {
+    let [a, b, c] = [0, 1, 2].map(|i| (piece.places[i] * piece.depths[i]).extend(piece.depths[i]));
+    let turned = turn_of(a, b, c) * (at[1] - at[0]).perp_dot(at[2] - at[0]) * patch.turn;
+    if !is_within(0.0, turned) {
+        return 3.4e38;
+    }
+    let alongs = [b - a, c - b, a - c];
+    let mut most = 0.0f32;
+    for k in 0..3 {
+        if is_on_edge(at[k], at[(k + 1) % 3]) {
+            most = most.max(beside_edge(middle, spread, alongs[k], piece.differences[2 * k]));
+            most = most.max(beside_edge(middle, spread, alongs[k], piece.differences[2 * k + 1]));
+        }
+    }
+    patch.off_plane + 0.75 * most / nearest
+}
+
 /// Returns the difference at the weights `x`, `y` and `z` of a piece's corners.
 fn piece_difference(piece: &Piece, x: f32, y: f32, z: f32) -> Vec3 {
     let d = &piece.differences;
@@ -279,6 +329,38 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, step
     [error, deep]
 }
 
+/// Returns the error of a flat triangle at the same places of the domain: an upper bound if it is at most `tolerance`. `piece`
+/// is in front of the near plane. All of it is seen within `spread` px of `middle`, wherever displacement moves it by `moved`
+/// px.
+fn same_place_error(
+    patch: &SeenPatch,
+    piece: &Piece,
+    tolerance: f32,
+    middle: Vec2,
+    spread: f32,
+    moved: f32,
+    [nearest, farthest]: [f32; 2],
+) -> f32 {
+    let bound = derivative_bound(piece, middle, spread) / nearest;
+    let [a, b, c] = piece.places;
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let ratio = farthest / nearest;
+    let mut steps = 1;
+    let mut upper = bound;
+    while !is_within(upper, tolerance) && steps < FINEST_GRID {
+        steps *= 2;
+        let [error, deep] = grid_error(patch, piece, moved, tolerance, steps);
+        if !is_within(error, tolerance) {
+            return error;
+        }
+        // Between points of the grid: depth and place change, and the difference isn't linear.
+        let share = 1.0 / steps as f32;
+        let between = bound * share * share + longest * ratio * share * deep / nearest;
+        upper = error * (1.0 + (ratio - 1.0) * share) + between;
+    }
+    upper
+}
+
 /// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1).
 /// If it is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
 pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
@@ -294,37 +376,33 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
     if farthest < patch.near {
         return 0.0;
     }
-    // Written like this, NaN is no depth in front of the eye.
-    if !(nearest > 0.0 && nearest >= patch.near) {
-        // What is seen of it is anywhere in the view, and no nearer than the near plane.
-        return derivative_bound(&piece, Vec2::ZERO, patch.half_viewport.length()) / patch.near;
-    }
-    if is_beside_view(patch, &piece) {
+    // NaN is no depth in front of the eye.
+    let is_before_eye = nearest > 0.0 && nearest >= patch.near;
+    if is_before_eye && is_beside_view(patch, &piece) {
         return 0.0;
     }
     let [a, b, c] = piece.places;
-    let middle = (a + b + c) / 3.0;
-    // How far displacement moves it on screen.
-    let most = a.abs().max(b.abs()).max(c.abs());
-    let moved = ((patch.across + most * patch.deep) / nearest).length();
-    let radius = a.distance(middle).max(b.distance(middle)).max(c.distance(middle));
-    let bound = derivative_bound(&piece, middle, radius + moved) / nearest;
-    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let ratio = farthest / nearest;
-    let mut steps = 1;
-    let mut upper = bound;
-    while !is_within(upper, tolerance) && steps < FINEST_GRID {
-        steps *= 2;
-        let [error, deep] = grid_error(patch, &piece, moved, tolerance, steps);
-        if !is_within(error, tolerance) {
-            return error;
-        }
-        // Between points of the grid: depth and place change, and the difference isn't linear.
-        let share = 1.0 / steps as f32;
-        let between = bound * share * share + longest * ratio * share * deep / nearest;
-        upper = error * (1.0 + (ratio - 1.0) * share) + between;
+    let (mut middle, mut spread, mut depth, mut moved) = (Vec2::ZERO, patch.half_viewport.length(), patch.near, 0.0);
+    if is_before_eye {
+        middle = (a + b + c) / 3.0;
+        // How far displacement moves it on screen.
+        let most = a.abs().max(b.abs()).max(c.abs());
+        moved = ((patch.across + most * patch.deep) / nearest).length();
+        spread = a.distance(middle).max(b.distance(middle)).max(c.distance(middle)) + moved;
+        depth = nearest;
     }
-    upper
+    let mut error = 3.4e38;
+    if patch.off_plane <= tolerance {
+        error = sliding_error(patch, &piece, at, middle, spread, depth);
+    }
+    if is_within(error, tolerance) {
+        return error;
+    }
+    if !is_before_eye {
+        // What is seen of it is anywhere in the view, and no nearer than the near plane.
+        return error.min(derivative_bound(&piece, middle, spread) / depth);
+    }
+    error.min(same_place_error(patch, &piece, tolerance, middle, spread, moved, [nearest, farthest]))
 }
 
 #[cfg(test)]

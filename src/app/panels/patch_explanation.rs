@@ -95,8 +95,8 @@ impl ShownExplanation<'_> {
         let (name, hover) = match errors {
             Some(_) if self.explained.is_some_and(|explained| explained.is_flat) => (
                 "flat",
-                "All triangles of the patch. Its surface is flat, so that one triangle shows it although points of the surface \
-                 slide along it; px is the distance to the nearest point of the surface.",
+                "The number of segments inside, and the triangles along no edge. The patch is flat, and nothing on it depends on \
+                 where its points are within its plane. So all px of it are distances to the nearest point of the surface.",
             ),
             Some(errors) if errors.rows.is_none() => {
                 ("whole", "All triangles of the patch, which has no rows along its edges.")

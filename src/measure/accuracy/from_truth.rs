@@ -22,18 +22,18 @@ impl AccuracyMeasurement<'_> {
     }
 
     /// The squares of the distances from the points that are spread by area, and the worst places of all points.
-    pub(super) fn from_truth(&self) -> (f64, Peaks) {
-        let (squares, mut all) = self.from_points(0..self.spread, f64::NEG_INFINITY);
+    pub(super) fn measure_from_truth(&self) -> (f64, Peaks) {
+        let (squares, mut all) = self.measure_points(0..self.spread, f64::NEG_INFINITY);
         // Points that are no farther than the worst so far needn't be measured exactly.
         let enough = all.places().next().map_or(f64::NEG_INFINITY, |worst| worst.value);
-        let (_, of_edges) = self.from_points(self.spread..self.points.len(), enough);
+        let (_, of_edges) = self.measure_points(self.spread..self.points.len(), enough);
         all.join(&of_edges);
         (squares, all)
     }
 
     /// The squares of the distances from some points of the reference surface, and the worst places of those that are farther
     /// than `enough`. The squares of other distances may be too large.
-    fn from_points(&self, points: Range<usize>, enough: f64) -> (f64, Peaks) {
+    fn measure_points(&self, points: Range<usize>, enough: f64) -> (f64, Peaks) {
         let done = blocks(points.len(), self.options.threads, |range| {
             let (mut squares, mut peaks, mut hints) = (0.0, self.no_peaks.clone(), Vec::new());
             for i in range.map(|i| points.start + i) {

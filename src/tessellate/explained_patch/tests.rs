@@ -118,7 +118,7 @@ fn errors_are_bounds_and_near_the_largest_distance() {
     let (mesh, topology, inputs) = shape(Shape::Icosahedron, Tessellation::default());
     let used = process(Partitioning::Integer, [3.0, 2.0, 4.0], 3.0);
     let nets = ControlNets::new(&mesh, &topology, &inputs);
-    let seen = seen_patch(&inputs.view, &nets.patch(0));
+    let seen = nets.seen_patch(&inputs, None, 0);
     let errors = pattern_errors(&seen, Convention::D3d11, used).expect("it is emitted");
     // At a tolerance below the largest bound the search finds a place that is farther off.
     let beyond = |tolerance: f32| {
