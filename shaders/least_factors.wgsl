@@ -208,7 +208,7 @@ fn least_row_factor(
     least: f32,
     inside: f32,
 ) -> f32 {
-    let slides = (*seen).off_plane <= tolerance;
+    let slides = may_slide(seen, tolerance);
     let last = select(max(least, inside) + 4.0, BEYOND_LAST, slides);
     let most = min(factor_from(partitioning, last), last_factor(partitioning));
     var factor = least;
@@ -269,18 +269,24 @@ fn fewest_triangles(
     return best;
 }
 
-// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0. `least` are the least that these may
-// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`. Not for patches of which
-// one triangle suffices, or with a least factor above 64.
+// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0, and the inside factor that it would take
+// beside these. `least` are the least that the edges may get, and `least_inside` is the least inside factor. If no factors are
+// enough, it returns `least` and BEYOND_LAST. Not for patches of which one triangle suffices, or with a least factor above 64.
 fn asked_factors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
     partitioning: u32,
     least: vec3<f32>,
     least_inside: f32,
-) -> vec3<f32> {
+) -> vec4<f32> {
     // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 2.0).xyz;
+    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 2.0);
+}
+
+// Returns whether a patch asks its edges once more: beside what other patches asked for, its inside factor is much larger than
+// the one that it has chosen.
+fn asks_again(chosen: f32, inside: f32) -> bool {
+    return inside > 64.0 || inside > 1.1 * chosen + 1.0;
 }
 
 // Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch has the fewest triangles if no

@@ -2,8 +2,9 @@
 // factor that is enough beside them. Both take two passes: one with an invocation for each patch, which is enough for those
 // that one triangle shows; and one in which a workgroup searches the factors of one of the other patches after another.
 //
-// Beside factors that other patches asked for, a patch may find no inside factor that is enough. Such patches ask once more,
-// for no less than what their edges have, and all patches take their inside factors anew.
+// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find none
+// that is enough. Such patches ask once more, for no less than what their edges have, and all patches whose edges then have
+// other factors take their inside factors anew.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -15,7 +16,7 @@
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
 // Bits of numbers, whose order is that of the numbers since none is negative. One after another: the factors of edges; the
 // least factor of each edge; the factor that each patch's heights need inside it, if it is displaced; the inside factors of
-// patches; the numbers of patches of three searches; the number of rounds that are over; the patches of the first two
+// patches, first those that they chose; the numbers of patches of three searches; the number of rounds that are over; the patches of the first two
 // searches, one after the other; those of the third.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
 
@@ -76,6 +77,10 @@ fn search_later(search: u32, patch_index: u32) {
     }
 }
 
+fn set_inside(patch_index: u32, inside: f32) {
+    atomicStore(&edge_factors[inside_at(patch_index)], bitcast<u32>(inside));
+}
+
 fn ask(patch_index: u32, asked: vec3<f32>) {
     for (var i = 0u; i < 3u; i++) {
         let edge = patches[patch_index].factors[(i + 1u) % 3u] >> 3u;
@@ -101,6 +106,7 @@ fn asked_factors_main(
     let is_known = params.surface == SURFACE_FLAT || max(max(max(least.x, least.y), least.z), inside) > 64.0;
     if is_known || single_suffices(&seen, within, params.partitioning, least, inside) {
         ask(index, least);
+        set_inside(index, whole_segments(params.partitioning, inside));
     } else {
         search_later(SEARCH_ASKED, index);
     }
@@ -130,7 +136,7 @@ fn search_asked_factors_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     lane = local;
-    let search = select(SEARCH_ASKED, SEARCH_AGAIN, atomicLoad(&edge_factors[rounds_at()]) > 0u);
+    let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_second_round());
     var i = workgroup.x;
     var index = searched_patch(search, i);
     while index != NO_MORE {
@@ -141,16 +147,19 @@ fn search_asked_factors_main(
         }
         let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
         if lane == 0u {
-            ask(index, asked);
+            ask(index, asked.xyz);
+            if search == SEARCH_ASKED {
+                set_inside(index, asked.w);
+            }
         }
         i += workgroups.x;
         index = searched_patch(search, i);
     }
 }
 
-// Whether some patches ask once more.
-fn asks_again() -> bool {
-    return atomicLoad(&edge_factors[searched_count_at(SEARCH_AGAIN)]) > 0u;
+// Whether the first round is over.
+fn is_second_round() -> bool {
+    return atomicLoad(&edge_factors[rounds_at()]) > 0u;
 }
 
 @compute @workgroup_size(256)
@@ -160,13 +169,15 @@ fn inside_factors_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     let index = grid_index(workgroup, workgroups, local);
-    // In the second round edges have what they had, unless some patches asked once more.
-    let is_done = atomicLoad(&edge_factors[rounds_at()]) > 0u && !asks_again();
-    if index >= params.patch_count || is_done {
+    if index >= params.patch_count {
         return;
     }
     let heights = heights_inside(index);
     let edges = edges_of(index, 0u);
+    // In the second round most edges have what they had.
+    if is_second_round() && all(edges == edges_of(index, params.factor_count)) {
+        return;
+    }
     var inside = whole_segments(params.partitioning, heights);
     if params.surface != SURFACE_FLAT {
         var seen = load_seen(index);
@@ -179,7 +190,7 @@ fn inside_factors_main(
             return;
         }
     }
-    atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
+    set_inside(index, inside);
 }
 
 @compute @workgroup_size(TOGETHER)
@@ -196,8 +207,8 @@ fn search_inside_factors_main(
         let edges = edges_of(index, 0u);
         let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights_inside(index));
         if lane == 0u {
-            atomicStore(&edge_factors[inside_at(index)], bitcast<u32>(inside));
-            if inside > 64.0 {
+            let chosen = bitcast<f32>(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
+            if !is_second_round() && asks_again(chosen, inside) {
                 search_later(SEARCH_AGAIN, index);
             }
         }
@@ -218,7 +229,7 @@ fn keep_factors_main(
         atomicStore(&edge_factors[searched_count_at(SEARCH_INSIDE)], 0u);
         atomicStore(&edge_factors[rounds_at()], 1u);
     }
-    if index < params.factor_count && asks_again() {
+    if index < params.factor_count {
         atomicStore(&edge_factors[params.factor_count + index], atomicLoad(&edge_factors[index]));
     }
 }

@@ -20,8 +20,10 @@ struct SeenPatch {
     across: vec2<f32>,
     // Which way its triangle turns: see turn_of.
     turn: f32,
-    // Where points may slide along the surface, how far in px it may be off the plane of its triangle; else a large number.
+    // Where points may slide along the surface, how far in px it may be off the plane of its triangle, and off its longest
+    // side; else large numbers.
     off_plane: f32,
+    off_line: f32,
 }
 
 // Returns whether an error is within a tolerance. NaN never is.
@@ -130,7 +132,7 @@ fn seen_patch(view: LodView, net: ControlNet) -> SeenPatch {
     let deep = length(clip_row(view, 3u)) * view.reach * scale;
     let turn = turn_of(points[0], points[1], points[2]);
     let reach = view.reach * scale;
-    return SeenPatch(points, second, view.half_viewport, near_depth(view) * scale, deep, across * reach, turn, 3.4e38);
+    return SeenPatch(points, second, view.half_viewport, near_depth(view) * scale, deep, across * reach, turn, 3.4e38, 3.4e38);
 }
 
 // Returns the point of the surface at a place of the domain.
@@ -170,9 +172,9 @@ fn along_sides(seen: ptr<function, SeenPatch>, place: vec2<f32>, sides: array<ve
 
 // A flat triangle, and its difference from the surface behind it.
 struct Piece {
-    // The places of its corners on screen in px from the middle of the view, and their depths.
+    // Its corners in clip space, and their places on screen in px from the middle of the view.
+    corners: array<vec3<f32>, 3>,
     places: array<vec2<f32>, 3>,
-    depths: vec3<f32>,
     // The control points of the difference, surface minus triangle: for each side k the one near corner k and the one near
     // corner k + 1, and the one in the centre.
     differences: array<vec3<f32>, 7>,
@@ -201,31 +203,58 @@ fn piece_of(seen: ptr<function, SeenPatch>, p: vec2<f32>, q: vec2<f32>, r: vec2<
     let c = seen_point(seen, r);
     let places = array<vec2<f32>, 3>(a.xy / a.z, b.xy / b.z, c.xy / c.z);
     let second = array<array<vec3<f32>, 3>, 3>(at_p, at_q, at_r);
-    return Piece(places, vec3<f32>(a.z, b.z, c.z), differences, second);
+    return Piece(array<vec3<f32>, 3>(a, b, c), places, differences, second);
 }
 
-// Returns whether nothing of a piece is in view, neither flat nor as the surface is, since all of it lies beyond one of the
-// view's sides. All of it must be in front of the eye.
-fn is_beside_view(seen: ptr<function, SeenPatch>, piece: ptr<function, Piece>) -> bool {
-    // For each side: how far outside the corners lie at least, and how far the surface and displacement come back.
+// Returns how far in px times depth the corners of a piece lie at least beyond the view's right, top, left and bottom side, less
+// how far the surface and displacement come back. Where a point of the flat triangle is beyond a side by this, neither that point
+// nor the one of the surface is in view.
+fn beyond_sides(seen: ptr<function, SeenPatch>, piece: ptr<function, Piece>) -> array<vec4<f32>, 3> {
     let half = (*seen).half_viewport;
-    let moved = (*seen).across + half * (*seen).deep;
-    var right = vec2<f32>(3.4e38);
-    var left = vec2<f32>(3.4e38);
-    for (var i = 0u; i < 3u; i++) {
-        right = min(right, ((*piece).places[i] - half) * (*piece).depths[i]);
-        left = min(left, (-(*piece).places[i] - half) * (*piece).depths[i]);
-    }
-    var back_right = vec2<f32>(0.0);
-    var back_left = vec2<f32>(0.0);
+    var back = vec4<f32>(0.0);
     for (var i = 0u; i < 7u; i++) {
         let across = (*piece).differences[i].xy;
         let deep = half * (*piece).differences[i].z;
-        back_right = min(back_right, across - deep);
-        back_left = min(back_left, -across - deep);
+        back = min(back, vec4<f32>(across - deep, -across - deep));
     }
-    let outside = max(right + back_right - moved, left + back_left - moved);
-    return max(outside.x, outside.y) > 0.0;
+    let moved = (*seen).across + half * (*seen).deep;
+    back -= vec4<f32>(moved, moved);
+    var beyond: array<vec4<f32>, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        let across = (*piece).corners[i].xy;
+        let deep = half * (*piece).corners[i].z;
+        beyond[i] = vec4<f32>(across - deep, -across - deep) + back;
+    }
+    return beyond;
+}
+
+// Returns whether all corners are beyond the same side.
+fn is_beside_view(beyond: ptr<function, array<vec4<f32>, 3>>) -> bool {
+    let zero = vec4<f32>(0.0);
+    return any(((*beyond)[0] > zero) & ((*beyond)[1] > zero) & ((*beyond)[2] > zero));
+}
+
+// Returns a bound on the depth of the points of a flat triangle that may be in view: none has less. It may be negative.
+fn seen_depth(piece: ptr<function, Piece>, beyond: ptr<function, array<vec4<f32>, 3>>) -> f32 {
+    // For each side of the view the least depth of what is on its inner side: at a corner, or where a side of the triangle
+    // crosses.
+    let none = vec4<f32>(3.4e38);
+    let zero = vec4<f32>(0.0);
+    var least = none;
+    for (var i = 0u; i < 3u; i++) {
+        let j = (i + 1u) % 3u;
+        let p = (*beyond)[i];
+        let q = (*beyond)[j];
+        let here = vec4<f32>((*piece).corners[i].z);
+        let there = vec4<f32>((*piece).corners[j].z);
+        let crosses = (p <= zero) != (q <= zero);
+        let share = p / select(vec4<f32>(1.0), p - q, crosses);
+        least = min(least, select(none, here, p <= zero));
+        least = min(least, select(none, here + (there - here) * share, crosses));
+    }
+    // Nothing is found among NaN.
+    let found = select(-none, least, least < vec4<f32>(3e38));
+    return max(max(found.x, found.y), max(found.z, found.w));
 }
 
 // Returns a bound on the error, in px, of a triangle with these second differences along its sides.
@@ -255,6 +284,11 @@ fn derivative_bound(piece: ptr<function, Piece>, middle: vec2<f32>, spread: f32)
     return triangle_error(most.x, most.y, most.z);
 }
 
+// Returns whether points of a patch may slide along the surface within a tolerance.
+fn may_slide(seen: ptr<function, SeenPatch>, tolerance: f32) -> bool {
+    return min((*seen).off_plane, (*seen).off_line) <= tolerance;
+}
+
 // Returns whether the side between two places of the domain is part of an edge of the patch.
 fn is_on_edge(p: vec2<f32>, q: vec2<f32>) -> bool {
     return max(p.x, q.x) == 0.0 || max(p.y, q.y) == 0.0 || min(p.x + p.y, q.x + q.y) == 1.0;
@@ -282,13 +316,9 @@ fn sliding_error(
     nearest: f32,
 ) -> f32 {
     var places = at;
-    var corners: array<vec3<f32>, 3>;
-    for (var i = 0u; i < 3u; i++) {
-        corners[i] = vec3<f32>((*piece).places[i] * (*piece).depths[i], (*piece).depths[i]);
-    }
     let p = at[1] - at[0];
     let q = at[2] - at[0];
-    let turned = turn_of(corners[0], corners[1], corners[2]) * (p.x * q.y - p.y * q.x) * (*seen).turn;
+    let turned = turn_of((*piece).corners[0], (*piece).corners[1], (*piece).corners[2]) * (p.x * q.y - p.y * q.x) * (*seen).turn;
     if !is_within(0.0, turned) {
         return 3.4e38;
     }
@@ -296,7 +326,7 @@ fn sliding_error(
     for (var k = 0u; k < 3u; k++) {
         let next = (k + 1u) % 3u;
         if is_on_edge(places[k], places[next]) {
-            let along = corners[next] - corners[k];
+            let along = (*piece).corners[next] - (*piece).corners[k];
             most = max(most, beside_edge(middle, spread, along, (*piece).differences[2u * k]));
             most = max(most, beside_edge(middle, spread, along, (*piece).differences[2u * k + 1u]));
         }
@@ -327,7 +357,8 @@ fn grid_error(
             let x = f32(i) / f32(steps);
             let y = f32(j) / f32(steps);
             let z = f32(steps - i - j) / f32(steps);
-            let weights = vec3<f32>(x, y, z) * (*piece).depths;
+            let corner_depths = vec3<f32>((*piece).corners[0].z, (*piece).corners[1].z, (*piece).corners[2].z);
+            let weights = vec3<f32>(x, y, z) * corner_depths;
             let depth = weights.x + weights.y + weights.z;
             let sum = (*piece).places[0] * weights.x + (*piece).places[1] * weights.y + (*piece).places[2] * weights.z;
             let difference = piece_difference(piece, x, y, z);
@@ -393,23 +424,26 @@ fn piece_error(
         behind = max(behind, piece.differences[i].z);
         before = min(before, piece.differences[i].z);
     }
-    let farthest = max(max(piece.depths.x, piece.depths.y), piece.depths.z) + behind + (*seen).deep;
-    let nearest = min(min(piece.depths.x, piece.depths.y), piece.depths.z) + before - (*seen).deep;
+    let depths = vec3<f32>(piece.corners[0].z, piece.corners[1].z, piece.corners[2].z);
+    let farthest = max(max(depths.x, depths.y), depths.z) + behind + (*seen).deep;
+    let nearest = min(min(depths.x, depths.y), depths.z) + before - (*seen).deep;
     if farthest < (*seen).near {
         return 0.0;
     }
-    // NaN is no depth in front of the eye.
-    let is_before_eye = nearest > 0.0 && nearest >= (*seen).near;
-    if is_before_eye && is_beside_view(seen, &piece) {
+    var beyond = beyond_sides(seen, &piece);
+    if is_beside_view(&beyond) {
         return 0.0;
     }
     let a = piece.places[0];
     let b = piece.places[1];
     let c = piece.places[2];
+    // What is seen of it is anywhere in the view, and no nearer than the near plane.
     var middle = vec2<f32>(0.0);
     var spread = length((*seen).half_viewport);
-    var depth = (*seen).near;
     var moved = 0.0;
+    var depth = max((*seen).near, seen_depth(&piece, &beyond) + before - (*seen).deep);
+    // NaN is no depth in front of the eye.
+    let is_before_eye = nearest > 0.0 && nearest >= (*seen).near;
     if is_before_eye {
         middle = (a + b + c) / 3.0;
         // How far displacement moves it on screen.
@@ -419,16 +453,16 @@ fn piece_error(
         depth = nearest;
     }
     var error = 3.4e38;
-    if (*seen).off_plane <= tolerance {
+    if may_slide(seen, tolerance) {
         error = sliding_error(seen, &piece, array<vec2<f32>, 3>(p, q, r), middle, spread, depth);
+        error = min((*seen).off_line, error);
     }
     if is_within(error, tolerance) {
         return error;
     }
     if !is_before_eye {
-        // What is seen of it is anywhere in the view, and no nearer than the near plane.
         return min(error, derivative_bound(&piece, middle, spread) / depth);
     }
-    let depths = vec2<f32>(nearest, farthest);
-    return min(error, same_place_error(seen, &piece, tolerance, middle, spread, moved, depths));
+    let range = vec2<f32>(nearest, farthest);
+    return min(error, same_place_error(seen, &piece, tolerance, middle, spread, moved, range));
 }

@@ -1,29 +1,28 @@
 // Flat patches under LOD by error. The module declares the buffers.
 
-// Returns how far in px the surface of a patch may be off its plane, if points may slide along it: it is nearly flat, and
-// nothing on it depends on where they do. Otherwise it returns a large number.
-fn off_plane(patch_index: u32, net: ControlNet) -> f32 {
+// Returns whether nothing on a patch depends on where its points slide.
+fn is_plain(patch_index: u32) -> bool {
     let has_texture = ((textured[patch_index / 32u] >> (patch_index % 32u)) & 1u) == 1u;
     let own = patches[patch_index].corners;
     let agree = normals_agree(corners[own[0]].normal, corners[own[1]].normal, corners[own[2]].normal);
-    if params.displacement != 0u || has_texture || !agree {
-        return 3.4e38;
-    }
-    return plane_error(params.view, net);
+    return params.displacement == 0u && !has_texture && agree;
 }
 
 // Returns a patch as it is seen.
 fn load_seen(patch_index: u32) -> SeenPatch {
     let net = load_net(patch_index);
     var seen = seen_patch(params.view, net);
-    seen.off_plane = off_plane(patch_index, net);
+    if is_plain(patch_index) {
+        seen.off_plane = plane_error(params.view, net);
+        seen.off_line = line_error(params.view, net);
+    }
     return seen;
 }
 
 // Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: `least`. Where points may slide
 // along an edge, what the edge needs at the same places doesn't count.
 fn first_least(seen: ptr<function, SeenPatch>, least: vec3<f32>) -> vec3<f32> {
-    if (*seen).off_plane <= params.tolerance {
+    if may_slide(seen, params.tolerance) {
         return vec3<f32>(whole_segments(params.partitioning, 1.0));
     }
     return least;

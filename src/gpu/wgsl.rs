@@ -42,7 +42,7 @@ pub(crate) static DISPLACEMENT_FACTOR: WgslFile = wgsl!("displacement_factor", L
 pub(crate) static PIECE_ERROR: WgslFile = wgsl!("piece_error", LOD, SURFACE);
 pub(crate) static FLAT_PATCH: WgslFile = wgsl!("flat_patch", LOD, PIECE_ERROR, SURFACE);
 /// The module that has it declares the buffers that it reads.
-pub(crate) static SLIDES: WgslFile = wgsl!("slides", FLAT_PATCH, LEAST_FACTORS, LOAD_NET, PIECE_ERROR, SURFACE);
+pub(crate) static SLIDES: WgslFile = wgsl!("slides", FLAT_PATCH, LEAST_FACTORS, LOAD_NET, PIECE_ERROR);
 pub(crate) static SEARCH_GROUP: WgslFile = wgsl!("search_group");
 pub(crate) static LEAST_FACTORS: WgslFile =
     wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR, SEARCH_GROUP);

@@ -291,7 +291,7 @@ pub fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, s
         measurement.worst().map_or(0.0, |worst| worst.px)
     });
     let last = levels(inputs.tessellation.partitioning).pop().unwrap_or(64) as f32;
-    let start = own.edge_factors.iter().map(|factor| factor.min(last) as u32).collect();
+    let start: Vec<u32> = own.edge_factors.iter().map(|factor| factor.min(last) as u32).collect();
     let best = searches.then(|| optimum(mesh, topology, inputs, &[start]));
     Compared { triangles, best, error_px }
 }

@@ -7,7 +7,7 @@ use super::least_factors::BEYOND_LAST;
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::surface_tolerance;
 use super::mesh_tessellation::seen_with_reach;
-use super::piece_error::{SeenPatch, piece_error};
+use super::piece_error::{SeenPatch, may_slide, piece_error};
 use super::{
     Clip, Convention, FIXED_ONE, Inputs, Lod, Normals, Partitioning, PatchFactors, Tessellation, corner_weights,
     domain_plan, domain_point, domain_side, domain_triangle, process, triangle_count,
@@ -157,10 +157,10 @@ pub(crate) fn explain_patch(
     let first = nets.first_least(searched, patch, &seen, least);
     let own = nets.own_least_factors(searched, displacement, patch, &seen, first);
     let by_error = inputs.tessellation.lod == Lod::Error;
-    let is_flat = by_error && seen.off_plane <= searched.tessellation.tolerance;
+    let is_flat = by_error && may_slide(&seen, searched.tessellation.tolerance);
     let mut measured = seen;
     if !is_flat {
-        measured.off_plane = 3.4e38;
+        (measured.off_plane, measured.off_line) = (3.4e38, 3.4e38);
     }
     ExplainedPatch {
         tolerance: surface_tolerance(inputs, displacement),

@@ -10,6 +10,9 @@
 //! farther than d from the edges is thus surrounded by the outline of the triangles as often as by that of the surface. If a
 //! triangle covers the point, it is surrounded at least once, since no triangle turns back; so the surface covers it, too.
 //! A triangle that does turn back is allowed where it is close to the surface at the same places of the domain.
+//!
+//! Patches without an area have no plane. Where all of their control points are close to their longest side, so is
+//! everything else, and the longest edge passes all of it.
 
 use glam::{Vec2, Vec3};
 
@@ -32,6 +35,27 @@ fn longer_on_screen(view: &LodView, most: f32, spread: f32, difference: Vec3) ->
     most.max(across.length() + spread * clip_row(view, 3).dot(difference).abs())
 }
 
+/// Returns the least depth at which a flat triangle is seen, and its largest distance from the middle of the view, in px.
+fn seen_within(view: &LodView, corners: [Vec3; 3]) -> [f32; 2] {
+    let near = near_depth(view);
+    let (mut nearest, mut spread) = (3.4e38f32, 0.0f32);
+    for corner in corners {
+        let clip = view.clip_from_object * corner.extend(1.0);
+        let place = Vec2::new(clip.x, clip.y) * view.half_viewport / clip.w;
+        nearest = nearest.min(clip.w);
+        spread = spread.max(place.length());
+    }
+    if nearest > near && nearest > 0.0 {
+        return [nearest, spread];
+    }
+    // What is seen of it is anywhere in the view, and no nearer than the near plane.
+    [near, view.half_viewport.length()]
+}
+
+/// No point of a patch is farther off than this share of what its control points are, if its corners aren't off; twice
+/// that, for two points on different sides.
+pub(crate) const TWO_POINTS: f32 = 16.0 / 9.0;
+
 /// Returns a bound on the distance in px, across the plane of a patch's triangle, between points of the patch that have the
 /// same place in that plane. Large if the patch has no area.
 pub(super) fn plane_error(view: &LodView, net: &ControlNet) -> f32 {
@@ -42,25 +66,43 @@ pub(super) fn plane_error(view: &LodView, net: &ControlNet) -> f32 {
         return 3.4e38;
     }
     let normal = area * (1.0 / size);
-    let near = near_depth(view);
-    let (mut nearest, mut spread) = (3.4e38f32, 0.0f32);
-    for corner in net.corners {
-        let clip = view.clip_from_object * corner.extend(1.0);
-        let place = Vec2::new(clip.x, clip.y) * view.half_viewport / clip.w;
-        nearest = nearest.min(clip.w);
-        spread = spread.max(place.length());
-    }
-    if !(nearest > near && nearest > 0.0) {
-        // What is seen of it is anywhere in the view, and no nearer than the near plane.
-        nearest = near;
-        spread = view.half_viewport.length();
-    }
+    let [nearest, spread] = seen_within(view, net.corners);
     let mut most = longer_on_screen(view, 0.0, spread, normal * normal.dot(net.center - a));
     for i in 0..6 {
         most = longer_on_screen(view, most, spread, normal * normal.dot(net.edges[i] - a));
     }
-    // No point is farther off than 8/9 of the control points are, and two points are on both sides of the plane at worst.
-    16.0 / 9.0 * most / nearest
+    TWO_POINTS * most / nearest
+}
+
+/// Returns a point's difference from a line; a large one, if the point isn't beside the part between `start` and
+/// `start + along`.
+fn beside_line(start: Vec3, along: Vec3, p: Vec3) -> Vec3 {
+    let share = (p - start).dot(along) / along.dot(along);
+    // Rounding doesn't count.
+    let is_beside = (share - 0.5).abs() <= 0.50001;
+    if is_beside { p - start - along * share } else { Vec3::splat(1e18) }
+}
+
+/// Returns a bound on the distance in px between points of a patch, and of triangles in place of it, that are at the same place
+/// along its longest side. Large if the patch isn't beside that side.
+pub(super) fn line_error(view: &LodView, net: &ControlNet) -> f32 {
+    let [a, b, c] = net.corners;
+    let (mut start, mut along) = (a, b - a);
+    if (c - b).length() > along.length() {
+        (start, along) = (b, c - b);
+    }
+    if (a - c).length() > along.length() {
+        (start, along) = (c, a - c);
+    }
+    let [nearest, spread] = seen_within(view, net.corners);
+    let mut most = longer_on_screen(view, 0.0, spread, beside_line(start, along, net.center));
+    for i in 0..3 {
+        most = longer_on_screen(view, most, spread, beside_line(start, along, net.corners[i]));
+    }
+    for i in 0..6 {
+        most = longer_on_screen(view, most, spread, beside_line(start, along, net.edges[i]));
+    }
+    2.0 * most / nearest
 }
 
 #[cfg(test)]
@@ -87,6 +129,7 @@ mod tests {
     fn seen(view: &LodView, net: &ControlNet) -> SeenPatch {
         let mut seen = seen_patch(view, net);
         seen.off_plane = plane_error(view, net);
+        seen.off_line = line_error(view, net);
         seen
     }
 
@@ -120,7 +163,7 @@ mod tests {
         let mut raised = linear();
         raised.center += Vec3::Z * 0.1;
         let turned = LodView::new(Mat4::from_rotation_x(1.2), Vec2::splat(100.0));
-        let expected = 16.0 / 9.0 * 100.0 * 0.1 * 1.2f32.sin();
+        let expected = TWO_POINTS * 100.0 * 0.1 * 1.2f32.sin();
         assert!((plane_error(&turned, &raised) - expected).abs() < 1e-2);
     }
 
@@ -130,7 +173,24 @@ mod tests {
         line.corners[2] = line.corners[1];
         assert!(plane_error(&VIEW, &line) > 1e30);
         line.corners[2] = Vec3::NAN;
-        assert!(plane_error(&VIEW, &line) > 1e30);
+        assert!(plane_error(&VIEW, &line) > 1e30 && line_error(&VIEW, &line) > 1e15);
+    }
+
+    #[test]
+    fn points_slide_along_a_patch_that_is_a_line() {
+        // Its control points are anywhere on the line, and not beyond its ends.
+        let at = |x: f32| Vec3::X * x;
+        let mut net = ControlNet {
+            corners: [at(0.1), at(0.7), at(0.3)],
+            edges: [at(0.1), at(0.1), at(0.7), at(0.7), at(0.5), at(0.2)],
+            center: at(0.6),
+        };
+        let error = |net: &ControlNet, at| piece_error(&seen(&VIEW, net), 0.25, at);
+        assert!(error(&net, WHOLE) < 1e-3 && error(&net, [Vec2::X, Vec2::Y * 0.5, Vec2::ZERO]) < 1e-3);
+        net.center.y = 0.01;
+        assert!((line_error(&VIEW, &net) - 2.0).abs() < 1e-3, "{}", line_error(&VIEW, &net));
+        net.center = at(0.8);
+        assert!(error(&net, WHOLE) > 1.0, "beyond its end");
     }
 
     #[test]
@@ -181,10 +241,14 @@ mod tests {
             }
             net.center += vec3(moves[12], moves[13], 0.0);
             let patch = seen(&VIEW, &net);
-            let edges = asked_factors(&patch, tolerance, Partitioning::Integer, [1.0; 3], 1.0);
+            let asked = |patch: &SeenPatch| {
+                let [u, v, w, _] = asked_factors(patch, tolerance, Partitioning::Integer, [1.0; 3], 1.0);
+                [u, v, w]
+            };
+            let edges = asked(&patch);
             let inside = least_inside_factor(&patch, tolerance, Partitioning::Integer, edges, 1.0);
             prop_assert!(inside <= 64.0);
-            let same_place = asked_factors(&seen_patch(&VIEW, &net), tolerance, Partitioning::Integer, [1.0; 3], 1.0);
+            let same_place = asked(&seen_patch(&VIEW, &net));
             prop_assert!(edges.iter().sum::<f32>() <= same_place.iter().sum::<f32>() + 2.0);
             let factors = process(Partitioning::Integer, edges, inside);
             let (plan, outline) = (domain_plan(factors), outline(&net));

@@ -4,7 +4,8 @@
 //! The triangles along an edge (its *row*) depend on that edge's factor and on the inside factor alone, and all others
 //! depend on the inside factor alone. So every patch looks for the inside factor with which it and its edges together
 //! have the fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches ask for.
-//! Then every patch takes the least inside factor that suffices beside the factors of its edges.
+//! Then every patch takes the least inside factor that suffices beside the factors of its edges. If that is much larger than
+//! what it has chosen, it asks once more.
 
 use glam::{Vec2, Vec3};
 
@@ -14,7 +15,7 @@ use super::factors::{
     segments, triangle_count,
 };
 use super::lod::LodView;
-use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, near_depth, piece_error};
+use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, near_depth, piece_error};
 
 /// The part of the tolerance that bounds may use up. The rest is for rounding.
 pub(crate) const BOUND_SHARE: f32 = 0.999;
@@ -187,7 +188,7 @@ fn least_row_factor(
     least: f32,
     inside: f32,
 ) -> f32 {
-    let slides = patch.off_plane <= tolerance;
+    let slides = may_slide(patch, tolerance);
     let last = if slides { BEYOND_LAST } else { least.max(inside) + 4.0 };
     let most = factor_from(partitioning, last).min(last_factor(partitioning));
     let mut factor = least;
@@ -253,18 +254,24 @@ fn fewest_triangles(
     best
 }
 
-/// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0. `least` are the least that these may
-/// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least`.
+/// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0, and the inside factor that it would take
+/// beside these. `least` are the least that the edges may get, and `least_inside` is the least inside factor. If no factors
+/// are enough, it returns `least` and [`BEYOND_LAST`].
 pub(super) fn asked_factors(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     least: [f32; 3],
     least_inside: f32,
-) -> [f32; 3] {
+) -> [f32; 4] {
     // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    let [u, v, w, _] = fewest_triangles(patch, tolerance, partitioning, least, least_inside, 2.0);
-    [u, v, w]
+    fewest_triangles(patch, tolerance, partitioning, least, least_inside, 2.0)
+}
+
+/// Returns whether a patch asks its edges once more: beside what other patches asked for, its inside factor is much larger
+/// than the one that it has chosen.
+pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {
+    inside > 64.0 || inside > 1.1 * chosen + 1.0
 }
 
 /// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch has the fewest triangles

@@ -5,7 +5,7 @@ use glam::{DMat2, DVec2, DVec3, Vec3};
 use super::Inputs;
 use super::control_nets::ControlNets;
 use super::mesh_displacement::MeshDisplacement;
-use super::piece_error::SeenPatch;
+use super::piece_error::{SeenPatch, may_slide};
 use super::{ControlNet, Lod, Surface};
 use crate::mesh::{Mesh, Topology};
 
@@ -46,7 +46,8 @@ impl<'a> LimitSurface<'a> {
     /// Returns whether LOD by error allows points of a patch to slide along its surface, which is flat: see `flat_patch.rs`.
     /// The distance that counts there is the one to the nearest point.
     pub(crate) fn slides(&self, inputs: &Inputs, patch: u32) -> bool {
-        inputs.tessellation.lod == Lod::Error && self.nets.slides(inputs, self.displacement.as_ref(), patch)
+        inputs.tessellation.lod == Lod::Error
+            && may_slide(&self.seen_patch(inputs, patch), inputs.tessellation.tolerance)
     }
 
     /// Returns the point of a patch that is nearest to `target` as `on_screen` shows both, without displacement: by Newton's

@@ -4,10 +4,12 @@
 use glam::Vec3;
 
 use super::control_nets::ControlNets;
-use super::flat_patch::{normals_agree, plane_error};
-use super::least_factors::{asked_factors, least_edge_factor, least_inside_factor, own_least_factors, whole_segments};
+use super::flat_patch::{line_error, normals_agree, plane_error};
+use super::least_factors::{
+    asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors, whole_segments,
+};
 use super::mesh_displacement::MeshDisplacement;
-use super::piece_error::{SeenPatch, seen_patch};
+use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
 use super::{
     HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor, edge_length_factor,
@@ -48,8 +50,8 @@ impl ControlNets<'_> {
     /// Returns the factors of LOD by error: the largest that the patches of each edge ask for. Patches that are left out
     /// ask, too: what others look like doesn't depend on it.
     ///
-    /// Beside factors that other patches asked for, a patch may find no inside factor that suffices. Such patches ask once
-    /// more, for no less than what their edges have.
+    /// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find
+    /// none that suffices. Such patches ask once more, for no less than what their edges have.
     fn asked_edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let edges = 0..self.curves.factor_curves.len() as u32 - 1;
@@ -62,15 +64,21 @@ impl ControlNets<'_> {
                 let factor = self.patch_factor(patch, k) as usize;
                 asked[factor] = asked[factor].max(own);
             }
+            own[3]
         };
+        let mut chosen = Vec::new();
         for patch in all.clone() {
             let seen = self.seen_patch(inputs, displacement, patch);
             let least = self.first_least(inputs, patch, &seen, |factor| least[factor as usize]);
-            ask(patch, &seen, least, &mut asked);
+            chosen.push(ask(patch, &seen, least, &mut asked));
         }
         if surface != Surface::Flat {
             let first = asked.clone();
-            for patch in all.filter(|&patch| self.inside_factor(inputs, displacement, &first, patch) > 64.0) {
+            for patch in all {
+                let inside = self.inside_factor(inputs, displacement, &first, patch);
+                if !asks_again(chosen[patch as usize], inside) {
+                    continue;
+                }
                 let least = [1, 2, 0].map(|k| first[self.patch_factor(patch, k) as usize]);
                 ask(patch, &self.seen_patch(inputs, displacement, patch), least, &mut asked);
             }
@@ -80,8 +88,12 @@ impl ControlNets<'_> {
 
     /// Returns a patch as it is seen.
     pub(super) fn seen_patch(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> SeenPatch {
-        let mut seen = seen_patch(&inputs.view, &self.patch(patch));
-        seen.off_plane = self.off_plane(inputs, displacement, patch);
+        let net = self.patch(patch);
+        let mut seen = seen_patch(&inputs.view, &net);
+        if self.is_plain(displacement, patch) {
+            seen.off_plane = plane_error(&inputs.view, &net);
+            seen.off_line = line_error(&inputs.view, &net);
+        }
         seen
     }
 
@@ -95,14 +107,14 @@ impl ControlNets<'_> {
         least: impl Fn(u32) -> f32,
     ) -> [f32; 3] {
         let Tessellation { partitioning, tolerance, .. } = inputs.tessellation;
-        match seen.off_plane <= tolerance {
+        match may_slide(seen, tolerance) {
             true => [whole_segments(partitioning, 1.0); 3],
             false => [1, 2, 0].map(|k| least(self.patch_factor(patch, k))),
         }
     }
 
-    /// Returns the factors that a patch asks for under LOD by error, of the edges U == 0, V == 0 and W == 0. `least` are
-    /// the least that these may get.
+    /// Returns the factors that a patch asks for under LOD by error, of the edges U == 0, V == 0 and W == 0, and the inside
+    /// factor that it would take beside these. `least` are the least that the edges may get.
     pub(super) fn asked_by_patch(
         &self,
         inputs: &Inputs,
@@ -110,12 +122,12 @@ impl ControlNets<'_> {
         patch: u32,
         seen: &SeenPatch,
         least: [f32; 3],
-    ) -> [f32; 3] {
+    ) -> [f32; 4] {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
-        if surface == Surface::Flat {
-            return least;
-        }
         let inside = self.heights_inside(inputs, displacement, patch);
+        if surface == Surface::Flat {
+            return [least[0], least[1], least[2], whole_segments(partitioning, inside)];
+        }
         asked_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
     }
 
@@ -137,21 +149,13 @@ impl ControlNets<'_> {
         own_least_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
     }
 
-    /// Returns how far in px the surface of a patch may be off its plane, if points may slide along it: it is nearly flat,
-    /// and nothing on it depends on where they do. Otherwise it returns a large number.
-    fn off_plane(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> f32 {
+    /// Returns whether nothing on a patch depends on where its points slide.
+    fn is_plain(&self, displacement: Option<&MeshDisplacement>, patch: u32) -> bool {
         let material = self.mesh.materials.get(self.topology.material_of(patch));
         let corners = self.topology.patch_corners(patch);
-        let is_plain = displacement.is_none() && material.is_none_or(|material| material.texture.is_none());
-        match is_plain && normals_agree(corners.map(|corner| self.mesh.corners[corner as usize].normal)) {
-            true => plane_error(&inputs.view, &self.patch(patch)),
-            false => 3.4e38,
-        }
-    }
-
-    /// Returns whether points of a patch may slide along its surface under LOD by error.
-    pub(super) fn slides(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>, patch: u32) -> bool {
-        self.off_plane(inputs, displacement, patch) <= inputs.tessellation.tolerance
+        displacement.is_none()
+            && material.is_none_or(|material| material.texture.is_none())
+            && normals_agree(corners.map(|corner| self.mesh.corners[corner as usize].normal))
     }
 
     /// Returns the index of the factor of a patch's side.

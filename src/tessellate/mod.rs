@@ -114,7 +114,7 @@ pub(crate) mod shared_constants {
         BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, FACTOR_ODD,
         FACTOR_VALUE, FIXED_HALF, FIXED_ONE, SUBTRIANGULATED,
     };
-    pub(crate) use super::flat_patch::AGREEING;
+    pub(crate) use super::flat_patch::{AGREEING, TWO_POINTS};
     pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, TOGETHER};
     pub(crate) use super::normal::CANCELLED;
     pub(crate) use super::piece_error::FINEST_GRID;

@@ -15,7 +15,7 @@
 //! On patches that are nearly flat, and where nothing depends on where their points slide, the distance to the nearest point
 //! of the surface is enough: see `flat_patch.rs`.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
@@ -41,8 +41,10 @@ pub(crate) struct SeenPatch {
     across: Vec2,
     /// Which way its triangle turns: see [`turn_of`].
     turn: f32,
-    /// Where points may slide along the surface, how far in px it may be off the plane of its triangle; else a large number.
+    /// Where points may slide along the surface, how far in px it may be off the plane of its triangle, and off its longest
+    /// side; else large numbers.
     pub off_plane: f32,
+    pub off_line: f32,
 }
 
 /// Returns whether an error is within a tolerance. NaN never is.
@@ -145,6 +147,7 @@ pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
         across: across * (view.reach * scale),
         turn: turn_of(points[0], points[1], points[2]),
         off_plane: 3.4e38,
+        off_line: 3.4e38,
     }
 }
 
@@ -177,9 +180,9 @@ fn along_sides(patch: &SeenPatch, place: Vec2, sides: [Vec2; 3]) -> [Vec3; 3] {
 /// A flat triangle, and its difference from the surface behind it.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
-    /// The places of its corners on screen in px from the middle of the view, and their depths.
+    /// Its corners in clip space, and their places on screen in px from the middle of the view.
+    corners: [Vec3; 3],
     places: [Vec2; 3],
-    depths: [f32; 3],
     /// The control points of the difference, surface minus triangle: for each side k the one near corner k and the one
     /// near corner k + 1, and the one in the centre.
     differences: [Vec3; 7],
@@ -201,35 +204,57 @@ fn piece_of(patch: &SeenPatch, at: [Vec2; 3]) -> Piece {
     }
     differences[6] = sum * (-1.0 / 6.0);
     let corners = [seen_point(patch, at[0]), seen_point(patch, at[1]), seen_point(patch, at[2])];
-    Piece {
-        places: corners.map(|corner| corner.truncate() / corner.z),
-        depths: corners.map(|corner| corner.z),
-        differences,
-        second,
-    }
+    Piece { corners, places: corners.map(|corner| corner.truncate() / corner.z), differences, second }
 }
 
-/// Returns whether nothing of a piece is in view, neither flat nor as the surface is, since all of it lies beyond one of
-/// the view's sides. All of it must be in front of the eye.
-fn is_beside_view(patch: &SeenPatch, piece: &Piece) -> bool {
-    // For each side: how far outside the corners lie at least, and how far the surface and displacement come back.
+/// Returns how far in px times depth the corners of a piece lie at least beyond the view's right, top, left and bottom side,
+/// less how far the surface and displacement come back. Where a point of the flat triangle is beyond a side by this, neither
+/// that point nor the one of the surface is in view.
+fn beyond_sides(patch: &SeenPatch, piece: &Piece) -> [Vec4; 3] {
     let half = patch.half_viewport;
-    let moved = patch.across + half * patch.deep;
-    let (mut right, mut left) = (Vec2::splat(3.4e38), Vec2::splat(3.4e38));
-    for i in 0..3 {
-        let (place, depth) = (piece.places[i], piece.depths[i]);
-        right = right.min((place - half) * depth);
-        left = left.min((-place - half) * depth);
-    }
-    let (mut back_right, mut back_left) = (Vec2::ZERO, Vec2::ZERO);
+    let (mut right, mut left) = (Vec2::ZERO, Vec2::ZERO);
     for difference in piece.differences {
         let (across, deep) = (difference.truncate(), half * difference.z);
-        back_right = back_right.min(across - deep);
-        back_left = back_left.min(-across - deep);
+        right = right.min(across - deep);
+        left = left.min(-across - deep);
     }
-    let right = right + back_right - moved;
-    let left = left + back_left - moved;
-    right.max_element().max(left.max_element()) > 0.0
+    let moved = patch.across + half * patch.deep;
+    let (right, left) = (right - moved, left - moved);
+    piece.corners.map(|corner| {
+        let (across, deep) = (corner.truncate(), half * corner.z);
+        let (right, left) = (across - deep + right, -across - deep + left);
+        Vec4::new(right.x, right.y, left.x, left.y)
+    })
+}
+
+/// Returns whether all corners are beyond the same side.
+fn is_beside_view(beyond: [Vec4; 3]) -> bool {
+    let [a, b, c] = beyond;
+    let is_beyond = |k: usize| a[k] > 0.0 && b[k] > 0.0 && c[k] > 0.0;
+    is_beyond(0) || is_beyond(1) || is_beyond(2) || is_beyond(3)
+}
+
+/// Returns a bound on the depth of the points of a flat triangle that may be in view: none has less. It may be negative.
+fn seen_depth(piece: &Piece, beyond: [Vec4; 3]) -> f32 {
+    let mut seen = -3.4e38f32;
+    for side in [0, 1, 2, 3].map(|k| beyond.map(|corner| corner[k])) {
+        // The least depth of what is on the inner side: at a corner, or where a side of the triangle crosses.
+        let mut least = 3.4e38f32;
+        for i in 0..3 {
+            let j = (i + 1) % 3;
+            let (p, q) = (side[i], side[j]);
+            let (here, there) = (piece.corners[i].z, piece.corners[j].z);
+            if p <= 0.0 {
+                least = least.min(here);
+            }
+            if (p <= 0.0) != (q <= 0.0) {
+                least = least.min(here + (there - here) * (p / (p - q)));
+            }
+        }
+        // Nothing is found among NaN.
+        seen = seen.max(if least < 3e38 { least } else { -3.4e38 });
+    }
+    seen
 }
 
 /// Returns a bound on the error, in px, of a triangle with these second differences along its sides.
@@ -262,6 +287,11 @@ fn derivative_bound(piece: &Piece, middle: Vec2, spread: f32) -> f32 {
     triangle_error(most[0], most[1], most[2])
 }
 
+/// Returns whether points of a patch may slide along the surface within a tolerance.
+pub(super) fn may_slide(patch: &SeenPatch, tolerance: f32) -> bool {
+    patch.off_plane.min(patch.off_line) <= tolerance
+}
+
 /// Returns whether the side between two places of the domain is part of an edge of the patch.
 fn is_on_edge(p: Vec2, q: Vec2) -> bool {
     p.x.max(q.x) == 0.0 || p.y.max(q.y) == 0.0 || (p.x + p.y).min(q.x + q.y) == 1.0
@@ -281,7 +311,7 @@ fn beside_edge(middle: Vec2, spread: f32, along: Vec3, difference: Vec3) -> f32 
 /// slide and as far as no other triangle's sides come into it; large if that bound doesn't hold. All that counts of it is
 /// seen within `spread` px of `middle` and no nearer than `nearest`.
 fn sliding_error(patch: &SeenPatch, piece: &Piece, at: [Vec2; 3], middle: Vec2, spread: f32, nearest: f32) -> f32 {
-    let [a, b, c] = [0, 1, 2].map(|i| (piece.places[i] * piece.depths[i]).extend(piece.depths[i]));
+    let [a, b, c] = piece.corners;
     let turned = turn_of(a, b, c) * (at[1] - at[0]).perp_dot(at[2] - at[0]) * patch.turn;
     if !is_within(0.0, turned) {
         return 3.4e38;
@@ -313,7 +343,7 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, step
     for i in 0..=steps {
         for j in 0..=steps - i {
             let [x, y, z] = [i, j, steps - i - j].map(|weight| weight as f32 / steps as f32);
-            let [p, q, r] = [x * piece.depths[0], y * piece.depths[1], z * piece.depths[2]];
+            let [p, q, r] = [x * piece.corners[0].z, y * piece.corners[1].z, z * piece.corners[2].z];
             let depth = p + q + r;
             let place = (piece.places[0] * p + piece.places[1] * q + piece.places[2] * r) / depth;
             let difference = piece_difference(piece, x, y, z);
@@ -370,19 +400,22 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
         behind = behind.max(difference.z);
         before = before.min(difference.z);
     }
-    let [p, q, r] = piece.depths;
+    let [p, q, r] = piece.corners.map(|corner| corner.z);
     let farthest = p.max(q).max(r) + behind + patch.deep;
     let nearest = p.min(q).min(r) + before - patch.deep;
     if farthest < patch.near {
         return 0.0;
     }
-    // NaN is no depth in front of the eye.
-    let is_before_eye = nearest > 0.0 && nearest >= patch.near;
-    if is_before_eye && is_beside_view(patch, &piece) {
+    let beyond = beyond_sides(patch, &piece);
+    if is_beside_view(beyond) {
         return 0.0;
     }
     let [a, b, c] = piece.places;
-    let (mut middle, mut spread, mut depth, mut moved) = (Vec2::ZERO, patch.half_viewport.length(), patch.near, 0.0);
+    // What is seen of it is anywhere in the view, and no nearer than the near plane.
+    let (mut middle, mut spread, mut moved) = (Vec2::ZERO, patch.half_viewport.length(), 0.0);
+    let mut depth = patch.near.max(seen_depth(&piece, beyond) + before - patch.deep);
+    // NaN is no depth in front of the eye.
+    let is_before_eye = nearest > 0.0 && nearest >= patch.near;
     if is_before_eye {
         middle = (a + b + c) / 3.0;
         // How far displacement moves it on screen.
@@ -392,14 +425,13 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
         depth = nearest;
     }
     let mut error = 3.4e38;
-    if patch.off_plane <= tolerance {
-        error = sliding_error(patch, &piece, at, middle, spread, depth);
+    if may_slide(patch, tolerance) {
+        error = patch.off_line.min(sliding_error(patch, &piece, at, middle, spread, depth));
     }
     if is_within(error, tolerance) {
         return error;
     }
     if !is_before_eye {
-        // What is seen of it is anywhere in the view, and no nearer than the near plane.
         return error.min(derivative_bound(&piece, middle, spread) / depth);
     }
     error.min(same_place_error(patch, &piece, tolerance, middle, spread, moved, [nearest, farthest]))

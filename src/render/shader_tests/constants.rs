@@ -19,7 +19,7 @@ use crate::tessellate::shared_constants::{
     BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD,
     FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, NOT_CULLED, OUT_OF_VIEW, PARALLEL,
     PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_SAMPLES, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
-    TURN_SHARE, UNIT,
+    TURN_SHARE, TWO_POINTS, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
@@ -118,6 +118,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("OUT_OF_VIEW", number(OUT_OF_VIEW)),
         ("FACING_AWAY", number(FACING_AWAY)),
         ("AGREEING", number(AGREEING)),
+        ("TWO_POINTS", number(TWO_POINTS)),
         ("BEYOND_LAST", number(BEYOND_LAST)),
         ("BOUND_SHARE", number(BOUND_SHARE)),
         ("FINEST_GRID", number(FINEST_GRID)),

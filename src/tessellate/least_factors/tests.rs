@@ -63,17 +63,18 @@ fn flat_patches_ask_for_the_least_factors() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        assert_eq!(asked_factors(&patch, 0.01, partitioning, least, 1.0), least, "{partitioning:?}");
+        let [edges @ .., chosen] = asked_factors(&patch, 0.01, partitioning, least, 1.0);
+        assert_eq!(edges, least, "{partitioning:?}");
         let inside = least_inside_factor(&patch, 0.01, partitioning, least, 1.0);
         let expected = if partitioning == Partitioning::FractionalEven { 2.0 } else { 1.0 };
-        assert_eq!(inside, expected, "{partitioning:?}");
+        assert_eq!([inside, chosen], [expected; 2], "{partitioning:?}");
     }
 }
 
 #[test]
 fn heights_inside_and_factors_of_edges_are_kept() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
-    assert_eq!(asked_factors(&patch, 0.01, Partitioning::Integer, [3.0, 1.0, 7.0], 5.0), [3.0, 1.0, 7.0]);
+    assert_eq!(asked_factors(&patch, 0.01, Partitioning::Integer, [3.0, 1.0, 7.0], 5.0), [3.0, 1.0, 7.0, 5.0]);
     assert_eq!(least_inside_factor(&patch, 0.01, Partitioning::Integer, [3.0, 1.0, 7.0], 5.0), 5.0);
 }
 
@@ -82,8 +83,8 @@ fn an_inside_factor_above_64_says_that_none_is_enough() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.1; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        let edges = asked_factors(&patch, 1e-6, partitioning, least, 1.0);
-        assert_eq!(edges, least, "{partitioning:?}");
+        let [edges @ .., chosen] = asked_factors(&patch, 1e-6, partitioning, least, 1.0);
+        assert_eq!((edges, chosen), (least, BEYOND_LAST), "{partitioning:?}");
         assert_eq!(least_inside_factor(&patch, 1e-6, partitioning, edges, 1.0), BEYOND_LAST, "{partitioning:?}");
         assert_eq!(own_least_factors(&patch, 1e-6, partitioning, least, 1.0)[3], BEYOND_LAST, "{partitioning:?}");
         assert_eq!(least_inside_factor(&patch, 1.0, partitioning, [BEYOND_LAST; 3], 1.0), BEYOND_LAST);
@@ -95,7 +96,7 @@ fn what_is_not_a_number_ends_the_search() {
     let patch = seen_patch(&VIEW, &lifted([Vec3::NAN, Vec3::X, Vec3::Y], [0.1; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        assert_eq!(asked_factors(&patch, 0.5, partitioning, least, 1.0), least);
+        assert_eq!(asked_factors(&patch, 0.5, partitioning, least, 1.0)[..3], least);
         assert_eq!(least_inside_factor(&patch, 0.5, partitioning, least, 1.0), BEYOND_LAST);
     }
 }
@@ -142,9 +143,9 @@ proptest! {
             3.0 * rings + 1.5 * rings * rings + segment * (u + v + w)
         };
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 2.0) {
-            let asked = asked_factors(&patch, tolerance, partitioning, least, 1.0);
+            let [asked @ .., chosen] = asked_factors(&patch, tolerance, partitioning, least, 1.0);
             let inside = least_inside_factor(&patch, tolerance, partitioning, asked, 1.0);
-            prop_assert!(inside <= 64.0, "{asked:?}");
+            prop_assert!(inside <= 64.0 && inside == chosen, "{asked:?} {inside} {chosen}");
             prop_assert_eq!(count(asked, inside, 2.0), fewest, "{:?}, {}", asked, inside);
         }
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 1.0) {
@@ -153,4 +154,11 @@ proptest! {
             prop_assert_eq!(count([u, v, w], inside, 1.0), fewest, "{} {} {}, {}", u, v, w, inside);
         }
     }
+}
+
+#[test]
+fn patches_ask_again_if_their_inside_is_much_larger_than_they_chose() {
+    assert!(!asks_again(1.0, 2.0) && asks_again(1.0, 3.0));
+    assert!(!asks_again(18.0, 20.0) && asks_again(18.0, 21.0));
+    assert!(asks_again(64.0, BEYOND_LAST));
 }

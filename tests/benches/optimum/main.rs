@@ -1,5 +1,6 @@
 //! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
-//! `--` are mesh files that are measured too, and `cameras=N`, the number of random cameras beside the default one.
+//! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; and
+//! `only=NAME`, which measures one mesh alone.
 
 mod meshes;
 
@@ -20,8 +21,11 @@ const TOLERANCES: [f32; 4] = [0.25, 0.5, 1.0, 2.0];
 const MOST_PATCHES: usize = 1500;
 
 /// One mesh under one view.
+#[derive(Clone, Copy)]
 struct Case {
     mesh: usize,
+    /// 0 is the default camera.
+    number: usize,
     camera: Camera,
     tolerance: f32,
     partitioning: Partitioning,
@@ -29,15 +33,19 @@ struct Case {
 
 /// What was measured of a case.
 struct Row {
-    mesh: usize,
-    odd: bool,
-    tolerance: f32,
+    case: Case,
     compared: Compared,
 }
 
 impl Row {
-    /// How many times as many triangles as the optimum LOD by error has; `None` if the optimum wasn't searched for.
+    fn is_odd(&self) -> bool {
+        self.case.partitioning == Partitioning::FractionalOdd
+    }
+
+    /// How many times as many triangles as the optimum LOD by error has; `None` if the optimum wasn't searched for, or a factor is
+    /// capped.
     fn times(&self) -> Option<f64> {
+        self.compared.error_px?;
         let best = self.compared.best.as_ref()?;
         Some(self.compared.triangles as f64 / best.triangles.max(1) as f64)
     }
@@ -50,7 +58,8 @@ impl Row {
 
     /// Whether one factor for all edges needs fewer triangles.
     fn exceeds_uniform(&self) -> bool {
-        let uniform = self.compared.best.as_ref().and_then(|best| best.uniform);
+        let uniform =
+            self.compared.best.as_ref().and_then(|best| best.uniform).filter(|_| self.compared.error_px.is_some());
         uniform.is_some_and(|(_, triangles)| self.compared.triangles > triangles)
     }
 }
@@ -95,7 +104,7 @@ fn cases(meshes: &[(String, Mesh)], cameras_each: usize) -> Vec<Case> {
                 // The default camera with every tolerance, the others with one each.
                 if number == 0 || number % 4 == k {
                     for partitioning in [Partitioning::Integer, Partitioning::FractionalOdd] {
-                        cases.push(Case { mesh: index, camera, tolerance, partitioning });
+                        cases.push(Case { mesh: index, number, camera, tolerance, partitioning });
                     }
                 }
             }
@@ -109,7 +118,7 @@ fn measure(mesh: &Mesh, topology: &Topology, case: &Case) -> Row {
     let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
     let inputs = Inputs::new(&tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()));
     let compared = compare_with_optimum(mesh, topology, &inputs, topology.patches.len() <= MOST_PATCHES);
-    Row { mesh: case.mesh, odd: partitioning == Partitioning::FractionalOdd, tolerance, compared }
+    Row { case: *case, compared }
 }
 
 fn geometric_mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -121,7 +130,7 @@ fn print_row(name: &str, rows: &[&Row]) {
     let times: Vec<f64> = rows.iter().filter_map(|row| row.times()).collect();
     let bound = geometric_mean(rows.iter().filter_map(|row| row.bound()));
     let more = rows.iter().filter(|row| row.exceeds_uniform()).count();
-    let part = |row: &&&Row| row.compared.error_px.map(|px| px / f64::from(row.tolerance));
+    let part = |row: &&&Row| row.compared.error_px.map(|px| px / f64::from(row.case.tolerance));
     let error = rows.iter().filter_map(|row| part(&row)).fold(0.0, f64::max);
     let capped = rows.iter().filter(|row| row.compared.error_px.is_none()).count();
     let largest = times.iter().copied().fold(0.0, f64::max);
@@ -129,12 +138,35 @@ fn print_row(name: &str, rows: &[&Row]) {
     println!("| {name} | {} | {mean:.3} | {largest:.3} | {bound:.3} | {more} | {error:.3} | {capped} |", rows.len());
 }
 
+/// Cases that are listed one by one: with this many times as many triangles as the optimum, or capped.
+const LISTED: f64 = 1.5;
+
+fn print_worst(meshes: &[(String, Mesh)], rows: &[Row]) {
+    println!("\nCases above {LISTED} times the optimum, or capped\n");
+    println!("| mesh | camera | orthographic | partitioning | px | triangles | optimum |");
+    println!("| --- | ---: | --- | --- | ---: | ---: | ---: |");
+    for row in
+        rows.iter().filter(|row| row.compared.error_px.is_none() || row.times().is_some_and(|times| times > LISTED))
+    {
+        let Case { mesh, number, camera, tolerance, partitioning } = row.case;
+        let best = row.compared.best.as_ref().map_or_else(|| "-".to_owned(), |best| best.triangles.to_string());
+        let capped = if row.compared.error_px.is_none() { " (capped)" } else { "" };
+        let Compared { triangles, .. } = row.compared;
+        println!(
+            "| {} | {number} | {} | {partitioning:?} | {tolerance} | {triangles}{capped} | {best} |",
+            meshes[mesh].0, camera.orthographic
+        );
+    }
+}
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     let cameras_each =
         arguments.iter().find_map(|argument| argument.strip_prefix("cameras=")?.parse().ok()).unwrap_or(20);
     let files: Vec<PathBuf> = arguments.iter().filter(|argument| !argument.contains('=')).map(PathBuf::from).collect();
-    let meshes = meshes(&files);
+    let only = arguments.iter().find_map(|argument| argument.strip_prefix("only="));
+    let mut meshes = meshes(&files);
+    meshes.retain(|(name, _)| only.is_none_or(|only| name == only));
     let topologies: Vec<Topology> = meshes.iter().map(|(_, mesh)| Topology::of(mesh)).collect();
     let cases = cases(&meshes, cameras_each);
     let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
@@ -148,7 +180,8 @@ fn main() {
             });
         }
     });
-    let rows = rows.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let mut rows = rows.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    rows.sort_by_key(|row| (row.case.mesh, row.case.number));
     for odd in [false, true] {
         println!("\n{}, {}x{} px\n", if odd { "Fractional-odd" } else { "Integer" }, VIEWPORT.x, VIEWPORT.y);
         println!(
@@ -156,9 +189,10 @@ fn main() {
         );
         println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
         for (index, (name, mesh)) in meshes.iter().enumerate() {
-            let own: Vec<&Row> = rows.iter().filter(|row| row.mesh == index && row.odd == odd).collect();
+            let own: Vec<&Row> = rows.iter().filter(|row| row.case.mesh == index && row.is_odd() == odd).collect();
             print_row(&format!("{name} ({})", mesh.triangles.len()), &own);
         }
-        print_row("all", &rows.iter().filter(|row| row.odd == odd).collect::<Vec<_>>());
+        print_row("all", &rows.iter().filter(|row| row.is_odd() == odd).collect::<Vec<_>>());
     }
+    print_worst(&meshes, &rows);
 }
