@@ -283,7 +283,7 @@ fn asked_factors(
     return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 2.0);
 }
 
-// Returns whether a patch asks its edges once more: beside what other patches asked for, its inside factor is much larger than
+// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger than
 // the one that it has chosen.
 fn asks_again(chosen: f32, inside: f32) -> bool {
     return inside > 64.0 || inside > 1.1 * chosen + 1.0;

@@ -3,8 +3,8 @@
 // that one triangle shows; and one in which a workgroup searches the factors of one of the other patches after another.
 //
 // Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find none
-// that is enough. Such patches ask once more, for no less than what their edges have, and all patches whose edges then have
-// other factors take their inside factors anew.
+// that is enough. Such patches ask again, for no less than what their edges have, and all patches whose edges then have other
+// factors take their inside factors anew. There are a few such rounds.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -49,12 +49,12 @@ fn edges_of(patch_index: u32, first: u32) -> vec3<f32> {
     );
 }
 
-// The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for once more.
+// The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for again.
 const SEARCH_ASKED: u32 = 0u;
 const SEARCH_INSIDE: u32 = 1u;
 const SEARCH_AGAIN: u32 = 2u;
 
-// Where the number of rounds is that are over: 0 or 1.
+// Where the number of rounds is that are over.
 fn rounds_at() -> u32 {
     return searched_count_at(3u);
 }
@@ -71,10 +71,7 @@ fn searched_at(search: u32, i: u32) -> u32 {
 
 fn search_later(search: u32, patch_index: u32) {
     let i = atomicAdd(&edge_factors[searched_count_at(search)], 1u);
-    // The inside factors are searched twice at most, and only the first time a patch may ask once more.
-    if i < params.patch_count {
-        atomicStore(&edge_factors[searched_at(search, i)], patch_index);
-    }
+    atomicStore(&edge_factors[searched_at(search, i)], patch_index);
 }
 
 fn set_inside(patch_index: u32, inside: f32) {
@@ -128,7 +125,7 @@ fn searched_patch(search: u32, i: u32) -> u32 {
     return workgroupUniformLoad(&group_patch);
 }
 
-// Searches what patches ask for, or ask for once more.
+// Searches what patches ask for, or ask for again.
 @compute @workgroup_size(TOGETHER)
 fn search_asked_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -136,7 +133,7 @@ fn search_asked_factors_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     lane = local;
-    let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_second_round());
+    let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_later_round());
     var i = workgroup.x;
     var index = searched_patch(search, i);
     while index != NO_MORE {
@@ -148,9 +145,7 @@ fn search_asked_factors_main(
         let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
         if lane == 0u {
             ask(index, asked.xyz);
-            if search == SEARCH_ASKED {
-                set_inside(index, asked.w);
-            }
+            set_inside(index, asked.w);
         }
         i += workgroups.x;
         index = searched_patch(search, i);
@@ -158,7 +153,7 @@ fn search_asked_factors_main(
 }
 
 // Whether the first round is over.
-fn is_second_round() -> bool {
+fn is_later_round() -> bool {
     return atomicLoad(&edge_factors[rounds_at()]) > 0u;
 }
 
@@ -174,8 +169,12 @@ fn inside_factors_main(
     }
     let heights = heights_inside(index);
     let edges = edges_of(index, 0u);
-    // In the second round most edges have what they had.
-    if is_second_round() && all(edges == edges_of(index, params.factor_count)) {
+    if index == 0u {
+        // Those that asked have been searched.
+        atomicStore(&edge_factors[searched_count_at(SEARCH_AGAIN)], 0u);
+    }
+    // In later rounds most edges have what they had.
+    if is_later_round() && all(edges == edges_of(index, params.factor_count)) {
         return;
     }
     var inside = whole_segments(params.partitioning, heights);
@@ -208,7 +207,7 @@ fn search_inside_factors_main(
         let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights_inside(index));
         if lane == 0u {
             let chosen = bitcast<f32>(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
-            if !is_second_round() && asks_again(chosen, inside) {
+            if asks_again(chosen, inside) {
                 search_later(SEARCH_AGAIN, index);
             }
         }
@@ -217,7 +216,7 @@ fn search_inside_factors_main(
     }
 }
 
-// Ends the first round: what edges have becomes the least that they may get.
+// Ends a round: what edges have becomes the least that they may get.
 @compute @workgroup_size(256)
 fn keep_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -227,7 +226,7 @@ fn keep_factors_main(
     let index = grid_index(workgroup, workgroups, local);
     if index == 0u {
         atomicStore(&edge_factors[searched_count_at(SEARCH_INSIDE)], 0u);
-        atomicStore(&edge_factors[rounds_at()], 1u);
+        atomicAdd(&edge_factors[rounds_at()], 1u);
     }
     if index < params.factor_count {
         atomicStore(&edge_factors[params.factor_count + index], atomicLoad(&edge_factors[index]));

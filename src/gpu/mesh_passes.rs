@@ -6,6 +6,7 @@ use super::GpuError;
 use super::bound_pass::{BoundPass, PassInputs};
 use super::mesh_buffers::MeshBuffers;
 use super::relief_buffers::{HeightImages, ReliefBuffers};
+use crate::tessellate::ROUNDS;
 
 /// These belong to one set of mesh buffers: when those are replaced, so must this be.
 #[derive(Default)]
@@ -98,7 +99,7 @@ impl MeshPasses {
 
     /// The passes of LOD by error in their order, and what each has an invocation or a workgroup for: see
     /// `shaders/pass_asked.wgsl`.
-    pub(super) fn asked(&self, on: &PassInputs) -> Result<[(&BoundPass, Each); 8], GpuError> {
+    pub(super) fn asked(&self, on: &PassInputs) -> Result<Vec<(&BoundPass, Each)>, GpuError> {
         let (buffers, pipelines) = (asked_buffers(on.mesh, on.params, &on.mesh.edge_factors), on.pipelines);
         let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
         let asked = BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?;
@@ -108,16 +109,16 @@ impl MeshPasses {
         let search_inside =
             BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, &buffers)?;
         let keep = BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?;
-        Ok([
-            (asked, Each::Patch),
-            (search_asked, Each::SearchedPatch),
-            (inside, Each::Patch),
-            (search_inside, Each::SearchedPatch),
-            (keep, Each::Edge),
-            (search_asked, Each::SearchedPatch),
-            (inside, Each::Patch),
-            (search_inside, Each::SearchedPatch),
-        ])
+        let mut passes = vec![(asked, Each::Patch)];
+        for round in 0..ROUNDS {
+            if round > 0 {
+                passes.push((keep, Each::Edge));
+            }
+            passes.push((search_asked, Each::SearchedPatch));
+            passes.push((inside, Each::Patch));
+            passes.push((search_inside, Each::SearchedPatch));
+        }
+        Ok(passes)
     }
 
     /// The level at which heights are looked up on every edge.

@@ -41,7 +41,7 @@ pub(crate) struct ExplainedEdge {
     pub own: f32,
     /// The other patches on the edge, and the factors that they ask for.
     pub others: Vec<(u32, f32)>,
-    /// The factor that it gets: the largest of these, or a larger one if patches asked once more.
+    /// The factor that it gets: the largest of these, or a larger one if patches asked again.
     pub got: f32,
 }
 
@@ -56,7 +56,7 @@ pub(crate) enum DecidedBy {
     Other,
     /// Both asked for the same.
     Both,
-    /// One of them asked once more, since no inside factor sufficed beside what the edges got first.
+    /// One of them asked again, since no inside factor, or only a much larger one, sufficed beside what the edges got first.
     Again,
 }
 

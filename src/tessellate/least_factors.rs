@@ -5,7 +5,7 @@
 //! depend on the inside factor alone. So every patch looks for the inside factor with which it and its edges together
 //! have the fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches ask for.
 //! Then every patch takes the least inside factor that suffices beside the factors of its edges. If that is much larger than
-//! what it has chosen, it asks once more.
+//! what it has chosen, it asks again.
 
 use glam::{Vec2, Vec3};
 
@@ -268,7 +268,10 @@ pub(super) fn asked_factors(
     fewest_triangles(patch, tolerance, partitioning, least, least_inside, 2.0)
 }
 
-/// Returns whether a patch asks its edges once more: beside what other patches asked for, its inside factor is much larger
+/// How often patches may ask: once, and again as long as factors change.
+pub(crate) const ROUNDS: u32 = 4;
+
+/// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger
 /// than the one that it has chosen.
 pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {
     inside > 64.0 || inside > 1.1 * chosen + 1.0

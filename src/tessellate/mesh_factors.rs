@@ -6,7 +6,7 @@ use glam::Vec3;
 use super::control_nets::ControlNets;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::least_factors::{
-    asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors, whole_segments,
+    ROUNDS, asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors, whole_segments,
 };
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
@@ -51,7 +51,7 @@ impl ControlNets<'_> {
     /// ask, too: what others look like doesn't depend on it.
     ///
     /// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find
-    /// none that suffices. Such patches ask once more, for no less than what their edges have.
+    /// none that suffices. Such patches ask again, for no less than what their edges have.
     fn asked_edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let edges = 0..self.curves.factor_curves.len() as u32 - 1;
@@ -72,15 +72,19 @@ impl ControlNets<'_> {
             let least = self.first_least(inputs, patch, &seen, |factor| least[factor as usize]);
             chosen.push(ask(patch, &seen, least, &mut asked));
         }
-        if surface != Surface::Flat {
-            let first = asked.clone();
-            for patch in all {
-                let inside = self.inside_factor(inputs, displacement, &first, patch);
-                if !asks_again(chosen[patch as usize], inside) {
-                    continue;
+        for _ in 1..ROUNDS {
+            let before = asked.clone();
+            for (patch, chosen) in all.clone().zip(&mut chosen) {
+                let inside = self.inside_factor(inputs, displacement, &before, patch);
+                let asks = asks_again(*chosen, inside);
+                *chosen = inside;
+                if surface != Surface::Flat && asks {
+                    let least = [1, 2, 0].map(|k| before[self.patch_factor(patch, k) as usize]);
+                    *chosen = ask(patch, &self.seen_patch(inputs, displacement, patch), least, &mut asked);
                 }
-                let least = [1, 2, 0].map(|k| first[self.patch_factor(patch, k) as usize]);
-                ask(patch, &self.seen_patch(inputs, displacement, patch), least, &mut asked);
+            }
+            if asked == before {
+                break;
             }
         }
         asked

@@ -80,6 +80,7 @@ pub(crate) use factors::{
 };
 pub(crate) use hull_factors::HullFactors;
 pub(crate) use inputs::sharing;
+pub(crate) use least_factors::ROUNDS;
 pub(crate) use limit_surface::LimitSurface;
 pub(crate) use lod::{beyond_near, distance_factor, edge_length_factor, paper_edge_factor};
 pub(crate) use mesh_displacement::{displacement_reach, displacing_heights, height_units};
