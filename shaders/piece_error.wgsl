@@ -4,6 +4,9 @@
 // The steps of the finest grid.
 const FINEST_GRID: u32 = 16u;
 
+// The steps of the grid of a triangle that is only partly in view.
+const PARTIAL_STEPS: u32 = 8u;
+
 // A patch in clip space: x and y in px times depth, and the depth (w). All are divided by the largest depth of its control
 // points, which changes nothing on screen, so that squares don't leave the range of f32.
 struct SeenPatch {
@@ -235,7 +238,8 @@ fn is_beside_view(beyond: ptr<function, array<vec4<f32>, 3>>) -> bool {
 }
 
 // Returns a bound on the depth of the points of a flat triangle that may be in view: none has less. It may be negative.
-fn seen_depth(piece: ptr<function, Piece>, beyond: ptr<function, array<vec4<f32>, 3>>) -> f32 {
+// `depths` are those of its corners.
+fn seen_depth(depths: vec3<f32>, beyond: ptr<function, array<vec4<f32>, 3>>) -> f32 {
     // For each side of the view the least depth of what is on its inner side: at a corner, or where a side of the triangle
     // crosses.
     let none = vec4<f32>(3.4e38);
@@ -245,8 +249,8 @@ fn seen_depth(piece: ptr<function, Piece>, beyond: ptr<function, array<vec4<f32>
         let j = (i + 1u) % 3u;
         let p = (*beyond)[i];
         let q = (*beyond)[j];
-        let here = vec4<f32>((*piece).corners[i].z);
-        let there = vec4<f32>((*piece).corners[j].z);
+        let here = vec4<f32>(depths[i]);
+        let there = vec4<f32>(depths[j]);
         let crosses = (p <= zero) != (q <= zero);
         let share = p / select(vec4<f32>(1.0), p - q, crosses);
         least = min(least, select(none, here, p <= zero));
@@ -375,18 +379,17 @@ fn grid_error(
 }
 
 // Returns the error of a flat triangle at the same places of the domain: an upper bound if it is at most `tolerance`. `piece` is
-// in front of the near plane. All of it is seen within `spread` px of `middle`, wherever displacement moves it by `moved` px.
+// in front of the near plane, `piece_bound` is its derivative_bound, and displacement moves it by up to `moved` px.
 fn same_place_error(
     seen: ptr<function, SeenPatch>,
     piece: ptr<function, Piece>,
     tolerance: f32,
-    middle: vec2<f32>,
-    spread: f32,
+    piece_bound: f32,
     moved: f32,
     depths: vec2<f32>,
 ) -> f32 {
     let nearest = depths.x;
-    let bound = derivative_bound(piece, middle, spread) / nearest;
+    let bound = piece_bound / nearest;
     let a = (*piece).places[0];
     let b = (*piece).places[1];
     let c = (*piece).places[2];
@@ -406,6 +409,57 @@ fn same_place_error(
         upper = worst.x * (1.0 + (ratio - 1.0) * share) + between;
     }
     return upper;
+}
+
+// Returns a bound on the error of a flat triangle, only part of which is in view, in px. It is cut into smaller ones, each of
+// which counts with what may be in view of it: within `spread` px of `middle`. `before` says how far the surface may be in front
+// of the triangle, and `bound` is derivative_bound. It ends early once an error isn't within the tolerance.
+fn partial_error(
+    seen: ptr<function, SeenPatch>,
+    piece: ptr<function, Piece>,
+    beyond: ptr<function, array<vec4<f32>, 3>>,
+    before: f32,
+    middle: vec2<f32>,
+    spread: f32,
+    bound: f32,
+    tolerance: f32,
+) -> f32 {
+    // Between the corners of the smaller triangles.
+    let between = bound / f32(PARTIAL_STEPS * PARTIAL_STEPS);
+    var error = 0.0;
+    for (var i = 0u; i < PARTIAL_STEPS; i++) {
+        for (var j = 0u; j < 2u * (PARTIAL_STEPS - i) - 1u; j++) {
+            // Those that point up and those that point down, in turn.
+            let across = j / 2u;
+            let down = j % 2u;
+            var at = array<vec2<u32>, 3>(
+                vec2<u32>(i + down, across),
+                vec2<u32>(i + 1u - down, across + down),
+                vec2<u32>(i + down, across + 1u),
+            );
+            var depths = vec3<f32>(0.0);
+            var outside: array<vec4<f32>, 3>;
+            var most = 0.0;
+            for (var k = 0u; k < 3u; k++) {
+                let x = f32(at[k].x) / f32(PARTIAL_STEPS);
+                let y = f32(at[k].y) / f32(PARTIAL_STEPS);
+                let z = 1.0 - x - y;
+                depths[k] = (*piece).corners[0].z * x + (*piece).corners[1].z * y + (*piece).corners[2].z * z;
+                outside[k] = (*beyond)[0] * x + (*beyond)[1] * y + (*beyond)[2] * z;
+                let difference = piece_difference(piece, x, y, z);
+                most = max(most, length(difference.xy - middle * difference.z) + spread * abs(difference.z));
+            }
+            let depth = max((*seen).near, seen_depth(depths, &outside) + before - (*seen).deep);
+            let own = (most + between) / depth;
+            if !is_beside_view(&outside) {
+                if !is_within(own, tolerance) {
+                    return own;
+                }
+                error = max(error, own);
+            }
+        }
+    }
+    return error;
 }
 
 // Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1). If it
@@ -441,7 +495,7 @@ fn piece_error(
     var middle = vec2<f32>(0.0);
     var spread = length((*seen).half_viewport);
     var moved = 0.0;
-    var depth = max((*seen).near, seen_depth(&piece, &beyond) + before - (*seen).deep);
+    var depth = max((*seen).near, seen_depth(depths, &beyond) + before - (*seen).deep);
     // NaN is no depth in front of the eye.
     let is_before_eye = nearest > 0.0 && nearest >= (*seen).near;
     if is_before_eye {
@@ -460,9 +514,16 @@ fn piece_error(
     if is_within(error, tolerance) {
         return error;
     }
-    if !is_before_eye {
-        return min(error, derivative_bound(&piece, middle, spread) / depth);
+    let bound = derivative_bound(&piece, middle, spread);
+    if is_before_eye {
+        error = min(error, same_place_error(seen, &piece, tolerance, bound, moved, vec2<f32>(nearest, farthest)));
+    } else {
+        error = min(error, bound / depth);
     }
-    let range = vec2<f32>(nearest, farthest);
-    return min(error, same_place_error(seen, &piece, tolerance, middle, spread, moved, range));
+    let most_beyond = max(max(beyond[0], beyond[1]), beyond[2]);
+    let is_partial = !is_before_eye || any(most_beyond > vec4<f32>(0.0));
+    if is_partial && !is_within(error, tolerance) {
+        error = min(error, partial_error(seen, &piece, &beyond, before, middle, spread, bound, tolerance));
+    }
+    return error;
 }

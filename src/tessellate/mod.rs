@@ -118,6 +118,6 @@ pub(crate) mod shared_constants {
     pub(crate) use super::flat_patch::{AGREEING, TWO_POINTS};
     pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, TOGETHER};
     pub(crate) use super::normal::CANCELLED;
-    pub(crate) use super::piece_error::FINEST_GRID;
+    pub(crate) use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
     pub(crate) use super::surface::UNIT;
 }

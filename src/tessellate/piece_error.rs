@@ -23,6 +23,9 @@ use super::surface::ControlNet;
 /// The steps of the finest grid. The margin is then at most 1/200 of the bound without a grid.
 pub(crate) const FINEST_GRID: u32 = 16;
 
+/// The steps of the grid of a triangle that is only partly in view.
+pub(crate) const PARTIAL_STEPS: u32 = 8;
+
 /// A patch in clip space: x and y in px times depth, and the depth (w). All are divided by the largest depth of its control
 /// points, which changes nothing on screen, so that squares don't leave the range of f32.
 #[derive(Clone, Copy, Debug)]
@@ -235,7 +238,8 @@ fn is_beside_view(beyond: [Vec4; 3]) -> bool {
 }
 
 /// Returns a bound on the depth of the points of a flat triangle that may be in view: none has less. It may be negative.
-fn seen_depth(piece: &Piece, beyond: [Vec4; 3]) -> f32 {
+/// `depths` are those of its corners.
+fn seen_depth(depths: [f32; 3], beyond: [Vec4; 3]) -> f32 {
     let mut seen = -3.4e38f32;
     for side in [0, 1, 2, 3].map(|k| beyond.map(|corner| corner[k])) {
         // The least depth of what is on the inner side: at a corner, or where a side of the triangle crosses.
@@ -243,7 +247,7 @@ fn seen_depth(piece: &Piece, beyond: [Vec4; 3]) -> f32 {
         for i in 0..3 {
             let j = (i + 1) % 3;
             let (p, q) = (side[i], side[j]);
-            let (here, there) = (piece.corners[i].z, piece.corners[j].z);
+            let (here, there) = (depths[i], depths[j]);
             if p <= 0.0 {
                 least = least.min(here);
             }
@@ -360,18 +364,16 @@ fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, step
 }
 
 /// Returns the error of a flat triangle at the same places of the domain: an upper bound if it is at most `tolerance`. `piece`
-/// is in front of the near plane. All of it is seen within `spread` px of `middle`, wherever displacement moves it by `moved`
-/// px.
+/// is in front of the near plane, `bound` is its [`derivative_bound`], and displacement moves it by up to `moved` px.
 fn same_place_error(
     patch: &SeenPatch,
     piece: &Piece,
     tolerance: f32,
-    middle: Vec2,
-    spread: f32,
+    bound: f32,
     moved: f32,
     [nearest, farthest]: [f32; 2],
 ) -> f32 {
-    let bound = derivative_bound(piece, middle, spread) / nearest;
+    let bound = bound / nearest;
     let [a, b, c] = piece.places;
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
     let ratio = farthest / nearest;
@@ -391,6 +393,46 @@ fn same_place_error(
     upper
 }
 
+/// Returns a bound on the error of a flat triangle, only part of which is in view, in px. It is cut into smaller ones, each of
+/// which counts with what may be in view of it: within `spread` px of `middle`. `before` says how far the surface may be in
+/// front of the triangle, and `bound` is [`derivative_bound`]. It ends early once an error isn't within the tolerance.
+fn partial_error(
+    patch: &SeenPatch,
+    piece: &Piece,
+    beyond: [Vec4; 3],
+    before: f32,
+    (middle, spread, bound): (Vec2, f32, f32),
+    tolerance: f32,
+) -> f32 {
+    // Between the corners of the smaller triangles.
+    let between = bound / (PARTIAL_STEPS * PARTIAL_STEPS) as f32;
+    let mut error = 0.0f32;
+    for i in 0..PARTIAL_STEPS {
+        for j in 0..2 * (PARTIAL_STEPS - i) - 1 {
+            // Those that point up and those that point down, in turn.
+            let (across, down) = (j / 2, j % 2);
+            let at = [[i + down, across], [i + 1 - down, across + down], [i + down, across + 1]];
+            let (mut depths, mut outside) = ([0.0; 3], [Vec4::ZERO; 3]);
+            let mut most = 0.0f32;
+            for k in 0..3 {
+                let [x, y] = at[k].map(|weight| weight as f32 / PARTIAL_STEPS as f32);
+                let z = 1.0 - x - y;
+                depths[k] = piece.corners[0].z * x + piece.corners[1].z * y + piece.corners[2].z * z;
+                outside[k] = beyond[0] * x + beyond[1] * y + beyond[2] * z;
+                let difference = piece_difference(piece, x, y, z);
+                most = most.max((difference.truncate() - middle * difference.z).length() + spread * difference.z.abs());
+            }
+            let depth = patch.near.max(seen_depth(depths, outside) + before - patch.deep);
+            let own = (most + between) / depth;
+            if !is_beside_view(outside) && !is_within(own, tolerance) {
+                return own;
+            }
+            error = error.max(if is_beside_view(outside) { 0.0 } else { own });
+        }
+    }
+    error
+}
+
 /// Returns the error of the flat triangle with its corners at three places of the domain (weights of corners 0 and 1).
 /// If it is at most `tolerance`, it is an upper bound. If it is larger or NaN, the piece may be that far off.
 pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
@@ -400,7 +442,8 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
         behind = behind.max(difference.z);
         before = before.min(difference.z);
     }
-    let [p, q, r] = piece.corners.map(|corner| corner.z);
+    let depths = piece.corners.map(|corner| corner.z);
+    let [p, q, r] = depths;
     let farthest = p.max(q).max(r) + behind + patch.deep;
     let nearest = p.min(q).min(r) + before - patch.deep;
     if farthest < patch.near {
@@ -413,7 +456,7 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
     let [a, b, c] = piece.places;
     // What is seen of it is anywhere in the view, and no nearer than the near plane.
     let (mut middle, mut spread, mut moved) = (Vec2::ZERO, patch.half_viewport.length(), 0.0);
-    let mut depth = patch.near.max(seen_depth(&piece, beyond) + before - patch.deep);
+    let mut depth = patch.near.max(seen_depth(depths, beyond) + before - patch.deep);
     // NaN is no depth in front of the eye.
     let is_before_eye = nearest > 0.0 && nearest >= patch.near;
     if is_before_eye {
@@ -431,10 +474,16 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
     if is_within(error, tolerance) {
         return error;
     }
-    if !is_before_eye {
-        return error.min(derivative_bound(&piece, middle, spread) / depth);
+    let bound = derivative_bound(&piece, middle, spread);
+    error = error.min(match is_before_eye {
+        true => same_place_error(patch, &piece, tolerance, bound, moved, [nearest, farthest]),
+        false => bound / depth,
+    });
+    let is_partial = !is_before_eye || beyond.into_iter().any(|corner| corner.max_element() > 0.0);
+    if is_partial && !is_within(error, tolerance) {
+        error = error.min(partial_error(patch, &piece, beyond, before, (middle, spread, bound), tolerance));
     }
-    error.min(same_place_error(patch, &piece, tolerance, middle, spread, moved, [nearest, farthest]))
+    error
 }
 
 #[cfg(test)]
