@@ -144,8 +144,8 @@ fn single_suffices(
 }
 
 // Returns the largest error, in px, of the triangles `first` to `end` of a pattern, each computed by one invocation of the
-// workgroup (see search_group.wgsl); or of the first TOGETHER with one that
-// isn't within the tolerance.
+// workgroup (see search_group.wgsl); or of the first TOGETHER with one that isn't within the tolerance. Those are spread over
+// all.
 fn triangles_error(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -155,17 +155,21 @@ fn triangles_error(
 ) -> f32 {
     let plan = domain_plan(factors);
     var worst = 0.0;
-    var start = first;
-    while start < end && worst <= tolerance {
+    let turns = (end - first + TOGETHER - 1u) / TOGETHER;
+    for (var turn = 0u; turn < turns && worst <= tolerance; turn++) {
+        let t = first + lane * turns + turn;
         var own = 0.0;
-        if start + lane < end {
-            own = triangle_error_at(seen, tolerance, plan, start + lane);
+        if t < end {
+            own = triangle_error_at(seen, tolerance, plan, t);
         }
         worst = max(worst, largest_of_group(own));
-        start += TOGETHER;
     }
     return worst;
 }
+
+// How much larger a factor of an edge is tried than the least one and the inside factor: with more, triangles are long where
+// the points of edge and ring don't match.
+const ROW_REACH: f32 = 6.0;
 
 // Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
 fn row_error(seen: ptr<function, SeenPatch>, tolerance: f32, factors: PatchFactors, k: u32) -> f32 {
@@ -199,7 +203,7 @@ fn least_inner_factor(seen: ptr<function, SeenPatch>, tolerance: f32, partitioni
 }
 
 // Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and 4. Where points may slide it tries all.
+// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and ROW_REACH. Where points may slide it tries all.
 fn least_row_factor(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -209,7 +213,7 @@ fn least_row_factor(
     inside: f32,
 ) -> f32 {
     let slides = may_slide(seen, tolerance);
-    let last = select(max(least, inside) + 4.0, BEYOND_LAST, slides);
+    let last = select(max(least, inside) + ROW_REACH, BEYOND_LAST, slides);
     let most = min(factor_from(partitioning, last), last_factor(partitioning));
     var factor = least;
     while factor <= most {

@@ -2,7 +2,7 @@
 // the surface at the same places of the domain. Twin: src/tessellate/piece_error.rs, which explains the bounds.
 
 // The steps of the finest grid.
-const FINEST_GRID: u32 = 16u;
+const FINEST_GRID: u32 = 8u;
 
 // The steps of the grid of a triangle that is only partly in view.
 const PARTIAL_STEPS: u32 = 8u;

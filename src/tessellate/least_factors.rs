@@ -135,19 +135,27 @@ fn single_suffices(
 pub(crate) const TOGETHER: u32 = 32;
 
 /// Returns the largest error, in px, of the triangles `first` to `end` of a pattern; or of the first [`TOGETHER`] with one
-/// that isn't within the tolerance.
+/// that isn't within the tolerance. Those are spread over all.
 fn triangles_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, first: u32, end: u32) -> f32 {
     let plan = domain_plan(factors);
     let mut worst = 0.0f32;
-    let mut start = first;
-    while start < end && worst <= tolerance {
-        for t in start..end.min(start + TOGETHER) {
-            worst = worst.max(triangle_error_at(patch, tolerance, &plan, t));
+    let turns = (end - first).div_ceil(TOGETHER);
+    let mut turn = 0;
+    while turn < turns && worst <= tolerance {
+        for lane in 0..TOGETHER {
+            let t = first + lane * turns + turn;
+            if t < end {
+                worst = worst.max(triangle_error_at(patch, tolerance, &plan, t));
+            }
         }
-        start += TOGETHER;
+        turn += 1;
     }
     worst
 }
+
+/// How much larger a factor of an edge is tried than the least one and the inside factor: with more, triangles are long
+/// where the points of edge and ring don't match.
+pub(crate) const ROW_REACH: f32 = 6.0;
 
 /// Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
 fn row_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, k: u32) -> f32 {
@@ -179,7 +187,7 @@ fn least_inner_factor(patch: &SeenPatch, tolerance: f32, partitioning: Partition
 }
 
 /// Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and 4. Where points may slide it tries all.
+/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide it tries all.
 fn least_row_factor(
     patch: &SeenPatch,
     tolerance: f32,
@@ -189,7 +197,7 @@ fn least_row_factor(
     inside: f32,
 ) -> f32 {
     let slides = may_slide(patch, tolerance);
-    let last = if slides { BEYOND_LAST } else { least.max(inside) + 4.0 };
+    let last = if slides { BEYOND_LAST } else { least.max(inside) + ROW_REACH };
     let most = factor_from(partitioning, last).min(last_factor(partitioning));
     let mut factor = least;
     while factor <= most {

@@ -20,8 +20,8 @@ use glam::{Vec2, Vec3, Vec4};
 use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
 
-/// The steps of the finest grid. The margin is then at most 1/200 of the bound without a grid.
-pub(crate) const FINEST_GRID: u32 = 16;
+/// The steps of the finest grid. The margin is then at most 1/64 of the bound without a grid.
+pub(crate) const FINEST_GRID: u32 = 8;
 
 /// The steps of the grid of a triangle that is only partly in view.
 pub(crate) const PARTIAL_STEPS: u32 = 8;

@@ -102,7 +102,7 @@ fn what_is_not_a_number_ends_the_search() {
 }
 
 /// Returns the fewest triangles of a patch, where each segment of its edges counts as `segment` triangles, by trying all
-/// factors up to 14.
+/// factors up to 14, of which those of edges are no more than [`ROW_REACH`] beyond the one inside.
 fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, segment: f32) -> Option<f32> {
     let within = BOUND_SHARE * tolerance;
     let least = factor_from(partitioning, 1.0);
@@ -113,7 +113,7 @@ fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, segment
     let of = |inside: f32| {
         let error = inner_error(patch, within, process(partitioning, [2.0; 3], inside));
         let edge = |k: u32| {
-            factors().find(|&factor| {
+            factors().filter(|&factor| factor <= factor_from(partitioning, inside + ROW_REACH)).find(|&factor| {
                 let mut edges = [2.0; 3];
                 edges[k as usize] = factor;
                 row_error(patch, within, process(partitioning, edges, inside), k) <= within
