@@ -407,6 +407,12 @@ fn same_place_error(
         let share = 1.0 / f32(steps);
         let between = bound * share * share + longest * ratio * share * worst.y / nearest;
         upper = worst.x * (1.0 + (ratio - 1.0) * share) + between;
+        // What is on a finer grid is no less.
+        let finest = 1.0 / f32(FINEST_GRID);
+        let least = worst.x * (1.0 + (ratio - 1.0) * finest) + bound * finest * finest;
+        if !is_within(least, tolerance) {
+            return least;
+        }
     }
     return upper;
 }

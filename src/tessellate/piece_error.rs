@@ -389,6 +389,12 @@ fn same_place_error(
         let share = 1.0 / steps as f32;
         let between = bound * share * share + longest * ratio * share * deep / nearest;
         upper = error * (1.0 + (ratio - 1.0) * share) + between;
+        // What is on a finer grid is no less.
+        let finest = 1.0 / FINEST_GRID as f32;
+        let least = error * (1.0 + (ratio - 1.0) * finest) + bound * finest * finest;
+        if !is_within(least, tolerance) {
+            return least;
+        }
     }
     upper
 }
