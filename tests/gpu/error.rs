@@ -15,7 +15,7 @@ use proptest::prelude::*;
 
 use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::passes::edge_factors;
-use crate::gpu_tests::stability::{Trial, any_trial};
+use crate::gpu_tests::stability::{Trial, any_trial, soups};
 use crate::gpu_tests::{engine, scene};
 
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
@@ -49,7 +49,7 @@ fn by_error(settings: Settings, tolerance: f32) -> Settings {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(600))]
+    #![proptest_config(soups(2000))]
     #[test]
     fn any_soup_is_within_the_tolerance(trial in any_trial(), magnitude in -1.0f32..1.5) {
         let Trial { mesh, settings, camera } = trial;
@@ -155,8 +155,8 @@ fn the_device_takes_the_factors_that_the_cpu_does() {
             }
         }
     }
-    println!("{same} of {all} patches agree without any allowance");
-    assert!(all > 1000, "{all} patches");
+    // Another device may round a bound to the other side of a tolerance.
+    assert!(all > 1000 && same * 1000 >= all * 995, "{same} of {all} patches agree without any allowance");
 }
 
 #[test]

@@ -296,14 +296,14 @@ impl Trial {
     }
 }
 
-/// How many meshes at random the CPU takes: PNAEN_SOUPS, for a long look in release.
-fn soups() -> ProptestConfig {
+/// How many meshes at random the CPU takes: PNAEN_SOUPS, for a long look in release, or else `usually`.
+pub(super) fn soups(usually: u32) -> ProptestConfig {
     let asked = std::env::var("PNAEN_SOUPS").ok();
-    ProptestConfig::with_cases(asked.map_or(2000, |count| count.parse().expect("PNAEN_SOUPS is a number")))
+    ProptestConfig::with_cases(asked.map_or(usually, |count| count.parse().expect("PNAEN_SOUPS is a number")))
 }
 
 proptest! {
-    #![proptest_config(soups())]
+    #![proptest_config(soups(2000))]
     #[test]
     fn any_soup_holds_together_on_the_cpu(trial in any_trial()) {
         judge(&trial.settings, &trial.on_cpu(&trial.settings))?;

@@ -1,6 +1,7 @@
 //! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
 //! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; and
-//! `only=NAME`, which measures one mesh alone.
+//! `only=NAME`, which measures one mesh alone. With `search=no` no optimum is searched for: then all partitionings of Direct3D
+//! are measured, and what the table tells is whether the tolerance is kept.
 
 mod meshes;
 
@@ -38,10 +39,6 @@ struct Row {
 }
 
 impl Row {
-    fn is_odd(&self) -> bool {
-        self.case.partitioning == Partitioning::FractionalOdd
-    }
-
     /// How many times as many triangles as the optimum LOD by error has; `None` if the optimum wasn't searched for, or a factor is
     /// capped.
     fn times(&self) -> Option<f64> {
@@ -96,14 +93,14 @@ fn cameras(mesh: &Mesh, count: usize) -> Vec<Camera> {
     std::iter::once(framing).chain((0..count).map(other)).collect()
 }
 
-fn cases(meshes: &[(String, Mesh)], cameras_each: usize) -> Vec<Case> {
+fn cases(meshes: &[(String, Mesh)], cameras_each: usize, partitionings: &[Partitioning]) -> Vec<Case> {
     let mut cases = Vec::new();
     for (index, (_, mesh)) in meshes.iter().enumerate() {
         for (number, camera) in cameras(mesh, cameras_each).into_iter().enumerate() {
             for (k, tolerance) in TOLERANCES.into_iter().enumerate() {
                 // The default camera with every tolerance, the others with one each.
                 if number == 0 || number % 4 == k {
-                    for partitioning in [Partitioning::Integer, Partitioning::FractionalOdd] {
+                    for &partitioning in partitionings {
                         cases.push(Case { mesh: index, number, camera, tolerance, partitioning });
                     }
                 }
@@ -113,11 +110,11 @@ fn cases(meshes: &[(String, Mesh)], cameras_each: usize) -> Vec<Case> {
     cases
 }
 
-fn measure(mesh: &Mesh, topology: &Topology, case: &Case) -> Row {
+fn measure(mesh: &Mesh, topology: &Topology, case: &Case, searches: bool) -> Row {
     let Case { camera, tolerance, partitioning, .. } = *case;
     let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
     let inputs = Inputs::new(&tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()));
-    let compared = compare_with_optimum(mesh, topology, &inputs, topology.patches.len() <= MOST_PATCHES);
+    let compared = compare_with_optimum(mesh, topology, &inputs, searches && topology.patches.len() <= MOST_PATCHES);
     Row { case: *case, compared }
 }
 
@@ -168,13 +165,18 @@ fn main() {
     let mut meshes = meshes(&files);
     meshes.retain(|(name, _)| only.is_none_or(|only| name == only));
     let topologies: Vec<Topology> = meshes.iter().map(|(_, mesh)| Topology::of(mesh)).collect();
-    let cases = cases(&meshes, cameras_each);
+    let searches = !arguments.iter().any(|argument| argument == "search=no");
+    let partitionings: &[Partitioning] = match searches {
+        true => &[Partitioning::Integer, Partitioning::FractionalOdd],
+        false => &Partitioning::DIRECT3D,
+    };
+    let cases = cases(&meshes, cameras_each, partitionings);
     let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {
             scope.spawn(|| {
                 while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let row = measure(&meshes[case.mesh].1, &topologies[case.mesh], case);
+                    let row = measure(&meshes[case.mesh].1, &topologies[case.mesh], case, searches);
                     rows.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(row);
                 }
             });
@@ -182,17 +184,18 @@ fn main() {
     });
     let mut rows = rows.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
     rows.sort_by_key(|row| (row.case.mesh, row.case.number));
-    for odd in [false, true] {
-        println!("\n{}, {}x{} px\n", if odd { "Fractional-odd" } else { "Integer" }, VIEWPORT.x, VIEWPORT.y);
+    for &partitioning in partitionings {
+        println!("\n{partitioning:?}, {}x{} px\n", VIEWPORT.x, VIEWPORT.y);
         println!(
             "| mesh | cases | triangles over the optimum, geometric mean | largest | optimum over its lower bound | cases with more than one factor for all | largest error over the tolerance | capped cases |"
         );
         println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
         for (index, (name, mesh)) in meshes.iter().enumerate() {
-            let own: Vec<&Row> = rows.iter().filter(|row| row.case.mesh == index && row.is_odd() == odd).collect();
+            let own: Vec<&Row> =
+                rows.iter().filter(|row| row.case.mesh == index && row.case.partitioning == partitioning).collect();
             print_row(&format!("{name} ({})", mesh.triangles.len()), &own);
         }
-        print_row("all", &rows.iter().filter(|row| row.is_odd() == odd).collect::<Vec<_>>());
+        print_row("all", &rows.iter().filter(|row| row.case.partitioning == partitioning).collect::<Vec<_>>());
     }
     print_worst(&meshes, &rows);
 }
