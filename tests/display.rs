@@ -47,7 +47,9 @@ struct Display(Child);
 impl Display {
     fn open() -> Option<Self> {
         let mut command = Command::new("Xvfb");
-        command.args(["-displayfd", "1", "-screen", "0", "1500x920x24", "-nolisten", "tcp"]);
+        // Without -noreset, the server starts anew when its last client goes, and then cuts off a client that came
+        // at the same moment.
+        command.args(["-displayfd", "1", "-screen", "0", "1500x920x24", "-nolisten", "tcp", "-noreset"]);
         let mut server = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?;
         let mut number = String::new();
         BufReader::new(server.stdout.take()?).read_line(&mut number).ok()?;
