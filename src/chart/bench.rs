@@ -49,6 +49,7 @@ pub struct Probe {
     pub time: Time,
     pub errors: Option<Errors>,
     pub max_error_px: Option<f64>,
+    pub triangles_by_error: Option<u64>,
 }
 
 impl Bench<'_> {
@@ -63,9 +64,9 @@ impl Bench<'_> {
 
     /// The row for a setting and its measurements.
     pub(crate) fn row(&self, setting: &Setting, probe: Probe) -> Row {
-        let Probe { triangles, vertices, time, errors, max_error_px } = probe;
+        let Probe { triangles, vertices, time, errors, max_error_px, triangles_by_error } = probe;
         let (mesh, adapter) = (self.mesh.clone(), self.engine.gpu.info.name.clone());
-        Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px }
+        Row { mesh, adapter, setting: *setting, triangles, vertices, time, errors, max_error_px, triangles_by_error }
     }
 
     /// Measures any settings, without their clipping and culling: a comparison with a reference surface needs all of the mesh.
@@ -84,15 +85,22 @@ impl Bench<'_> {
         }
         let passes = engine.time(scene, target, camera, &settings, self.effort.runs)?;
         let time = Time::of(&passes);
-        let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None };
+        let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None, triangles_by_error: None };
         let wanted = Measurements {
             accuracy: self.truth.map(|truth| (truth, &inputs.view, self.effort.accuracy)),
-            screen_error: self.truth.is_none().then_some(&inputs),
+            screen_error: Some(&inputs),
             ..Measurements::default()
         };
         let MeasurementResults { accuracy, screen_error, .. } = engine.measure_all(scene, &wanted)?;
+        let own_px = screen_error.map(|worst| worst.px);
+        if let Some(px) = own_px.map(|px| px as f32).filter(|px| *px > 0.0) {
+            probe.triangles_by_error = engine.triangles_by_error(scene, &inputs, px)?;
+        }
         let from_truth = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
-        probe.max_error_px = from_truth.or(screen_error.map(|worst| worst.px));
+        probe.max_error_px = match self.truth {
+            Some(_) => from_truth,
+            None => own_px,
+        };
         probe.errors = accuracy.map(|accuracy| {
             let distances = accuracy.relative(accuracy.both_ways());
             let normal_degrees = accuracy.normals.largest;

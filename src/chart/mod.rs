@@ -33,7 +33,7 @@ use crate::settings::Choice;
 use crate::tessellate::Vertex;
 
 /// The columns of a row written as CSV.
-pub(crate) const COLUMNS: [&str; 17] = [
+pub(crate) const COLUMNS: [&str; 18] = [
     "mesh",
     "adapter",
     "surface",
@@ -51,6 +51,7 @@ pub(crate) const COLUMNS: [&str; 17] = [
     "rms_error",
     "max_error_px",
     "normal_error_deg",
+    "triangles_by_error",
 ];
 
 /// The measurements of one setting.
@@ -68,6 +69,9 @@ pub struct Row {
     /// The largest distance on screen, in px, from what was emitted to the reference surface, or without one to the limit of
     /// the method's own surface; `None` if nothing is in view.
     pub max_error_px: Option<f64>,
+    /// The triangles with which LOD by error comes as close to the limit of the method's own surface as this row does, on
+    /// screen and under the same partitioning; `None` if nothing is in view, or the tessellator hasn't enough segments.
+    pub triangles_by_error: Option<u64>,
 }
 
 /// Median times in ms.
@@ -110,7 +114,7 @@ impl Row {
     }
 
     /// The fields of [`COLUMNS`]. Numbers read back exactly, and unknown values are empty.
-    pub fn record(&self) -> [String; 17] {
+    pub fn record(&self) -> [String; 18] {
         let Method { surface, normals, partitioning, lod } = self.setting.method;
         let known = |number: Option<f64>| number.map_or_else(String::new, |number| number.to_string());
         [
@@ -131,6 +135,7 @@ impl Row {
             known(self.errors.map(|errors| errors.rms)),
             known(self.max_error_px),
             known(self.errors.map(|errors| errors.normal_degrees)),
+            self.triangles_by_error.map_or_else(String::new, |triangles| triangles.to_string()),
         ]
     }
 }

@@ -20,6 +20,7 @@ pub(super) fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, er
         time: Time { tessellate: 0.25 * ms, draw: 0.75 * ms },
         errors: Some(Errors { largest: error, rms: 0.5 * error, normal_degrees: 3.0 }),
         max_error_px: Some(error),
+        triangles_by_error: Some(triangles.div_ceil(2)),
     }
 }
 
@@ -160,13 +161,15 @@ fn rows_read_back_from_csv() {
     rows[1].errors = None;
     rows[1].max_error_px = None;
     rows[2].time.draw = 0.1 + 0.2;
+    rows[2].triangles_by_error = None;
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS).expect("a header");
     rows.iter().for_each(|row| writer.write_record(row.record()).expect("a row"));
     let bytes = writer.into_inner().expect("a buffer");
     let mut reader = csv::Reader::from_reader(&bytes[..]);
     let header = "mesh,adapter,surface,normals,partitioning,lod,setting,triangles,vertices,bytes,ms_tessellate,ms_draw,\
-                  ms_total,max_error,rms_error,max_error_px,normal_error_deg";
+                  ms_total,max_error,rms_error,max_error_px,normal_error_deg,\
+                  triangles_by_error";
     assert_eq!(reader.headers().expect("a header").iter().collect::<Vec<_>>().join(","), header);
     let records: Vec<_> = reader.records().map(|record| record.expect("whole")).collect();
     assert_eq!(records.len(), rows.len());
@@ -174,6 +177,7 @@ fn rows_read_back_from_csv() {
         assert_eq!(record.iter().collect::<Vec<_>>(), row.record());
         assert_eq!(record[12].parse(), Ok(row.time.total()));
         assert_eq!(record[13].parse().ok(), row.errors.map(|errors| errors.largest));
+        assert_eq!(record[17].parse().ok(), row.triangles_by_error);
         assert_eq!(record[9].parse(), Ok(3 * row.triangles * 32 + 12 * row.triangles));
     }
     assert_eq!((&records[2][2], &records[2][5], &records[2][6]), ("pn-aen", "uniform", "factor 2"));

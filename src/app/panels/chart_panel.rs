@@ -196,8 +196,8 @@ fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
 }
 
 fn probe(row: &Row) -> Probe {
-    let Row { triangles, vertices, time, errors, max_error_px, .. } = *row;
-    Probe { triangles, vertices, time, errors, max_error_px }
+    let Row { triangles, vertices, time, errors, max_error_px, triangles_by_error, .. } = *row;
+    Probe { triangles, vertices, time, errors, max_error_px, triangles_by_error }
 }
 
 /// The measurements of a point, as text.
@@ -214,6 +214,10 @@ fn facts(charted: &Charted, probe: &Probe) -> String {
     let (all, tessellate, draw) = (short(time.total()), short(time.tessellate), short(time.draw));
     lines.push(format!("{all} ms: {tessellate} tessellation, {draw} drawing"));
     lines.push(format!("{} triangles", grouped(probe.triangles)));
+    if let Some(least) = probe.triangles_by_error.filter(|least| *least < probe.triangles) {
+        let times = short(probe.triangles as f64 / least as f64);
+        lines.push(format!("{times} times the {} that LOD by error needs", grouped(least)));
+    }
     lines.join("\n")
 }
 

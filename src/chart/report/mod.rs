@@ -7,6 +7,7 @@ mod fronts;
 mod limits;
 mod lods;
 mod section;
+mod waste;
 
 use std::fmt::Write;
 
@@ -99,6 +100,7 @@ pub(crate) fn page(occasion: &Occasion, parts: &[Part]) -> String {
     text.extend(advice.iter().map(|sentence| format!("- {sentence}\n")));
     text += &tables(parts);
     text += &limits::table_of(parts);
+    text += &waste::table_of(parts);
     text += &fronts::table_of(parts);
     text.extend(parts.iter().map(section));
     text

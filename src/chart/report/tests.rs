@@ -1,5 +1,6 @@
 use super::fronts::standings;
 use super::lods::saving;
+use super::waste::{table_of, wastes};
 use super::*;
 use crate::chart::tests::{row, subject};
 use crate::chart::{Cost, LodKind, Row, has_converged};
@@ -209,4 +210,25 @@ fn without_a_reference_surface_surfaces_are_not_compared() {
     );
     assert!(!text.contains("### Error of at most") && text.contains("| largest error, px |\n"), "{text}");
     assert!(page(&occasion(), &[]).contains("## Which method to use when"), "a page without meshes");
+}
+
+#[test]
+fn triangles_are_held_against_those_that_lod_by_error_needs() {
+    let needing = |needed: Option<u64>, row: Row| Row { triangles_by_error: needed, ..row };
+    let two = |needed: [Option<u64>; 2]| {
+        part(vec![
+            needing(Some(10), row(PnAen, Uniform, 1.0, (1.0, 10, 0.03))),
+            needing(needed[0], row(PnAen, Uniform, 4.0, (1.0, 160, 0.004))),
+            needing(needed[1], row(PnAen, Uniform, 8.0, (1.0, 640, 0.0008))),
+            needing(Some(100), row(PnAen, Error, 1.0, (1.0, 100, 0.0008))),
+        ])
+    };
+    let found = wastes(&[two([Some(80), Some(80)])]);
+    let uniform = found.last().expect("two methods");
+    assert_eq!((found.len(), found[0].times.mean, uniform.method.lod), (2, 1.0, Uniform), "the least first");
+    assert_eq!((uniform.count, uniform.times.least, uniform.times.most), (2, 2.0, 8.0), "the plain mesh doesn't count");
+    assert!((uniform.times.mean - 4.0).abs() < 1e-12, "the geometric mean of 2 and 8: {found:?}");
+    let text = table_of(&[two([Some(80), None])]);
+    assert!(text.contains("| 1 | 2.00 | 2.00 | 2.00 |"), "what can't be compared is left out: {text}");
+    assert_eq!(table_of(&[]), "");
 }
