@@ -143,26 +143,45 @@ fn single_suffices(
     return triangle_error_at(seen, tolerance, domain_plan(factors), 0u) <= tolerance;
 }
 
-// Returns the largest error, in px, of the triangles `first` to `end` of a pattern, each computed by one invocation of the
-// workgroup (see search_group.wgsl); or of the first TOGETHER with one that isn't within the tolerance. Those are spread over
-// all.
-fn triangles_error(
+// Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
+// W == 0, and its inner triangles, which lie along no edge.
+fn part_counts(factors: PatchFactors) -> vec4<u32> {
+    let outside = vec3<u32>(segments(factors.outside.x), segments(factors.outside.y), segments(factors.outside.z));
+    let rows = outside + inside_segments(factors.inside) - 2u;
+    return vec4<u32>(rows, triangle_count(factors) - rows.x - rows.y - rows.z);
+}
+
+// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. Each invocation of the workgroup (see
+// search_group.wgsl) computes the error of a triangle, then of the next. They are spread over all parts. That ends early with
+// the first TOGETHER after which all parts are known not to be within the tolerance; or one part, if the inner triangles are
+// wanted.
+fn part_errors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
     factors: PatchFactors,
-    first: u32,
-    end: u32,
-) -> f32 {
+    wanted: vec4<bool>,
+) -> vec4<f32> {
     let plan = domain_plan(factors);
-    var worst = 0.0;
-    let turns = (end - first + TOGETHER - 1u) / TOGETHER;
-    for (var turn = 0u; turn < turns && worst <= tolerance; turn++) {
-        let t = first + lane * turns + turn;
+    let all_counts = part_counts(factors);
+    let counts = select(vec4<u32>(0u), all_counts, wanted);
+    let ends = vec3<u32>(counts.x, counts.x + counts.y, counts.x + counts.y + counts.z);
+    let count = ends.z + counts.w;
+    // How many triangles before each part aren't wanted.
+    let rest = all_counts - counts;
+    let before = vec4<u32>(0u, rest.x, rest.x + rest.y, rest.x + rest.y + rest.z);
+    let turns = (count + TOGETHER - 1u) / TOGETHER;
+    var worst = vec4<f32>(0.0);
+    var goes_on = true;
+    for (var turn = 0u; turn < turns && goes_on; turn++) {
+        let i = lane * turns + turn;
+        let part = select(0u, 1u, i >= ends.x) + select(0u, 1u, i >= ends.y) + select(0u, 1u, i >= ends.z);
         var own = 0.0;
-        if t < end {
-            own = triangle_error_at(seen, tolerance, plan, t);
+        if i < count && worst[part] <= tolerance {
+            own = triangle_error_at(seen, tolerance, plan, i + before[part]);
         }
-        worst = max(worst, largest_of_group(own));
+        worst = max(worst, largest_of_group(part, own));
+        let within = worst <= vec4<f32>(tolerance);
+        goes_on = select(any(wanted & within), all(within), wanted.w);
     }
     return worst;
 }
@@ -171,67 +190,30 @@ fn triangles_error(
 // the points of edge and ring don't match.
 const ROW_REACH: f32 = 6.0;
 
-// Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
-fn row_error(seen: ptr<function, SeenPatch>, tolerance: f32, factors: PatchFactors, k: u32) -> f32 {
-    let inner = inside_segments(factors.inside) - 2u;
-    let u = segments(factors.outside.x);
-    let v = segments(factors.outside.y);
-    let w = segments(factors.outside.z);
-    let before = select(select(0u, u, k == 1u), u + v, k == 2u);
-    let first = before + k * inner;
-    return triangles_error(seen, tolerance, factors, first, first + select(select(u, v, k == 1u), w, k == 2u) + inner);
-}
-
-// Returns the error of the triangles that lie along no edge.
-fn inner_error(seen: ptr<function, SeenPatch>, tolerance: f32, factors: PatchFactors) -> f32 {
-    let rows = outer_count(factors) + 3u * (inside_segments(factors.inside) - 2u);
-    return triangles_error(seen, tolerance, factors, rows, triangle_count(factors));
-}
-
-// Returns the least inside factor, `least` or more, with which the triangles along no edge are within the tolerance;
-// BEYOND_LAST if none is.
-fn least_inner_factor(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning: u32, least: f32) -> f32 {
-    var inside = factor_from(partitioning, max(least, 2.0));
-    while inside <= last_factor(partitioning) {
-        let error = inner_error(seen, tolerance, process(partitioning, vec3<f32>(2.0), inside));
-        if error <= tolerance {
-            return inside;
-        }
-        inside = next_factor(partitioning, inside, error, tolerance);
-    }
-    return BEYOND_LAST;
-}
-
-// Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-// BEYOND_LAST if that needs more than the larger of `least` and `inside`, and ROW_REACH. Where points may slide it tries all.
-fn least_row_factor(
-    seen: ptr<function, SeenPatch>,
-    tolerance: f32,
+// Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments; BEYOND_LAST
+// after the last. That is the larger of `least` and `inside`, and ROW_REACH. Where points may slide, all are tried.
+fn next_row_factor(
     partitioning: u32,
-    k: u32,
+    slides: bool,
     least: f32,
     inside: f32,
+    factor: f32,
+    error: f32,
+    tolerance: f32,
 ) -> f32 {
-    let slides = may_slide(seen, tolerance);
-    let last = select(max(least, inside) + ROW_REACH, BEYOND_LAST, slides);
-    let most = min(factor_from(partitioning, last), last_factor(partitioning));
-    var factor = least;
-    while factor <= most {
-        var edges = vec3<f32>(2.0);
-        edges[k] = factor;
-        let error = row_error(seen, tolerance, process(partitioning, edges, inside), k);
-        if error <= tolerance {
-            return factor;
-        }
-        // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
-        // may slide, that doesn't matter.
-        if slides {
-            factor = next_factor(partitioning, factor, error, tolerance);
-        } else {
-            factor = factor_from(partitioning, factor + 1.0);
-        }
+    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
+    // may slide, that doesn't matter.
+    if slides {
+        return next_factor(partitioning, factor, error, tolerance);
     }
-    return BEYOND_LAST;
+    let next = factor_from(partitioning, factor + 1.0);
+    return select(BEYOND_LAST, next, next <= factor_from(partitioning, max(least, inside) + ROW_REACH));
+}
+
+// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
+fn pattern_cost(edges: vec3<f32>, inside: f32, segment: f32) -> f32 {
+    let rings = inside - 2.0;
+    return 3.0 * rings + 1.5 * rings * rings + segment * (edges.x + edges.y + edges.z);
 }
 
 // Returns the factors of the edges U == 0, V == 0 and W == 0 and inside with which a patch is within the tolerance and has the
@@ -247,28 +229,44 @@ fn fewest_triangles(
     segment: f32,
 ) -> vec4<f32> {
     let within = BOUND_SHARE * tolerance;
+    let slides = may_slide(seen, within);
     var best = vec4<f32>(least, BEYOND_LAST);
     var fewest = 3.4e38;
-    // Written so that each function is called in one place only: drivers compile a copy for each call.
-    var inside = least_inside;
-    var goes_on = true;
-    while goes_on {
-        inside = least_inner_factor(seen, within, partitioning, inside);
-        let rings = inside - 2.0;
-        var cost = 3.0 * rings + 1.5 * rings * rings + segment * (least.x + least.y + least.z);
-        goes_on = inside <= 64.0 && cost < fewest;
-        var asked = least;
-        for (var k = 0u; k < 3u; k++) {
-            if goes_on && cost < fewest {
-                asked[k] = least_row_factor(seen, within, partitioning, k, least[k], inside);
-                cost += select(segment * (asked[k] - least[k]), 3.4e38, asked[k] > 64.0);
+    // For each inside factor, first the inner triangles; then the rows, until all are within the tolerance. Written so that
+    // each function is called in one place only: drivers compile a copy for each call.
+    var inside = factor_from(partitioning, max(least_inside, 2.0));
+    var edges = vec3<f32>(2.0);
+    var wanted = vec4<bool>(false, false, false, true);
+    while inside <= 64.0 && pattern_cost(least, inside, segment) < fewest {
+        let errors = part_errors(seen, within, process(partitioning, edges, inside), wanted);
+        let fails = errors > vec4<f32>(within);
+        var is_over = false;
+        if !wanted.w {
+            for (var k = 0u; k < 3u; k++) {
+                if fails[k] {
+                    edges[k] = next_row_factor(partitioning, slides, least[k], inside, edges[k], errors[k], within);
+                }
             }
+            let cost = pattern_cost(edges, inside, segment);
+            if !any(fails) && cost < fewest {
+                fewest = cost;
+                best = vec4<f32>(edges, inside);
+            }
+            is_over = !any(fails) || cost >= fewest || max(max(edges.x, edges.y), edges.z) > 64.0;
+            wanted = fails;
+        } else if !fails.w {
+            edges = least;
+            wanted = vec4<bool>(true, true, true, false);
         }
-        if goes_on && cost < fewest {
-            fewest = cost;
-            best = vec4<f32>(asked, inside);
+        if is_over || fails.w {
+            var next = factor_from(partitioning, inside + 1.0);
+            if fails.w {
+                next = next_factor(partitioning, inside, errors.w, within);
+            }
+            inside = next;
+            edges = vec3<f32>(2.0);
+            wanted = vec4<bool>(false, false, false, true);
         }
-        inside += 1.0;
     }
     return best;
 }
@@ -316,19 +314,17 @@ fn least_inside_factor(
     least: f32,
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
-    var inside = least;
-    var result = 0.0;
-    while result == 0.0 {
-        inside = least_inner_factor(seen, within, partitioning, inside);
-        let factors = process(partitioning, edges, inside);
-        var k = 0u;
-        while k < 3u && inside <= 64.0 && row_error(seen, within, factors, k) <= within {
-            k++;
-        }
-        if k == 3u || inside > 64.0 {
+    var inside = factor_from(partitioning, max(least, 2.0));
+    var result = BEYOND_LAST;
+    while inside <= 64.0 && result > 64.0 {
+        let errors = part_errors(seen, within, process(partitioning, edges, inside), vec4<bool>(true));
+        if all(errors <= vec4<f32>(within)) {
             result = inside;
+        } else if errors.w > within {
+            inside = next_factor(partitioning, inside, errors.w, within);
+        } else {
+            inside = factor_from(partitioning, inside + 1.0);
         }
-        inside += 1.0;
     }
     return result;
 }

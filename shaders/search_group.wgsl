@@ -7,20 +7,20 @@ const TOGETHER: u32 = 32u;
 
 // This invocation's number in its workgroup.
 var<private> lane: u32;
-// The error that each invocation found, and the largest of them.
-var<workgroup> lane_errors: array<f32, TOGETHER>;
-var<workgroup> group_error: f32;
+// The bits of the largest error that invocations found in each part of a pattern. The order of bits is that of the numbers, since
+// none is negative.
+var<workgroup> found_errors: array<atomic<u32>, 4>;
+var<workgroup> group_errors: vec4<f32>;
 
-// Returns the largest error that an invocation of the workgroup has found.
-fn largest_of_group(error: f32) -> f32 {
-    lane_errors[lane] = error;
+// Returns the largest errors that the invocations of the workgroup have found in each part of a pattern, each an error in one
+// part.
+fn largest_of_group(part: u32, error: f32) -> vec4<f32> {
+    atomicMax(&found_errors[part], bitcast<u32>(error));
     workgroupBarrier();
     if lane == 0u {
-        var largest = 0.0;
-        for (var i = 0u; i < TOGETHER; i++) {
-            largest = max(largest, lane_errors[i]);
+        for (var i = 0u; i < 4u; i++) {
+            group_errors[i] = bitcast<f32>(atomicExchange(&found_errors[i], 0u));
         }
-        group_error = largest;
     }
-    return workgroupUniformLoad(&group_error);
+    return workgroupUniformLoad(&group_errors);
 }

@@ -7,12 +7,14 @@
 //! Then every patch takes the least inside factor that suffices beside the factors of its edges. If that is much larger than
 //! what it has chosen, it asks again.
 
+use std::array::from_fn;
+
 use glam::{Vec2, Vec3};
 
 use super::domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
 use super::factors::{
-    FIXED_ONE, Partitioning, PatchFactors, inside_segments, outer_count, patch_is_minimal, process, round_pow2,
-    segments, triangle_count,
+    FIXED_ONE, Partitioning, PatchFactors, inside_segments, patch_is_minimal, process, round_pow2, segments,
+    triangle_count,
 };
 use super::lod::LodView;
 use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, near_depth, piece_error};
@@ -134,20 +136,36 @@ fn single_suffices(
 /// How many triangles are looked at together, before the first that isn't within the tolerance ends the search.
 pub(crate) const TOGETHER: u32 = 32;
 
-/// Returns the largest error, in px, of the triangles `first` to `end` of a pattern; or of the first [`TOGETHER`] with one
-/// that isn't within the tolerance. Those are spread over all.
-fn triangles_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, first: u32, end: u32) -> f32 {
+/// Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
+/// W == 0, and its inner triangles, which lie along no edge.
+fn part_counts(factors: PatchFactors) -> [u32; 4] {
+    let [u, v, w] = factors.outside.map(|word| segments(word) + inside_segments(factors.inside) - 2);
+    [u, v, w, triangle_count(factors) - u - v - w]
+}
+
+/// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. [`TOGETHER`] triangles are looked at
+/// at once, spread over all parts. That ends early with the first of them after which all parts are known not to be within the
+/// tolerance; or one part, if the inner triangles are wanted.
+fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted: [bool; 4]) -> [f32; 4] {
     let plan = domain_plan(factors);
-    let mut worst = 0.0f32;
-    let turns = (end - first).div_ceil(TOGETHER);
-    let mut turn = 0;
-    while turn < turns && worst <= tolerance {
-        for lane in 0..TOGETHER {
-            let t = first + lane * turns + turn;
-            if t < end {
-                worst = worst.max(triangle_error_at(patch, tolerance, &plan, t));
+    let all = part_counts(factors);
+    let starts: [u32; 4] = from_fn(|part| all[..part].iter().sum());
+    let counts: [u32; 4] = from_fn(|part| if wanted[part] { all[part] } else { 0 });
+    let ends: [u32; 4] = from_fn(|part| counts[..=part].iter().sum());
+    let turns = ends[3].div_ceil(TOGETHER);
+    let mut worst = [0.0f32; 4];
+    let (mut turn, mut goes_on) = (0, true);
+    while turn < turns && goes_on {
+        let before = worst;
+        for i in (0..TOGETHER).map(|lane| lane * turns + turn) {
+            let part = ends[..3].iter().filter(|&&end| i >= end).count();
+            if i < ends[3] && before[part] <= tolerance {
+                let t = starts[part] + i - (ends[part] - counts[part]);
+                worst[part] = worst[part].max(triangle_error_at(patch, tolerance, &plan, t));
             }
         }
+        let mut within = (0..4).filter(|&part| wanted[part]).map(|part| worst[part] <= tolerance);
+        goes_on = if wanted[3] { within.all(|is| is) } else { within.any(|is| is) };
         turn += 1;
     }
     worst
@@ -157,65 +175,36 @@ fn triangles_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, fir
 /// where the points of edge and ring don't match.
 pub(crate) const ROW_REACH: f32 = 6.0;
 
-/// Returns the error of the row along edge `k` (0 to 2 for U == 0, V == 0 and W == 0).
-fn row_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, k: u32) -> f32 {
-    let inner = inside_segments(factors.inside) - 2;
-    let counts = factors.outside.map(segments);
-    let before = [0, counts[0], counts[0] + counts[1]][k as usize];
-    let first = before + k * inner;
-    triangles_error(patch, tolerance, factors, first, first + counts[k as usize] + inner)
-}
-
-/// Returns the error of the triangles that lie along no edge.
-fn inner_error(patch: &SeenPatch, tolerance: f32, factors: PatchFactors) -> f32 {
-    let rows = outer_count(factors) + 3 * (inside_segments(factors.inside) - 2);
-    triangles_error(patch, tolerance, factors, rows, triangle_count(factors))
-}
-
-/// Returns the least inside factor, `least` or more, with which the triangles along no edge are within the tolerance;
-/// [`BEYOND_LAST`] if none is.
-fn least_inner_factor(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, least: f32) -> f32 {
-    let mut inside = factor_from(partitioning, least.max(2.0));
-    while inside <= last_factor(partitioning) {
-        let error = inner_error(patch, tolerance, process(partitioning, [2.0; 3], inside));
-        if error <= tolerance {
-            return inside;
-        }
-        inside = next_factor(partitioning, inside, error, tolerance);
-    }
-    BEYOND_LAST
-}
-
-/// Returns the least factor of edge `k`, `least` or more, whose row is within the tolerance beside `inside` segments;
-/// [`BEYOND_LAST`] if that needs more than the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide it tries all.
-fn least_row_factor(
-    patch: &SeenPatch,
-    tolerance: f32,
+/// Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments;
+/// [`BEYOND_LAST`] after the last. That is the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide, all
+/// are tried.
+fn next_row_factor(
     partitioning: Partitioning,
-    k: u32,
-    least: f32,
-    inside: f32,
+    slides: bool,
+    [least, inside]: [f32; 2],
+    factor: f32,
+    error: f32,
+    tolerance: f32,
 ) -> f32 {
-    let slides = may_slide(patch, tolerance);
-    let last = if slides { BEYOND_LAST } else { least.max(inside) + ROW_REACH };
-    let most = factor_from(partitioning, last).min(last_factor(partitioning));
-    let mut factor = least;
-    while factor <= most {
-        let mut edges = [2.0; 3];
-        edges[k as usize] = factor;
-        let error = row_error(patch, tolerance, process(partitioning, edges, inside), k);
-        if error <= tolerance {
-            return factor;
-        }
-        // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where
-        // points may slide, that doesn't matter.
-        factor = match slides {
-            true => next_factor(partitioning, factor, error, tolerance),
-            false => factor_from(partitioning, factor + 1.0),
-        };
+    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
+    // may slide, that doesn't matter.
+    if slides {
+        return next_factor(partitioning, factor, error, tolerance);
     }
-    BEYOND_LAST
+    let next = factor_from(partitioning, factor + 1.0);
+    if next <= factor_from(partitioning, least.max(inside) + ROW_REACH) { next } else { BEYOND_LAST }
 }
+
+/// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
+fn pattern_cost(edges: [f32; 3], inside: f32, segment: f32) -> f32 {
+    let rings = inside - 2.0;
+    3.0 * rings + 1.5 * rings * rings + segment * (edges[0] + edges[1] + edges[2])
+}
+
+/// The parts of a pattern: all, the rows along its edges, and its inner triangles.
+const ALL: [bool; 4] = [true; 4];
+const ROWS: [bool; 4] = [true, true, true, false];
+const INNER: [bool; 4] = [false, false, false, true];
 
 /// Returns the factors of the edges U == 0, V == 0 and W == 0 and inside with which a patch is within the tolerance and
 /// has the fewest triangles, if a segment of an edge counts as `segment` triangles. `least` are the least factors that
@@ -230,34 +219,44 @@ fn fewest_triangles(
     segment: f32,
 ) -> [f32; 4] {
     let within = BOUND_SHARE * tolerance;
+    let slides = may_slide(patch, within);
     let mut best = [least[0], least[1], least[2], BEYOND_LAST];
-    let largest = least[0].max(least[1]).max(least[2]).max(least_inside);
-    if largest > 64.0 {
+    if least[0].max(least[1]).max(least[2]).max(least_inside) > 64.0 {
         return best;
     }
     if single_suffices(patch, within, partitioning, least, least_inside) {
         return [least[0], least[1], least[2], 1.0];
     }
     let mut fewest = 3.4e38;
-    let mut inside = least_inside;
-    let mut goes_on = true;
-    while goes_on {
-        inside = least_inner_factor(patch, within, partitioning, inside);
-        let rings = inside - 2.0;
-        let mut cost = 3.0 * rings + 1.5 * rings * rings + segment * (least[0] + least[1] + least[2]);
-        goes_on = inside <= 64.0 && cost < fewest;
-        let mut asked = least;
-        for k in 0..3 {
-            if goes_on && cost < fewest {
-                asked[k] = least_row_factor(patch, within, partitioning, k as u32, least[k], inside);
-                cost += if asked[k] > 64.0 { 3.4e38 } else { segment * (asked[k] - least[k]) };
+    // For each inside factor, first the inner triangles; then the rows, until all are within the tolerance.
+    let mut inside = factor_from(partitioning, least_inside.max(2.0));
+    let (mut edges, mut wanted) = ([2.0; 3], INNER);
+    while inside <= 64.0 && pattern_cost(least, inside, segment) < fewest {
+        let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
+        let fails = errors.map(|error| error > within);
+        let mut is_over = false;
+        if wanted != INNER {
+            for k in (0..3).filter(|&k| fails[k]) {
+                let [factor, error] = [edges[k], errors[k]];
+                edges[k] = next_row_factor(partitioning, slides, [least[k], inside], factor, error, within);
             }
+            let cost = pattern_cost(edges, inside, segment);
+            if !fails.contains(&true) && cost < fewest {
+                fewest = cost;
+                best = [edges[0], edges[1], edges[2], inside];
+            }
+            is_over = !fails.contains(&true) || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
+            wanted = fails;
+        } else if !fails[3] {
+            (edges, wanted) = (least, ROWS);
         }
-        if goes_on && cost < fewest {
-            fewest = cost;
-            best = [asked[0], asked[1], asked[2], inside];
+        if is_over || fails[3] {
+            inside = match fails[3] {
+                true => next_factor(partitioning, inside, errors[3], within),
+                false => factor_from(partitioning, inside + 1.0),
+            };
+            (edges, wanted) = ([2.0; 3], INNER);
         }
-        inside += 1.0;
     }
     best
 }
@@ -314,21 +313,18 @@ pub(super) fn least_inside_factor(
     if largest > 64.0 {
         return BEYOND_LAST;
     }
-    let mut inside = least;
-    let mut result = 0.0;
-    while result == 0.0 {
-        inside = least_inner_factor(patch, within, partitioning, inside);
-        let factors = process(partitioning, edges, inside);
-        let mut k = 0;
-        while k < 3 && inside <= 64.0 && row_error(patch, within, factors, k) <= within {
-            k += 1;
+    let mut inside = factor_from(partitioning, least.max(2.0));
+    while inside <= 64.0 {
+        let errors = part_errors(patch, within, process(partitioning, edges, inside), ALL);
+        if errors.iter().all(|error| *error <= within) {
+            return inside;
         }
-        if k == 3 || inside > 64.0 {
-            result = inside;
-        }
-        inside += 1.0;
+        inside = match errors[3] > within {
+            true => next_factor(partitioning, inside, errors[3], within),
+            false => factor_from(partitioning, inside + 1.0),
+        };
     }
-    result
+    BEYOND_LAST
 }
 
 #[cfg(test)]

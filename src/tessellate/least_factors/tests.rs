@@ -111,12 +111,13 @@ fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, segment
     }
     let factors = || (1..=14u8).map(f32::from).filter(|&factor| factor_from(partitioning, factor) == factor);
     let of = |inside: f32| {
-        let error = inner_error(patch, within, process(partitioning, [2.0; 3], inside));
-        let edge = |k: u32| {
+        let error = part_errors(patch, within, process(partitioning, [2.0; 3], inside), INNER)[3];
+        let edge = |k: usize| {
             factors().filter(|&factor| factor <= factor_from(partitioning, inside + ROW_REACH)).find(|&factor| {
                 let mut edges = [2.0; 3];
-                edges[k as usize] = factor;
-                row_error(patch, within, process(partitioning, edges, inside), k) <= within
+                edges[k] = factor;
+                let wanted = from_fn(|part| part == k);
+                part_errors(patch, within, process(partitioning, edges, inside), wanted)[k] <= within
             })
         };
         let rings = inside - 2.0;
