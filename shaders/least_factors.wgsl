@@ -153,8 +153,7 @@ fn part_counts(factors: PatchFactors) -> vec4<u32> {
 
 // Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. Each invocation of the workgroup (see
 // search_group.wgsl) computes the error of a triangle, then of the next. They are spread over all parts. That ends early with
-// the first TOGETHER after which all parts are known not to be within the tolerance; or one part, if the inner triangles are
-// wanted.
+// the first TOGETHER after which no part is within the tolerance.
 fn part_errors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -180,8 +179,7 @@ fn part_errors(
             own = triangle_error_at(seen, tolerance, plan, i + before[part]);
         }
         worst = max(worst, largest_of_group(part, own));
-        let within = worst <= vec4<f32>(tolerance);
-        goes_on = select(any(wanted & within), all(within), wanted.w);
+        goes_on = any(wanted & (worst <= vec4<f32>(tolerance)));
     }
     return worst;
 }
@@ -191,7 +189,7 @@ fn part_errors(
 const ROW_REACH: f32 = 6.0;
 
 // Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments; BEYOND_LAST
-// after the last. That is the larger of `least` and `inside`, and ROW_REACH. Where points may slide, all are tried.
+// if none is enough up to the larger of `least` and `inside`, and ROW_REACH. Where points may slide, there is no such end.
 fn next_row_factor(
     partitioning: u32,
     slides: bool,
@@ -201,13 +199,14 @@ fn next_row_factor(
     error: f32,
     tolerance: f32,
 ) -> f32 {
+    let estimate = next_factor(partitioning, factor, error, tolerance);
+    let last = factor_from(partitioning, max(least, inside) + ROW_REACH);
+    if slides || estimate > last {
+        return select(BEYOND_LAST, estimate, slides);
+    }
     // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
     // may slide, that doesn't matter.
-    if slides {
-        return next_factor(partitioning, factor, error, tolerance);
-    }
-    let next = factor_from(partitioning, factor + 1.0);
-    return select(BEYOND_LAST, next, next <= factor_from(partitioning, max(least, inside) + ROW_REACH));
+    return factor_from(partitioning, factor + 1.0);
 }
 
 // Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -216,73 +215,110 @@ fn pattern_cost(edges: vec3<f32>, inside: f32, segment: f32) -> f32 {
     return 3.0 * rings + 1.5 * rings * rings + segment * (edges.x + edges.y + edges.z);
 }
 
-// Returns the factors of the edges U == 0, V == 0 and W == 0 and inside with which a patch is within the tolerance and has the
-// fewest triangles, if a segment of an edge counts as `segment` triangles. `least` are the least factors that the edges may
-// get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least` and BEYOND_LAST. Not for
-// patches of which one triangle suffices, or with a least factor above 64.
+// The factors that a patch has chosen.
+struct Chosen {
+    // Of the edges U == 0, V == 0 and W == 0, and inside.
+    edges: vec3<f32>,
+    inside: f32,
+    // The least inside factor above 2 with which the inner triangles are within the tolerance; 0 if it isn't known.
+    inner: f32,
+}
+
+// A step of a search: an inside factor, and whether its inner triangles are looked at, or its rows.
+struct Step {
+    inside: f32,
+    is_inner: bool,
+}
+
+// Returns the first step. `least_inside` is the least inside factor, and `inner` is as in `Chosen`.
+fn first_step(partitioning: u32, least_inside: f32, inner: f32) -> Step {
+    let inside = factor_from(partitioning, max(least_inside, 2.0));
+    // Two segments leave no inner triangles.
+    if inside == 2.0 || inner == 0.0 {
+        return Step(inside, inside > 2.0);
+    }
+    return Step(inner, false);
+}
+
+// Returns the step after an inside factor that isn't enough. `error` is that of its inner triangles, 0 if these are within the
+// tolerance.
+fn next_step(partitioning: u32, inside: f32, inner: f32, error: f32, tolerance: f32) -> Step {
+    if inside == 2.0 && inner > 0.0 {
+        return Step(inner, false);
+    }
+    if error > tolerance {
+        return Step(next_factor(partitioning, inside, error, tolerance), true);
+    }
+    return Step(factor_from(partitioning, inside + 1.0), true);
+}
+
+// Returns the factors with which a patch is within the tolerance and has the fewest triangles, if a segment of an edge counts as
+// `segment` triangles. `least` are the least factors that the edges may get, `least_inside` is the least inside factor, and
+// `inner` is as in `Chosen`. If no factors are enough, it returns `least` and BEYOND_LAST. Not for patches of which one triangle
+// suffices, or with a least factor above 64.
 fn fewest_triangles(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
     partitioning: u32,
     least: vec3<f32>,
     least_inside: f32,
+    inner: f32,
     segment: f32,
-) -> vec4<f32> {
+) -> Chosen {
     let within = BOUND_SHARE * tolerance;
     let slides = may_slide(seen, within);
-    var best = vec4<f32>(least, BEYOND_LAST);
+    var best = Chosen(least, BEYOND_LAST, inner);
     var fewest = 3.4e38;
-    // For each inside factor, first the inner triangles; then the rows, until all are within the tolerance. Written so that
-    // each function is called in one place only: drivers compile a copy for each call.
-    var inside = factor_from(partitioning, max(least_inside, 2.0));
-    var edges = vec3<f32>(2.0);
-    var wanted = vec4<bool>(false, false, false, true);
-    while inside <= 64.0 && pattern_cost(least, inside, segment) < fewest {
+    // For each inside factor, first the inner triangles, unless they are known to be within the tolerance; then the rows, until
+    // all are. Written so that each function is called in one place only: drivers compile a copy for each call.
+    var step = first_step(partitioning, least_inside, inner);
+    var edges = least;
+    var rows = vec3<bool>(true);
+    while step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest {
+        let inside = step.inside;
+        let wanted = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner);
         let errors = part_errors(seen, within, process(partitioning, edges, inside), wanted);
-        let fails = errors > vec4<f32>(within);
-        var is_over = false;
-        if !wanted.w {
+        rows = errors.xyz > vec3<f32>(within);
+        var is_over = errors.w > within;
+        if step.is_inner && !is_over {
+            best.inner = select(best.inner, inside, best.inner == 0.0);
+            step.is_inner = false;
+            rows = vec3<bool>(true);
+        } else if !is_over {
             for (var k = 0u; k < 3u; k++) {
-                if fails[k] {
+                if rows[k] {
                     edges[k] = next_row_factor(partitioning, slides, least[k], inside, edges[k], errors[k], within);
                 }
             }
             let cost = pattern_cost(edges, inside, segment);
-            if !any(fails) && cost < fewest {
+            is_over = !any(rows) || cost >= fewest || max(max(edges.x, edges.y), edges.z) > 64.0;
+            if !any(rows) && cost < fewest {
                 fewest = cost;
-                best = vec4<f32>(edges, inside);
+                best.edges = edges;
+                best.inside = inside;
             }
-            is_over = !any(fails) || cost >= fewest || max(max(edges.x, edges.y), edges.z) > 64.0;
-            wanted = fails;
-        } else if !fails.w {
-            edges = least;
-            wanted = vec4<bool>(true, true, true, false);
         }
-        if is_over || fails.w {
-            var next = factor_from(partitioning, inside + 1.0);
-            if fails.w {
-                next = next_factor(partitioning, inside, errors.w, within);
-            }
-            inside = next;
-            edges = vec3<f32>(2.0);
-            wanted = vec4<bool>(false, false, false, true);
+        if is_over {
+            step = next_step(partitioning, inside, best.inner, errors.w, within);
+            edges = least;
+            rows = vec3<bool>(true);
         }
     }
     return best;
 }
 
-// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0, and the inside factor that it would take
-// beside these. `least` are the least that the edges may get, and `least_inside` is the least inside factor. If no factors are
-// enough, it returns `least` and BEYOND_LAST. Not for patches of which one triangle suffices, or with a least factor above 64.
+// Returns the factors that a patch asks its edges for, and the inside factor that it would take beside these. See
+// fewest_triangles.
 fn asked_factors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
     partitioning: u32,
     least: vec3<f32>,
     least_inside: f32,
-) -> vec4<f32> {
+    inner: f32,
+) -> Chosen {
     // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 2.0);
+    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, inner, 2.0);
 }
 
 // Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger than
@@ -291,39 +327,39 @@ fn asks_again(chosen: f32, inside: f32) -> bool {
     return inside > 64.0 || inside > 1.1 * chosen + 1.0;
 }
 
-// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch has the fewest triangles if no
-// neighbour asks for anything. See fewest_triangles.
+// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See fewest_triangles.
 fn own_least_factors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
     partitioning: u32,
     least: vec3<f32>,
     least_inside: f32,
-) -> vec4<f32> {
-    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 1.0);
+) -> Chosen {
+    return fewest_triangles(seen, tolerance, partitioning, least, least_inside, 0.0, 1.0);
 }
 
 // Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these
-// factors of the edges U == 0, V == 0 and W == 0; BEYOND_LAST if none does. Not for patches of which one triangle suffices, or
-// with a factor above 64.
+// factors of the edges U == 0, V == 0 and W == 0; BEYOND_LAST if none does. `inner` is as in `Chosen`. Not for patches of which
+// one triangle suffices, or with a factor above 64.
 fn least_inside_factor(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
     partitioning: u32,
     edges: vec3<f32>,
     least: f32,
+    inner: f32,
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
-    var inside = factor_from(partitioning, max(least, 2.0));
     var result = BEYOND_LAST;
-    while inside <= 64.0 && result > 64.0 {
-        let errors = part_errors(seen, within, process(partitioning, edges, inside), vec4<bool>(true));
-        if all(errors <= vec4<f32>(within)) {
-            result = inside;
-        } else if errors.w > within {
-            inside = next_factor(partitioning, inside, errors.w, within);
+    var step = first_step(partitioning, least, inner);
+    while step.inside <= 64.0 && result > 64.0 {
+        let wanted = vec4<bool>(vec3<bool>(!step.is_inner), step.is_inner);
+        let errors = part_errors(seen, within, process(partitioning, edges, step.inside), wanted);
+        if any(errors > vec4<f32>(within)) {
+            step = next_step(partitioning, step.inside, inner, errors.w, within);
         } else {
-            inside = factor_from(partitioning, inside + 1.0);
+            result = select(step.inside, BEYOND_LAST, step.is_inner);
+            step.is_inner = false;
         }
     }
     return result;

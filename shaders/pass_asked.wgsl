@@ -16,13 +16,23 @@
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
 // Bits of numbers, whose order is that of the numbers since none is negative. One after another: the factors of edges; the
 // least factor of each edge; the factor that each patch's heights need inside it, if it is displaced; the inside factors of
-// patches, first those that they chose; the numbers of patches of three searches; the number of rounds that are over; the patches of the first two
+// patches, first those that they chose; the least factors with which their inner triangles are within the tolerance, 0 where
+// they aren't known; the numbers of patches of three searches; the number of rounds that are over; the patches of the first two
 // searches, one after the other; those of the third.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
 
 // Where the inside factor of a patch is.
 fn inside_at(patch_index: u32) -> u32 {
     return 2u * params.factor_count + params.patch_count + patch_index;
+}
+
+// Where the least factor is with which a patch's inner triangles are within the tolerance.
+fn inner_at(patch_index: u32) -> u32 {
+    return inside_at(params.patch_count + patch_index);
+}
+
+fn known_inner(patch_index: u32) -> f32 {
+    return bitcast<f32>(atomicLoad(&edge_factors[inner_at(patch_index)]));
 }
 
 // The factor that a patch's heights need inside it.
@@ -61,7 +71,7 @@ fn rounds_at() -> u32 {
 
 // Where the number of patches is that a search is for.
 fn searched_count_at(search: u32) -> u32 {
-    return 2u * (params.factor_count + params.patch_count) + search;
+    return inner_at(params.patch_count) + search;
 }
 
 // Where the `i`-th of those patches is.
@@ -100,6 +110,7 @@ fn asked_factors_main(
     let least = first_least(&seen, edges_of(index, params.factor_count));
     let inside = heights_inside(index);
     let within = BOUND_SHARE * surface_tolerance();
+    atomicStore(&edge_factors[inner_at(index)], 0u);
     let is_known = params.surface == SURFACE_FLAT || max(max(max(least.x, least.y), least.z), inside) > 64.0;
     if is_known || single_suffices(&seen, within, params.partitioning, least, inside) {
         ask(index, least);
@@ -142,10 +153,12 @@ fn search_asked_factors_main(
         if search == SEARCH_ASKED {
             least = first_least(&seen, least);
         }
-        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
+        let inner = known_inner(index);
+        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index), inner);
         if lane == 0u {
-            ask(index, asked.xyz);
-            set_inside(index, asked.w);
+            ask(index, asked.edges);
+            set_inside(index, asked.inside);
+            atomicStore(&edge_factors[inner_at(index)], bitcast<u32>(asked.inner));
         }
         i += workgroups.x;
         index = searched_patch(search, i);
@@ -204,7 +217,9 @@ fn search_inside_factors_main(
     while index != NO_MORE {
         var seen = load_seen(index);
         let edges = edges_of(index, 0u);
-        let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, heights_inside(index));
+        let least = heights_inside(index);
+        let inner = known_inner(index);
+        let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, least, inner);
         if lane == 0u {
             let chosen = bitcast<f32>(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
             if asks_again(chosen, inside) {

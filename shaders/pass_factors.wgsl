@@ -107,7 +107,7 @@ fn edge_factors_main(
     if params.lod == LOD_ERROR {
         // No patch is searched yet.
         if index < 4u {
-            edge_factors[2u * (params.factor_count + params.patch_count) + index] = 0.0;
+            edge_factors[2u * params.factor_count + 3u * params.patch_count + index] = 0.0;
         }
         edge_factors[index] = whole_segments(params.partitioning, 1.0);
         edge_factors[params.factor_count + index] = whole_segments(params.partitioning, factor);

@@ -90,7 +90,7 @@ fn search_least_triangles_main(
         let least = first_least(&seen, least_of_edges(index));
         let own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
         if lane == 0u {
-            least_triangles[index] = triangles_of(own.xyz, own.w);
+            least_triangles[index] = triangles_of(own.edges, own.inside);
         }
     }
 }

@@ -56,7 +56,7 @@ impl MeshBuffers {
             let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
-        let factor_room = 2 * grouped.factor_count() as usize + 4 * topology.patches.len() + 4;
+        let factor_room = 2 * grouped.factor_count() as usize + 5 * topology.patches.len() + 4;
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,

@@ -3,7 +3,7 @@
 
 use super::control_nets::ControlNets;
 use super::factors::{inside_segments, patch_is_culled, patch_is_minimal, patch_is_subtriangulated, segments};
-use super::least_factors::BEYOND_LAST;
+use super::least_factors::{BEYOND_LAST, Chosen};
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::surface_tolerance;
 use super::mesh_tessellation::seen_with_reach;
@@ -126,9 +126,8 @@ pub(crate) fn own_least_inputs(inputs: &Inputs) -> Inputs {
     Inputs { tessellation, ..*inputs }
 }
 
-/// Returns the factors of an own least, which are those of the edges U == 0, V == 0 and W == 0 and inside, with their number
-/// of triangles.
-fn own_least(partitioning: Partitioning, [u, v, w, inside]: [f32; 4]) -> OwnLeast {
+/// Returns an own least with its number of triangles.
+fn own_least(partitioning: Partitioning, Chosen { edges: [u, v, w], inside, .. }: Chosen) -> OwnLeast {
     let triangles = triangle_count(process(partitioning, [u, v, w], inside));
     OwnLeast { sides: [w, u, v], inside, triangles }
 }
@@ -224,7 +223,7 @@ impl ControlNets<'_> {
         let asked = |patch: u32, side: usize| {
             let seen = self.seen_patch(inputs, displacement, patch);
             let first = self.first_least(inputs, patch, &seen, least);
-            self.asked_by_patch(inputs, displacement, patch, &seen, first)[(side + 2) % 3]
+            self.asked_by_patch(inputs, displacement, patch, &seen, first, 0.0).edges[(side + 2) % 3]
         };
         let own_side = self.topology.sides[self.topology.patches[patch as usize].sides[side] as usize];
         let sides = self.topology.edge_sides(&self.topology.edges[own_side.edge as usize]).iter();

@@ -241,12 +241,10 @@ mod tests {
             }
             net.center += vec3(moves[12], moves[13], 0.0);
             let patch = seen(&VIEW, &net);
-            let asked = |patch: &SeenPatch| {
-                let [u, v, w, _] = asked_factors(patch, tolerance, Partitioning::Integer, [1.0; 3], 1.0);
-                [u, v, w]
-            };
+            let asked =
+                |patch: &SeenPatch| asked_factors(patch, tolerance, Partitioning::Integer, [1.0; 3], 1.0, 0.0).edges;
             let edges = asked(&patch);
-            let inside = least_inside_factor(&patch, tolerance, Partitioning::Integer, edges, 1.0);
+            let inside = least_inside_factor(&patch, tolerance, Partitioning::Integer, edges, (1.0, 0.0));
             prop_assert!(inside <= 64.0);
             let same_place = asked(&seen_patch(&VIEW, &net));
             prop_assert!(edges.iter().sum::<f32>() <= same_place.iter().sum::<f32>() + 2.0);

@@ -144,8 +144,7 @@ fn part_counts(factors: PatchFactors) -> [u32; 4] {
 }
 
 /// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. [`TOGETHER`] triangles are looked at
-/// at once, spread over all parts. That ends early with the first of them after which all parts are known not to be within the
-/// tolerance; or one part, if the inner triangles are wanted.
+/// at once, spread over all parts. That ends early with the first of them after which no part is within the tolerance.
 fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted: [bool; 4]) -> [f32; 4] {
     let plan = domain_plan(factors);
     let all = part_counts(factors);
@@ -164,8 +163,7 @@ fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted:
                 worst[part] = worst[part].max(triangle_error_at(patch, tolerance, &plan, t));
             }
         }
-        let mut within = (0..4).filter(|&part| wanted[part]).map(|part| worst[part] <= tolerance);
-        goes_on = if wanted[3] { within.all(|is| is) } else { within.any(|is| is) };
+        goes_on = (0..4).any(|part| wanted[part] && worst[part] <= tolerance);
         turn += 1;
     }
     worst
@@ -176,8 +174,8 @@ fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted:
 pub(crate) const ROW_REACH: f32 = 6.0;
 
 /// Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments;
-/// [`BEYOND_LAST`] after the last. That is the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide, all
-/// are tried.
+/// [`BEYOND_LAST`] if none is enough up to the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide, there
+/// is no such end.
 fn next_row_factor(
     partitioning: Partitioning,
     slides: bool,
@@ -186,13 +184,14 @@ fn next_row_factor(
     error: f32,
     tolerance: f32,
 ) -> f32 {
+    let estimate = next_factor(partitioning, factor, error, tolerance);
+    let last = factor_from(partitioning, least.max(inside) + ROW_REACH);
+    if slides || estimate > last {
+        return if slides { estimate } else { BEYOND_LAST };
+    }
     // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
     // may slide, that doesn't matter.
-    if slides {
-        return next_factor(partitioning, factor, error, tolerance);
-    }
-    let next = factor_from(partitioning, factor + 1.0);
-    if next <= factor_from(partitioning, least.max(inside) + ROW_REACH) { next } else { BEYOND_LAST }
+    factor_from(partitioning, factor + 1.0)
 }
 
 /// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -201,78 +200,113 @@ fn pattern_cost(edges: [f32; 3], inside: f32, segment: f32) -> f32 {
     3.0 * rings + 1.5 * rings * rings + segment * (edges[0] + edges[1] + edges[2])
 }
 
-/// The parts of a pattern: all, the rows along its edges, and its inner triangles.
-const ALL: [bool; 4] = [true; 4];
-const ROWS: [bool; 4] = [true, true, true, false];
-const INNER: [bool; 4] = [false, false, false, true];
+/// The factors that a patch has chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Chosen {
+    /// Of the edges U == 0, V == 0 and W == 0.
+    pub edges: [f32; 3],
+    pub inside: f32,
+    /// The least inside factor above 2 with which the inner triangles are within the tolerance; 0 if it isn't known.
+    pub inner: f32,
+}
 
-/// Returns the factors of the edges U == 0, V == 0 and W == 0 and inside with which a patch is within the tolerance and
-/// has the fewest triangles, if a segment of an edge counts as `segment` triangles. `least` are the least factors that
-/// the edges may get, and `least_inside` is the least inside factor. If no factors are enough, it returns `least` and
-/// [`BEYOND_LAST`].
+/// A step of a search: an inside factor, and whether its inner triangles are looked at, or its rows.
+#[derive(Clone, Copy)]
+struct Step {
+    inside: f32,
+    is_inner: bool,
+}
+
+/// Returns the first step. `least_inside` is the least inside factor, and `inner` is as in [`Chosen`].
+fn first_step(partitioning: Partitioning, least_inside: f32, inner: f32) -> Step {
+    let inside = factor_from(partitioning, least_inside.max(2.0));
+    // Two segments leave no inner triangles.
+    if inside == 2.0 || inner == 0.0 {
+        return Step { inside, is_inner: inside > 2.0 };
+    }
+    Step { inside: inner, is_inner: false }
+}
+
+/// Returns the step after an inside factor that isn't enough. `error` is that of its inner triangles, 0 if these are within
+/// the tolerance.
+fn next_step(partitioning: Partitioning, inside: f32, inner: f32, error: f32, tolerance: f32) -> Step {
+    if inside == 2.0 && inner > 0.0 {
+        return Step { inside: inner, is_inner: false };
+    }
+    let next = match error > tolerance {
+        true => next_factor(partitioning, inside, error, tolerance),
+        false => factor_from(partitioning, inside + 1.0),
+    };
+    Step { inside: next, is_inner: true }
+}
+
+/// Returns the factors with which a patch is within the tolerance and has the fewest triangles, if a segment of an edge
+/// counts as `segment` triangles. `least` are the least factors that the edges may get, `least_inside` is the least
+/// inside factor, and `inner` is as in [`Chosen`]. If no factors are enough, it returns `least` and [`BEYOND_LAST`].
 fn fewest_triangles(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     least: [f32; 3],
-    least_inside: f32,
+    (least_inside, inner): (f32, f32),
     segment: f32,
-) -> [f32; 4] {
+) -> Chosen {
     let within = BOUND_SHARE * tolerance;
     let slides = may_slide(patch, within);
-    let mut best = [least[0], least[1], least[2], BEYOND_LAST];
+    let mut best = Chosen { edges: least, inside: BEYOND_LAST, inner };
     if least[0].max(least[1]).max(least[2]).max(least_inside) > 64.0 {
         return best;
     }
     if single_suffices(patch, within, partitioning, least, least_inside) {
-        return [least[0], least[1], least[2], 1.0];
+        return Chosen { inside: 1.0, ..best };
     }
     let mut fewest = 3.4e38;
-    // For each inside factor, first the inner triangles; then the rows, until all are within the tolerance.
-    let mut inside = factor_from(partitioning, least_inside.max(2.0));
-    let (mut edges, mut wanted) = ([2.0; 3], INNER);
-    while inside <= 64.0 && pattern_cost(least, inside, segment) < fewest {
+    // For each inside factor, first the inner triangles, unless they are known to be within the tolerance; then the rows,
+    // until all are.
+    let mut step = first_step(partitioning, least_inside, inner);
+    let (mut edges, mut rows) = (least, [true; 3]);
+    while step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest {
+        let Step { inside, is_inner } = step;
+        let wanted = if is_inner { [false, false, false, true] } else { [rows[0], rows[1], rows[2], false] };
         let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
-        let fails = errors.map(|error| error > within);
-        let mut is_over = false;
-        if wanted != INNER {
-            for k in (0..3).filter(|&k| fails[k]) {
+        rows = from_fn(|k| errors[k] > within);
+        let mut is_over = errors[3] > within;
+        if is_inner && !is_over {
+            best.inner = if best.inner == 0.0 { inside } else { best.inner };
+            step.is_inner = false;
+            rows = [true; 3];
+        } else if !is_over {
+            for k in (0..3).filter(|&k| rows[k]) {
                 let [factor, error] = [edges[k], errors[k]];
                 edges[k] = next_row_factor(partitioning, slides, [least[k], inside], factor, error, within);
             }
-            let cost = pattern_cost(edges, inside, segment);
-            if !fails.contains(&true) && cost < fewest {
+            let (cost, fails) = (pattern_cost(edges, inside, segment), rows.contains(&true));
+            is_over = !fails || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
+            if !fails && cost < fewest {
                 fewest = cost;
-                best = [edges[0], edges[1], edges[2], inside];
+                best = Chosen { edges, inside, ..best };
             }
-            is_over = !fails.contains(&true) || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
-            wanted = fails;
-        } else if !fails[3] {
-            (edges, wanted) = (least, ROWS);
         }
-        if is_over || fails[3] {
-            inside = match fails[3] {
-                true => next_factor(partitioning, inside, errors[3], within),
-                false => factor_from(partitioning, inside + 1.0),
-            };
-            (edges, wanted) = ([2.0; 3], INNER);
+        if is_over {
+            step = next_step(partitioning, inside, best.inner, errors[3], within);
+            (edges, rows) = (least, [true; 3]);
         }
     }
     best
 }
 
-/// Returns the factors that a patch asks for, of the edges U == 0, V == 0 and W == 0, and the inside factor that it would take
-/// beside these. `least` are the least that the edges may get, and `least_inside` is the least inside factor. If no factors
-/// are enough, it returns `least` and [`BEYOND_LAST`].
+/// Returns the factors that a patch asks its edges for, and the inside factor that it would take beside these. See
+/// [`fewest_triangles`].
 pub(super) fn asked_factors(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     least: [f32; 3],
     least_inside: f32,
-) -> [f32; 4] {
+    inner: f32,
+) -> Chosen {
     // Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    fewest_triangles(patch, tolerance, partitioning, least, least_inside, 2.0)
+    fewest_triangles(patch, tolerance, partitioning, least, (least_inside, inner), 2.0)
 }
 
 /// How often patches may ask: once, and again as long as factors change.
@@ -284,26 +318,26 @@ pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {
     inside > 64.0 || inside > 1.1 * chosen + 1.0
 }
 
-/// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch has the fewest triangles
-/// if no neighbour asks for anything. See [`fewest_triangles`].
+/// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See
+/// [`fewest_triangles`].
 pub(super) fn own_least_factors(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     least: [f32; 3],
     least_inside: f32,
-) -> [f32; 4] {
-    fewest_triangles(patch, tolerance, partitioning, least, least_inside, 1.0)
+) -> Chosen {
+    fewest_triangles(patch, tolerance, partitioning, least, (least_inside, 0.0), 1.0)
 }
 
 /// Returns the least inside factor, `least` or more, that keeps a patch within `tolerance` px of its surface beside these
-/// factors of the edges U == 0, V == 0 and W == 0; [`BEYOND_LAST`] if none does.
+/// factors of the edges U == 0, V == 0 and W == 0; [`BEYOND_LAST`] if none does. `inner` is as in [`Chosen`].
 pub(super) fn least_inside_factor(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     edges: [f32; 3],
-    least: f32,
+    (least, inner): (f32, f32),
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
     let largest = edges[0].max(edges[1]).max(edges[2]).max(least);
@@ -313,16 +347,18 @@ pub(super) fn least_inside_factor(
     if largest > 64.0 {
         return BEYOND_LAST;
     }
-    let mut inside = factor_from(partitioning, least.max(2.0));
-    while inside <= 64.0 {
-        let errors = part_errors(patch, within, process(partitioning, edges, inside), ALL);
-        if errors.iter().all(|error| *error <= within) {
+    let mut step = first_step(partitioning, least, inner);
+    while step.inside <= 64.0 {
+        let Step { inside, is_inner } = step;
+        let wanted = [!is_inner, !is_inner, !is_inner, is_inner];
+        let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
+        if errors.iter().any(|error| *error > within) {
+            step = next_step(partitioning, inside, inner, errors[3], within);
+        } else if is_inner {
+            step.is_inner = false;
+        } else {
             return inside;
         }
-        inside = match errors[3] > within {
-            true => next_factor(partitioning, inside, errors[3], within),
-            false => factor_from(partitioning, inside + 1.0),
-        };
     }
     BEYOND_LAST
 }

@@ -6,7 +6,8 @@ use glam::Vec3;
 use super::control_nets::ControlNets;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::least_factors::{
-    ROUNDS, asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors, whole_segments,
+    Chosen, ROUNDS, asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors,
+    whole_segments,
 };
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
@@ -58,29 +59,30 @@ impl ControlNets<'_> {
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
         let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
         let all = 0..self.topology.patches.len() as u32;
-        let ask = |patch: u32, seen: &SeenPatch, least: [f32; 3], asked: &mut [f32]| {
-            let own = self.asked_by_patch(inputs, displacement, patch, seen, least);
-            for (k, own) in [1, 2, 0].into_iter().zip(own) {
+        let ask = |patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32, asked: &mut [f32]| {
+            let own = self.asked_by_patch(inputs, displacement, patch, seen, least, inner);
+            for (k, own) in [1, 2, 0].into_iter().zip(own.edges) {
                 let factor = self.patch_factor(patch, k) as usize;
                 asked[factor] = asked[factor].max(own);
             }
-            own[3]
+            own
         };
         let mut chosen = Vec::new();
         for patch in all.clone() {
             let seen = self.seen_patch(inputs, displacement, patch);
             let least = self.first_least(inputs, patch, &seen, |factor| least[factor as usize]);
-            chosen.push(ask(patch, &seen, least, &mut asked));
+            chosen.push(ask(patch, &seen, least, 0.0, &mut asked));
         }
         for _ in 1..ROUNDS {
             let before = asked.clone();
             for (patch, chosen) in all.clone().zip(&mut chosen) {
-                let inside = self.inside_factor(inputs, displacement, &before, patch);
-                let asks = asks_again(*chosen, inside);
-                *chosen = inside;
+                let inside = self.inside_factor(inputs, displacement, &before, patch, chosen.inner);
+                let asks = asks_again(chosen.inside, inside);
+                chosen.inside = inside;
                 if surface != Surface::Flat && asks {
                     let least = [1, 2, 0].map(|k| before[self.patch_factor(patch, k) as usize]);
-                    *chosen = ask(patch, &self.seen_patch(inputs, displacement, patch), least, &mut asked);
+                    let seen = self.seen_patch(inputs, displacement, patch);
+                    *chosen = ask(patch, &seen, least, chosen.inner, &mut asked);
                 }
             }
             if asked == before {
@@ -117,8 +119,8 @@ impl ControlNets<'_> {
         }
     }
 
-    /// Returns the factors that a patch asks for under LOD by error, of the edges U == 0, V == 0 and W == 0, and the inside
-    /// factor that it would take beside these. `least` are the least that the edges may get.
+    /// Returns the factors that a patch asks for under LOD by error, and the inside factor that it would take beside these. `least`
+    /// are the least that the edges U == 0, V == 0 and W == 0 may get, and `inner` is as in [`Chosen`].
     pub(super) fn asked_by_patch(
         &self,
         inputs: &Inputs,
@@ -126,17 +128,18 @@ impl ControlNets<'_> {
         patch: u32,
         seen: &SeenPatch,
         least: [f32; 3],
-    ) -> [f32; 4] {
+        inner: f32,
+    ) -> Chosen {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let inside = self.heights_inside(inputs, displacement, patch);
         if surface == Surface::Flat {
-            return [least[0], least[1], least[2], whole_segments(partitioning, inside)];
+            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
         }
-        asked_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
+        asked_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside, inner)
     }
 
-    /// Returns the factors, of the edges U == 0, V == 0 and W == 0 and inside, with which a patch alone would keep the
-    /// tolerance with the fewest triangles: its *own least*. `least` are the least factors that its edges may get.
+    /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its *own least*. `least`
+    /// are the least factors that its edges U == 0, V == 0 and W == 0 may get.
     pub(super) fn own_least_factors(
         &self,
         inputs: &Inputs,
@@ -144,11 +147,11 @@ impl ControlNets<'_> {
         patch: u32,
         seen: &SeenPatch,
         least: [f32; 3],
-    ) -> [f32; 4] {
+    ) -> Chosen {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let inside = self.heights_inside(inputs, displacement, patch);
         if surface == Surface::Flat {
-            return [least[0], least[1], least[2], whole_segments(partitioning, inside)];
+            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner: 0.0 };
         }
         own_least_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
     }
@@ -207,13 +210,14 @@ impl ControlNets<'_> {
     }
 
     /// Returns the inside factor of a patch under LOD by error: the least that suffices beside the factors of its edges. Each
-    /// of those is taken by the opposite corner, whatever the convention.
+    /// of those is taken by the opposite corner, whatever the convention. `inner` is as in [`Chosen`].
     fn inside_factor(
         &self,
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
         edge_factors: &[f32],
         patch: u32,
+        inner: f32,
     ) -> f32 {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let heights = whole_segments(partitioning, self.heights_inside(inputs, displacement, patch));
@@ -222,7 +226,7 @@ impl ControlNets<'_> {
         }
         let edges = [1, 2, 0].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
         let seen = self.seen_patch(inputs, displacement, patch);
-        least_inside_factor(&seen, surface_tolerance(inputs, displacement), partitioning, edges, heights)
+        least_inside_factor(&seen, surface_tolerance(inputs, displacement), partitioning, edges, (heights, inner))
     }
 
     /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
@@ -236,7 +240,7 @@ impl ControlNets<'_> {
     ) -> HullFactors {
         let sides = [0, 1, 2].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
         let inside = match inputs.tessellation.lod {
-            Lod::Error => self.inside_factor(inputs, displacement, edge_factors, patch),
+            Lod::Error => self.inside_factor(inputs, displacement, edge_factors, patch, 0.0),
             _ => sides[0].max(sides[1]).max(sides[2]),
         };
         HullFactors::of_sides(inputs.tessellation.convention, sides, inside)

@@ -340,12 +340,15 @@ fn piece_difference(piece: &Piece, x: f32, y: f32, z: f32) -> Vec3 {
         + d[6] * (6.0 * x * y * z)
 }
 
-/// Returns the largest error on a grid of `steps` steps, in px, and the largest difference in depth. It ends early once
-/// an error isn't within the tolerance.
-fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, steps: u32) -> [f32; 2] {
-    let (mut error, mut deep) = (0.0f32, 0.0f32);
+/// Returns the largest error on a grid of `steps` steps, in px, and the largest difference in depth. `coarser` are those on
+/// the grid of half as many steps, if there is one. It ends early once an error isn't within the tolerance.
+fn grid_error(patch: &SeenPatch, piece: &Piece, moved: f32, tolerance: f32, steps: u32, coarser: [f32; 2]) -> [f32; 2] {
+    let [mut error, mut deep] = coarser;
     for i in 0..=steps {
-        for j in 0..=steps - i {
+        // Every second point of every second line is on the coarser grid.
+        let is_coarser = steps > 2 && i % 2 == 0;
+        let (first, stride) = if is_coarser { (1, 2) } else { (0, 1) };
+        for j in (first..=steps - i).step_by(stride) {
             let [x, y, z] = [i, j, steps - i - j].map(|weight| weight as f32 / steps as f32);
             let [p, q, r] = [x * piece.corners[0].z, y * piece.corners[1].z, z * piece.corners[2].z];
             let depth = p + q + r;
@@ -379,9 +382,10 @@ fn same_place_error(
     let ratio = farthest / nearest;
     let mut steps = 1;
     let mut upper = bound;
+    let [mut error, mut deep] = [0.0; 2];
     while !is_within(upper, tolerance) && steps < FINEST_GRID {
         steps *= 2;
-        let [error, deep] = grid_error(patch, piece, moved, tolerance, steps);
+        [error, deep] = grid_error(patch, piece, moved, tolerance, steps, [error, deep]);
         if !is_within(error, tolerance) {
             return error;
         }

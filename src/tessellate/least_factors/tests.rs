@@ -63,9 +63,9 @@ fn flat_patches_ask_for_the_least_factors() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        let [edges @ .., chosen] = asked_factors(&patch, 0.01, partitioning, least, 1.0);
+        let Chosen { edges, inside: chosen, .. } = asked_factors(&patch, 0.01, partitioning, least, 1.0, 0.0);
         assert_eq!(edges, least, "{partitioning:?}");
-        let inside = least_inside_factor(&patch, 0.01, partitioning, least, 1.0);
+        let inside = least_inside_factor(&patch, 0.01, partitioning, least, (1.0, 0.0));
         let expected = if partitioning == Partitioning::FractionalEven { 2.0 } else { 1.0 };
         assert_eq!([inside, chosen], [expected; 2], "{partitioning:?}");
     }
@@ -74,8 +74,10 @@ fn flat_patches_ask_for_the_least_factors() {
 #[test]
 fn heights_inside_and_factors_of_edges_are_kept() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
-    assert_eq!(asked_factors(&patch, 0.01, Partitioning::Integer, [3.0, 1.0, 7.0], 5.0), [3.0, 1.0, 7.0, 5.0]);
-    assert_eq!(least_inside_factor(&patch, 0.01, Partitioning::Integer, [3.0, 1.0, 7.0], 5.0), 5.0);
+    let edges = [3.0, 1.0, 7.0];
+    let asked = asked_factors(&patch, 0.01, Partitioning::Integer, edges, 5.0, 0.0);
+    assert_eq!(asked, Chosen { edges, inside: 5.0, inner: 5.0 });
+    assert_eq!(least_inside_factor(&patch, 0.01, Partitioning::Integer, edges, (5.0, 0.0)), 5.0);
 }
 
 #[test]
@@ -83,11 +85,12 @@ fn an_inside_factor_above_64_says_that_none_is_enough() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.1; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        let [edges @ .., chosen] = asked_factors(&patch, 1e-6, partitioning, least, 1.0);
-        assert_eq!((edges, chosen), (least, BEYOND_LAST), "{partitioning:?}");
-        assert_eq!(least_inside_factor(&patch, 1e-6, partitioning, edges, 1.0), BEYOND_LAST, "{partitioning:?}");
-        assert_eq!(own_least_factors(&patch, 1e-6, partitioning, least, 1.0)[3], BEYOND_LAST, "{partitioning:?}");
-        assert_eq!(least_inside_factor(&patch, 1.0, partitioning, [BEYOND_LAST; 3], 1.0), BEYOND_LAST);
+        let none = Chosen { edges: least, inside: BEYOND_LAST, inner: 0.0 };
+        let inside = |edges, tolerance| least_inside_factor(&patch, tolerance, partitioning, edges, (1.0, 0.0));
+        assert_eq!(asked_factors(&patch, 1e-6, partitioning, least, 1.0, 0.0), none, "{partitioning:?}");
+        assert_eq!(own_least_factors(&patch, 1e-6, partitioning, least, 1.0), none, "{partitioning:?}");
+        assert_eq!(inside(least, 1e-6), BEYOND_LAST, "{partitioning:?}");
+        assert_eq!(inside([BEYOND_LAST; 3], 1.0), BEYOND_LAST);
     }
 }
 
@@ -96,8 +99,8 @@ fn what_is_not_a_number_ends_the_search() {
     let patch = seen_patch(&VIEW, &lifted([Vec3::NAN, Vec3::X, Vec3::Y], [0.1; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        assert_eq!(asked_factors(&patch, 0.5, partitioning, least, 1.0)[..3], least);
-        assert_eq!(least_inside_factor(&patch, 0.5, partitioning, least, 1.0), BEYOND_LAST);
+        assert_eq!(asked_factors(&patch, 0.5, partitioning, least, 1.0, 0.0).edges, least);
+        assert_eq!(least_inside_factor(&patch, 0.5, partitioning, least, (1.0, 0.0)), BEYOND_LAST);
     }
 }
 
@@ -111,7 +114,7 @@ fn fewest(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, segment
     }
     let factors = || (1..=14u8).map(f32::from).filter(|&factor| factor_from(partitioning, factor) == factor);
     let of = |inside: f32| {
-        let error = part_errors(patch, within, process(partitioning, [2.0; 3], inside), INNER)[3];
+        let error = part_errors(patch, within, process(partitioning, [2.0; 3], inside), from_fn(|part| part == 3))[3];
         let edge = |k: usize| {
             factors().filter(|&factor| factor <= factor_from(partitioning, inside + ROW_REACH)).find(|&factor| {
                 let mut edges = [2.0; 3];
@@ -144,15 +147,19 @@ proptest! {
             3.0 * rings + 1.5 * rings * rings + segment * (u + v + w)
         };
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 2.0) {
-            let [asked @ .., chosen] = asked_factors(&patch, tolerance, partitioning, least, 1.0);
-            let inside = least_inside_factor(&patch, tolerance, partitioning, asked, 1.0);
-            prop_assert!(inside <= 64.0 && inside == chosen, "{asked:?} {inside} {chosen}");
-            prop_assert_eq!(count(asked, inside, 2.0), fewest, "{:?}, {}", asked, inside);
+            let asked = asked_factors(&patch, tolerance, partitioning, least, 1.0, 0.0);
+            let inside = |inner| least_inside_factor(&patch, tolerance, partitioning, asked.edges, (1.0, inner));
+            prop_assert!(asked.inside <= 64.0 && inside(0.0) == asked.inside, "{asked:?} {}", inside(0.0));
+            prop_assert_eq!(count(asked.edges, asked.inside, 2.0), fewest, "{:?}", asked);
+            // What is known of the inner triangles changes no factor.
+            prop_assert_eq!(inside(asked.inner), asked.inside, "{:?}", asked);
+            let again = asked_factors(&patch, tolerance, partitioning, least, 1.0, asked.inner);
+            prop_assert_eq!((again.edges, again.inside), (asked.edges, asked.inside));
         }
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 1.0) {
-            let [u, v, w, inside] = own_least_factors(&patch, tolerance, partitioning, least, 1.0);
-            prop_assert!(inside <= 64.0);
-            prop_assert_eq!(count([u, v, w], inside, 1.0), fewest, "{} {} {}, {}", u, v, w, inside);
+            let own = own_least_factors(&patch, tolerance, partitioning, least, 1.0);
+            prop_assert!(own.inside <= 64.0);
+            prop_assert_eq!(count(own.edges, own.inside, 1.0), fewest, "{:?}", own);
         }
     }
 }
