@@ -200,13 +200,14 @@ fn next_row_factor(
     tolerance: f32,
 ) -> f32 {
     let estimate = next_factor(partitioning, factor, error, tolerance);
-    let last = factor_from(partitioning, max(least, inside) + ROW_REACH);
-    if slides || estimate > last {
-        return select(BEYOND_LAST, estimate, slides);
+    if slides {
+        return estimate;
     }
-    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
-    // may slide, that doesn't matter.
-    return factor_from(partitioning, factor + 1.0);
+    // Errors of rows don't fall steadily: where the points of edge and ring don't match, triangles are up to twice as long. Where
+    // points may slide, that doesn't matter.
+    let last = factor_from(partitioning, max(least, inside) + ROW_REACH);
+    let next = factor_from(partitioning, factor + 1.0);
+    return select(BEYOND_LAST, next, max(next, 0.5 * estimate) <= last);
 }
 
 // Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -224,10 +225,12 @@ struct Chosen {
     inner: f32,
 }
 
-// A step of a search: an inside factor, and whether its inner triangles are looked at, or its rows.
+// A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones are
+// known to be within the tolerance.
 struct Step {
     inside: f32,
     is_inner: bool,
+    is_last: bool,
 }
 
 // Returns the first step. `least_inside` is the least inside factor, and `inner` is as in `Chosen`.
@@ -235,21 +238,23 @@ fn first_step(partitioning: u32, least_inside: f32, inner: f32) -> Step {
     let inside = factor_from(partitioning, max(least_inside, 2.0));
     // Two segments leave no inner triangles.
     if inside == 2.0 || inner == 0.0 {
-        return Step(inside, inside > 2.0);
+        return Step(inside, inside > 2.0, inside == 2.0);
     }
-    return Step(inner, false);
+    return Step(inner, false, true);
 }
 
 // Returns the step after an inside factor that isn't enough. `error` is that of its inner triangles, 0 if these are within the
 // tolerance.
 fn next_step(partitioning: u32, inside: f32, inner: f32, error: f32, tolerance: f32) -> Step {
     if inside == 2.0 && inner > 0.0 {
-        return Step(inner, false);
+        return Step(inner, false, true);
     }
+    var next = factor_from(partitioning, inside + 1.0);
     if error > tolerance {
-        return Step(next_factor(partitioning, inside, error, tolerance), true);
+        next = next_factor(partitioning, inside, error, tolerance);
     }
-    return Step(factor_from(partitioning, inside + 1.0), true);
+    // Beyond the least one, inner triangles are rarely what is missing, and there are more of them.
+    return Step(next, inner == 0.0, false);
 }
 
 // Returns the factors with which a patch is within the tolerance and has the fewest triangles, if a segment of an edge counts as
@@ -269,8 +274,7 @@ fn fewest_triangles(
     let slides = may_slide(seen, within);
     var best = Chosen(least, BEYOND_LAST, inner);
     var fewest = 3.4e38;
-    // For each inside factor, first the inner triangles, unless they are known to be within the tolerance; then the rows, until
-    // all are. Written so that each function is called in one place only: drivers compile a copy for each call.
+    // Written so that each function is called in one place only: drivers compile a copy for each call.
     var step = first_step(partitioning, least_inside, inner);
     var edges = least;
     var rows = vec3<bool>(true);
@@ -278,25 +282,25 @@ fn fewest_triangles(
         let inside = step.inside;
         let wanted = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner);
         let errors = part_errors(seen, within, process(partitioning, edges, inside), wanted);
-        rows = errors.xyz > vec3<f32>(within);
-        var is_over = errors.w > within;
-        if step.is_inner && !is_over {
-            best.inner = select(best.inner, inside, best.inner == 0.0);
-            step.is_inner = false;
-            rows = vec3<bool>(true);
-        } else if !is_over {
-            for (var k = 0u; k < 3u; k++) {
-                if rows[k] {
-                    edges[k] = next_row_factor(partitioning, slides, least[k], inside, edges[k], errors[k], within);
-                }
+        let fails = errors > vec4<f32>(within);
+        for (var k = 0u; k < 3u; k++) {
+            if fails[k] {
+                edges[k] = next_row_factor(partitioning, slides, least[k], inside, edges[k], errors[k], within);
             }
-            let cost = pattern_cost(edges, inside, segment);
-            is_over = !any(rows) || cost >= fewest || max(max(edges.x, edges.y), edges.z) > 64.0;
-            if !any(rows) && cost < fewest {
+        }
+        let cost = pattern_cost(edges, inside, segment);
+        var is_over = fails.w || cost >= fewest || max(max(edges.x, edges.y), edges.z) > 64.0;
+        rows = fails.xyz;
+        if !any(fails) {
+            best.inner = select(best.inner, inside, step.is_inner && best.inner == 0.0);
+            if step.is_last && !is_over {
                 fewest = cost;
                 best.edges = edges;
                 best.inside = inside;
             }
+            is_over = is_over || step.is_last;
+            rows = vec3<bool>(true);
+            step = Step(inside, !step.is_inner, true);
         }
         if is_over {
             step = next_step(partitioning, inside, best.inner, errors.w, within);
@@ -351,15 +355,17 @@ fn least_inside_factor(
 ) -> f32 {
     let within = BOUND_SHARE * tolerance;
     var result = BEYOND_LAST;
+    var known = inner;
     var step = first_step(partitioning, least, inner);
     while step.inside <= 64.0 && result > 64.0 {
         let wanted = vec4<bool>(vec3<bool>(!step.is_inner), step.is_inner);
         let errors = part_errors(seen, within, process(partitioning, edges, step.inside), wanted);
         if any(errors > vec4<f32>(within)) {
-            step = next_step(partitioning, step.inside, inner, errors.w, within);
+            step = next_step(partitioning, step.inside, known, errors.w, within);
         } else {
-            result = select(step.inside, BEYOND_LAST, step.is_inner);
-            step.is_inner = false;
+            known = select(known, step.inside, step.is_inner && known == 0.0);
+            result = select(BEYOND_LAST, step.inside, step.is_last);
+            step = Step(step.inside, !step.is_inner, true);
         }
     }
     return result;

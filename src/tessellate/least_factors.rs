@@ -185,13 +185,14 @@ fn next_row_factor(
     tolerance: f32,
 ) -> f32 {
     let estimate = next_factor(partitioning, factor, error, tolerance);
-    let last = factor_from(partitioning, least.max(inside) + ROW_REACH);
-    if slides || estimate > last {
-        return if slides { estimate } else { BEYOND_LAST };
+    if slides {
+        return estimate;
     }
-    // Errors of rows don't fall steadily: triangles are longer where the points of edge and ring don't match. Where points
-    // may slide, that doesn't matter.
-    factor_from(partitioning, factor + 1.0)
+    // Errors of rows don't fall steadily: where the points of edge and ring don't match, triangles are up to twice as
+    // long. Where points may slide, that doesn't matter.
+    let last = factor_from(partitioning, least.max(inside) + ROW_REACH);
+    let next = factor_from(partitioning, factor + 1.0);
+    if next.max(0.5 * estimate) <= last { next } else { BEYOND_LAST }
 }
 
 /// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -210,11 +211,13 @@ pub(super) struct Chosen {
     pub inner: f32,
 }
 
-/// A step of a search: an inside factor, and whether its inner triangles are looked at, or its rows.
+/// A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones
+/// are known to be within the tolerance.
 #[derive(Clone, Copy)]
 struct Step {
     inside: f32,
     is_inner: bool,
+    is_last: bool,
 }
 
 /// Returns the first step. `least_inside` is the least inside factor, and `inner` is as in [`Chosen`].
@@ -222,22 +225,23 @@ fn first_step(partitioning: Partitioning, least_inside: f32, inner: f32) -> Step
     let inside = factor_from(partitioning, least_inside.max(2.0));
     // Two segments leave no inner triangles.
     if inside == 2.0 || inner == 0.0 {
-        return Step { inside, is_inner: inside > 2.0 };
+        return Step { inside, is_inner: inside > 2.0, is_last: inside == 2.0 };
     }
-    Step { inside: inner, is_inner: false }
+    Step { inside: inner, is_inner: false, is_last: true }
 }
 
 /// Returns the step after an inside factor that isn't enough. `error` is that of its inner triangles, 0 if these are within
 /// the tolerance.
 fn next_step(partitioning: Partitioning, inside: f32, inner: f32, error: f32, tolerance: f32) -> Step {
     if inside == 2.0 && inner > 0.0 {
-        return Step { inside: inner, is_inner: false };
+        return Step { inside: inner, is_inner: false, is_last: true };
     }
     let next = match error > tolerance {
         true => next_factor(partitioning, inside, error, tolerance),
         false => factor_from(partitioning, inside + 1.0),
     };
-    Step { inside: next, is_inner: true }
+    // Beyond the least one, inner triangles are rarely what is missing, and there are more of them.
+    Step { inside: next, is_inner: inner == 0.0, is_last: false }
 }
 
 /// Returns the factors with which a patch is within the tolerance and has the fewest triangles, if a segment of an edge
@@ -261,31 +265,29 @@ fn fewest_triangles(
         return Chosen { inside: 1.0, ..best };
     }
     let mut fewest = 3.4e38;
-    // For each inside factor, first the inner triangles, unless they are known to be within the tolerance; then the rows,
-    // until all are.
     let mut step = first_step(partitioning, least_inside, inner);
     let (mut edges, mut rows) = (least, [true; 3]);
     while step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest {
-        let Step { inside, is_inner } = step;
+        let Step { inside, is_inner, is_last } = step;
         let wanted = if is_inner { [false, false, false, true] } else { [rows[0], rows[1], rows[2], false] };
         let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
-        rows = from_fn(|k| errors[k] > within);
-        let mut is_over = errors[3] > within;
-        if is_inner && !is_over {
-            best.inner = if best.inner == 0.0 { inside } else { best.inner };
-            step.is_inner = false;
-            rows = [true; 3];
-        } else if !is_over {
-            for k in (0..3).filter(|&k| rows[k]) {
-                let [factor, error] = [edges[k], errors[k]];
-                edges[k] = next_row_factor(partitioning, slides, [least[k], inside], factor, error, within);
-            }
-            let (cost, fails) = (pattern_cost(edges, inside, segment), rows.contains(&true));
-            is_over = !fails || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
-            if !fails && cost < fewest {
+        let fails = errors.map(|error| error > within);
+        for k in (0..3).filter(|&k| fails[k]) {
+            let [factor, error] = [edges[k], errors[k]];
+            edges[k] = next_row_factor(partitioning, slides, [least[k], inside], factor, error, within);
+        }
+        let cost = pattern_cost(edges, inside, segment);
+        let mut is_over = fails[3] || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
+        rows = [fails[0], fails[1], fails[2]];
+        if !fails.contains(&true) {
+            best.inner = if is_inner && best.inner == 0.0 { inside } else { best.inner };
+            if is_last && !is_over {
                 fewest = cost;
                 best = Chosen { edges, inside, ..best };
             }
+            is_over = is_over || is_last;
+            rows = [true; 3];
+            step = Step { inside, is_inner: !is_inner, is_last: true };
         }
         if is_over {
             step = next_step(partitioning, inside, best.inner, errors[3], within);
@@ -347,17 +349,18 @@ pub(super) fn least_inside_factor(
     if largest > 64.0 {
         return BEYOND_LAST;
     }
-    let mut step = first_step(partitioning, least, inner);
+    let (mut step, mut known) = (first_step(partitioning, least, inner), inner);
     while step.inside <= 64.0 {
-        let Step { inside, is_inner } = step;
+        let Step { inside, is_inner, is_last } = step;
         let wanted = [!is_inner, !is_inner, !is_inner, is_inner];
         let errors = part_errors(patch, within, process(partitioning, edges, inside), wanted);
         if errors.iter().any(|error| *error > within) {
-            step = next_step(partitioning, inside, inner, errors[3], within);
-        } else if is_inner {
-            step.is_inner = false;
-        } else {
+            step = next_step(partitioning, inside, known, errors[3], within);
+        } else if is_last {
             return inside;
+        } else {
+            known = if is_inner && known == 0.0 { inside } else { known };
+            step = Step { inside, is_inner: !is_inner, is_last: true };
         }
     }
     BEYOND_LAST
