@@ -151,9 +151,12 @@ fn part_counts(factors: PatchFactors) -> vec4<u32> {
     return vec4<u32>(rows, triangle_count(factors) - rows.x - rows.y - rows.z);
 }
 
-// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. Each invocation of the workgroup (see
-// search_group.wgsl) computes the error of a triangle, then of the next. They are spread over all parts. That ends early with
-// the first TOGETHER after which no part is within the tolerance.
+// A prime beyond the number of turns in which a pattern's triangles are looked at: its multiples are spread over them.
+const SPREAD: u32 = 1009u;
+
+// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. TOGETHER triangles are looked at in
+// one turn, by one invocation each (see search_group.wgsl). They are spread over all parts. That ends early with the first turn
+// after which no part is within the tolerance.
 fn part_errors(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -171,14 +174,15 @@ fn part_errors(
     let turns = (count + TOGETHER - 1u) / TOGETHER;
     var worst = vec4<f32>(0.0);
     var goes_on = true;
-    for (var turn = 0u; turn < turns && goes_on; turn++) {
-        let i = lane * turns + turn;
+    for (var first = 0u; first < turns && goes_on; first += GROUP / TOGETHER) {
+        let turn = first + lane / TOGETHER;
+        let i = lane % TOGETHER * turns + turn * SPREAD % turns;
         let part = select(0u, 1u, i >= ends.x) + select(0u, 1u, i >= ends.y) + select(0u, 1u, i >= ends.z);
         var own = 0.0;
-        if i < count && worst[part] <= tolerance {
+        if turn < turns && i < count && worst[part] <= tolerance {
             own = triangle_error_at(seen, tolerance, plan, i + before[part]);
         }
-        worst = max(worst, largest_of_group(part, own));
+        worst = largest_of_group(part, own, worst, wanted, tolerance);
         goes_on = any(wanted & (worst <= vec4<f32>(tolerance)));
     }
     return worst;
@@ -204,10 +208,10 @@ fn next_row_factor(
         return estimate;
     }
     // Errors of rows don't fall steadily: where the points of edge and ring don't match, triangles are up to twice as long. Where
-    // points may slide, that doesn't matter.
+    // points may slide, that doesn't matter. More segments than the ring has make no triangle shorter.
     let last = factor_from(partitioning, max(least, inside) + ROW_REACH);
     let next = factor_from(partitioning, factor + 1.0);
-    return select(BEYOND_LAST, next, max(next, 0.5 * estimate) <= last);
+    return select(BEYOND_LAST, next, next <= last && 0.5 * estimate <= max(inside, factor));
 }
 
 // Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.

@@ -137,7 +137,7 @@ fn searched_patch(search: u32, i: u32) -> u32 {
 }
 
 // Searches what patches ask for, or ask for again.
-@compute @workgroup_size(TOGETHER)
+@compute @workgroup_size(GROUP)
 fn search_asked_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
@@ -205,7 +205,7 @@ fn inside_factors_main(
     set_inside(index, inside);
 }
 
-@compute @workgroup_size(TOGETHER)
+@compute @workgroup_size(GROUP)
 fn search_inside_factors_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,

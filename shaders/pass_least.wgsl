@@ -72,7 +72,7 @@ fn least_triangles_main(
 var<workgroup> is_searched: u32;
 
 // Each workgroup searches the factors of one of the other patches after another.
-@compute @workgroup_size(TOGETHER)
+@compute @workgroup_size(GROUP)
 fn search_least_triangles_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,

@@ -103,11 +103,12 @@ impl MeshPasses {
         let (buffers, pipelines) = (asked_buffers(on.mesh, on.params, &on.mesh.edge_factors), on.pipelines);
         let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
         let asked = BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?;
-        let search_asked =
-            BoundPass::once(&self.search_asked_factors, on.gpu, &pipelines.search_asked_factors, &buffers)?;
+        let patches = on.mesh.patch_count;
+        let search_asked = pipelines.search_asked_factors.of(on.gpu, patches);
+        let search_asked = BoundPass::once(&self.search_asked_factors, on.gpu, search_asked, &buffers)?;
         let inside = BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?;
-        let search_inside =
-            BoundPass::once(&self.search_inside_factors, on.gpu, &pipelines.search_inside_factors, &buffers)?;
+        let search_inside = pipelines.search_inside_factors.of(on.gpu, patches);
+        let search_inside = BoundPass::once(&self.search_inside_factors, on.gpu, search_inside, &buffers)?;
         let keep = BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?;
         let mut passes = vec![(asked, Each::Patch)];
         for round in 0..ROUNDS {

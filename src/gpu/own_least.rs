@@ -43,7 +43,8 @@ impl OwnLeast {
         let of_patches = [&asked_buffers(mesh, &params, &factors)[..], &[(7, &triangles)]].concat();
         let edge_factors = BoundPass::new(gpu, &pipelines.edge_factors, &factor_buffers(mesh, &params, &factors))?;
         let least_triangles = BoundPass::new(gpu, &pipelines.least_triangles, &of_patches)?;
-        let search_least_triangles = BoundPass::new(gpu, &pipelines.search_least_triangles, &of_patches)?;
+        let search_least_triangles =
+            BoundPass::new(gpu, pipelines.search_least_triangles.of(gpu, mesh.patch_count), &of_patches)?;
         Ok(Self {
             params,
             factors,
@@ -99,12 +100,12 @@ impl OwnLeast {
     }
 }
 
-/// Makes the pipelines of the passes, on any thread.
+/// Makes the pipelines of the passes for a number of patches, on any thread.
 ///
 /// # Errors
 /// Out of memory, or a lost device.
-pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines) -> Result<(), GpuError> {
+pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32) -> Result<(), GpuError> {
     pipelines.edge_factors.get(gpu)?;
     pipelines.least_triangles.get(gpu)?;
-    pipelines.search_least_triangles.get(gpu).map(|_| ())
+    pipelines.search_least_triangles.of(gpu, patches).get(gpu).map(|_| ())
 }

@@ -129,6 +129,35 @@ impl ComputePipeline {
     }
 }
 
+/// The pipelines of an entry point that searches factors (see `shaders/search_group.wgsl`), which have workgroups of different
+/// sizes and the same results.
+pub struct SearchPipelines {
+    /// A software driver computes the invocations of a workgroup one after the other, and those that were in vain take time.
+    on_software: ComputePipeline,
+    many_patches: ComputePipeline,
+    few_patches: ComputePipeline,
+}
+
+impl SearchPipelines {
+    fn new(module: &Arc<ShaderModule>, entry_point: &'static str) -> Self {
+        let [on_software, many_patches, few_patches] =
+            [8, 32, 128].map(|size| ComputePipeline::new(module, entry_point).with("GROUP", size));
+        Self { on_software, many_patches, few_patches }
+    }
+
+    /// The pipeline for a number of patches: if these alone don't fill a GPU, larger workgroups do.
+    pub fn of(&self, gpu: &Gpu, patches: u32) -> &ComputePipeline {
+        match patches {
+            _ if gpu.is_software() => &self.on_software,
+            ..FEW_PATCHES => &self.few_patches,
+            _ => &self.many_patches,
+        }
+    }
+}
+
+/// Fewer patches than this don't fill a GPU with 32 invocations each.
+const FEW_PATCHES: u32 = 512;
+
 /// The pipelines of the passes, one an entry point, and what they share. They belong to the device on which they are first
 /// asked for.
 pub struct ComputePipelines {
@@ -141,13 +170,13 @@ pub struct ComputePipelines {
     pub edge_factors: ComputePipeline,
     pub heights_inside: ComputePipeline,
     pub asked_factors: ComputePipeline,
-    pub search_asked_factors: ComputePipeline,
+    pub search_asked_factors: SearchPipelines,
     pub inside_factors: ComputePipeline,
-    pub search_inside_factors: ComputePipeline,
+    pub search_inside_factors: SearchPipelines,
     pub keep_factors: ComputePipeline,
     /// Whose results no other pass needs, like those of the next.
     pub least_triangles: ComputePipeline,
-    pub search_least_triangles: ComputePipeline,
+    pub search_least_triangles: SearchPipelines,
     pub factor_levels: ComputePipeline,
     pub point_levels: ComputePipeline,
     pub counts: ComputePipeline,
@@ -185,12 +214,12 @@ impl ComputePipelines {
             edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
             heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
             asked_factors: ComputePipeline::new(&asked, "asked_factors_main"),
-            search_asked_factors: ComputePipeline::new(&asked, "search_asked_factors_main"),
+            search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main"),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
-            search_inside_factors: ComputePipeline::new(&asked, "search_inside_factors_main"),
+            search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main"),
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
             least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
-            search_least_triangles: ComputePipeline::new(&least, "search_least_triangles_main"),
+            search_least_triangles: SearchPipelines::new(&least, "search_least_triangles_main"),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),

@@ -133,8 +133,11 @@ fn single_suffices(
     whole && patch_is_minimal(factors) && triangle_error_at(patch, tolerance, &domain_plan(factors), 0) <= tolerance
 }
 
-/// How many triangles are looked at together, before the first that isn't within the tolerance ends the search.
-pub(crate) const TOGETHER: u32 = 32;
+/// How many triangles are looked at together, before those with one that isn't within the tolerance end the search.
+pub(crate) const TOGETHER: u32 = 8;
+
+/// A prime beyond the number of turns in which a pattern's triangles are looked at: its multiples are spread over them.
+pub(crate) const SPREAD: u32 = 1009;
 
 /// Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
 /// W == 0, and its inner triangles, which lie along no edge.
@@ -144,7 +147,7 @@ fn part_counts(factors: PatchFactors) -> [u32; 4] {
 }
 
 /// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. [`TOGETHER`] triangles are looked at
-/// at once, spread over all parts. That ends early with the first of them after which no part is within the tolerance.
+/// in one turn, spread over all parts. That ends early with the first turn after which no part is within the tolerance.
 fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted: [bool; 4]) -> [f32; 4] {
     let plan = domain_plan(factors);
     let all = part_counts(factors);
@@ -156,7 +159,7 @@ fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted:
     let (mut turn, mut goes_on) = (0, true);
     while turn < turns && goes_on {
         let before = worst;
-        for i in (0..TOGETHER).map(|lane| lane * turns + turn) {
+        for i in (0..TOGETHER).map(|lane| lane * turns + turn * SPREAD % turns) {
             let part = ends[..3].iter().filter(|&&end| i >= end).count();
             if i < ends[3] && before[part] <= tolerance {
                 let t = starts[part] + i - (ends[part] - counts[part]);
@@ -189,10 +192,10 @@ fn next_row_factor(
         return estimate;
     }
     // Errors of rows don't fall steadily: where the points of edge and ring don't match, triangles are up to twice as
-    // long. Where points may slide, that doesn't matter.
+    // long. Where points may slide, that doesn't matter. More segments than the ring has make no triangle shorter.
     let last = factor_from(partitioning, least.max(inside) + ROW_REACH);
     let next = factor_from(partitioning, factor + 1.0);
-    if next.max(0.5 * estimate) <= last { next } else { BEYOND_LAST }
+    if next <= last && 0.5 * estimate <= inside.max(factor) { next } else { BEYOND_LAST }
 }
 
 /// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.

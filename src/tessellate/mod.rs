@@ -116,7 +116,7 @@ pub(crate) mod shared_constants {
         FACTOR_VALUE, FIXED_HALF, FIXED_ONE, SUBTRIANGULATED,
     };
     pub(crate) use super::flat_patch::{AGREEING, TWO_POINTS};
-    pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, TOGETHER};
+    pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, SPREAD, TOGETHER};
     pub(crate) use super::normal::CANCELLED;
     pub(crate) use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
     pub(crate) use super::surface::UNIT;

@@ -111,7 +111,7 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_own_least(&self) -> Result<(), GpuError> {
-        own_least::prepare(&self.gpu, &self.pipelines)
+        own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count)
     }
 
     /// What passes over the mesh and its slabs are bound to.

@@ -48,7 +48,9 @@ fn a_module_does_not_compile_without_any_of_its_files() {
 /// The names that a file declares for others. Every declaration in `shaders/` starts a line.
 fn declared(file: &WgslFile) -> Vec<&'static str> {
     let name = |line: &'static str| {
-        let rest = ["fn ", "struct ", "const ", "var<workgroup> "].iter().find_map(|start| line.strip_prefix(start));
+        let rest = ["fn ", "struct ", "const ", "override ", "var<workgroup> "]
+            .iter()
+            .find_map(|start| line.strip_prefix(start));
         let rest = rest.or_else(|| line.strip_prefix("@group")?.split_once("> ").map(|(_, name)| name))?;
         rest.split(|c: char| !c.is_alphanumeric() && c != '_').next()
     };
