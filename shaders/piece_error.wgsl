@@ -422,13 +422,15 @@ fn same_place_error(
 }
 
 // Returns a bound on the error of a flat triangle, only part of which is in view, in px. It is cut into smaller ones, each of
-// which counts with what may be in view of it: within `spread` px of `middle`. `before` says how far the surface may be in front
-// of the triangle, and `bound` is derivative_bound. It ends early once an error isn't within the tolerance.
+// which counts with what may be in view of it: within `spread` px of `middle`, and beyond the near plane. The depths of the
+// surface are between `before` and `behind` more than those of the triangle, and `bound` is derivative_bound. It ends early once
+// an error isn't within the tolerance.
 fn partial_error(
     seen: ptr<function, SeenPatch>,
     piece: ptr<function, Piece>,
     beyond: ptr<function, array<vec4<f32>, 3>>,
     before: f32,
+    behind: f32,
     middle: vec2<f32>,
     spread: f32,
     bound: f32,
@@ -460,8 +462,10 @@ fn partial_error(
                 most = max(most, length(difference.xy - middle * difference.z) + spread * abs(difference.z));
             }
             let depth = max((*seen).near, seen_depth(depths, &outside) + before - (*seen).deep);
+            let farthest = max(max(depths.x, depths.y), depths.z) + behind + (*seen).deep;
             let own = (most + between) / depth;
-            if !is_beside_view(&outside) {
+            let is_hidden = is_beside_view(&outside) || farthest < (*seen).near;
+            if !is_hidden {
                 if !is_within(own, tolerance) {
                     return own;
                 }
@@ -533,7 +537,7 @@ fn piece_error(
     let most_beyond = max(max(beyond[0], beyond[1]), beyond[2]);
     let is_partial = !is_before_eye || any(most_beyond > vec4<f32>(0.0));
     if is_partial && !is_within(error, tolerance) {
-        error = min(error, partial_error(seen, &piece, &beyond, before, middle, spread, bound, tolerance));
+        error = min(error, partial_error(seen, &piece, &beyond, before, behind, middle, spread, bound, tolerance));
     }
     return error;
 }

@@ -404,13 +404,14 @@ fn same_place_error(
 }
 
 /// Returns a bound on the error of a flat triangle, only part of which is in view, in px. It is cut into smaller ones, each of
-/// which counts with what may be in view of it: within `spread` px of `middle`. `before` says how far the surface may be in
-/// front of the triangle, and `bound` is [`derivative_bound`]. It ends early once an error isn't within the tolerance.
+/// which counts with what may be in view of it: within `spread` px of `middle`, and beyond the near plane. The depths of the
+/// surface are between `before` and `behind` more than those of the triangle, and `bound` is [`derivative_bound`]. It ends early
+/// once an error isn't within the tolerance.
 fn partial_error(
     patch: &SeenPatch,
     piece: &Piece,
     beyond: [Vec4; 3],
-    before: f32,
+    [before, behind]: [f32; 2],
     (middle, spread, bound): (Vec2, f32, f32),
     tolerance: f32,
 ) -> f32 {
@@ -433,11 +434,15 @@ fn partial_error(
                 most = most.max((difference.truncate() - middle * difference.z).length() + spread * difference.z.abs());
             }
             let depth = patch.near.max(seen_depth(depths, outside) + before - patch.deep);
+            let farthest = depths[0].max(depths[1]).max(depths[2]) + behind + patch.deep;
             let own = (most + between) / depth;
-            if !is_beside_view(outside) && !is_within(own, tolerance) {
-                return own;
+            let is_hidden = is_beside_view(outside) || farthest < patch.near;
+            if !is_hidden {
+                if !is_within(own, tolerance) {
+                    return own;
+                }
+                error = error.max(own);
             }
-            error = error.max(if is_beside_view(outside) { 0.0 } else { own });
         }
     }
     error
@@ -491,7 +496,7 @@ pub(crate) fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f
     });
     let is_partial = !is_before_eye || beyond.into_iter().any(|corner| corner.max_element() > 0.0);
     if is_partial && !is_within(error, tolerance) {
-        error = error.min(partial_error(patch, &piece, beyond, before, (middle, spread, bound), tolerance));
+        error = error.min(partial_error(patch, &piece, beyond, [before, behind], (middle, spread, bound), tolerance));
     }
     error
 }
