@@ -17,8 +17,8 @@
 // Bits of numbers, whose order is that of the numbers since none is negative. One after another: the factors of edges; the
 // least factor of each edge; the factor that each patch's heights need inside it, if it is displaced; the inside factors of
 // patches, first those that they chose; the least factors with which their inner triangles are within the tolerance, 0 where
-// they aren't known; the numbers of patches of three searches; the number of rounds that are over; the patches of the first two
-// searches, one after the other; those of the third.
+// they aren't known; the numbers of patches of three searches; the number of rounds that are over; the patches of the first
+// two searches, one after the other; those of the third.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
 
 // Where the inside factor of a patch is.

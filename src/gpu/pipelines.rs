@@ -139,9 +139,9 @@ pub struct SearchPipelines {
 }
 
 impl SearchPipelines {
-    fn new(module: &Arc<ShaderModule>, entry_point: &'static str) -> Self {
+    fn new(module: &Arc<ShaderModule>, entry_point: &'static str, groups: [u32; 3]) -> Self {
         let [on_software, many_patches, few_patches] =
-            [8, 32, 128].map(|size| ComputePipeline::new(module, entry_point).with("GROUP", size));
+            groups.map(|size| ComputePipeline::new(module, entry_point).with("GROUP", size));
         Self { on_software, many_patches, few_patches }
     }
 
@@ -200,6 +200,11 @@ impl Default for ComputePipelines {
 impl ComputePipelines {
     /// Compiles nothing yet.
     pub fn new() -> Self {
+        Self::in_groups([8, 32, 128])
+    }
+
+    /// The same with workgroups of these sizes for searches: see [`SearchPipelines`].
+    pub(crate) fn in_groups(groups: [u32; 3]) -> Self {
         let module = |file| Arc::new(ShaderModule::new(file));
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
         let (asked, least) = (module(&PASS_ASKED), module(&PASS_LEAST));
@@ -214,12 +219,12 @@ impl ComputePipelines {
             edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
             heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
             asked_factors: ComputePipeline::new(&asked, "asked_factors_main"),
-            search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main"),
+            search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main", groups),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
-            search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main"),
+            search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main", groups),
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
             least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
-            search_least_triangles: SearchPipelines::new(&least, "search_least_triangles_main"),
+            search_least_triangles: SearchPipelines::new(&least, "search_least_triangles_main", groups),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),

@@ -1,12 +1,14 @@
 //! LOD by error: what is emitted is within the tolerance of the surface, and not much finer.
 
+use std::sync::Arc;
+
 use glam::Vec2;
-use pnaen::gpu::{Timing, take_times};
+use pnaen::gpu::{ComputePipelines, Timing, take_times};
 use pnaen::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
-use pnaen::settings::{Colors, Overlays, Settings};
+use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use pnaen::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
     hull_factors, own_least_triangles, tessellate,
@@ -157,6 +159,30 @@ fn the_device_takes_the_factors_that_the_cpu_does() {
     }
     // Another device may round a bound to the other side of a tolerance.
     assert!(all > 1000 && same * 1000 >= all * 995, "{same} of {all} patches agree without any allowance");
+}
+
+/// GPUs search in larger groups than the software driver does.
+#[test]
+fn the_size_of_a_group_changes_no_factor() {
+    let engines = [32, 128].map(|size| {
+        let mut engine = engine().clone();
+        engine.pipelines = Arc::new(ComputePipelines::in_groups([size; 3]));
+        (size, engine)
+    });
+    for shape in [Shape::Torus, Shape::CubeSmooth, Shape::Cone] {
+        let (loaded, mut usual) = scene(shape);
+        let camera = cameras(&usual)[1];
+        let settings = by_error(Settings::default(), 0.25);
+        let (_, out) = on_device(&mut usual, &settings, &camera);
+        let (own_least, edges) = (engine().own_least(&mut usual).expect("a readback"), edge_factors(&usual));
+        for (size, engine) in &engines {
+            let mut scene = engine.scene(&loaded, ARENA_BYTES).expect("shapes are small");
+            let (_, other) = on_device(&mut scene, &settings, &camera);
+            assert_eq!(edge_factors(&scene), edges, "{shape:?}, groups of {size}");
+            assert_eq!(other.patch_factors, out.patch_factors, "{shape:?}, groups of {size}");
+            assert_eq!(engine.own_least(&mut scene).expect("a readback"), own_least, "{shape:?}, groups of {size}");
+        }
+    }
 }
 
 #[test]

@@ -84,6 +84,26 @@ fn view(perspective: bool) -> LodView {
     LodView::new(clip_from_object, Vec2::new(640.0, 360.0))
 }
 
+/// Returns how much the finest grid of a triangle leaves between its points, in px, if its errors are up to `px`: the bound from
+/// second derivatives at its steps, and what depths and places change within a step.
+fn left_between(patch: &SeenPatch, at: [Vec2; 3], px: f64) -> f64 {
+    let piece = piece_of(patch, at);
+    let depths = piece.corners.map(|corner| f64::from(corner.z));
+    let deep: Vec<f64> = piece.differences.iter().map(|difference| f64::from(difference.z)).collect();
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let before = -most(&deep.iter().map(|z| -z).collect::<Vec<_>>());
+    let nearest = depths.iter().copied().fold(f64::INFINITY, f64::min) + before;
+    let ratio = (most(&depths) + most(&deep)) / nearest;
+    let [a, b, c] = piece.places;
+    let longest = f64::from(a.distance(b).max(b.distance(c)).max(c.distance(a)));
+    let middle = (a + b + c) / 3.0;
+    let spread = a.distance(middle).max(b.distance(middle)).max(c.distance(middle));
+    let bound = f64::from(derivative_bound(&piece, middle, spread)) / nearest;
+    let share = 1.0 / f64::from(FINEST_GRID);
+    let largest = most(&deep.iter().map(|z| z.abs()).collect::<Vec<_>>());
+    px * (ratio - 1.0) * share + bound * share * share + longest * ratio * share * largest / nearest
+}
+
 prop_compose! {
     /// A patch whose control points lie around its corners', and a triangle in its domain.
     fn any_patch(depths: std::ops::Range<f32>)(
@@ -117,16 +137,15 @@ proptest! {
             let error = piece_error(&patch, tolerance, at);
             prop_assert!(!is_within(error, tolerance) || px <= f64::from(error) * 1.0005 + 1e-3, "{error}, {px} px");
         }
-        // A tolerance that is larger by a fifth (and a tenth of a px) is kept, where all of the triangle is in view; or by more if
-        // depths differ, or if the bound without a grid is much larger, of which the finest grid leaves a 64th.
+        // Where all of the triangle is in view, a tolerance is kept that is larger by a fifth (and a tenth of a px), and by what the
+        // finest grid leaves between its points if that is more.
         let corners = at.map(|at| view.clip_from_object * seen_object_point(&net, at).extend(1.0));
         if corners.iter().all(|clip| clip.x.abs() < 0.8 * clip.w && clip.y.abs() < 0.8 * clip.w) {
-            let depths = corners.iter().map(|clip| f64::from(clip.w));
-            let ratio = depths.clone().fold(0.0, f64::max) / depths.fold(f64::INFINITY, f64::min);
-            let bound = f64::from(piece_error(&patch, 1e30, at));
-            let tolerance = (px * (1.2 + 0.5 * (ratio - 1.0)) + 0.1 + bound / 50.0) as f32;
+            let larger = px * 1.2 + 0.1;
+            let left = left_between(&patch, at, larger);
+            let tolerance = if left < 0.2 * (px + 0.1) { larger } else { larger + left } as f32;
             let error = piece_error(&patch, tolerance, at);
-            prop_assert!(error <= tolerance, "{error}, {px} px");
+            prop_assert!(error <= tolerance, "{error}, {px} px, of which the grid leaves {left}");
         }
     }
 
