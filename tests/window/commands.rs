@@ -317,6 +317,9 @@ fn an_exported_mesh_is_the_one_that_the_command_writes() {
 fn an_export_that_is_cancelled_writes_nothing() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    // So many triangles take longer to write than a frame takes, however busy the machine is.
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(32.0);
+    settle(&mut harness);
     let (context, path) = (harness.ctx.clone(), folder.path().join("torus.obj"));
     harness.state_mut().export_mesh(&context, path.clone()).expect("an .obj file");
     harness.step();
