@@ -173,17 +173,19 @@ fn part_errors(
     let before = vec4<u32>(0u, rest.x, rest.x + rest.y, rest.x + rest.y + rest.z);
     let turns = (count + TOGETHER - 1u) / TOGETHER;
     var worst = vec4<f32>(0.0);
-    var goes_on = true;
-    for (var first = 0u; first < turns && goes_on; first += GROUP / TOGETHER) {
-        let turn = first + lane / TOGETHER;
-        let i = lane % TOGETHER * turns + turn * SPREAD % turns;
+    var goes_on = turns > 0u;
+    var first = 0u;
+    while any_team(goes_on) {
+        let turn = first + lane % team_size / TOGETHER;
+        let i = lane % TOGETHER * turns + turn * SPREAD % max(turns, 1u);
         let part = select(0u, 1u, i >= ends.x) + select(0u, 1u, i >= ends.y) + select(0u, 1u, i >= ends.z);
         var own = 0.0;
-        if turn < turns && i < count && worst[part] <= tolerance {
+        if goes_on && turn < turns && i < count && worst[part] <= tolerance {
             own = triangle_error_at(seen, tolerance, plan, i + before[part]);
         }
-        worst = largest_of_group(part, own, worst, wanted, tolerance);
-        goes_on = any(wanted & (worst <= vec4<f32>(tolerance)));
+        worst = largest_of_team(part, own, worst, wanted, tolerance);
+        first += team_size / TOGETHER;
+        goes_on = first < turns && any(wanted & (worst <= vec4<f32>(tolerance)));
     }
     return worst;
 }
@@ -282,10 +284,14 @@ fn fewest_triangles(
     var step = first_step(partitioning, least_inside, inner);
     var edges = least;
     var rows = vec3<bool>(true);
-    while step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest {
+    var goes_on = step.inside <= 64.0;
+    while any_team(goes_on) {
         let inside = step.inside;
-        let wanted = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner);
+        let wanted = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner) & vec4<bool>(goes_on);
         let errors = part_errors(seen, within, process(partitioning, edges, inside), wanted);
+        if !goes_on {
+            continue;
+        }
         let fails = errors > vec4<f32>(within);
         for (var k = 0u; k < 3u; k++) {
             if fails[k] {
@@ -310,6 +316,7 @@ fn fewest_triangles(
             step = next_step(partitioning, inside, best.inner, errors.w, within);
             edges = least;
             rows = vec3<bool>(true);
+            goes_on = step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest;
         }
     }
     return best;
@@ -361,9 +368,13 @@ fn least_inside_factor(
     var result = BEYOND_LAST;
     var known = inner;
     var step = first_step(partitioning, least, inner);
-    while step.inside <= 64.0 && result > 64.0 {
-        let wanted = vec4<bool>(vec3<bool>(!step.is_inner), step.is_inner);
+    var goes_on = step.inside <= 64.0;
+    while any_team(goes_on) {
+        let wanted = vec4<bool>(vec3<bool>(!step.is_inner), step.is_inner) & vec4<bool>(goes_on);
         let errors = part_errors(seen, within, process(partitioning, edges, step.inside), wanted);
+        if !goes_on {
+            continue;
+        }
         if any(errors > vec4<f32>(within)) {
             step = next_step(partitioning, step.inside, known, errors.w, within);
         } else {
@@ -371,6 +382,26 @@ fn least_inside_factor(
             result = select(BEYOND_LAST, step.inside, step.is_last);
             step = Step(step.inside, !step.is_inner, true);
         }
+        goes_on = step.inside <= 64.0 && result > 64.0;
     }
     return result;
+}
+
+// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.
+fn uniform_suffices(
+    seen: ptr<function, SeenPatch>,
+    tolerance: f32,
+    partitioning: u32,
+    factor: f32,
+    least_inside: f32,
+) -> bool {
+    let within = BOUND_SHARE * tolerance;
+    let factors = process(partitioning, vec3<f32>(factor), factor);
+    if least_inside > factor {
+        return false;
+    }
+    if patch_is_minimal(factors) {
+        return triangle_error_at(seen, within, domain_plan(factors), 0u) <= within;
+    }
+    return all(part_errors(seen, within, factors, vec4<bool>(true)) <= vec4<f32>(within));
 }

@@ -14,78 +14,82 @@
 @group(0) @binding(5) var<storage, read> corners: array<Corner>;
 // A bit for each patch: whether it has a texture.
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
-// Bits of numbers, whose order is that of the numbers since none is negative. One after another: the factors of edges; the
-// least factor of each edge; the factor that each patch's heights need inside it, if it is displaced; the inside factors of
-// patches, first those that they chose; the least factors with which their inner triangles are within the tolerance, 0 where
-// they aren't known; the numbers of patches of three searches; the number of rounds that are over; the patches of the first
-// two searches, one after the other; those of the third.
+// See search_state.wgsl.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-
-// Where the inside factor of a patch is.
-fn inside_at(patch_index: u32) -> u32 {
-    return 2u * params.factor_count + params.patch_count + patch_index;
-}
-
-// Where the least factor is with which a patch's inner triangles are within the tolerance.
-fn inner_at(patch_index: u32) -> u32 {
-    return inside_at(params.patch_count + patch_index);
-}
-
-fn known_inner(patch_index: u32) -> f32 {
-    return bitcast<f32>(atomicLoad(&edge_factors[inner_at(patch_index)]));
-}
-
-// The factor that a patch's heights need inside it.
-fn heights_inside(patch_index: u32) -> f32 {
-    if params.displacement == 0u {
-        return 1.0;
-    }
-    return bitcast<f32>(atomicLoad(&edge_factors[2u * params.factor_count + patch_index]));
-}
-
-// The part of the tolerance that is for the surface without displacement, in px.
-fn surface_tolerance() -> f32 {
-    return params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
-}
-
-// The factors of the edges U == 0, V == 0 and W == 0 of a patch: LOD takes each by the opposite corner, whatever the
-// convention. They are those `first` places into `edge_factors`.
-fn edges_of(patch_index: u32, first: u32) -> vec3<f32> {
-    let own = patches[patch_index].factors;
-    return vec3<f32>(
-        bitcast<f32>(atomicLoad(&edge_factors[first + (own[1] >> 3u)])),
-        bitcast<f32>(atomicLoad(&edge_factors[first + (own[2] >> 3u)])),
-        bitcast<f32>(atomicLoad(&edge_factors[first + (own[0] >> 3u)])),
-    );
-}
+// The workgroups of each search.
+@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 3>;
 
 // The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for again.
 const SEARCH_ASKED: u32 = 0u;
 const SEARCH_INSIDE: u32 = 1u;
 const SEARCH_AGAIN: u32 = 2u;
 
-// Where the number of rounds is that are over.
-fn rounds_at() -> u32 {
-    return searched_count_at(3u);
-}
+// The counters: of large patches, beside which are those of small ones; and of rounds that are over.
+const SMALL: u32 = 3u;
+const ROUNDS_OVER: u32 = 6u;
 
-// Where the number of patches is that a search is for.
-fn searched_count_at(search: u32) -> u32 {
-    return inner_at(params.patch_count) + search;
-}
-
-// Where the `i`-th of those patches is.
+// Where the `i`-th patch of a search is.
 fn searched_at(search: u32, i: u32) -> u32 {
-    return searched_count_at(4u) + select(0u, params.patch_count, search == SEARCH_AGAIN) + i;
+    return counter_at(SEARCH_COUNTERS) + select(0u, params.patch_count, search == SEARCH_AGAIN) + i;
 }
 
-fn search_later(search: u32, patch_index: u32) {
-    let i = atomicAdd(&edge_factors[searched_count_at(search)], 1u);
-    atomicStore(&edge_factors[searched_at(search, i)], patch_index);
+fn clear_search(search: u32) {
+    atomicStore(&edge_factors[counter_at(search)], 0u);
+    atomicStore(&edge_factors[counter_at(search + SMALL)], 0u);
 }
 
-fn set_inside(patch_index: u32, inside: f32) {
-    atomicStore(&edge_factors[inside_at(patch_index)], bitcast<u32>(inside));
+// Some software drivers end the loops of an invocation after 65,535 turns, and take microseconds even for workgroups that have
+// nothing to do. So there is one for each patch that is searched, up to as many as can be dispatched.
+fn set_search_workgroups() {
+    for (var search = 0u; search < 3u; search++) {
+        let large = atomicLoad(&edge_factors[counter_at(search)]);
+        let small = atomicLoad(&edge_factors[counter_at(search + SMALL)]);
+        search_workgroups[search] = array<u32, 3>(min(large + small, MOST_WORKGROUPS), 1u, 1u);
+    }
+}
+
+// Counts the workgroups of the search that is next.
+@compute @workgroup_size(1)
+fn search_workgroups_main() {
+    set_search_workgroups();
+}
+
+// How large a factor a pattern has that is searched by a whole workgroup.
+const LARGE: f32 = 4.0;
+
+// Puts a patch on the list of a search. These factors will be among its pattern's.
+fn search_later(search: u32, patch_index: u32, edges: vec3<f32>, inside: f32) {
+    if max(max(max(edges.x, edges.y), edges.z), inside) >= LARGE {
+        let i = atomicAdd(&edge_factors[counter_at(search)], 1u);
+        atomicStore(&edge_factors[searched_at(search, i)], patch_index);
+    } else {
+        let i = atomicAdd(&edge_factors[counter_at(search + SMALL)], 1u);
+        atomicStore(&edge_factors[searched_at(search, params.patch_count - 1u - i)], patch_index);
+    }
+}
+
+// An inside factor, and factors of the edges U == 0, V == 0 and W == 0 beside which it is enough.
+struct Enough {
+    edges: vec3<f32>,
+    inside: f32,
+}
+
+// Stores what a patch has chosen in place of its inside factor: whole numbers of 7 bits, and 65 for larger factors. All together
+// are less than the bits of an inside factor alone.
+fn set_chosen(patch_index: u32, edges: vec3<f32>, inside: f32) {
+    let numbers = vec4<u32>(min(ceil(vec4<f32>(edges, inside)), vec4<f32>(65.0)));
+    let word = numbers.x | (numbers.y << 7u) | (numbers.z << 14u) | (numbers.w << 21u);
+    atomicStore(&edge_factors[inside_at(patch_index)], word);
+}
+
+// Returns what a patch has chosen, or its inside factor beside no edges if that is known.
+fn chosen_from(word: u32) -> Enough {
+    if word >= bitcast<u32>(1.0) {
+        return Enough(vec3<f32>(0.0), bitcast<f32>(word));
+    }
+    let numbers = vec4<f32>((vec4<u32>(word) >> vec4<u32>(0u, 7u, 14u, 21u)) & vec4<u32>(127u));
+    let factors = min(numbers, vec4<f32>(BEYOND_LAST));
+    return Enough(factors.xyz, factors.w);
 }
 
 fn ask(patch_index: u32, asked: vec3<f32>) {
@@ -111,29 +115,54 @@ fn asked_factors_main(
     let inside = heights_inside(index);
     let within = BOUND_SHARE * surface_tolerance();
     atomicStore(&edge_factors[inner_at(index)], 0u);
-    let is_known = params.surface == SURFACE_FLAT || max(max(max(least.x, least.y), least.z), inside) > 64.0;
-    if is_known || single_suffices(&seen, within, params.partitioning, least, inside) {
-        ask(index, least);
-        set_inside(index, whole_segments(params.partitioning, inside));
+    var chosen = 0.0;
+    if params.surface == SURFACE_FLAT {
+        chosen = whole_segments(params.partitioning, inside);
+    } else if max(max(max(least.x, least.y), least.z), inside) > 64.0 {
+        chosen = BEYOND_LAST;
+    } else if single_suffices(&seen, within, params.partitioning, least, inside) {
+        chosen = 1.0;
     } else {
-        search_later(SEARCH_ASKED, index);
+        search_later(SEARCH_ASKED, index, least, inside);
+        return;
     }
+    ask(index, least);
+    set_chosen(index, least, chosen);
 }
 
-// The patch that a workgroup searches.
-var<workgroup> group_patch: u32;
+// The patches that the teams of a workgroup search.
+var<workgroup> team_patches: array<u32, 16>;
+var<workgroup> searched_counts: vec2<u32>;
 
 const NO_MORE: u32 = 0xffffffffu;
 
-// Returns the `i`-th patch that is searched, the same for all invocations of the workgroup; NO_MORE if there are fewer.
-fn searched_patch(search: u32, i: u32) -> u32 {
+// How many patches of a search the workgroups before this one and this one have begun.
+var<private> begun: u32;
+
+// Returns the next patch that this invocation's team searches, NO_MORE if there is none: of the large ones, each is for a whole
+// workgroup; then of the small ones, one for each team.
+fn next_patch(search: u32, workgroups: u32) -> u32 {
     if lane == 0u {
-        group_patch = NO_MORE;
-        if i < min(atomicLoad(&edge_factors[searched_count_at(search)]), params.patch_count) {
-            group_patch = atomicLoad(&edge_factors[searched_at(search, i)]);
+        searched_counts = vec2<u32>(
+            min(atomicLoad(&edge_factors[counter_at(search)]), params.patch_count),
+            min(atomicLoad(&edge_factors[counter_at(search + SMALL)]), params.patch_count),
+        );
+    }
+    let counts = workgroupUniformLoad(&searched_counts);
+    let at = begun;
+    begun += workgroups;
+    team_size = select(TOGETHER, GROUP, at < counts.x);
+    let small = (at - counts.x) * (GROUP / TOGETHER) + team();
+    if leads_team() {
+        team_patches[team()] = NO_MORE;
+        if at < counts.x {
+            team_patches[team()] = atomicLoad(&edge_factors[searched_at(search, at)]);
+        } else if small < counts.y {
+            team_patches[team()] = atomicLoad(&edge_factors[searched_at(search, params.patch_count - 1u - small)]);
         }
     }
-    return workgroupUniformLoad(&group_patch);
+    workgroupBarrier();
+    return team_patches[team()];
 }
 
 // Searches what patches ask for, or ask for again.
@@ -145,29 +174,34 @@ fn search_asked_factors_main(
 ) {
     lane = local;
     let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_later_round());
-    var i = workgroup.x;
-    var index = searched_patch(search, i);
-    while index != NO_MORE {
+    begun = workgroup.x;
+    var next = next_patch(search, workgroups.x);
+    while any_team(next != NO_MORE) {
+        let is_searched = next != NO_MORE;
+        let index = select(0u, next, is_searched);
         var seen = load_seen(index);
         var least = edges_of(index, params.factor_count);
         if search == SEARCH_ASKED {
             least = first_least(&seen, least);
         }
-        let inner = known_inner(index);
-        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index), inner);
-        if lane == 0u {
+        let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let inner = select(0.0, known_inner(index), is_searched);
+        let asked = asked_factors(&seen, surface_tolerance(), params.partitioning, least, inside, inner);
+        if leads_team() && is_searched {
             ask(index, asked.edges);
-            set_inside(index, asked.inside);
+            // What asks again has found an inside factor before.
+            if search == SEARCH_ASKED || asked.inside <= 64.0 {
+                set_chosen(index, asked.edges, asked.inside);
+            }
             atomicStore(&edge_factors[inner_at(index)], bitcast<u32>(asked.inner));
         }
-        i += workgroups.x;
-        index = searched_patch(search, i);
+        next = next_patch(search, workgroups.x);
     }
 }
 
 // Whether the first round is over.
 fn is_later_round() -> bool {
-    return atomicLoad(&edge_factors[rounds_at()]) > 0u;
+    return atomicLoad(&edge_factors[counter_at(ROUNDS_OVER)]) > 0u;
 }
 
 @compute @workgroup_size(256)
@@ -184,21 +218,26 @@ fn inside_factors_main(
     let edges = edges_of(index, 0u);
     if index == 0u {
         // Those that asked have been searched.
-        atomicStore(&edge_factors[searched_count_at(SEARCH_AGAIN)], 0u);
-    }
-    // In later rounds most edges have what they had.
-    if is_later_round() && all(edges == edges_of(index, params.factor_count)) {
-        return;
+        clear_search(SEARCH_AGAIN);
     }
     var inside = whole_segments(params.partitioning, heights);
     if params.surface != SURFACE_FLAT {
+        // Most edges have what their patches have asked for, and in later rounds what they had.
+        let chosen = chosen_from(inside_of(index));
+        if all(edges == chosen.edges) {
+            set_inside(index, chosen.inside);
+            return;
+        }
+        if is_later_round() && all(edges == edges_of(index, params.factor_count)) {
+            return;
+        }
         var seen = load_seen(index);
         if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, edges, heights) {
             inside = 1.0;
         } else if max(max(max(edges.x, edges.y), edges.z), heights) > 64.0 {
             inside = BEYOND_LAST;
         } else {
-            search_later(SEARCH_INSIDE, index);
+            search_later(SEARCH_INSIDE, index, edges, heights);
             return;
         }
     }
@@ -212,22 +251,23 @@ fn search_inside_factors_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     lane = local;
-    var i = workgroup.x;
-    var index = searched_patch(SEARCH_INSIDE, i);
-    while index != NO_MORE {
+    begun = workgroup.x;
+    var next = next_patch(SEARCH_INSIDE, workgroups.x);
+    while any_team(next != NO_MORE) {
+        let is_searched = next != NO_MORE;
+        let index = select(0u, next, is_searched);
         var seen = load_seen(index);
         let edges = edges_of(index, 0u);
-        let least = heights_inside(index);
-        let inner = known_inner(index);
+        let least = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let inner = select(0.0, known_inner(index), is_searched);
         let inside = least_inside_factor(&seen, surface_tolerance(), params.partitioning, edges, least, inner);
-        if lane == 0u {
-            let chosen = bitcast<f32>(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
-            if asks_again(chosen, inside) {
-                search_later(SEARCH_AGAIN, index);
+        if leads_team() && is_searched {
+            let chosen = chosen_from(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
+            if asks_again(chosen.inside, inside) {
+                search_later(SEARCH_AGAIN, index, edges, least);
             }
         }
-        i += workgroups.x;
-        index = searched_patch(SEARCH_INSIDE, i);
+        next = next_patch(SEARCH_INSIDE, workgroups.x);
     }
 }
 
@@ -240,8 +280,9 @@ fn keep_factors_main(
 ) {
     let index = grid_index(workgroup, workgroups, local);
     if index == 0u {
-        atomicStore(&edge_factors[searched_count_at(SEARCH_INSIDE)], 0u);
-        atomicAdd(&edge_factors[rounds_at()], 1u);
+        clear_search(SEARCH_INSIDE);
+        set_search_workgroups();
+        atomicAdd(&edge_factors[counter_at(ROUNDS_OVER)], 1u);
     }
     if index < params.factor_count {
         atomicStore(&edge_factors[params.factor_count + index], atomicLoad(&edge_factors[index]));

@@ -8,7 +8,7 @@
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
-// The factors of edges; under LOD by error then what pass_asked.wgsl says.
+// The factors of edges; under LOD by error then what search_state.wgsl says.
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<f32>;
 // Only of meshes with heights: see Share in types.wgsl.
 @group(0) @binding(6) var<storage, read> shares: array<Share>;
@@ -106,8 +106,8 @@ fn edge_factors_main(
     let factor = lod_factor(index);
     if params.lod == LOD_ERROR {
         // No patch is searched yet.
-        if index < 4u {
-            edge_factors[2u * params.factor_count + 3u * params.patch_count + index] = 0.0;
+        for (var i = index; i < SEARCH_COUNTERS; i += params.factor_count) {
+            edge_factors[2u * params.factor_count + 3u * params.patch_count + i] = 0.0;
         }
         edge_factors[index] = whole_segments(params.partitioning, 1.0);
         edge_factors[params.factor_count + index] = whole_segments(params.partitioning, factor);

@@ -68,10 +68,7 @@ fn least_triangles_main(
     least_triangles[index] = triangles;
 }
 
-// Whether the workgroup searches the patch that it looks at.
-var<workgroup> is_searched: u32;
-
-// Each workgroup searches the factors of one of the other patches after another.
+// Each team of a workgroup searches the factors of one of the other patches after another.
 @compute @workgroup_size(GROUP)
 fn search_least_triangles_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -79,17 +76,16 @@ fn search_least_triangles_main(
     @builtin(local_invocation_index) local: u32,
 ) {
     lane = local;
-    for (var index = workgroup.x; index < params.patch_count; index += workgroups.x) {
-        if lane == 0u {
-            is_searched = u32(least_triangles[index] == 0u);
-        }
-        if workgroupUniformLoad(&is_searched) == 0u {
-            continue;
-        }
+    team_size = GROUP;
+    let teams = 1u;
+    for (var first = workgroup.x * teams; first < params.patch_count; first += workgroups.x * teams) {
+        let index = min(first + team(), params.patch_count - 1u);
+        let is_searched = first + team() == index && least_triangles[index] == 0u;
         var seen = load_seen(index);
         let least = first_least(&seen, least_of_edges(index));
-        let own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, heights_inside(index));
-        if lane == 0u {
+        let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let own = own_least_factors(&seen, surface_tolerance(), params.partitioning, least, inside);
+        if leads_team() && is_searched {
             least_triangles[index] = triangles_of(own.edges, own.inside);
         }
     }

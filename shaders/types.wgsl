@@ -32,6 +32,12 @@ struct Params {
 // A value of Params.lod that no LOD has: the factors of every patch were given.
 const LOD_GIVEN: u32 = 0xffffffffu;
 
+// The most workgroups along one dimension that WebGPU allows.
+const MOST_WORKGROUPS: u32 = 65535u;
+
+// How many counters the searches of LOD by error have: see search_state.wgsl.
+const SEARCH_COUNTERS: u32 = 11u;
+
 // The run of patches that one scan covers, and how much fits the arena.
 struct Slab {
     first_patch: u32,

@@ -60,4 +60,11 @@ impl BoundPass {
         pass.set_bind_group(0, &self.group, &[]);
         pass.dispatch_workgroups(x, y, z);
     }
+
+    /// Runs it over as many workgroups as a buffer says, `offset` bytes into it.
+    pub(crate) fn dispatch_indirect(&self, pass: &mut wgpu::ComputePass, workgroups: &wgpu::Buffer, offset: u64) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups_indirect(workgroups, offset);
+    }
 }

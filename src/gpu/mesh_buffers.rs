@@ -7,6 +7,9 @@ use super::{Gpu, GpuError};
 use crate::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
 use crate::tessellate::texel_lengths;
 
+/// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
+pub(crate) const SEARCH_COUNTERS: u32 = 11;
+
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
     /// The position of every point; then, for every patch, room for the control point at its centre, and as w the number of its
@@ -21,8 +24,10 @@ pub struct MeshBuffers {
     /// A bit for each patch: whether it has a texture.
     pub textured: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
-    /// One factor for each edge; then room for what LOD by error needs, see `shaders/pass_asked.wgsl`.
+    /// One factor for each edge; then room for what LOD by error needs, see `shaders/search_state.wgsl`.
     pub edge_factors: wgpu::Buffer,
+    /// The workgroups of the searches of LOD by error on a software driver, as indirect arguments: see `shaders/pass_asked.wgsl`.
+    pub search_workgroups: wgpu::Buffer,
     /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
     pub shares: wgpu::Buffer,
     /// How far each mip level of each height image is from its level 0.
@@ -56,7 +61,7 @@ impl MeshBuffers {
             let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
-        let factor_room = 2 * grouped.factor_count() as usize + 5 * topology.patches.len() + 4;
+        let factor_room = 2 * grouped.factor_count() as usize + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
         let curves: Vec<Curve> = grouped.curves.iter().map(curve).collect();
         Ok(Self {
             points: filled(gpu, "points", &points)?,
@@ -69,6 +74,7 @@ impl MeshBuffers {
             textured: filled(gpu, "textured", &textured(mesh, topology))?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
+            search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 3)?,
             shares: filled(gpu, "shares", &all_shares)?,
             details: details(gpu, heights),
             relief,

@@ -18,21 +18,35 @@ pub(super) struct MeshPasses {
     edge_factors: OnceLock<BoundPass>,
     heights_inside: OnceLock<BoundPass>,
     asked_factors: OnceLock<BoundPass>,
+    search_workgroups: OnceLock<BoundPass>,
     search_asked_factors: OnceLock<BoundPass>,
     inside_factors: OnceLock<BoundPass>,
     search_inside_factors: OnceLock<BoundPass>,
     keep_factors: OnceLock<BoundPass>,
+    sum_triangles: OnceLock<BoundPass>,
+    candidates: OnceLock<BoundPass>,
+    search_uniform_factor: OnceLock<BoundPass>,
+    take_uniform_factor: OnceLock<BoundPass>,
     factor_levels: OnceLock<BoundPass>,
     point_levels: OnceLock<BoundPass>,
 }
 
-/// What a pass of LOD by error has an invocation for, or in a search a workgroup.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Each {
+/// What a pass of LOD by error has an invocation or a workgroup for.
+#[derive(Clone, Copy)]
+pub(super) enum Each<'a> {
     Edge,
     Patch,
-    SearchedPatch,
+    /// It has so many workgroups.
+    Workgroups(u32),
+    /// It has as many workgroups as this buffer says, so many bytes into it.
+    Counted(&'a wgpu::Buffer, u64),
 }
+
+/// The most workgroups of a search: enough for the largest GPUs.
+const SEARCH_WORKGROUPS: u32 = 8192;
+
+/// The same for one factor for all edges. Mostly each looks at one patch, and then no factor is left.
+const UNIFORM_WORKGROUPS: u32 = 2048;
 
 type Bound<'a> = Result<&'a BoundPass, GpuError>;
 
@@ -97,29 +111,55 @@ impl MeshPasses {
         BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)
     }
 
-    /// The passes of LOD by error in their order, and what each has an invocation or a workgroup for: see
-    /// `shaders/pass_asked.wgsl`.
-    pub(super) fn asked(&self, on: &PassInputs) -> Result<Vec<(&BoundPass, Each)>, GpuError> {
-        let (buffers, pipelines) = (asked_buffers(on.mesh, on.params, &on.mesh.edge_factors), on.pipelines);
-        let factors = [(0, on.params), (4, &on.mesh.edge_factors)];
+    /// The passes of LOD by error in their order, and what each has an invocation for: see `shaders/pass_asked.wgsl`.
+    pub(super) fn asked<'a>(&'a self, on: &PassInputs<'a>) -> Result<Vec<(&'a BoundPass, Each<'a>)>, GpuError> {
+        let (mesh, pipelines) = (on.mesh, on.pipelines);
+        let buffers = asked_buffers(mesh, on.params, &mesh.edge_factors);
+        let counters = [(0, on.params), (4, &mesh.edge_factors), (7, &mesh.search_workgroups)];
         let asked = BoundPass::once(&self.asked_factors, on.gpu, &pipelines.asked_factors, &buffers)?;
-        let patches = on.mesh.patch_count;
-        let search_asked = pipelines.search_asked_factors.of(on.gpu, patches);
+        let count = BoundPass::once(&self.search_workgroups, on.gpu, &pipelines.search_workgroups, &counters)?;
+        let search_asked = pipelines.search_asked_factors.of(on.gpu, mesh.patch_count);
         let search_asked = BoundPass::once(&self.search_asked_factors, on.gpu, search_asked, &buffers)?;
         let inside = BoundPass::once(&self.inside_factors, on.gpu, &pipelines.inside_factors, &buffers)?;
-        let search_inside = pipelines.search_inside_factors.of(on.gpu, patches);
+        let search_inside = pipelines.search_inside_factors.of(on.gpu, mesh.patch_count);
         let search_inside = BoundPass::once(&self.search_inside_factors, on.gpu, search_inside, &buffers)?;
-        let keep = BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &factors)?;
+        let keep = BoundPass::once(&self.keep_factors, on.gpu, &pipelines.keep_factors, &counters)?;
+        // What a search has nothing for costs a software driver microseconds a workgroup, and a GPU less than counting them.
+        let counts = on.gpu.is_software();
+        let searched = |search: u64| match counts {
+            true => Each::Counted(&mesh.search_workgroups, search * size_of::<[u32; 3]>() as u64),
+            false => Each::Workgroups(mesh.patch_count.min(SEARCH_WORKGROUPS)),
+        };
+        let count = counts.then_some((count, Each::Workgroups(1)));
+        let take_insides = || [(inside, Each::Patch)].into_iter().chain(count).chain([(search_inside, searched(1))]);
         let mut passes = vec![(asked, Each::Patch)];
-        for round in 0..ROUNDS {
-            if round > 0 {
-                passes.push((keep, Each::Edge));
-            }
-            passes.push((search_asked, Each::SearchedPatch));
-            passes.push((inside, Each::Patch));
-            passes.push((search_inside, Each::SearchedPatch));
+        passes.extend(count);
+        passes.push((search_asked, searched(0)));
+        passes.extend(take_insides());
+        for _ in 1..ROUNDS {
+            // What ends a round counts the workgroups of the next search.
+            passes.extend([(keep, Each::Edge), (search_asked, searched(2))]);
+            passes.extend(take_insides());
         }
+        passes.push((keep, Each::Edge));
+        passes.extend(self.uniform(on)?);
+        passes.extend(take_insides());
         Ok(passes)
+    }
+
+    /// The passes that give all edges one factor where that takes fewer triangles: see `shaders/pass_uniform.wgsl`.
+    fn uniform<'a>(&'a self, on: &PassInputs<'a>) -> Result<[(&'a BoundPass, Each<'a>); 4], GpuError> {
+        let (mesh, pipelines) = (on.mesh, on.pipelines);
+        let factors = [(0, on.params), (4, &mesh.edge_factors)];
+        let patches = [&factors[..], &[(2, &mesh.patches)]].concat();
+        let sum = BoundPass::once(&self.sum_triangles, on.gpu, &pipelines.sum_triangles, &patches)?;
+        let candidates = BoundPass::once(&self.candidates, on.gpu, &pipelines.candidates, &factors)?;
+        let buffers = asked_buffers(mesh, on.params, &mesh.edge_factors);
+        let search = pipelines.search_uniform_factor.of(on.gpu, mesh.patch_count);
+        let search = BoundPass::once(&self.search_uniform_factor, on.gpu, search, &buffers)?;
+        let take = BoundPass::once(&self.take_uniform_factor, on.gpu, &pipelines.take_uniform_factor, &factors)?;
+        let searched = Each::Workgroups(mesh.patch_count.min(UNIFORM_WORKGROUPS));
+        Ok([(sum, Each::Patch), (candidates, Each::Workgroups(1)), (search, searched), (take, Each::Edge)])
     }
 
     /// The level at which heights are looked up on every edge.

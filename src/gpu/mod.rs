@@ -42,8 +42,10 @@ pub use error::GpuError;
 pub(crate) use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
 #[cfg(test)]
-pub(crate) use pipelines::GRID_WIDTH;
+pub(crate) use mesh_buffers::SEARCH_COUNTERS;
 pub(crate) use pipelines::{ComputePipeline, ComputePipelines, ShaderModule, WORKGROUP, bind_group, grid};
+#[cfg(test)]
+pub(crate) use pipelines::{GRID_WIDTH, MOST_WORKGROUPS};
 pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
 #[cfg(test)]
 pub(crate) use recorder::PASSES;
@@ -53,11 +55,12 @@ pub(crate) use wgsl::WgslFile;
 
 /// The files with the entry points of the passes: one shader module each.
 #[cfg(test)]
-pub(crate) static MODULES: [&WgslFile; 12] = [
+pub(crate) static MODULES: [&WgslFile; 13] = [
     &pipelines::PASS_DEFORM,
     &pipelines::PASS_NETS,
     &pipelines::PASS_FACTORS,
     &pipelines::PASS_ASKED,
+    &pipelines::PASS_UNIFORM,
     &pipelines::PASS_LEAST,
     &pipelines::PASS_LEVELS,
     &pipelines::PASS_COUNTS,

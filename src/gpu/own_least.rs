@@ -7,7 +7,7 @@ use super::bound_pass::{BoundPass, PassInputs};
 use super::buffer::{empty, uniform_buffer};
 use super::layout::Params;
 use super::mesh_passes::{asked_buffers, factor_buffers};
-use super::pipelines::{ComputePipelines, SEARCH_WORKGROUPS, grid};
+use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, grid};
 use super::recorder::RecordPasses;
 use super::{Gpu, GpuError};
 
@@ -84,7 +84,7 @@ impl OwnLeast {
                 heights_inside.dispatch(pass, grid(mesh.patch_count));
             }
             self.least_triangles.dispatch(pass, grid(mesh.patch_count));
-            self.search_least_triangles.dispatch(pass, [mesh.patch_count.min(SEARCH_WORKGROUPS), 1, 1]);
+            self.search_least_triangles.dispatch(pass, [mesh.patch_count.min(MOST_WORKGROUPS), 1, 1]);
         });
         self.done = Some(*params);
         Ok(())

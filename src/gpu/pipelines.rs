@@ -7,8 +7,8 @@ use wgpu::util::DeviceExt;
 use super::lazy::Lazy;
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, LEAST_FACTORS,
-    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SLIDES, SURFACE, TYPES, WORKGROUP_SCAN, WgslFile,
-    wgsl,
+    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE, SLIDES, SURFACE, TYPES,
+    WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
 use crate::tessellate::{Normals, connectivity_table};
@@ -23,7 +23,9 @@ pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_
 pub(super) static PASS_FACTORS: WgslFile =
     wgsl!("pass_factors", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOD, SURFACE, TYPES);
 pub(super) static PASS_ASKED: WgslFile =
-    wgsl!("pass_asked", DISPLACEMENT_FACTOR, LEAST_FACTORS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
+    wgsl!("pass_asked", LEAST_FACTORS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES);
+pub(super) static PASS_UNIFORM: WgslFile =
+    wgsl!("pass_uniform", FACTORS, LEAST_FACTORS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES, WORKGROUP_SCAN);
 pub(super) static PASS_LEAST: WgslFile =
     wgsl!("pass_least", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
 pub(super) static PASS_LEVELS: WgslFile =
@@ -170,10 +172,15 @@ pub struct ComputePipelines {
     pub edge_factors: ComputePipeline,
     pub heights_inside: ComputePipeline,
     pub asked_factors: ComputePipeline,
+    pub search_workgroups: ComputePipeline,
     pub search_asked_factors: SearchPipelines,
     pub inside_factors: ComputePipeline,
     pub search_inside_factors: SearchPipelines,
     pub keep_factors: ComputePipeline,
+    pub sum_triangles: ComputePipeline,
+    pub candidates: ComputePipeline,
+    pub search_uniform_factor: SearchPipelines,
+    pub take_uniform_factor: ComputePipeline,
     /// Whose results no other pass needs, like those of the next.
     pub least_triangles: ComputePipeline,
     pub search_least_triangles: SearchPipelines,
@@ -207,7 +214,7 @@ impl ComputePipelines {
     pub(crate) fn in_groups(groups: [u32; 3]) -> Self {
         let module = |file| Arc::new(ShaderModule::new(file));
         let (deform, nets, levels) = (module(&PASS_DEFORM), module(&PASS_NETS), module(&PASS_LEVELS));
-        let (asked, least) = (module(&PASS_ASKED), module(&PASS_LEAST));
+        let (asked, uniform, least) = (module(&PASS_ASKED), module(&PASS_UNIFORM), module(&PASS_LEAST));
         let (factors, counts, emit) = (module(&PASS_FACTORS), module(&PASS_COUNTS), module(&PASS_EMIT));
         Self {
             deform_corners: ComputePipeline::new(&deform, "deform_corners_main"),
@@ -219,10 +226,15 @@ impl ComputePipelines {
             edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
             heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
             asked_factors: ComputePipeline::new(&asked, "asked_factors_main"),
+            search_workgroups: ComputePipeline::new(&asked, "search_workgroups_main"),
             search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main", groups),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
             search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main", groups),
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
+            sum_triangles: ComputePipeline::new(&uniform, "sum_triangles_main"),
+            candidates: ComputePipeline::new(&uniform, "candidates_main"),
+            search_uniform_factor: SearchPipelines::new(&uniform, "search_uniform_factor_main", groups),
+            take_uniform_factor: ComputePipeline::new(&uniform, "take_uniform_factor_main"),
             least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
             search_least_triangles: SearchPipelines::new(&least, "search_least_triangles_main", groups),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
@@ -271,8 +283,8 @@ pub(crate) fn bind_group(
 /// `WORKGROUP` in `shaders/types.wgsl`: invocations of a workgroup of most passes.
 pub(crate) const WORKGROUP: u32 = 256;
 
-/// The workgroups that search factors, each for one patch after another: enough for the largest GPUs.
-pub(super) const SEARCH_WORKGROUPS: u32 = 8192;
+/// `MOST_WORKGROUPS` in `shaders/types.wgsl`: the most workgroups along one dimension that WebGPU allows.
+pub(crate) const MOST_WORKGROUPS: u32 = 65_535;
 
 /// Twin of `grid` in `shaders/types.wgsl`: the workgroups in each dimension for so many invocations.
 pub(crate) fn grid(items: u32) -> [u32; 3] {

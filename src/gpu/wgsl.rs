@@ -44,6 +44,8 @@ pub(crate) static FLAT_PATCH: WgslFile = wgsl!("flat_patch", LOD, PIECE_ERROR, S
 /// The module that has it declares the buffers that it reads.
 pub(crate) static SLIDES: WgslFile = wgsl!("slides", FLAT_PATCH, LEAST_FACTORS, LOAD_NET, PIECE_ERROR);
 pub(crate) static SEARCH_GROUP: WgslFile = wgsl!("search_group");
+/// The module that has it declares the buffers that it reads.
+pub(crate) static SEARCH_STATE: WgslFile = wgsl!("search_state", DISPLACEMENT_FACTOR);
 pub(crate) static LEAST_FACTORS: WgslFile =
     wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR, SEARCH_GROUP);
 pub(crate) static DISPLACE: WgslFile = wgsl!("displace", NORMAL, TYPES);

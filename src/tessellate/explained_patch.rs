@@ -41,7 +41,7 @@ pub(crate) struct ExplainedEdge {
     pub own: f32,
     /// The other patches on the edge, and the factors that they ask for.
     pub others: Vec<(u32, f32)>,
-    /// The factor that it gets: the largest of these, or a larger one if patches asked again.
+    /// The factor that it gets: the largest of these; a larger one if patches asked again; or what all edges get.
     pub got: f32,
 }
 
@@ -57,7 +57,10 @@ pub(crate) enum DecidedBy {
     /// Both asked for the same.
     Both,
     /// One of them asked again, since no inside factor, or only a much larger one, sufficed beside what the edges got first.
+    /// Or all edges got one factor that is larger than what these asked for.
     Again,
+    /// Nobody: all edges got one factor, which takes fewer triangles.
+    All,
 }
 
 impl ExplainedEdge {
@@ -68,9 +71,11 @@ impl ExplainedEdge {
 
     /// Returns whose request the edge got.
     pub(crate) fn decided_by(&self) -> DecidedBy {
+        let most = self.own.max(self.other().unwrap_or(0.0));
         match (self.own == self.got, self.other() == Some(self.got)) {
+            _ if self.got < most => DecidedBy::All,
             _ if self.got == self.least => DecidedBy::Curve,
-            _ if self.got > self.own.max(self.other().unwrap_or(0.0)) => DecidedBy::Again,
+            _ if self.got > most => DecidedBy::Again,
             (true, true) => DecidedBy::Both,
             (true, false) => DecidedBy::Own,
             _ => DecidedBy::Other,
@@ -231,7 +236,8 @@ impl ControlNets<'_> {
         let others = others.filter(|other| self.patch_factor(other.patch(), other.index()) == factor);
         let others: Vec<_> = others.map(|other| (other.patch(), asked(other.patch(), other.index()))).collect();
         let own = asked(patch, side);
-        let got = others.iter().map(|&(_, factor)| factor).fold(own.max(used), f32::max);
+        let most = others.iter().map(|&(_, factor)| factor).fold(own, f32::max);
+        let got = if used > 0.0 && is_enough(most) { used } else { most.max(used) };
         ExplainedEdge { least: least(factor), own, others, got }
     }
 }

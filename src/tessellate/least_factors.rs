@@ -5,7 +5,7 @@
 //! depend on the inside factor alone. So every patch looks for the inside factor with which it and its edges together
 //! have the fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches ask for.
 //! Then every patch takes the least inside factor that suffices beside the factors of its edges. If that is much larger than
-//! what it has chosen, it asks again.
+//! what it has chosen, it asks again. If in the end one factor for all edges takes fewer triangles, all edges get that one.
 
 use std::array::from_fn;
 
@@ -367,6 +367,54 @@ pub(super) fn least_inside_factor(
         }
     }
     BEYOND_LAST
+}
+
+/// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.
+fn uniform_suffices(
+    patch: &SeenPatch,
+    tolerance: f32,
+    partitioning: Partitioning,
+    factor: f32,
+    least_inside: f32,
+) -> bool {
+    let within = BOUND_SHARE * tolerance;
+    let factors = process(partitioning, [factor; 3], factor);
+    if least_inside > factor {
+        return false;
+    }
+    if patch_is_minimal(factors) {
+        return triangle_error_at(patch, within, &domain_plan(factors), 0) <= within;
+    }
+    part_errors(patch, within, factors, [true; 4]).iter().all(|error| *error <= within)
+}
+
+/// Returns the least factor with which `count` patches have fewer triangles than `triangles`, and are within `tolerance` px of
+/// their surfaces if all edges and insides have it or a larger one of which that is true. `patch` returns a patch as it is seen, and the least inside factor that it
+/// may get.
+pub(super) fn uniform_factor(
+    tolerance: f32,
+    partitioning: Partitioning,
+    (count, triangles): (u32, u64),
+    patch: impl Fn(u32) -> (SeenPatch, f32),
+) -> Option<f32> {
+    let is_candidate = |factor: &f32| {
+        let each = triangle_count(process(partitioning, [*factor; 3], *factor));
+        let exists = *factor <= last_factor(partitioning) && whole_segments(partitioning, *factor) == *factor;
+        exists && u64::from(each) * u64::from(count) < triangles
+    };
+    // If one triangle were enough for every patch, none would have more.
+    let mut left: Vec<f32> = (2..=64).map(|factor| factor as f32).filter(is_candidate).collect();
+    for i in 0..count {
+        if left.is_empty() {
+            break;
+        }
+        let (seen, least_inside) = patch(i);
+        let suffices = |factor: &&f32| uniform_suffices(&seen, tolerance, partitioning, **factor, least_inside);
+        // Mostly the largest doesn't, and then no smaller one is taken.
+        let enough = left.iter().rev().take_while(suffices).count();
+        left.drain(..left.len() - enough);
+    }
+    left.first().copied()
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
 //! The tessellation factors that LOD gives to the edges and patches of a mesh, on the CPU: what
-//! `shaders/pass_factors.wgsl` computes.
+//! `shaders/pass_factors.wgsl`, `shaders/pass_asked.wgsl` and `shaders/pass_uniform.wgsl` compute.
 
 use glam::Vec3;
 
@@ -7,22 +7,30 @@ use super::control_nets::ControlNets;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::least_factors::{
     Chosen, ROUNDS, asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors,
-    whole_segments,
+    uniform_factor, whole_segments,
 };
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
 use super::{
     HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor, edge_length_factor,
-    paper_edge_factor, round_pow2,
+    paper_edge_factor, process, round_pow2, triangle_count,
 };
 
+/// The factors that LOD gives to a mesh.
+pub(super) struct MeshFactors {
+    /// One for each edge; with edges as published, one for each curve.
+    pub edges: Vec<f32>,
+    /// The inside factors of patches under LOD by error; empty under any other LOD, which takes the largest of the sides'.
+    insides: Vec<f32>,
+}
+
 impl ControlNets<'_> {
-    /// Returns the factor of each edge: the largest that any of its curves needs, or under LOD by error that any of its
-    /// patches asks for. With edges as published, each curve has its own factor.
-    pub(super) fn edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
+    /// Returns the factors that LOD gives: to each edge the largest that any of its curves needs, or under LOD by error that
+    /// any of its patches asks for. With edges as published, each curve has its own factor.
+    pub(super) fn mesh_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> MeshFactors {
         if inputs.tessellation.lod == Lod::Error {
-            return self.asked_edge_factors(inputs, displacement);
+            return self.factors_by_error(inputs, displacement);
         }
         let largest = |form: &dyn Fn([Vec3; 4]) -> f32, curves: &[u32]| {
             (curves[0]..curves[1]).map(|curve| form(self.curve_points(curve))).fold(1.0, f32::max)
@@ -38,7 +46,20 @@ impl ControlNets<'_> {
             };
             if inputs.tessellation.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
         };
-        self.curves.factor_curves.windows(2).map(edge).collect()
+        MeshFactors { edges: self.curves.factor_curves.windows(2).map(edge).collect(), insides: Vec::new() }
+    }
+
+    /// Returns factors of edges, and beside them what LOD gives to insides.
+    pub(super) fn factors_beside(
+        &self,
+        inputs: &Inputs,
+        displacement: Option<&MeshDisplacement>,
+        edges: &[f32],
+    ) -> MeshFactors {
+        let inside = |patch| self.inside_factor(inputs, displacement, patch, self.edges_of_patch(edges, patch), 0.0);
+        let patches = 0..self.topology.patches.len() as u32;
+        let insides = if inputs.tessellation.lod == Lod::Error { patches.map(inside).collect() } else { Vec::new() };
+        MeshFactors { edges: edges.to_vec(), insides }
     }
 
     /// Returns the four control points of a curve, in object units.
@@ -48,48 +69,88 @@ impl ControlNets<'_> {
         [a, ab, ba, b]
     }
 
-    /// Returns the factors of LOD by error: the largest that the patches of each edge ask for. Patches that are left out
+    /// Returns the factors of the edges U == 0, V == 0 and W == 0 of a patch. LOD takes each by the opposite corner, whatever
+    /// the convention.
+    fn edges_of_patch(&self, factors: &[f32], patch: u32) -> [f32; 3] {
+        [1, 2, 0].map(|side| factors[self.patch_factor(patch, side) as usize])
+    }
+
+    /// Returns the factors of LOD by error: to each edge the largest that its patches ask for. Patches that are left out
     /// ask, too: what others look like doesn't depend on it.
     ///
     /// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find
     /// none that suffices. Such patches ask again, for no less than what their edges have.
-    fn asked_edge_factors(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> Vec<f32> {
+    fn factors_by_error(&self, inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> MeshFactors {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
         let edges = 0..self.curves.factor_curves.len() as u32 - 1;
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(inputs, displacement, factor)).collect();
         let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
-        let all = 0..self.topology.patches.len() as u32;
-        let ask = |patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32, asked: &mut [f32]| {
-            let own = self.asked_by_patch(inputs, displacement, patch, seen, least, inner);
-            for (k, own) in [1, 2, 0].into_iter().zip(own.edges) {
+        let ask = |patch: u32, edges: [f32; 3], asked: &mut [f32]| {
+            for (k, own) in [1, 2, 0].into_iter().zip(edges) {
                 let factor = self.patch_factor(patch, k) as usize;
                 asked[factor] = asked[factor].max(own);
             }
-            own
         };
         let mut chosen = Vec::new();
-        for patch in all.clone() {
+        for patch in 0..self.topology.patches.len() as u32 {
             let seen = self.seen_patch(inputs, displacement, patch);
             let least = self.first_least(inputs, patch, &seen, |factor| least[factor as usize]);
-            chosen.push(ask(patch, &seen, least, 0.0, &mut asked));
+            let own = self.asked_by_patch(inputs, displacement, patch, &seen, least, 0.0);
+            ask(patch, own.edges, &mut asked);
+            chosen.push(own);
         }
-        for _ in 1..ROUNDS {
+        for round in 1..=ROUNDS {
             let before = asked.clone();
-            for (patch, chosen) in all.clone().zip(&mut chosen) {
-                let inside = self.inside_factor(inputs, displacement, &before, patch, chosen.inner);
-                let asks = asks_again(chosen.inside, inside);
-                chosen.inside = inside;
-                if surface != Surface::Flat && asks {
-                    let least = [1, 2, 0].map(|k| before[self.patch_factor(patch, k) as usize]);
+            for (patch, chosen) in (0..).zip(&mut chosen) {
+                let edges = self.edges_of_patch(&before, patch);
+                if edges == chosen.edges {
+                    continue;
+                }
+                let inside = self.inside_factor(inputs, displacement, patch, edges, chosen.inner);
+                let asks = surface != Surface::Flat && round < ROUNDS && asks_again(chosen.inside, inside);
+                *chosen = Chosen { edges, inside, ..*chosen };
+                if asks {
                     let seen = self.seen_patch(inputs, displacement, patch);
-                    *chosen = ask(patch, &seen, least, chosen.inner, &mut asked);
+                    let own = self.asked_by_patch(inputs, displacement, patch, &seen, edges, chosen.inner);
+                    ask(patch, own.edges, &mut asked);
+                    if own.inside <= 64.0 {
+                        *chosen = own;
+                    }
                 }
             }
             if asked == before {
                 break;
             }
         }
-        asked
+        let insides: Vec<f32> = chosen.iter().map(|chosen| chosen.inside).collect();
+        let factors = MeshFactors { edges: asked, insides };
+        let Some(factor) = self.uniform_factor(inputs, displacement, &factors) else { return factors };
+        let beside =
+            |(patch, chosen): (u32, Chosen)| self.inside_factor(inputs, displacement, patch, [factor; 3], chosen.inner);
+        MeshFactors { edges: vec![factor; least.len()], insides: (0..).zip(chosen).map(beside).collect() }
+    }
+
+    /// Returns the least factor that keeps LOD by error's tolerance if all edges have it, if that takes fewer triangles than
+    /// these factors.
+    fn uniform_factor(
+        &self,
+        inputs: &Inputs,
+        displacement: Option<&MeshDisplacement>,
+        factors: &MeshFactors,
+    ) -> Option<f32> {
+        let Tessellation { surface, partitioning, .. } = inputs.tessellation;
+        if surface == Surface::Flat {
+            return None;
+        }
+        let count = self.topology.patches.len() as u32;
+        let of_patch = |patch| {
+            let [u, v, w] = self.edges_of_patch(&factors.edges, patch);
+            u64::from(triangle_count(process(partitioning, [u, v, w], factors.insides[patch as usize])))
+        };
+        let triangles = (0..count).map(of_patch).sum();
+        let seen =
+            |patch| (self.seen_patch(inputs, displacement, patch), self.heights_inside(inputs, displacement, patch));
+        uniform_factor(surface_tolerance(inputs, displacement), partitioning, (count, triangles), seen)
     }
 
     /// Returns a patch as it is seen.
@@ -209,14 +270,14 @@ impl ControlNets<'_> {
         own(0).max(own(1)).max(own(2))
     }
 
-    /// Returns the inside factor of a patch under LOD by error: the least that suffices beside the factors of its edges. Each
-    /// of those is taken by the opposite corner, whatever the convention. `inner` is as in [`Chosen`].
+    /// Returns the inside factor of a patch under LOD by error: the least that suffices beside these factors of its edges.
+    /// `inner` is as in [`Chosen`].
     fn inside_factor(
         &self,
         inputs: &Inputs,
         displacement: Option<&MeshDisplacement>,
-        edge_factors: &[f32],
         patch: u32,
+        edges: [f32; 3],
         inner: f32,
     ) -> f32 {
         let Tessellation { surface, partitioning, .. } = inputs.tessellation;
@@ -224,26 +285,17 @@ impl ControlNets<'_> {
         if surface == Surface::Flat {
             return heights;
         }
-        let edges = [1, 2, 0].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
         let seen = self.seen_patch(inputs, displacement, patch);
         least_inside_factor(&seen, surface_tolerance(inputs, displacement), partitioning, edges, (heights, inner))
     }
 
     /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
     /// convention. The inside factor is the largest of the three, or that of LOD by error.
-    pub(super) fn hull_factors(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        edge_factors: &[f32],
-        patch: u32,
-    ) -> HullFactors {
-        let sides = [0, 1, 2].map(|side| edge_factors[self.patch_factor(patch, side) as usize]);
-        let inside = match inputs.tessellation.lod {
-            Lod::Error => self.inside_factor(inputs, displacement, edge_factors, patch, 0.0),
-            _ => sides[0].max(sides[1]).max(sides[2]),
-        };
-        HullFactors::of_sides(inputs.tessellation.convention, sides, inside)
+    pub(super) fn hull_factors(&self, inputs: &Inputs, factors: &MeshFactors, patch: u32) -> HullFactors {
+        let sides = [0, 1, 2].map(|side| factors.edges[self.patch_factor(patch, side) as usize]);
+        let inside = factors.insides.get(patch as usize).copied();
+        let largest = sides[0].max(sides[1]).max(sides[2]);
+        HullFactors::of_sides(inputs.tessellation.convention, sides, inside.unwrap_or(largest))
     }
 }
 

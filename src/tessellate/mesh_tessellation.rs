@@ -37,7 +37,7 @@ impl Tessellated {
     }
 }
 
-/// Tessellates the mesh. `factors` replace the ones that LOD gives: one for each edge, or with edges as published one
+/// Tessellates the mesh. `factors` replace the ones that LOD gives to edges: one for each, or with edges as published one
 /// for each curve.
 ///
 /// # Panics
@@ -47,13 +47,14 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
     let culls_back = culls_back(mesh, topology, inputs);
-    let made = || nets.edge_factors(inputs, displacement.as_ref());
-    let edge_factors = factors.map_or_else(made, <[f32]>::to_vec);
-    let displacement = displacement.map(|displacement| displacement.with_levels(&edge_factors));
-    let displacement = displacement.as_ref();
-    let written = |patch| nets.hull_factors(inputs, displacement, &edge_factors, patch);
-    let out = nets.emit(inputs, displacement, culls_back, written);
-    Tessellated { edge_factors, ..out }
+    let made = match factors {
+        Some(edges) => nets.factors_beside(inputs, displacement.as_ref(), edges),
+        None => nets.mesh_factors(inputs, displacement.as_ref()),
+    };
+    let displacement = displacement.map(|displacement| displacement.with_levels(&made.edges));
+    let written = |patch| nets.hull_factors(inputs, &made, patch);
+    let out = nets.emit(inputs, displacement.as_ref(), culls_back, written);
+    Tessellated { edge_factors: made.edges, ..out }
 }
 
 /// Returns the inputs with the view's `reach` set to how far the mesh is displaced.
@@ -90,11 +91,11 @@ pub(crate) fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) ->
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs);
     let culls_back = culls_back(mesh, topology, inputs);
-    let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
+    let factors = nets.mesh_factors(inputs, displacement.as_ref());
     let written = |patch| {
         let net = nets.patch(patch);
         match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-            NOT_CULLED => nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch),
+            NOT_CULLED => nets.hull_factors(inputs, &factors, patch),
             _ => HullFactors::default(),
         }
     };
@@ -105,10 +106,9 @@ pub(crate) fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) ->
 pub(crate) fn totals(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> (u64, u64) {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
-    let displacement = MeshDisplacement::new(&nets, inputs);
-    let edge_factors = nets.edge_factors(inputs, displacement.as_ref());
+    let factors = nets.mesh_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref());
     let patches = 0..topology.patches.len() as u32;
-    let written = patches.map(|patch| nets.hull_factors(inputs, displacement.as_ref(), &edge_factors, patch));
+    let written = patches.map(|patch| nets.hull_factors(inputs, &factors, patch));
     sums(written.map(|written| written.process(inputs.tessellation.partitioning)))
 }
 
@@ -132,7 +132,7 @@ fn sums(patches: impl Iterator<Item = PatchFactors>) -> (u64, u64) {
 pub(crate) fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
     let inputs = &seen_with_reach(mesh, inputs);
     let nets = ControlNets::new(mesh, topology, inputs);
-    nets.edge_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref())
+    nets.mesh_factors(inputs, MeshDisplacement::new(&nets, inputs).as_ref()).edges
 }
 
 impl ControlNets<'_> {

@@ -3,22 +3,24 @@
 use std::sync::Arc;
 
 use glam::Vec2;
+use pnaen::engine::{Loaded, Preparation, load};
 use pnaen::gpu::{ComputePipelines, Timing, take_times};
+use pnaen::load::Source;
 use pnaen::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 use pnaen::mesh::{Mesh, Shape, Topology};
 use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use pnaen::tessellate::{
-    self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
-    hull_factors, own_least_triangles, tessellate,
+    self, Convention, DecidedBy, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated,
+    Tessellation, explain_patch, hull_factors, own_least_triangles, tessellate,
 };
 use proptest::prelude::*;
 
 use crate::gpu_tests::displacement::wavy;
 use crate::gpu_tests::passes::edge_factors;
 use crate::gpu_tests::stability::{Trial, any_trial, soups};
-use crate::gpu_tests::{engine, scene};
+use crate::gpu_tests::{engine, loaded, scene};
 
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 
@@ -145,14 +147,16 @@ fn the_device_takes_the_factors_that_the_cpu_does() {
                     "{what}, edge {edge}: {factor}, not {known:?}"
                 );
             }
-            // Patches are compared at the device's factors of edges, of which those inside depend.
-            let patches = near.map(|inputs| {
-                tessellate::tessellate(&loaded.mesh, &loaded.topology, &inputs, Some(&on_edges)).patch_factors
-            });
+            // Insides depend on the factors of edges, so patches are compared at those of the device, too.
+            let tessellated = |inputs: &Inputs, factors: Option<&[f32]>| {
+                tessellate::tessellate(&loaded.mesh, &loaded.topology, inputs, factors).patch_factors
+            };
+            let own = near.each_ref().map(|inputs| tessellated(inputs, None));
+            let beside = near.each_ref().map(|inputs| tessellated(inputs, Some(&on_edges)));
             for (patch, factors) in out.patch_factors.iter().enumerate() {
-                let known = patches.each_ref().map(|patches| patches[patch]);
-                assert!(known.contains(factors), "{what}, patch {patch}: {factors:?}, not {known:?}");
-                same += usize::from(known[0] == *factors);
+                let known = [&own, &beside].map(|patches| patches.each_ref().map(|patches| patches[patch]));
+                assert!(known.as_flattened().contains(factors), "{what}, patch {patch}: {factors:?}, not {known:?}");
+                same += usize::from(known[0][0] == *factors);
                 all += 1;
             }
         }
@@ -183,6 +187,72 @@ fn the_size_of_a_group_changes_no_factor() {
             assert_eq!(engine.own_least(&mut scene).expect("a readback"), own_least, "{shape:?}, groups of {size}");
         }
     }
+}
+
+/// Such a mesh has fewer edges than the search has counters, which start anew for every view.
+#[test]
+fn one_triangle_is_searched_anew_for_every_view() {
+    let whole = loaded(Shape::Icosahedron);
+    let mesh = Mesh { triangles: Arc::new(whole.mesh.triangles[..1].to_vec()), ..Mesh::clone(&whole.mesh) };
+    let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+    let loaded = Loaded { mesh: Arc::new(mesh), topology: Arc::new(topology), ..whole };
+    let new = || engine().scene(&loaded, ARENA_BYTES).expect("one triangle is small");
+    let mut scene = new();
+    let settings = by_error(Settings::default(), 0.5);
+    let [first, second, ..] = cameras(&scene);
+    for camera in [first, second, first] {
+        let (_, out) = on_device(&mut scene, &settings, &camera);
+        let (_, known) = on_device(&mut new(), &settings, &camera);
+        assert!(out.triangles.len() > 1, "it is curved");
+        assert_eq!(out.patch_factors, known.patch_factors);
+    }
+}
+
+/// Some drivers end the loops of an invocation after so many turns, which no workgroup may need.
+#[test]
+fn a_mesh_of_many_patches_is_searched_to_its_end() {
+    let fine = Source::FineShape(Shape::Torus, 3);
+    let loaded = load(&fine, &Preparation::default(), &Progress::default()).expect("shapes always load");
+    let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("it isn't that large");
+    let camera = Camera::framing(&scene.bounds, VIEWPORT);
+    let settings =
+        by_error(Settings::from(Tessellation { partitioning: Partitioning::Integer, ..Tessellation::default() }), 0.01);
+    let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
+    engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+    let here = tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
+    let differing = edge_factors(&scene).iter().zip(&here).filter(|(device, here)| device != here).count();
+    // Bounds may fall on either side of the tolerance.
+    assert!(differing <= 2, "{differing} of {} edges", here.len());
+    assert!(here.iter().filter(|&&factor| factor > 1.0).count() > 1000, "many patches are searched");
+}
+
+/// Patches that look alike ask for different factors, since an edge's bound depends on which way it is turned.
+#[test]
+fn one_factor_for_all_edges_is_taken_where_it_has_fewer_triangles() {
+    let mut others = 0;
+    let tried = [
+        (Shape::Icosahedron, Partitioning::Integer, 0.1),
+        (Shape::Icosahedron, Partitioning::FractionalOdd, 0.1),
+        (Shape::Icosphere, Partitioning::FractionalOdd, 1.0),
+    ];
+    for (shape, partitioning, tolerance) in tried {
+        let (loaded, mut scene) = scene(shape);
+        let camera = Camera { orthographic: true, azimuth: 65.0, ..Camera::framing(&scene.bounds, VIEWPORT) };
+        let settings = Settings::from(Tessellation { partitioning, ..Tessellation::default() });
+        let (inputs, out) = on_device(&mut scene, &by_error(settings, tolerance), &camera);
+        let factors = edge_factors(&scene);
+        let what = format!("{shape:?} {partitioning:?}");
+        assert_eq!(factors, tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs), "{what}");
+        assert!(factors.iter().all(|&factor| factor == factors[0]), "{what}: {factors:?}");
+        let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+        assert_eq!(out.patch_factors, here.patch_factors, "{what}");
+        let decided = out.patch_factors.iter().zip(0..).flat_map(|(&used, patch)| {
+            let explained = explain_patch(&loaded.mesh, &loaded.topology, &inputs, patch, used);
+            explained.edges.expect("LOD is by error").map(|edge| edge.decided_by())
+        });
+        others += decided.filter(|by| matches!(by, DecidedBy::Again | DecidedBy::All)).count();
+    }
+    assert!(others > 0, "some patches asked for something else");
 }
 
 #[test]

@@ -87,6 +87,15 @@ impl ShownExplanation<'_> {
         if edge.others.len() > LISTED {
             lines.push(format!("{} more triangles ask, too.", edge.others.len() - LISTED));
         }
+        match edge.decided_by() {
+            DecidedBy::Again => lines.push(
+                "The edge got more than that: a triangle asked again, or one factor for all edges takes fewer triangles."
+                    .to_owned(),
+            ),
+            DecidedBy::All => lines
+                .push("The edge got less than that, since one factor for all edges takes fewer triangles.".to_owned()),
+            _ => {}
+        }
         lines.join("\n")
     }
 
@@ -179,6 +188,7 @@ fn by_text(edge: &ExplainedEdge) -> &'static str {
         DecidedBy::Other => "other",
         DecidedBy::Both => "both",
         DecidedBy::Again => "again",
+        DecidedBy::All => "all",
     }
 }
 

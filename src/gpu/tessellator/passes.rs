@@ -7,7 +7,7 @@ use crate::gpu::layout::EmitArgs;
 use crate::gpu::mesh_passes::Each;
 use crate::gpu::own_least::{self, OwnLeast};
 use crate::gpu::params::params_of;
-use crate::gpu::pipelines::{SEARCH_WORKGROUPS, grid};
+use crate::gpu::pipelines::grid;
 use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
@@ -158,12 +158,12 @@ impl Tessellator {
                     heights_inside.dispatch(pass, grid(self.buffers.patch_count));
                 }
                 for (step, each) in asked.into_iter().flatten() {
-                    let count = match each {
-                        Each::Edge => grid(self.buffers.factor_count),
-                        Each::Patch => grid(self.buffers.patch_count),
-                        Each::SearchedPatch => [self.buffers.patch_count.min(SEARCH_WORKGROUPS), 1, 1],
-                    };
-                    step.dispatch(pass, count);
+                    match each {
+                        Each::Edge => step.dispatch(pass, grid(self.buffers.factor_count)),
+                        Each::Patch => step.dispatch(pass, grid(self.buffers.patch_count)),
+                        Each::Workgroups(count) => step.dispatch(pass, [count, 1, 1]),
+                        Each::Counted(workgroups, offset) => step.dispatch_indirect(pass, workgroups, offset),
+                    }
                 }
             });
         }

@@ -6,7 +6,7 @@ use super::modules;
 use crate::gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use crate::gpu::layout::LOD_GIVEN;
 use crate::gpu::relief_buffers::HEIGHTS_ACROSS;
-use crate::gpu::{GRID_WIDTH, WORKGROUP};
+use crate::gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, WORKGROUP};
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
 use crate::render::coverage::TILE;
 use crate::render::layout::{
@@ -33,6 +33,8 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",
     ),
+    (&["LARGE"], "how one pass divides its work; no result depends on it"),
+    (&["SMALL", "ROUNDS_OVER", "TRIANGLES", "NOT_TAKEN"], "counters of passes"),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
     (&["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING"], "how lines look"),
 ];
@@ -124,6 +126,8 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("ROW_REACH", number(ROW_REACH)),
         ("FINEST_GRID", number(FINEST_GRID)),
         ("PARTIAL_STEPS", number(PARTIAL_STEPS)),
+        ("MOST_WORKGROUPS", number(MOST_WORKGROUPS)),
+        ("SEARCH_COUNTERS", number(SEARCH_COUNTERS)),
         ("SPREAD", number(SPREAD)),
         ("TOGETHER", number(TOGETHER)),
         ("SURFACE_SHARE", number(SURFACE_SHARE)),

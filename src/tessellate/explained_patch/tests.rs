@@ -40,7 +40,7 @@ fn tried() -> Vec<(Shape, Tessellation)> {
 
 #[test]
 fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
-    let mut decided = [0; 5];
+    let mut decided = [0; 6];
     for (kind, tessellation) in tried() {
         let (mesh, topology, inputs) = shape(kind, tessellation);
         let nets = ControlNets::new(&mesh, &topology, &inputs);
@@ -53,7 +53,8 @@ fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
             let edges = explained.edges.as_ref().expect("LOD is by error");
             for (side, edge) in edges.iter().enumerate() {
                 assert_eq!(edge.got, given[nets.patch_factor(patch, side) as usize], "{what}");
-                assert!((edge.own >= edge.least || explained.is_flat) && edge.got >= edge.own, "{what}");
+                assert!(edge.own >= edge.least || explained.is_flat, "{what}");
+                assert!(edge.got >= edge.own || edge.decided_by() == DecidedBy::All, "{what}");
                 decided[edge.decided_by() as usize] += 1;
                 for &(other, asked) in &edge.others {
                     let used = out.patch_factors[other as usize];
@@ -68,7 +69,14 @@ fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
             assert!(!is_enough(BEYOND_LAST) && is_enough(explained.own_least.inside), "{what}");
         }
     }
-    assert!(decided[..4].iter().all(|&count| count > 0), "by curve, own, other, both: {decided:?}");
+    let expected = [DecidedBy::Curve, DecidedBy::Own, DecidedBy::Other, DecidedBy::Both];
+    assert!(expected.iter().all(|&by| decided[by as usize] > 0), "{decided:?}");
+}
+
+#[test]
+fn an_edge_that_gets_less_than_was_asked_for_has_what_all_edges_have() {
+    let edge = |got| ExplainedEdge { least: 2.0, own: 5.0, others: vec![(1, 6.0)], got };
+    assert_eq!([4.0, 6.0, 7.0].map(|got| edge(got).decided_by()), [DecidedBy::All, DecidedBy::Other, DecidedBy::Again]);
 }
 
 #[test]

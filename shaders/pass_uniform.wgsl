@@ -1,0 +1,141 @@
+// LOD by error: if one factor for all edges keeps the tolerance with fewer triangles than what patches have asked for, all edges
+// get the least such factor.
+
+// In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
+@group(0) @binding(0) var<storage, read> params: Params;
+@group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
+@group(0) @binding(2) var<storage, read> patches: array<Patch>;
+@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
+// See search_state.wgsl.
+@group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
+@group(0) @binding(5) var<storage, read> corners: array<Corner>;
+// A bit for each patch: whether it has a texture.
+@group(0) @binding(6) var<storage, read> textured: array<u32>;
+
+// The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a
+// bit for each factor that isn't taken.
+const TRIANGLES: u32 = 7u;
+const NOT_TAKEN: u32 = 9u;
+
+// Adds up the triangles of all patches.
+@compute @workgroup_size(WORKGROUP)
+fn sum_triangles_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    var own = 0u;
+    if index < params.patch_count {
+        own = triangle_count(process(params.partitioning, edges_of(index, 0u), bitcast<f32>(inside_of(index))));
+    }
+    let sum = workgroup_sum(local, vec2<u32>(own, 0u)).x;
+    if local == 0u {
+        let before = atomicAdd(&edge_factors[counter_at(TRIANGLES)], sum);
+        if before + sum < before {
+            atomicAdd(&edge_factors[counter_at(TRIANGLES + 1u)], 1u);
+        }
+    }
+}
+
+// Returns whether a partitioning has a factor without fractions, and all patches have fewer triangles with it. With 1 none has.
+fn is_candidate(factor: f32) -> bool {
+    if factor == 1.0 || factor > last_factor(params.partitioning) || whole_segments(params.partitioning, factor) != factor {
+        return false;
+    }
+    // The product of the two counts has two words.
+    let each = triangle_count(process(params.partitioning, vec3<f32>(factor), factor));
+    let middle = each * (params.patch_count >> 16u);
+    let low = each * (params.patch_count & 0xffffu);
+    let sum = low + (middle << 16u);
+    let high = (middle >> 16u) + u32(sum < low);
+    let all_low = atomicLoad(&edge_factors[counter_at(TRIANGLES)]);
+    let all_high = atomicLoad(&edge_factors[counter_at(TRIANGLES + 1u)]);
+    return high < all_high || (high == all_high && sum < all_low);
+}
+
+// The bits of the factors up to this one, in two words.
+fn bits_up_to(factor: u32) -> vec2<u32> {
+    let bits = vec2<u32>(min(factor, 32u), max(factor, 32u) - 32u);
+    return select((vec2<u32>(1u) << bits) - vec2<u32>(1u), vec2<u32>(0xffffffffu), bits == vec2<u32>(32u));
+}
+
+fn not_taken() -> vec2<u32> {
+    return vec2<u32>(
+        atomicLoad(&edge_factors[counter_at(NOT_TAKEN)]),
+        atomicLoad(&edge_factors[counter_at(NOT_TAKEN + 1u)]),
+    );
+}
+
+fn dont_take(factors: vec2<u32>) {
+    atomicOr(&edge_factors[counter_at(NOT_TAKEN)], factors.x);
+    atomicOr(&edge_factors[counter_at(NOT_TAKEN + 1u)], factors.y);
+}
+
+// Leaves out the factors that aren't candidates.
+@compute @workgroup_size(64)
+fn candidates_main(@builtin(local_invocation_index) local: u32) {
+    if params.surface == SURFACE_FLAT || !is_candidate(f32(local + 1u)) {
+        dont_take(bits_up_to(local + 1u) & ~bits_up_to(local));
+    }
+}
+
+var<workgroup> left: vec2<u32>;
+
+// Returns a bit for each factor that may still be taken for all edges, the same for all of the workgroup.
+fn factors_left() -> vec2<u32> {
+    workgroupBarrier();
+    if lane == 0u {
+        left = ~not_taken();
+    }
+    return workgroupUniformLoad(&left);
+}
+
+// Finds the factors that aren't enough for all patches. Workgroups go through the patches as long as any factor is left. They try
+// the largest factor first: mostly it isn't enough, and then no smaller one is taken.
+@compute @workgroup_size(GROUP)
+fn search_uniform_factor_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    team_size = GROUP;
+    var index = workgroup.x;
+    var factors = factors_left();
+    while any(factors != vec2<u32>(0u)) && index < params.patch_count {
+        var seen = load_seen(index);
+        let least = heights_inside(index);
+        while any(factors != vec2<u32>(0u)) {
+            let factor = 1u + select(firstLeadingBit(factors.x), 32u + firstLeadingBit(factors.y), factors.y != 0u);
+            factors &= bits_up_to(factor - 1u);
+            if !uniform_suffices(&seen, surface_tolerance(), params.partitioning, f32(factor), least) {
+                factors = vec2<u32>(0u);
+                if lane == 0u {
+                    dont_take(bits_up_to(factor));
+                }
+            }
+        }
+        index += workgroups.x;
+        factors = factors_left();
+    }
+    // Some software drivers end loops after 65,535 turns. What hasn't been looked at may not be enough.
+    if lane == 0u && index < params.patch_count {
+        dont_take(factors);
+    }
+}
+
+// Gives all edges the least factor that is left, if there is one.
+@compute @workgroup_size(WORKGROUP)
+fn take_uniform_factor_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let index = grid_index(workgroup, workgroups, local);
+    let factors = ~not_taken();
+    if index < params.factor_count && any(factors != vec2<u32>(0u)) {
+        let first = 1u + select(32u + firstTrailingBit(factors.y), firstTrailingBit(factors.x), factors.x != 0u);
+        atomicStore(&edge_factors[index], bitcast<u32>(f32(first)));
+    }
+}

@@ -1,0 +1,63 @@
+// What LOD by error has found so far, and where it is in `edge_factors`, which the module that has this declares. They are bits of
+// numbers, whose order is that of the numbers since none is negative. One after another:
+// - the factors of edges;
+// - the least factor of each edge;
+// - the factor that each patch's heights need inside it, if it is displaced;
+// - the inside factors of patches, or first what they have chosen;
+// - the least factors with which their inner triangles are within the tolerance, 0 where they aren't known;
+// - the counters (SEARCH_COUNTERS in types.wgsl), 0 before a search: the numbers of large patches and then of small patches of three
+//   searches, the number of rounds that are over, two words with the number of all triangles, and two with a bit for each factor
+//   that isn't taken for all edges;
+// - the patches of the first two searches, one after the other, and those of the third: large ones from the start, small ones
+//   from the end.
+
+// Where the inside factor of a patch is.
+fn inside_at(patch_index: u32) -> u32 {
+    return 2u * params.factor_count + params.patch_count + patch_index;
+}
+
+// Where the least factor is with which a patch's inner triangles are within the tolerance.
+fn inner_at(patch_index: u32) -> u32 {
+    return inside_at(params.patch_count + patch_index);
+}
+
+fn known_inner(patch_index: u32) -> f32 {
+    return bitcast<f32>(atomicLoad(&edge_factors[inner_at(patch_index)]));
+}
+
+// The factor that a patch's heights need inside it.
+fn heights_inside(patch_index: u32) -> f32 {
+    if params.displacement == 0u {
+        return 1.0;
+    }
+    return bitcast<f32>(atomicLoad(&edge_factors[2u * params.factor_count + patch_index]));
+}
+
+// The part of the tolerance that is for the surface without displacement, in px.
+fn surface_tolerance() -> f32 {
+    return params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
+}
+
+// The factors of the edges U == 0, V == 0 and W == 0 of a patch: LOD takes each by the opposite corner, whatever the
+// convention. They are those `first` places into `edge_factors`.
+fn edges_of(patch_index: u32, first: u32) -> vec3<f32> {
+    let own = patches[patch_index].factors;
+    return vec3<f32>(
+        bitcast<f32>(atomicLoad(&edge_factors[first + (own[1] >> 3u)])),
+        bitcast<f32>(atomicLoad(&edge_factors[first + (own[2] >> 3u)])),
+        bitcast<f32>(atomicLoad(&edge_factors[first + (own[0] >> 3u)])),
+    );
+}
+
+// Where a counter is.
+fn counter_at(counter: u32) -> u32 {
+    return inner_at(params.patch_count) + counter;
+}
+
+fn inside_of(patch_index: u32) -> u32 {
+    return atomicLoad(&edge_factors[inside_at(patch_index)]);
+}
+
+fn set_inside(patch_index: u32, inside: f32) {
+    atomicStore(&edge_factors[inside_at(patch_index)], bitcast<u32>(inside));
+}
