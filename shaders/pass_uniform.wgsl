@@ -91,8 +91,8 @@ fn factors_left() -> vec2<u32> {
     return workgroupUniformLoad(&left);
 }
 
-// Finds the factors that aren't enough for all patches. Workgroups go through the patches as long as any factor is left. They try
-// the largest factor first: mostly it isn't enough, and then no smaller one is taken.
+// Finds the factors that aren't enough for all patches. Workgroups go through the patches as long as any factor is left. Errors
+// don't fall steadily, so they try all that are left.
 @compute @workgroup_size(GROUP)
 fn search_uniform_factor_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
@@ -109,11 +109,8 @@ fn search_uniform_factor_main(
         while any(factors != vec2<u32>(0u)) {
             let factor = 1u + select(firstLeadingBit(factors.x), 32u + firstLeadingBit(factors.y), factors.y != 0u);
             factors &= bits_up_to(factor - 1u);
-            if !uniform_suffices(&seen, surface_tolerance(), params.partitioning, f32(factor), least) {
-                factors = vec2<u32>(0u);
-                if lane == 0u {
-                    dont_take(bits_up_to(factor));
-                }
+            if !uniform_suffices(&seen, surface_tolerance(), params.partitioning, f32(factor), least) && lane == 0u {
+                dont_take(bits_up_to(factor) & ~bits_up_to(factor - 1u));
             }
         }
         index += workgroups.x;

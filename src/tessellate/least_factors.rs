@@ -389,7 +389,7 @@ fn uniform_suffices(
 }
 
 /// Returns the least factor with which `count` patches have fewer triangles than `triangles`, and are within `tolerance` px of
-/// their surfaces if all edges and insides have it or a larger one of which that is true. `patch` returns a patch as it is seen, and the least inside factor that it
+/// their surfaces if all edges and insides have it. `patch` returns a patch as it is seen, and the least inside factor that it
 /// may get.
 pub(super) fn uniform_factor(
     tolerance: f32,
@@ -409,10 +409,7 @@ pub(super) fn uniform_factor(
             break;
         }
         let (seen, least_inside) = patch(i);
-        let suffices = |factor: &&f32| uniform_suffices(&seen, tolerance, partitioning, **factor, least_inside);
-        // Mostly the largest doesn't, and then no smaller one is taken.
-        let enough = left.iter().rev().take_while(suffices).count();
-        left.drain(..left.len() - enough);
+        left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor, least_inside));
     }
     left.first().copied()
 }
