@@ -1,16 +1,20 @@
 //! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
 //! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; and
 //! `only=NAME`, which measures one mesh alone. With `search=no` no optimum is searched for: then all partitionings of Direct3D
-//! are measured, and what the table tells is whether the tolerance is kept.
+//! are measured, and what the table tells is whether the tolerance is kept. With `device=gpu` the same is told of what a GPU
+//! emits.
 
 mod meshes;
 
 use std::path::PathBuf;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
 use glam::{Vec2, Vec3};
-use pnaen::internals::{Camera, Compared, Limits, Shape, Source, compare_with_optimum};
+use pnaen::internals::{
+    ARENA_BYTES, Camera, Compared, Engine, HullFactors, Limits, Measurements, Scene, Shape, Source, Timing,
+    compare_with_optimum,
+};
 use pnaen::mesh::{Mesh, Topology};
 use pnaen::progress::Progress;
 use pnaen::tessellate::{Inputs, Lod, Partitioning, Tessellation};
@@ -61,7 +65,7 @@ impl Row {
     }
 }
 
-fn meshes(files: &[PathBuf]) -> Vec<(String, Mesh)> {
+fn meshes(files: &[PathBuf]) -> Vec<(String, Arc<Mesh>)> {
     let shapes = Shape::ALL.into_iter().map(|shape| (shape.name().to_owned(), shape.build()));
     let mut all: Vec<_> = shapes.chain(meshes::all()).collect();
     for file in files {
@@ -70,7 +74,7 @@ fn meshes(files: &[PathBuf]) -> Vec<(String, Mesh)> {
             Err(error) => eprintln!("{}: {error}", file.display()),
         }
     }
-    all
+    all.into_iter().map(|(name, mesh)| (name, Arc::new(mesh))).collect()
 }
 
 /// The default camera, then random ones: around the mesh, close to it, inside, and without perspective.
@@ -93,7 +97,7 @@ fn cameras(mesh: &Mesh, count: usize) -> Vec<Camera> {
     std::iter::once(framing).chain((0..count).map(other)).collect()
 }
 
-fn cases(meshes: &[(String, Mesh)], cameras_each: usize, partitionings: &[Partitioning]) -> Vec<Case> {
+fn cases(meshes: &[(String, Arc<Mesh>)], cameras_each: usize, partitionings: &[Partitioning]) -> Vec<Case> {
     let mut cases = Vec::new();
     for (index, (_, mesh)) in meshes.iter().enumerate() {
         for (number, camera) in cameras(mesh, cameras_each).into_iter().enumerate() {
@@ -110,12 +114,46 @@ fn cases(meshes: &[(String, Mesh)], cameras_each: usize, partitionings: &[Partit
     cases
 }
 
-fn measure(mesh: &Mesh, topology: &Topology, case: &Case, searches: bool) -> Row {
+fn inputs(mesh: &Mesh, case: &Case) -> Inputs {
     let Case { camera, tolerance, partitioning, .. } = *case;
     let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
-    let inputs = Inputs::new(&tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()));
-    let compared = compare_with_optimum(mesh, topology, &inputs, searches && topology.patches.len() <= MOST_PATCHES);
-    Row { case: *case, compared }
+    Inputs::new(&tessellation, camera.lod_view(VIEWPORT, &mesh.bounds()))
+}
+
+fn measure(mesh: &Mesh, topology: &Topology, case: &Case, searches: bool) -> Row {
+    let searches = searches && topology.patches.len() <= MOST_PATCHES;
+    Row { case: *case, compared: compare_with_optimum(mesh, topology, &inputs(mesh, case), searches) }
+}
+
+/// A GPU, and a mesh in its memory.
+struct Device {
+    engine: Engine,
+    scene: Option<(usize, Scene)>,
+}
+
+impl Device {
+    fn open() -> Self {
+        Self { engine: Engine::headless().expect("a graphics adapter"), scene: None }
+    }
+
+    fn measure(&mut self, mesh: &Arc<Mesh>, topology: &Arc<Topology>, case: &Case) -> Row {
+        if self.scene.as_ref().is_none_or(|(loaded, _)| *loaded != case.mesh) {
+            let scene = self.engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("room for a mesh");
+            self.scene = Some((case.mesh, scene));
+        }
+        let Some((_, scene)) = &mut self.scene else { unreachable!("it was just made") };
+        let inputs = inputs(mesh, case);
+        self.engine.count(scene, &inputs, &mut Timing::Off).expect("room for factors");
+        let (_, triangles) = scene.tessellator.totals();
+        let written = scene.tessellator.hull_factors().expect("factors");
+        let capped = |factors: &HullFactors| factors.inside > 64.0 || factors.edges.iter().any(|&factor| factor > 64.0);
+        let error_px = (!written.iter().any(capped)).then(|| {
+            let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
+            let measured = self.engine.measure_all(scene, &wanted).expect("room for what is emitted");
+            measured.screen_error.map_or(0.0, |worst| worst.px)
+        });
+        Row { case: *case, compared: Compared { triangles, best: None, error_px } }
+    }
 }
 
 fn geometric_mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -139,7 +177,7 @@ fn print_row(name: &str, rows: &[&Row]) {
 /// edges has, or capped.
 const LISTED: f64 = 1.5;
 
-fn print_worst(meshes: &[(String, Mesh)], rows: &[Row]) {
+fn print_worst(meshes: &[(String, Arc<Mesh>)], rows: &[Row]) {
     println!("\nCases above {LISTED} times the optimum, above one factor for all, or capped\n");
     println!("| mesh | camera | orthographic | partitioning | px | triangles | optimum | one factor for all |");
     println!("| --- | ---: | --- | --- | ---: | ---: | ---: | ---: |");
@@ -169,8 +207,9 @@ fn main() {
     let only = arguments.iter().find_map(|argument| argument.strip_prefix("only="));
     let mut meshes = meshes(&files);
     meshes.retain(|(name, _)| only.is_none_or(|only| name == only));
-    let topologies: Vec<Topology> = meshes.iter().map(|(_, mesh)| Topology::of(mesh)).collect();
-    let searches = !arguments.iter().any(|argument| argument == "search=no");
+    let topologies: Vec<Arc<Topology>> = meshes.iter().map(|(_, mesh)| Arc::new(Topology::of(mesh))).collect();
+    let on_device = arguments.iter().any(|argument| argument == "device=gpu");
+    let searches = !on_device && !arguments.iter().any(|argument| argument == "search=no");
     let partitionings: &[Partitioning] = match searches {
         true => &[Partitioning::Integer, Partitioning::FractionalOdd],
         false => &Partitioning::DIRECT3D,
@@ -180,8 +219,13 @@ fn main() {
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {
             scope.spawn(|| {
+                let mut device = on_device.then(Device::open);
                 while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let row = measure(&meshes[case.mesh].1, &topologies[case.mesh], case, searches);
+                    let (mesh, topology) = (&meshes[case.mesh].1, &topologies[case.mesh]);
+                    let row = match &mut device {
+                        Some(device) => device.measure(mesh, topology, case),
+                        None => measure(mesh, topology, case, searches),
+                    };
                     rows.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(row);
                 }
             });
