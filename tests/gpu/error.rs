@@ -52,24 +52,46 @@ fn by_error(settings: Settings, tolerance: f32) -> Settings {
     settings.with(Tessellation { lod: Lod::Error, tolerance, ..settings.tessellation })
 }
 
+/// Tessellates a soup by error, here or on the device, and checks the promise.
+fn keeps_its_promise(trial: Trial, tolerance: f32, on_device: bool) -> Result<(), TestCaseError> {
+    let Trial { mesh, settings, camera } = trial;
+    let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+    let settings = by_error(settings, tolerance);
+    // Subtriangulation keeps no tolerance.
+    prop_assume!(settings.tessellation.used_lod() == Lod::Error);
+    let inputs = settings.inputs(camera.lod_view(VIEWPORT, &mesh.bounds()));
+    // An eye nearer than f32 can tell has no view.
+    prop_assume!(inputs.view.clip_from_object.is_finite());
+    let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
+    let (out, written) = if on_device {
+        let mut scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
+        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+        let out = engine().read_tessellated(&mut scene).expect("a readback");
+        (out, scene.tessellator.hull_factors().expect("a readback"))
+    } else {
+        (tessellate(&mesh, &topology, &inputs, None), hull_factors(&mesh, &topology, &inputs))
+    };
+    if !is_capped(&written) {
+        let px = deviation_px(&mesh, &topology, &inputs, &out);
+        let most = f64::from(tolerance) + rounding_px(&mesh, &inputs);
+        prop_assert!(px <= most, "{px} px of {tolerance} under {settings:?}");
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(soups(2000))]
     #[test]
     fn any_soup_is_within_the_tolerance(trial in any_trial(), magnitude in -1.0f32..1.5) {
-        let Trial { mesh, settings, camera } = trial;
-        let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-        let settings = by_error(settings, 10f32.powf(magnitude));
-        // Subtriangulation keeps no tolerance.
-        prop_assume!(settings.tessellation.used_lod() == Lod::Error);
-        let inputs = settings.inputs(camera.lod_view(VIEWPORT, &mesh.bounds()));
-        // An eye nearer than f32 can tell has no view.
-        prop_assume!(inputs.view.clip_from_object.is_finite());
-        let out = tessellate(&mesh, &topology, &inputs, None);
-        if !is_capped(&hull_factors(&mesh, &topology, &inputs)) {
-            let px = deviation_px(&mesh, &topology, &inputs, &out);
-            let most = f64::from(settings.tessellation.tolerance) + rounding_px(&mesh, &inputs);
-            prop_assert!(px <= most, "{px} px of {} under {:?}", settings.tessellation.tolerance, settings);
-        }
+        keeps_its_promise(trial, 10f32.powf(magnitude), false)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(soups(200))]
+    #[test]
+    fn any_soup_is_within_the_tolerance_on_the_device(trial in any_trial(), magnitude in -1.0f32..1.5) {
+        keeps_its_promise(trial, 10f32.powf(magnitude), true)?;
     }
 }
 
