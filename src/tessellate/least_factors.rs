@@ -37,7 +37,7 @@ pub(super) fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
 }
 
 /// Returns the largest factor of a partitioning.
-fn last_factor(partitioning: Partitioning) -> f32 {
+pub(super) fn last_factor(partitioning: Partitioning) -> f32 {
     if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 }
 }
 
@@ -370,7 +370,7 @@ pub(super) fn least_inside_factor(
 }
 
 /// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.
-fn uniform_suffices(
+pub(super) fn uniform_suffices(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
@@ -386,32 +386,6 @@ fn uniform_suffices(
         return triangle_error_at(patch, within, &domain_plan(factors), 0) <= within;
     }
     part_errors(patch, within, factors, [true; 4]).iter().all(|error| *error <= within)
-}
-
-/// Returns the least factor with which `count` patches have fewer triangles than `triangles`, and are within `tolerance` px of
-/// their surfaces if all edges and insides have it. `patch` returns a patch as it is seen, and the least inside factor that it
-/// may get.
-pub(super) fn uniform_factor(
-    tolerance: f32,
-    partitioning: Partitioning,
-    (count, triangles): (u32, u64),
-    patch: impl Fn(u32) -> (SeenPatch, f32),
-) -> Option<f32> {
-    let is_candidate = |factor: &f32| {
-        let each = triangle_count(process(partitioning, [*factor; 3], *factor));
-        let exists = *factor <= last_factor(partitioning) && whole_segments(partitioning, *factor) == *factor;
-        exists && u64::from(each) * u64::from(count) < triangles
-    };
-    // If one triangle were enough for every patch, none would have more.
-    let mut left: Vec<f32> = (2..=64).map(|factor| factor as f32).filter(is_candidate).collect();
-    for i in 0..count {
-        if left.is_empty() {
-            break;
-        }
-        let (seen, least_inside) = patch(i);
-        left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor, least_inside));
-    }
-    left.first().copied()
 }
 
 #[cfg(test)]

@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::control_nets::ControlNets;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::least_factors::{
-    Chosen, ROUNDS, asked_factors, asks_again, least_edge_factor, least_inside_factor, own_least_factors,
-    uniform_factor, whole_segments,
+    Chosen, ROUNDS, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor, own_least_factors,
+    uniform_suffices, whole_segments,
 };
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
@@ -142,15 +142,29 @@ impl ControlNets<'_> {
         if surface == Surface::Flat {
             return None;
         }
-        let count = self.topology.patches.len() as u32;
+        let patches = 0..self.topology.patches.len() as u32;
         let of_patch = |patch| {
             let [u, v, w] = self.edges_of_patch(&factors.edges, patch);
             u64::from(triangle_count(process(partitioning, [u, v, w], factors.insides[patch as usize])))
         };
-        let triangles = (0..count).map(of_patch).sum();
-        let seen =
-            |patch| (self.seen_patch(inputs, displacement, patch), self.heights_inside(inputs, displacement, patch));
-        uniform_factor(surface_tolerance(inputs, displacement), partitioning, (count, triangles), seen)
+        let triangles: u64 = patches.clone().map(of_patch).sum();
+        let is_candidate = |factor: &f32| {
+            let each = triangle_count(process(partitioning, [*factor; 3], *factor));
+            let exists = *factor <= last_factor(partitioning) && whole_segments(partitioning, *factor) == *factor;
+            exists && triangles > u64::from(each) * patches.len() as u64
+        };
+        // If one triangle were enough for every patch, none would have more.
+        let mut left: Vec<f32> = (2..=64).map(|factor| factor as f32).filter(is_candidate).collect();
+        let tolerance = surface_tolerance(inputs, displacement);
+        for patch in patches.clone() {
+            if left.is_empty() {
+                break;
+            }
+            let seen = self.seen_patch(inputs, displacement, patch);
+            let heights = self.heights_inside(inputs, displacement, patch);
+            left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor, heights));
+        }
+        left.first().copied()
     }
 
     /// Returns a patch as it is seen.
