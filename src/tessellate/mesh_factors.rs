@@ -317,3 +317,42 @@ impl ControlNets<'_> {
 pub(super) fn surface_tolerance(inputs: &Inputs, displacement: Option<&MeshDisplacement>) -> f32 {
     inputs.tessellation.tolerance * if displacement.is_some() { SURFACE_SHARE } else { 1.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec2};
+
+    use super::*;
+    use crate::mesh::{Shape, Topology};
+    use crate::tessellate::LodView;
+
+    #[test]
+    fn all_edges_get_the_least_factor_that_suffices_if_patches_have_more_triangles() {
+        let mesh = Shape::Icosahedron.build();
+        let topology = Topology::of(&mesh);
+        let seen = Mat4::from_scale(Vec3::splat(0.5)) * Mat4::from_rotation_y(0.7);
+        let own = Tessellation {
+            lod: Lod::Error,
+            tolerance: 0.5,
+            partitioning: Partitioning::Integer,
+            ..Tessellation::default()
+        };
+        let inputs = Inputs::new(&own, LodView::new(seen, Vec2::splat(300.0)));
+        let nets = ControlNets::new(&mesh, &topology, &inputs);
+        let given = |factor| MeshFactors {
+            edges: vec![factor; topology.edges.len()],
+            insides: vec![factor; topology.patches.len()],
+        };
+        let suffices = |factor| {
+            let patches = 0..topology.patches.len() as u32;
+            let of_patch = |patch| {
+                uniform_suffices(&nets.seen_patch(&inputs, None, patch), own.tolerance, own.partitioning, factor, 1.0)
+            };
+            patches.map(of_patch).all(|suffices| suffices)
+        };
+        let factor = nets.uniform_factor(&inputs, None, &given(64.0)).expect("some factor suffices");
+        assert!(factor > 2.0 && suffices(factor) && (2..factor as u32).all(|less| !suffices(less as f32)), "{factor}");
+        assert_eq!(nets.uniform_factor(&inputs, None, &given(factor)), None, "it has no fewer triangles");
+        assert_eq!(nets.uniform_factor(&inputs, None, &given(factor + 1.0)), Some(factor));
+    }
+}

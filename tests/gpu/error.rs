@@ -12,8 +12,8 @@ use pnaen::progress::Progress;
 use pnaen::render::{Camera, Scene, Target};
 use pnaen::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use pnaen::tessellate::{
-    self, Convention, DecidedBy, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated,
-    Tessellation, explain_patch, hull_factors, own_least_triangles, tessellate,
+    self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
+    hull_factors, own_least_triangles, tessellate,
 };
 use proptest::prelude::*;
 
@@ -243,15 +243,13 @@ fn a_mesh_of_many_patches_is_searched_to_its_end() {
     engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
     let here = tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs);
     let differing = edge_factors(&scene).iter().zip(&here).filter(|(device, here)| device != here).count();
-    // Bounds may fall on either side of the tolerance.
-    assert!(differing <= 2, "{differing} of {} edges", here.len());
+    assert_eq!(differing, 0, "of {} edges", here.len());
     assert!(here.iter().filter(|&&factor| factor > 1.0).count() > 1000, "many patches are searched");
 }
 
-/// Patches that look alike ask for different factors, since an edge's bound depends on which way it is turned.
+/// There one factor for all edges has hardly more triangles, or no more.
 #[test]
-fn one_factor_for_all_edges_is_taken_where_it_has_fewer_triangles() {
-    let mut others = 0;
+fn meshes_whose_edges_have_one_factor_agree_with_the_cpu() {
     let tried = [
         (Shape::Icosahedron, Partitioning::Integer, 0.1),
         (Shape::Icosahedron, Partitioning::FractionalOdd, 0.1),
@@ -268,13 +266,7 @@ fn one_factor_for_all_edges_is_taken_where_it_has_fewer_triangles() {
         assert!(factors.iter().all(|&factor| factor == factors[0]), "{what}: {factors:?}");
         let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
         assert_eq!(out.patch_factors, here.patch_factors, "{what}");
-        let decided = out.patch_factors.iter().zip(0..).flat_map(|(&used, patch)| {
-            let explained = explain_patch(&loaded.mesh, &loaded.topology, &inputs, patch, used);
-            explained.edges.expect("LOD is by error").map(|edge| edge.decided_by())
-        });
-        others += decided.filter(|by| matches!(by, DecidedBy::Again | DecidedBy::All)).count();
     }
-    assert!(others > 0, "some patches asked for something else");
 }
 
 #[test]
