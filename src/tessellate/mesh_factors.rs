@@ -344,11 +344,11 @@ mod tests {
             insides: vec![factor; topology.patches.len()],
         };
         let suffices = |factor| {
-            let patches = 0..topology.patches.len() as u32;
+            let mut patches = 0..topology.patches.len() as u32;
             let of_patch = |patch| {
                 uniform_suffices(&nets.seen_patch(&inputs, None, patch), own.tolerance, own.partitioning, factor, 1.0)
             };
-            patches.map(of_patch).all(|suffices| suffices)
+            patches.all(of_patch)
         };
         let factor = nets.uniform_factor(&inputs, None, &given(64.0)).expect("some factor suffices");
         assert!(factor > 2.0 && suffices(factor) && (2..factor as u32).all(|less| !suffices(less as f32)), "{factor}");
