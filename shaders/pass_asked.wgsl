@@ -1,6 +1,7 @@
 // LOD by error: every patch asks its edges for factors, of which they get the largest; then every patch takes the least inside
 // factor that is enough beside them. Both take two passes: one with an invocation for each patch, which is enough for those
-// that one triangle shows; and one in which a workgroup searches the factors of one of the other patches after another.
+// that one triangle shows; and one in which a workgroup searches the factors of one of the other patches after another. On
+// software drivers a pass between them has an invocation for each patch for which few triangles may be enough.
 //
 // Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find none
 // that is enough. Such patches ask again, for no less than what their edges have, and all patches whose edges then have other
@@ -16,8 +17,8 @@
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
 // See search_state.wgsl.
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
-// The workgroups of each search.
-@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 3>;
+// See search_state.wgsl.
+@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
 
 // The searches: for the factors that patches ask for, for their inside factors, and for what patches ask for again.
 const SEARCH_ASKED: u32 = 0u;
@@ -38,6 +39,11 @@ fn clear_search(search: u32) {
     atomicStore(&edge_factors[counter_at(search + SMALL)], 0u);
 }
 
+// Whether a search has any patches.
+fn has_patches(search: u32) -> bool {
+    return (atomicLoad(&edge_factors[counter_at(search)]) | atomicLoad(&edge_factors[counter_at(search + SMALL)])) > 0u;
+}
+
 // Some software drivers end the loops of an invocation after 65,535 turns, and take microseconds even for workgroups that have
 // nothing to do. So there is one for each patch that is searched, up to as many as can be dispatched.
 fn set_search_workgroups() {
@@ -48,10 +54,20 @@ fn set_search_workgroups() {
     }
 }
 
-// Counts the workgroups of the search that is next.
+// Counts the workgroups of the search that is next, and of the patches that are looked at alone.
 @compute @workgroup_size(1)
 fn search_workgroups_main() {
     set_search_workgroups();
+    search_workgroups[NEXT_PATCHES] = grid(alone_count());
+}
+
+// Counts the workgroups of the next round: once nothing is asked for again, nothing changes.
+@compute @workgroup_size(1)
+fn round_workgroups_main() {
+    set_search_workgroups();
+    let goes_on = has_patches(SEARCH_AGAIN);
+    search_workgroups[NEXT_PATCHES] = grid(select(0u, params.patch_count, goes_on));
+    search_workgroups[NEXT_EDGES] = grid(select(0u, params.factor_count, goes_on));
 }
 
 // How large a factor a pattern has that is searched by a whole workgroup.
@@ -66,6 +82,20 @@ fn search_later(search: u32, patch_index: u32, edges: vec3<f32>, inside: f32) {
         let i = atomicAdd(&edge_factors[counter_at(search + SMALL)], 1u);
         atomicStore(&edge_factors[searched_at(search, params.patch_count - 1u - i)], patch_index);
     }
+}
+
+// How many triangles a pattern has at most that one invocation looks at; 0 if workgroups search all patterns, which takes a GPU
+// less time.
+override ALONE: u32 = 0u;
+
+// The patches whose patterns one invocation looks at are where those that ask again will be.
+fn alone_count() -> u32 {
+    return atomicLoad(&edge_factors[counter_at(SEARCH_AGAIN)]);
+}
+
+fn look_alone(patch_index: u32) {
+    let i = atomicAdd(&edge_factors[counter_at(SEARCH_AGAIN)], 1u);
+    atomicStore(&edge_factors[searched_at(SEARCH_AGAIN, i)], patch_index);
 }
 
 // An inside factor, and factors of the edges U == 0, V == 0 and W == 0 beside which it is enough.
@@ -122,12 +152,56 @@ fn asked_factors_main(
         chosen = BEYOND_LAST;
     } else if single_suffices(&seen, within, params.partitioning, least, inside) {
         chosen = 1.0;
+    } else if is_small(first_pattern(least, inside)) {
+        look_alone(index);
+        return;
     } else {
         search_later(SEARCH_ASKED, index, least, inside);
         return;
     }
     ask(index, least);
     set_chosen(index, least, chosen);
+}
+
+// Returns the factors with which the search of a patch begins. If their pattern is within the tolerance, the search ends with them,
+// since no other pattern has fewer triangles.
+fn first_pattern(least: vec3<f32>, least_inside: f32) -> PatchFactors {
+    return process(params.partitioning, least, factor_from(params.partitioning, max(least_inside, 2.0)));
+}
+
+fn is_small(factors: PatchFactors) -> bool {
+    return triangle_count(factors) <= ALONE;
+}
+
+// Looks whether the first pattern of a patch is enough. Otherwise the patch is searched later.
+@compute @workgroup_size(WORKGROUP)
+fn first_patterns_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let i = grid_index(workgroup, workgroups, local);
+    if i >= alone_count() {
+        return;
+    }
+    let index = atomicLoad(&edge_factors[searched_at(SEARCH_AGAIN, i)]);
+    var seen = load_seen(index);
+    let least = first_least(&seen, edges_of(index, params.factor_count));
+    let heights = heights_inside(index);
+    let factors = first_pattern(least, heights);
+    let plan = domain_plan(factors);
+    let within = BOUND_SHARE * surface_tolerance();
+    for (var t = 0u; t < triangle_count(factors); t++) {
+        if triangle_error_at(&seen, within, plan, t) > within {
+            search_later(SEARCH_ASKED, index, least, heights);
+            return;
+        }
+    }
+    let inside = factor_from(params.partitioning, max(heights, 2.0));
+    ask(index, least);
+    set_chosen(index, least, inside);
+    // Inner triangles were looked at with the others.
+    atomicStore(&edge_factors[inner_at(index)], bitcast<u32>(select(0.0, inside, inside > 2.0)));
 }
 
 // The patches that the teams of a workgroup search.
@@ -281,7 +355,6 @@ fn keep_factors_main(
     let index = grid_index(workgroup, workgroups, local);
     if index == 0u {
         clear_search(SEARCH_INSIDE);
-        set_search_workgroups();
         atomicAdd(&edge_factors[counter_at(ROUNDS_OVER)], 1u);
     }
     if index < params.factor_count {

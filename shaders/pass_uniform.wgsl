@@ -11,23 +11,24 @@
 @group(0) @binding(5) var<storage, read> corners: array<Corner>;
 // A bit for each patch: whether it has a texture.
 @group(0) @binding(6) var<storage, read> textured: array<u32>;
+// See search_state.wgsl.
+@group(0) @binding(7) var<storage, read_write> search_workgroups: array<array<u32, 3>, 5>;
 
 // The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a
 // bit for each factor that isn't taken.
 const TRIANGLES: u32 = 7u;
 const NOT_TAKEN: u32 = 9u;
 
-// Adds up the triangles of all patches.
+// Adds up the triangles of all patches. Each invocation takes several, since the waiting in a workgroup takes longer.
 @compute @workgroup_size(WORKGROUP)
 fn sum_triangles_main(
     @builtin(workgroup_id) workgroup: vec3<u32>,
     @builtin(num_workgroups) workgroups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let index = grid_index(workgroup, workgroups, local);
     var own = 0u;
-    if index < params.patch_count {
-        own = triangle_count(process(params.partitioning, edges_of(index, 0u), bitcast<f32>(inside_of(index))));
+    for (var index = workgroup.x * WORKGROUP + local; index < params.patch_count; index += workgroups.x * WORKGROUP) {
+        own += triangle_count(process(params.partitioning, edges_of(index, 0u), bitcast<f32>(inside_of(index))));
     }
     let sum = workgroup_sum(local, vec2<u32>(own, 0u)).x;
     if local == 0u {
@@ -131,6 +132,10 @@ fn take_uniform_factor_main(
 ) {
     let index = grid_index(workgroup, workgroups, local);
     let factors = ~not_taken();
+    if index == 0u {
+        // Patches take their inside factors anew if edges change.
+        search_workgroups[NEXT_PATCHES] = grid(select(0u, params.patch_count, any(factors != vec2<u32>(0u))));
+    }
     if index < params.factor_count && any(factors != vec2<u32>(0u)) {
         let first = 1u + select(32u + firstTrailingBit(factors.y), firstTrailingBit(factors.x), factors.x != 0u);
         atomicStore(&edge_factors[index], bitcast<u32>(f32(first)));

@@ -10,6 +10,11 @@
 //   that isn't taken for all edges;
 // - the patches of the first two searches, one after the other, and those of the third: large ones from the start, small ones
 //   from the end.
+// Software drivers take time for what has nothing to do. There `search_workgroups` has the numbers of workgroups: of the three
+// searches, of the next pass over patches, and of the next pass over edges.
+
+const NEXT_PATCHES: u32 = 3u;
+const NEXT_EDGES: u32 = 4u;
 
 // Where the inside factor of a patch is.
 fn inside_at(patch_index: u32) -> u32 {

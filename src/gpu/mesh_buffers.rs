@@ -74,7 +74,7 @@ impl MeshBuffers {
             textured: filled(gpu, "textured", &textured(mesh, topology))?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", curves.len())?,
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
-            search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 3)?,
+            search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 5)?,
             shares: filled(gpu, "shares", &all_shares)?,
             details: details(gpu, heights),
             relief,

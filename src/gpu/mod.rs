@@ -26,6 +26,7 @@ pub(crate) mod readback;
 pub(crate) mod recorder;
 pub(crate) mod relief_buffers;
 mod rig;
+mod search_passes;
 mod slab;
 mod tessellator;
 pub(crate) mod wgsl;
@@ -50,6 +51,8 @@ pub(crate) use readback::{Readback, read_buffer, read_buffers, read_texture};
 #[cfg(test)]
 pub(crate) use recorder::PASSES;
 pub(crate) use recorder::{DRAWING, PassTime, RecordPasses, Recorder, Timing, take_times};
+#[cfg(test)]
+pub(crate) use search_passes::{NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_INSIDE};
 pub(crate) use tessellator::{ChunkBuffers, Tessellator};
 pub(crate) use wgsl::WgslFile;
 

@@ -6,9 +6,10 @@ use std::sync::OnceLock;
 use super::bound_pass::{BoundPass, PassInputs};
 use super::buffer::{empty, uniform_buffer};
 use super::layout::Params;
-use super::mesh_passes::{asked_buffers, factor_buffers};
+use super::mesh_passes::factor_buffers;
 use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, grid};
 use super::recorder::RecordPasses;
+use super::search_passes::asked_buffers;
 use super::{Gpu, GpuError};
 
 /// The passes, bound to one set of mesh buffers: when those are replaced, so must this be.

@@ -157,6 +157,9 @@ impl SearchPipelines {
     }
 }
 
+/// `ALONE` in `shaders/pass_asked.wgsl` for a software driver, which computes few invocations of a workgroup side by side.
+const ALONE: u32 = 32;
+
 /// Fewer patches than this don't fill a GPU with 32 invocations each.
 const FEW_PATCHES: u32 = 512;
 
@@ -172,7 +175,11 @@ pub struct ComputePipelines {
     pub edge_factors: ComputePipeline,
     pub heights_inside: ComputePipeline,
     pub asked_factors: ComputePipeline,
+    /// The same where `first_patterns` follows.
+    pub asked_before_first_patterns: ComputePipeline,
+    pub first_patterns: ComputePipeline,
     pub search_workgroups: ComputePipeline,
+    pub round_workgroups: ComputePipeline,
     pub search_asked_factors: SearchPipelines,
     pub inside_factors: ComputePipeline,
     pub search_inside_factors: SearchPipelines,
@@ -226,7 +233,10 @@ impl ComputePipelines {
             edge_factors: ComputePipeline::new(&factors, "edge_factors_main"),
             heights_inside: ComputePipeline::new(&factors, "heights_inside_main"),
             asked_factors: ComputePipeline::new(&asked, "asked_factors_main"),
+            asked_before_first_patterns: ComputePipeline::new(&asked, "asked_factors_main").with("ALONE", ALONE),
+            first_patterns: ComputePipeline::new(&asked, "first_patterns_main"),
             search_workgroups: ComputePipeline::new(&asked, "search_workgroups_main"),
+            round_workgroups: ComputePipeline::new(&asked, "round_workgroups_main"),
             search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main", groups),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
             search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main", groups),

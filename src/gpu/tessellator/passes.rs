@@ -4,12 +4,12 @@ use super::Tessellator;
 use crate::gpu::GpuError;
 use crate::gpu::bound_pass::{BoundPass, PassInputs};
 use crate::gpu::layout::EmitArgs;
-use crate::gpu::mesh_passes::Each;
 use crate::gpu::own_least::{self, OwnLeast};
 use crate::gpu::params::params_of;
 use crate::gpu::pipelines::grid;
 use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
+use crate::gpu::search_passes::Each;
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
 use crate::tessellate::{Displacement, Lod, Tessellation, own_least_inputs};
 
@@ -68,7 +68,7 @@ impl Tessellator {
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
         if tessellation.used_lod() == Lod::Error {
-            passes.asked(&on)?;
+            passes.searches.steps(&on)?;
         }
         if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
             passes.directions(&on, relief)?;
@@ -151,7 +151,7 @@ impl Tessellator {
             let by_error = self.params.lod == Lod::Error as u32;
             let by_heights = by_error && self.displacing_images().is_some();
             let heights_inside = if by_heights { Some(passes.heights_inside(&on)?) } else { None };
-            let asked = if by_error { Some(passes.asked(&on)?) } else { None };
+            let asked = if by_error { Some(passes.searches.steps(&on)?) } else { None };
             recorder.compute("factors", |pass| {
                 edge_factors.dispatch(pass, grid(self.buffers.factor_count));
                 if let Some(heights_inside) = heights_inside {

@@ -6,7 +6,10 @@ use super::modules;
 use crate::gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use crate::gpu::layout::LOD_GIVEN;
 use crate::gpu::relief_buffers::HEIGHTS_ACROSS;
-use crate::gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, WORKGROUP};
+use crate::gpu::{
+    GRID_WIDTH, MOST_WORKGROUPS, NEXT_EDGES, NEXT_PATCHES, SEARCH_AGAIN, SEARCH_ASKED, SEARCH_COUNTERS, SEARCH_INSIDE,
+    WORKGROUP,
+};
 use crate::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS};
 use crate::render::coverage::TILE;
 use crate::render::layout::{
@@ -28,7 +31,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED"], "in Rust, an enum without numbers"),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
-    (&["ALL_MAPS", "NO_PATCH", "NO_MORE", "SEARCH_ASKED", "SEARCH_INSIDE", "SEARCH_AGAIN"], "markers within one pass"),
+    (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass"),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",
@@ -128,6 +131,11 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("PARTIAL_STEPS", number(PARTIAL_STEPS)),
         ("MOST_WORKGROUPS", number(MOST_WORKGROUPS)),
         ("SEARCH_COUNTERS", number(SEARCH_COUNTERS)),
+        ("SEARCH_ASKED", number(SEARCH_ASKED)),
+        ("SEARCH_INSIDE", number(SEARCH_INSIDE)),
+        ("SEARCH_AGAIN", number(SEARCH_AGAIN)),
+        ("NEXT_PATCHES", number(NEXT_PATCHES)),
+        ("NEXT_EDGES", number(NEXT_EDGES)),
         ("SPREAD", number(SPREAD)),
         ("TOGETHER", number(TOGETHER)),
         ("SURFACE_SHARE", number(SURFACE_SHARE)),
