@@ -247,31 +247,25 @@ fn a_mesh_of_many_patches_is_searched_to_its_end() {
     assert!(here.iter().filter(|&&factor| factor > 1.0).count() > 1000, "many patches are searched");
 }
 
-/// Few similar patches, whose requests together take more triangles than one factor for all edges does. Without that choice not all
-/// edges would have the same factor.
+/// Few similar patches, which together ask for more triangles than one factor for all edges takes. Without that choice not all edges
+/// would have the same factor.
 #[test]
 fn the_device_takes_one_factor_for_all_edges_where_the_cpu_does() {
-    let phong = Surface::PhongAen;
     let tried = [
-        (Shape::CubeSmooth, Surface::PnAen, Partitioning::Pow2, 4.0, [241.255, 74.5075, 0.6], false),
-        (Shape::CubeSplit, Surface::PnAen, Partitioning::Pow2, 0.5, [266.262, -6.64514, 0.6], false),
-        (Shape::CubeSmooth, phong, Partitioning::FractionalOdd, 0.25, [184.339, -18.5755, 3.0], true),
+        (Shape::CubeSmooth, Surface::NagataAen, Partitioning::FractionalEven, 0.5, 2),
+        (Shape::CubeSplit, Surface::PhongAen, Partitioning::FractionalEven, 0.1, 0),
+        (Shape::Icosahedron, Surface::NagataAen, Partitioning::FractionalOdd, 0.1, 0),
     ];
-    for (shape, surface, partitioning, tolerance, [azimuth, elevation, distance], orthographic) in tried {
+    for (shape, surface, partitioning, tolerance, camera) in tried {
         let (loaded, mut scene) = scene(shape);
-        let viewport = Vec2::new(1280.0, 720.0);
-        let framing = Camera::framing(&scene.bounds, viewport);
-        let distance = distance * scene.bounds.radius();
-        let camera = Camera { azimuth, elevation, distance, orthographic, ..framing };
+        let camera = cameras(&scene)[camera];
         let settings = Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() });
-        let inputs = by_error(settings, tolerance).inputs(camera.lod_view(viewport, &scene.bounds));
-        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
-        let out = engine().read_tessellated(&mut scene).expect("a readback");
+        let (inputs, out) = on_device(&mut scene, &by_error(settings, tolerance), &camera);
         let what = format!("{shape:?} {surface:?} {partitioning:?}");
-        let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
         let factors = edge_factors(&scene);
         assert!(factors.iter().all(|&factor| factor == factors[0]), "{what}: {factors:?}");
         assert_eq!(factors, tessellate::edge_factors(&loaded.mesh, &loaded.topology, &inputs), "{what}");
+        let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
         assert_eq!(out.patch_factors, here.patch_factors, "{what}");
     }
 }
