@@ -1,72 +1,13 @@
 // Domain points and triangles of a patch, each computed from its number alone. Twin: src/tessellate/domain.rs, which
-// describes the pattern. Needs factors.wgsl, rings.wgsl and subtriangulation.wgsl, and connectivity.wgsl or
-// connectivity_table.wgsl in its place.
+// describes the pattern. Needs connectivity.wgsl or connectivity_table.wgsl.
 
 // Two thirds in 16.16 fixed point, rounded down as in the specification.
 const FIXED_TWO_THIRDS: u32 = 0xaaaau;
 
-// A row of points, prepared for `row_location`.
-struct DomainRow {
-    half: u32,
-    odd: u32,
-    fraction: u32,
-    split: u32,
-    coarse_step: u32,
-    fine_step: u32,
-}
-
-// Returns the length of one of `segments` equal segments in 16.16 fixed point: 1 / segments, rounded half up. There are
-// at most 128 segments.
-fn segment_length(segments: u32) -> u32 {
-    return u32((f32(2u * FIXED_ONE + segments) + 0.5) / f32(2u * segments));
-}
-
-// Clears the highest set bit of a number, which must not be zero.
-fn drop_top_bit(value: u32) -> u32 {
-    return value ^ (1u << firstLeadingBit(value));
-}
-
-// Returns the point of each half after which the next new point grows. New points come in the order of a breadth-first
-// bisection.
-fn row_split(whole: u32, odd: u32) -> u32 {
-    let v = whole - odd;
-    return select(2u * drop_top_bit(v) + 1u, 0u, v == 0u);
-}
-
-// Prepares the row of a factor's word.
-fn domain_row(word: u32) -> DomainRow {
-    let factor = half_factor(word);
-    let whole = factor >> 16u;
-    let odd = odd_parity(word);
-    let fraction = factor & 0xffffu;
-    let half = half_segments(word);
-    return DomainRow(
-        half,
-        odd,
-        fraction,
-        select(row_split(whole, odd), 0xffffffffu, fraction == 0u),
-        segment_length(2u * whole - odd),
-        segment_length(2u * half - odd),
-    );
-}
-
-// Returns where point `p` of a row lies, from 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
-fn row_location(row: DomainRow, p: u32) -> u32 {
-    if row.odd == 0u && p == row.half {
-        return FIXED_HALF;
-    }
-    let mirrored = p >= row.half;
-    let fine = select(p, 2u * row.half - row.odd - p, mirrored);
-    let coarse = select(fine, fine - 1u, fine > row.split);
-    let coarse_part = coarse * row.coarse_step * (FIXED_ONE - row.fraction);
-    let fine_part = fine * row.fine_step * row.fraction;
-    let x = (coarse_part + fine_part + FIXED_HALF) >> 16u;
-    return select(x, FIXED_ONE - x, mirrored);
-}
-
 const PATTERN_RINGS: u32 = 0u;
 const PATTERN_MINIMAL: u32 = 1u;
 const PATTERN_SUBTRIANGULATED: u32 = 2u;
+const PATTERN_ROWS: u32 = 3u;
 
 // A patch's factors, prepared for `domain_point` and `domain_triangle`.
 struct DomainPlan {
@@ -88,7 +29,10 @@ fn domain_plan(factors: PatchFactors) -> DomainPlan {
     if patch_is_subtriangulated(factors) {
         return DomainPlan(factors, PATTERN_SUBTRIANGULATED, start1, start2, outer, segments(factors.inside), row);
     }
-    let kind = select(PATTERN_RINGS, PATTERN_MINIMAL, patch_is_minimal(factors));
+    var kind = select(PATTERN_RINGS, PATTERN_MINIMAL, patch_is_minimal(factors));
+    if patch_has_rows(factors) {
+        kind = PATTERN_ROWS;
+    }
     return DomainPlan(factors, kind, start1, start2, outer, inside_segments(factors.inside), row);
 }
 
@@ -99,6 +43,9 @@ fn domain_point(plan: DomainPlan, i: u32) -> vec2<u32> {
     }
     if i < plan.outer {
         return outer_point(plan, i);
+    }
+    if plan.kind == PATTERN_ROWS {
+        return row_point(row_plan(plan.factors), i - plan.outer);
     }
     return inner_point(plan.row, plan.n, i - plan.outer);
 }
@@ -140,6 +87,9 @@ fn domain_triangle(plan: DomainPlan, t: u32) -> vec3<u32> {
     }
     if plan.kind == PATTERN_SUBTRIANGULATED {
         return subtriangulation_triangle(plan.n, t);
+    }
+    if plan.kind == PATTERN_ROWS {
+        return row_triangle(row_plan(plan.factors), t);
     }
     let transition = plan.outer + 3u * (plan.n - 2u);
     if t < transition {

@@ -9,17 +9,22 @@ const PARTITIONING_POW2: u32 = 1u;
 const PARTITIONING_FRACTIONAL_ODD: u32 = 2u;
 const PARTITIONING_FRACTIONAL_EVEN: u32 = 3u;
 const PARTITIONING_SUBTRIANGULATION: u32 = 4u;
+const PARTITIONING_ROWS: u32 = 5u;
 
 const FIXED_ONE: u32 = 0x10000u;
 const FIXED_HALF: u32 = 0x8000u;
 const FACTOR_ODD: u32 = 0x80000000u;
 const FACTOR_VALUE: u32 = 0x7fffffu;
 const SUBTRIANGULATED: u32 = 0x40000000u;
+const ROWS: u32 = 0x20000000u;
+const ROW_BASE_SHIFT: u32 = 24u;
+const ROW_BASE_STEP: u32 = 128u;
 
 const BITS_ONE: u32 = 0x3f800000u;
 const BITS_TWO: u32 = 0x40000000u;
 const BITS_63: u32 = 0x427c0000u;
 const BITS_64: u32 = 0x42800000u;
+const BITS_512: u32 = 0x44000000u;
 const BITS_INFINITY: u32 = 0x7f800000u;
 const BITS_ONE_AND_HALF_STEP: u32 = 0x3f800040u;
 const BITS_ONE_AND_STEP: u32 = 0x3f800080u;
@@ -85,6 +90,14 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
         let word = factor_word(partitioning, largest);
         return PatchFactors(vec3<u32>(word), word | SUBTRIANGULATED);
     }
+    if partitioning == PARTITIONING_ROWS {
+        let words = vec3<u32>(
+            factor_word(partitioning, clamped.x),
+            factor_word(partitioning, clamped.y),
+            factor_word(partitioning, clamped.z),
+        );
+        return process_rows(words, bitcast<u32>(inside));
+    }
     // An odd patch with a divided edge needs a ring inside, though it may have collapsed to a point.
     let splits = partitioning == PARTITIONING_FRACTIONAL_ODD && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = select(low, BITS_ONE_AND_STEP, splits);
@@ -97,6 +110,48 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
         ),
         inside_word(partitioning, clamp(inside_bits, inside_low, high)),
     );
+}
+
+// Returns what becomes of the words of a patch's edges and its inside factor under rows. The smallest width is 1, and the
+// largest 64.
+fn process_rows(outside: vec3<u32>, inside: u32) -> PatchFactors {
+    let positive = select(BITS_ONE, max(inside, BITS_ONE), positive_bits(inside));
+    let rounded = (factor_word(PARTITIONING_ROWS, min(positive, BITS_512)) >> 16u) & 0x7fffu;
+    var base = rounded / ROW_BASE_STEP;
+    var width = clamp(rounded % ROW_BASE_STEP, 1u, 64u);
+    if base > 3u {
+        base = 0u;
+        width = 64u;
+    }
+    if base == 0u {
+        base = base_by_edges(outside);
+    } else {
+        base -= 1u;
+    }
+    return PatchFactors(outside, (width << 16u) | (width << 31u) | ROWS | (base << ROW_BASE_SHIFT));
+}
+
+// Returns which edge is the base of rows if nothing else says so: the one whose neighbours have the most similar numbers of
+// segments, so that the fewest rows share points; of several the one with the fewest segments, or the first.
+fn base_by_edges(outside: vec3<u32>) -> u32 {
+    let u = segments(outside.x);
+    let v = segments(outside.y);
+    let w = segments(outside.z);
+    // Numbers of segments are at most 64.
+    let unlike = vec3<u32>(
+        (max(v, w) - min(v, w)) * 128u + u,
+        (max(w, u) - min(w, u)) * 128u + v,
+        (max(u, v) - min(u, v)) * 128u + w,
+    );
+    let least = min(min(unlike.x, unlike.y), unlike.z);
+    return u32(unlike.x != least) + u32(unlike.x != least && unlike.y != least);
+}
+
+// Returns the factor of the edge that base_by_edges makes the base: the rows then widen to what the base has.
+fn base_factor(edges: vec3<f32>) -> f32 {
+    let factors = process(PARTITIONING_ROWS, edges, 1.0);
+    let base = select(row_base(factors), 0u, patch_is_culled(factors));
+    return select(select(edges.x, edges.y, base == 1u), edges.z, base == 2u);
 }
 
 // Returns the factor that a shader compiler passes to the tessellator under pow2: clamped to 1 to 64, then rounded up
@@ -119,6 +174,43 @@ fn patch_is_culled(factors: PatchFactors) -> bool {
 // Returns whether the patch is cut by uniform subtriangulation instead of Direct3D's tessellator.
 fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
     return !patch_is_culled(factors) && (factors.inside & SUBTRIANGULATED) != 0u;
+}
+
+// Returns whether the patch is cut into rows.
+fn patch_has_rows(factors: PatchFactors) -> bool {
+    return !patch_is_culled(factors) && (factors.inside & ROWS) != 0u;
+}
+
+// Returns which edge is the base of a patch's rows: 0, 1 or 2 for U == 0, V == 0 or W == 0.
+fn row_base(factors: PatchFactors) -> u32 {
+    return (factors.inside >> ROW_BASE_SHIFT) & 3u;
+}
+
+// Returns the number of rows of a patch: the larger number of segments of the edges beside the base.
+fn row_count(factors: PatchFactors) -> u32 {
+    let u = segments(factors.outside.x);
+    let v = segments(factors.outside.y);
+    let w = segments(factors.outside.z);
+    let base = row_base(factors);
+    return select(select(max(v, w), max(w, u), base == 1u), max(u, v), base == 2u);
+}
+
+// Returns the number of segments to which a patch's rows widen.
+fn row_width(factors: PatchFactors) -> u32 {
+    return (factors.inside & FACTOR_VALUE) >> 16u;
+}
+
+// Returns the inside factor in 16.16 fixed point, which says how far apart points inside are; of rows the lesser of their number
+// and their width.
+fn inside_value(factors: PatchFactors) -> u32 {
+    let width = factors.inside & FACTOR_VALUE;
+    return select(width, min(width, row_count(factors) << 16u), patch_has_rows(factors));
+}
+
+// Returns the number of points inside a patch of rows: each row between the apex and the base has one less than segments.
+fn row_points(factors: PatchFactors) -> u32 {
+    let last = row_count(factors) - 1u;
+    return widths_through(last + 1u, row_width(factors), last) - last;
 }
 
 // Returns whether all factors are 1, so that the patch is one triangle.
@@ -179,6 +271,9 @@ fn point_count(factors: PatchFactors) -> u32 {
         let n = segments(factors.inside);
         return ((n + 1u) * (n + 2u)) >> 1u;
     }
+    if patch_has_rows(factors) {
+        return outer_count(factors) + row_points(factors);
+    }
     // With R = (n - 1) / 2 rounded down, the rings inside have 3 R^2 points if n is odd, and 3 R (R + 1) + 1 if it is even.
     let n = inside_segments(factors.inside);
     return outer_count(factors) + ((3u * (n - 1u) * (n - 1u) + 1u) >> 2u);
@@ -195,6 +290,10 @@ fn triangle_count(factors: PatchFactors) -> u32 {
     if patch_is_subtriangulated(factors) {
         let n = segments(factors.inside);
         return n * n;
+    }
+    if patch_has_rows(factors) {
+        // By Euler's formula.
+        return outer_count(factors) + 2u * row_points(factors) - 2u;
     }
     let inner = inside_segments(factors.inside) - 2u;
     return outer_count(factors) + 3u * inner + ((3u * inner * inner) >> 1u);

@@ -10,7 +10,8 @@ const BEYOND_LAST: f32 = 64.5;
 // Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number, a
 // power of two, or an odd or even number.
 fn whole_segments(partitioning: u32, least: f32) -> f32 {
-    if partitioning == PARTITIONING_INTEGER || partitioning == PARTITIONING_SUBTRIANGULATION {
+    if partitioning != PARTITIONING_POW2 && partitioning != PARTITIONING_FRACTIONAL_ODD
+        && partitioning != PARTITIONING_FRACTIONAL_EVEN {
         return ceil(least);
     }
     if partitioning == PARTITIONING_POW2 {
@@ -144,8 +145,11 @@ fn single_suffices(
 }
 
 // Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
-// W == 0, and its inner triangles, which lie along no edge.
+// W == 0, and its inner triangles, which lie along no edge. Of rows all are counted as inner ones.
 fn part_counts(factors: PatchFactors) -> vec4<u32> {
+    if patch_has_rows(factors) {
+        return vec4<u32>(0u, 0u, 0u, triangle_count(factors));
+    }
     let outside = vec3<u32>(segments(factors.outside.x), segments(factors.outside.y), segments(factors.outside.z));
     let rows = outside + inside_segments(factors.inside) - 2u;
     return vec4<u32>(rows, triangle_count(factors) - rows.x - rows.y - rows.z);

@@ -104,11 +104,14 @@ struct Enough {
     inside: f32,
 }
 
-// Stores what a patch has chosen in place of its inside factor: whole numbers of 7 bits, and 65 for larger factors. All together
-// are less than the bits of an inside factor alone.
+// Stores what a patch has chosen in place of its inside factor: whole numbers, and 65 for larger factors. All together are less
+// than the bits of an inside factor alone.
 fn set_chosen(patch_index: u32, edges: vec3<f32>, inside: f32) {
-    let numbers = vec4<u32>(min(ceil(vec4<f32>(edges, inside)), vec4<f32>(65.0)));
-    let word = numbers.x | (numbers.y << 7u) | (numbers.z << 14u) | (numbers.w << 21u);
+    let numbers = vec3<u32>(min(ceil(edges), vec3<f32>(65.0)));
+    // Of rows the number that says their base is one less, so that 9 bits are enough.
+    let whole = u32(ceil(inside));
+    let own = select(whole, whole - ROW_BASE_STEP, whole > ROW_BASE_STEP);
+    let word = numbers.x | (numbers.y << 7u) | (numbers.z << 14u) | (own << 21u);
     atomicStore(&edge_factors[inside_at(patch_index)], word);
 }
 
@@ -117,9 +120,13 @@ fn chosen_from(word: u32) -> Enough {
     if word >= bitcast<u32>(1.0) {
         return Enough(vec3<f32>(0.0), bitcast<f32>(word));
     }
-    let numbers = vec4<f32>((vec4<u32>(word) >> vec4<u32>(0u, 7u, 14u, 21u)) & vec4<u32>(127u));
-    let factors = min(numbers, vec4<f32>(BEYOND_LAST));
-    return Enough(factors.xyz, factors.w);
+    let numbers = (vec3<u32>(word) >> vec3<u32>(0u, 7u, 14u)) & vec3<u32>(127u);
+    let own = word >> 21u;
+    var inside = select(f32(own), BEYOND_LAST, own == 65u);
+    if params.partitioning == PARTITIONING_ROWS && own != 65u {
+        inside = f32(own + ROW_BASE_STEP);
+    }
+    return Enough(min(vec3<f32>(numbers), vec3<f32>(BEYOND_LAST)), inside);
 }
 
 fn ask(patch_index: u32, asked: vec3<f32>) {
@@ -127,6 +134,11 @@ fn ask(patch_index: u32, asked: vec3<f32>) {
         let edge = patches[patch_index].factors[(i + 1u) % 3u] >> 3u;
         atomicMax(&edge_factors[edge], bitcast<u32>(asked[i]));
     }
+}
+
+// The inside factor of a patch that is one triangle.
+fn inside_of_one() -> f32 {
+    return select(1.0, f32(ROW_BASE_STEP + 1u), params.partitioning == PARTITIONING_ROWS);
 }
 
 // Patches that are left out ask, too: what others look like doesn't depend on it.
@@ -151,7 +163,7 @@ fn asked_factors_main(
     } else if max(max(max(least.x, least.y), least.z), inside) > 64.0 {
         chosen = BEYOND_LAST;
     } else if single_suffices(&seen, within, params.partitioning, least, inside) {
-        chosen = 1.0;
+        chosen = inside_of_one();
     } else if is_small(first_pattern(least, inside)) {
         look_alone(index);
         return;
@@ -169,8 +181,9 @@ fn first_pattern(least: vec3<f32>, least_inside: f32) -> PatchFactors {
     return process(params.partitioning, least, factor_from(params.partitioning, max(least_inside, 2.0)));
 }
 
+// Whether one invocation looks at a first pattern. Searches of rows begin otherwise.
 fn is_small(factors: PatchFactors) -> bool {
-    return triangle_count(factors) <= ALONE;
+    return params.partitioning != PARTITIONING_ROWS && triangle_count(factors) <= ALONE;
 }
 
 // Looks whether the first pattern of a patch is enough. Otherwise the patch is searched later.
@@ -273,6 +286,38 @@ fn search_asked_factors_main(
     }
 }
 
+// The same under rows.
+@compute @workgroup_size(GROUP)
+fn search_asked_rows_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    let search = select(SEARCH_ASKED, SEARCH_AGAIN, is_later_round());
+    begun = workgroup.x;
+    var next = next_patch(search, workgroups.x);
+    while any_team(next != NO_MORE) {
+        let is_searched = next != NO_MORE;
+        let index = select(0u, next, is_searched);
+        var seen = load_seen(index);
+        var least = edges_of(index, params.factor_count);
+        if search == SEARCH_ASKED {
+            least = first_least(&seen, least);
+        }
+        let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let asked = asked_rows(&seen, surface_tolerance(), least, inside);
+        if leads_team() && is_searched {
+            ask(index, asked.edges);
+            // What asks again has found rows before.
+            if search == SEARCH_ASKED || asked.inside != BEYOND_LAST {
+                set_chosen(index, asked.edges, asked.inside);
+            }
+        }
+        next = next_patch(search, workgroups.x);
+    }
+}
+
 // Whether the first round is over.
 fn is_later_round() -> bool {
     return atomicLoad(&edge_factors[counter_at(ROUNDS_OVER)]) > 0u;
@@ -307,7 +352,7 @@ fn inside_factors_main(
         }
         var seen = load_seen(index);
         if single_suffices(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, edges, heights) {
-            inside = 1.0;
+            inside = inside_of_one();
         } else if max(max(max(edges.x, edges.y), edges.z), heights) > 64.0 {
             inside = BEYOND_LAST;
         } else {
@@ -338,6 +383,38 @@ fn search_inside_factors_main(
         if leads_team() && is_searched {
             let chosen = chosen_from(atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside)));
             if asks_again(chosen.inside, inside) {
+                search_later(SEARCH_AGAIN, index, edges, least);
+            }
+        }
+        next = next_patch(SEARCH_INSIDE, workgroups.x);
+    }
+}
+
+// The same under rows.
+@compute @workgroup_size(GROUP)
+fn search_rows_beside_main(
+    @builtin(workgroup_id) workgroup: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    lane = local;
+    begun = workgroup.x;
+    var next = next_patch(SEARCH_INSIDE, workgroups.x);
+    while any_team(next != NO_MORE) {
+        let is_searched = next != NO_MORE;
+        let index = select(0u, next, is_searched);
+        var seen = load_seen(index);
+        let edges = edges_of(index, 0u);
+        let least = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let inside = rows_beside(&seen, surface_tolerance(), edges, least);
+        if leads_team() && is_searched {
+            let word = atomicExchange(&edge_factors[inside_at(index)], bitcast<u32>(inside));
+            var chosen = chosen_from(word);
+            if word >= bitcast<u32>(1.0) {
+                // It was found in an earlier round, beside what edges had then.
+                chosen.edges = edges_of(index, params.factor_count);
+            }
+            if rows_ask_again(chosen.edges, chosen.inside, edges, inside) {
                 search_later(SEARCH_AGAIN, index, edges, least);
             }
         }

@@ -24,6 +24,18 @@ fn needed_net(patch_index: u32) -> ControlNet {
     return net;
 }
 
+// Returns an inside factor under rows whose base is an edge in the order of a convention, for one whose base is the edge U == 0,
+// V == 0 or W == 0 as LOD takes them: each is the edge opposite corner 0, 1 or 2.
+fn inside_of_base(convention: u32, inside: f32) -> f32 {
+    let base = u32(inside) / ROW_BASE_STEP;
+    for (var written = 0u; written < 3u; written++) {
+        if base > 0u && factor_side(convention, written) == base % 3u {
+            return inside + f32(ROW_BASE_STEP * (written + 1u)) - f32(ROW_BASE_STEP * base);
+        }
+    }
+    return inside;
+}
+
 // What a hull shader would write for a patch: the factors of its edges in the order of the convention, and the one inside.
 fn hull_factors(patch_index: u32) -> vec4<f32> {
     if params.lod == LOD_GIVEN {
@@ -39,16 +51,22 @@ fn hull_factors(patch_index: u32) -> vec4<f32> {
     for (var k = 0u; k < 3u; k++) {
         sides[k] = edge_factors[patches[patch_index].factors[k] >> 3u];
     }
-    var inside = max(max(sides.x, sides.y), sides.z);
-    if params.lod == LOD_ERROR {
-        inside = edge_factors[2u * params.factor_count + params.patch_count + patch_index];
-    }
-    return vec4<f32>(
+    let edges = vec3<f32>(
         sides[factor_side(params.convention, 0u)],
         sides[factor_side(params.convention, 1u)],
         sides[factor_side(params.convention, 2u)],
-        inside,
     );
+    var inside = max(max(sides.x, sides.y), sides.z);
+    if params.partitioning == PARTITIONING_ROWS {
+        inside = base_factor(edges);
+    }
+    if params.lod == LOD_ERROR {
+        inside = edge_factors[2u * params.factor_count + params.patch_count + patch_index];
+        if params.partitioning == PARTITIONING_ROWS {
+            inside = inside_of_base(params.convention, inside);
+        }
+    }
+    return vec4<f32>(edges, inside);
 }
 
 // Stores a patch's factors, and returns how many vertices and triangles they give.

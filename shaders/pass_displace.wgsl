@@ -212,7 +212,7 @@ fn displace_main(
     let key = vec2<u32>(vertex.key0, vertex.key1);
     let patch_index = key_patch(key);
     let uv = key_uv(key);
-    let segments = f32(patch_factors[patch_index - slab.first_patch].inside & FACTOR_VALUE) * UNIT;
+    let segments = f32(inside_value(patch_factors[patch_index - slab.first_patch])) * UNIT;
     let at = spot(uv.x, uv.y);
     let own = own_lookup(patch_index, uv.x, uv.y, at, segments);
     var asked = own;

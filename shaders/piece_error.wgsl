@@ -102,6 +102,34 @@ fn second_derivatives(view: LodView, scale: f32, net: ControlNet, i: u32) -> arr
     );
 }
 
+// A sixth of a patch's second derivatives at a place, along two directions a and b of the domain: on screen, in px.
+struct SecondForms {
+    aa: vec2<f32>,
+    ab: vec2<f32>,
+    bb: vec2<f32>,
+}
+
+// Returns a difference on screen, in px, as an eye sees it that looks at a point in clip space.
+fn seen_at(at: vec3<f32>, difference: vec3<f32>) -> vec2<f32> {
+    return (difference.xy - (at.xy / at.z) * difference.z) / at.z;
+}
+
+// Returns the second derivatives at a corner, as an eye sees them that looks at it; zeros if it isn't before the near plane.
+fn second_forms(seen: ptr<function, SeenPatch>, corner: u32, a: vec2<f32>, b: vec2<f32>) -> SecondForms {
+    let at = (*seen).points[corner];
+    if !(at.z > (*seen).near && at.z > 0.0) {
+        return SecondForms(vec2<f32>(0.0), vec2<f32>(0.0), vec2<f32>(0.0));
+    }
+    let xx = (*seen).second[corner][0];
+    let xy = (*seen).second[corner][1];
+    let yy = (*seen).second[corner][2];
+    return SecondForms(
+        seen_at(at, xx * (a.x * a.x) + xy * (2.0 * a.x * a.y) + yy * (a.y * a.y)),
+        seen_at(at, xx * (a.x * b.x) + xy * (a.x * b.y + a.y * b.x) + yy * (a.y * b.y)),
+        seen_at(at, xx * (b.x * b.x) + xy * (2.0 * b.x * b.y) + yy * (b.y * b.y)),
+    );
+}
+
 // Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in
 // clip space.
 fn turn_of(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> f32 {

@@ -7,10 +7,11 @@ use super::bound_pass::{BoundPass, PassInputs};
 use super::buffer::{empty, uniform_buffer};
 use super::layout::Params;
 use super::mesh_passes::factor_buffers;
-use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, grid};
+use super::pipelines::{ComputePipelines, MOST_WORKGROUPS, SearchPipelines, grid};
 use super::recorder::RecordPasses;
 use super::search_passes::asked_buffers;
 use super::{Gpu, GpuError};
+use crate::tessellate::Partitioning;
 
 /// The passes, bound to one set of mesh buffers: when those are replaced, so must this be.
 pub(super) struct OwnLeast {
@@ -24,7 +25,8 @@ pub(super) struct OwnLeast {
     /// Bound once a displaced mesh needs it.
     heights_inside: OnceLock<BoundPass>,
     least_triangles: BoundPass,
-    search_least_triangles: BoundPass,
+    /// Of the patterns of Direct3D, then of rows. Each is bound once it is needed.
+    searches: [OnceLock<BoundPass>; 2],
     /// The parameters that the numbers were computed with.
     done: Option<Params>,
 }
@@ -44,8 +46,6 @@ impl OwnLeast {
         let of_patches = [&asked_buffers(mesh, &params, &factors)[..], &[(7, &triangles)]].concat();
         let edge_factors = BoundPass::new(gpu, &pipelines.edge_factors, &factor_buffers(mesh, &params, &factors))?;
         let least_triangles = BoundPass::new(gpu, &pipelines.least_triangles, &of_patches)?;
-        let search_least_triangles =
-            BoundPass::new(gpu, pipelines.search_least_triangles.of(gpu, mesh.patch_count), &of_patches)?;
         Ok(Self {
             params,
             factors,
@@ -53,7 +53,7 @@ impl OwnLeast {
             edge_factors,
             heights_inside: OnceLock::new(),
             least_triangles,
-            search_least_triangles,
+            searches: Default::default(),
             done: None,
         })
     }
@@ -78,6 +78,10 @@ impl OwnLeast {
             let buffers = [&factor_buffers(mesh, &self.params, &self.factors)[..], &[(7, &mesh.patches)]].concat();
             Some(BoundPass::once(&self.heights_inside, on.gpu, &on.pipelines.heights_inside, &buffers)?)
         };
+        let has_rows = params.partitioning == Partitioning::Rows as u32;
+        let pipeline = search_pipelines(on.pipelines, has_rows).of(on.gpu, mesh.patch_count);
+        let of_patches = [&asked_buffers(mesh, &self.params, &self.factors)[..], &[(7, &self.triangles)]].concat();
+        let search = BoundPass::once(&self.searches[usize::from(has_rows)], on.gpu, pipeline, &of_patches)?;
         on.gpu.queue.write_buffer(&self.params, 0, bytemuck::bytes_of(params));
         recorder.compute("least", |pass| {
             self.edge_factors.dispatch(pass, grid(mesh.factor_count));
@@ -85,7 +89,7 @@ impl OwnLeast {
                 heights_inside.dispatch(pass, grid(mesh.patch_count));
             }
             self.least_triangles.dispatch(pass, grid(mesh.patch_count));
-            self.search_least_triangles.dispatch(pass, [mesh.patch_count.min(MOST_WORKGROUPS), 1, 1]);
+            search.dispatch(pass, [mesh.patch_count.min(MOST_WORKGROUPS), 1, 1]);
         });
         self.done = Some(*params);
         Ok(())
@@ -101,12 +105,17 @@ impl OwnLeast {
     }
 }
 
+/// The pipelines of the search, for rows or for the patterns of Direct3D.
+fn search_pipelines(pipelines: &ComputePipelines, has_rows: bool) -> &SearchPipelines {
+    if has_rows { &pipelines.search_least_rows } else { &pipelines.search_least_triangles }
+}
+
 /// Makes the pipelines of the passes for a number of patches, on any thread.
 ///
 /// # Errors
 /// Out of memory, or a lost device.
-pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32) -> Result<(), GpuError> {
+pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Result<(), GpuError> {
     pipelines.edge_factors.get(gpu)?;
     pipelines.least_triangles.get(gpu)?;
-    pipelines.search_least_triangles.of(gpu, patches).get(gpu).map(|_| ())
+    search_pipelines(pipelines, has_rows).of(gpu, patches).get(gpu).map(|_| ())
 }

@@ -7,7 +7,7 @@ use wgpu::util::DeviceExt;
 use super::lazy::Lazy;
 use super::wgsl::{
     CONNECTIVITY_TABLE, CONVENTION, DISPLACE, DISPLACEMENT_FACTOR, DISPLACEMENT_SHARES, DOMAIN, FACTORS, LEAST_FACTORS,
-    LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE, SLIDES, SURFACE, TYPES,
+    LEAST_ROWS, LOAD_NET, LOADS, LOD, NORMAL, OCTAHEDRAL_NORMAL, SEARCH_GROUP, SEARCH_STATE, SLIDES, SURFACE, TYPES,
     WORKGROUP_SCAN, WgslFile, wgsl,
 };
 use super::{Gpu, GpuError};
@@ -23,11 +23,11 @@ pub(super) static PASS_NETS: WgslFile = wgsl!("pass_nets", CONTROL_POINTS, LOAD_
 pub(super) static PASS_FACTORS: WgslFile =
     wgsl!("pass_factors", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOD, SURFACE, TYPES);
 pub(super) static PASS_ASKED: WgslFile =
-    wgsl!("pass_asked", LEAST_FACTORS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES);
+    wgsl!("pass_asked", LEAST_FACTORS, LEAST_ROWS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES);
 pub(super) static PASS_UNIFORM: WgslFile =
     wgsl!("pass_uniform", FACTORS, LEAST_FACTORS, LOADS, SEARCH_GROUP, SEARCH_STATE, SLIDES, TYPES, WORKGROUP_SCAN);
 pub(super) static PASS_LEAST: WgslFile =
-    wgsl!("pass_least", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
+    wgsl!("pass_least", DISPLACEMENT_FACTOR, FACTORS, LEAST_FACTORS, LEAST_ROWS, LOADS, SEARCH_GROUP, SLIDES, TYPES);
 pub(super) static PASS_LEVELS: WgslFile =
     wgsl!("pass_levels", CONVENTION, DISPLACE, NORMAL, DISPLACEMENT_SHARES, TYPES);
 pub(super) static PASS_COUNTS: WgslFile =
@@ -183,6 +183,8 @@ pub struct ComputePipelines {
     pub search_asked_factors: SearchPipelines,
     pub inside_factors: ComputePipeline,
     pub search_inside_factors: SearchPipelines,
+    pub search_asked_rows: SearchPipelines,
+    pub search_rows_beside: SearchPipelines,
     pub keep_factors: ComputePipeline,
     pub sum_triangles: ComputePipeline,
     pub candidates: ComputePipeline,
@@ -191,6 +193,7 @@ pub struct ComputePipelines {
     /// Whose results no other pass needs, like those of the next.
     pub least_triangles: ComputePipeline,
     pub search_least_triangles: SearchPipelines,
+    pub search_least_rows: SearchPipelines,
     pub factor_levels: ComputePipeline,
     pub point_levels: ComputePipeline,
     pub counts: ComputePipeline,
@@ -240,6 +243,8 @@ impl ComputePipelines {
             search_asked_factors: SearchPipelines::new(&asked, "search_asked_factors_main", groups),
             inside_factors: ComputePipeline::new(&asked, "inside_factors_main"),
             search_inside_factors: SearchPipelines::new(&asked, "search_inside_factors_main", groups),
+            search_asked_rows: SearchPipelines::new(&asked, "search_asked_rows_main", groups),
+            search_rows_beside: SearchPipelines::new(&asked, "search_rows_beside_main", groups),
             keep_factors: ComputePipeline::new(&asked, "keep_factors_main"),
             sum_triangles: ComputePipeline::new(&uniform, "sum_triangles_main"),
             candidates: ComputePipeline::new(&uniform, "candidates_main"),
@@ -247,6 +252,7 @@ impl ComputePipelines {
             take_uniform_factor: ComputePipeline::new(&uniform, "take_uniform_factor_main"),
             least_triangles: ComputePipeline::new(&least, "least_triangles_main"),
             search_least_triangles: SearchPipelines::new(&least, "search_least_triangles_main", groups),
+            search_least_rows: SearchPipelines::new(&least, "search_least_rows_main", groups),
             factor_levels: ComputePipeline::new(&levels, "factor_levels_main"),
             point_levels: ComputePipeline::new(&levels, "point_levels_main"),
             counts: ComputePipeline::new(&counts, "counts_main"),

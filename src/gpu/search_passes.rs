@@ -12,7 +12,7 @@ use crate::tessellate::ROUNDS;
 #[derive(Default)]
 pub(super) struct SearchPasses {
     /// By [`SearchPass`].
-    bound: [OnceLock<BoundPass>; 12],
+    bound: [OnceLock<BoundPass>; 14],
 }
 
 /// The entry points, without `_main`.
@@ -30,6 +30,8 @@ enum SearchPass {
     Candidates,
     SearchUniformFactor,
     TakeUniformFactor,
+    SearchAskedRows,
+    SearchRowsBeside,
 }
 
 /// Software drivers take time for what has nothing to do, and GPUs take less for that than for counting what has.
@@ -62,11 +64,15 @@ pub(crate) const NEXT_PATCHES: u32 = 3;
 pub(crate) const NEXT_EDGES: u32 = 4;
 
 impl SearchPasses {
-    /// All passes in their order.
+    /// All passes in their order, which under rows search other patterns.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
-    pub(super) fn steps<'a>(&'a self, on: &PassInputs<'a>) -> Result<Vec<(&'a BoundPass, Each<'a>)>, GpuError> {
+    pub(super) fn steps<'a>(
+        &'a self,
+        on: &PassInputs<'a>,
+        has_rows: bool,
+    ) -> Result<Vec<(&'a BoundPass, Each<'a>)>, GpuError> {
         use SearchPass::*;
         let (patches, software) = (on.mesh.patch_count, on.gpu.is_software());
         let counted = |place: u32, otherwise| match software {
@@ -95,7 +101,12 @@ impl SearchPasses {
         steps.extend(take_insides(next_patches));
 
         steps.retain(|(pass, _)| software || !SOFTWARE_ONLY.contains(pass));
-        steps.into_iter().map(|(pass, each)| Ok((self.bound(on, pass)?, each))).collect()
+        let searched = |pass| match pass {
+            SearchAskedFactors if has_rows => SearchAskedRows,
+            SearchInsideFactors if has_rows => SearchRowsBeside,
+            other => other,
+        };
+        steps.into_iter().map(|(pass, each)| Ok((self.bound(on, searched(pass))?, each))).collect()
     }
 
     fn bound<'a>(&'a self, on: &PassInputs<'a>, pass: SearchPass) -> Result<&'a BoundPass, GpuError> {
@@ -115,6 +126,8 @@ impl SearchPasses {
             SearchAskedFactors => (sized(&pipelines.search_asked_factors), &of_patches),
             InsideFactors => (&pipelines.inside_factors, &of_patches),
             SearchInsideFactors => (sized(&pipelines.search_inside_factors), &of_patches),
+            SearchAskedRows => (sized(&pipelines.search_asked_rows), &of_patches),
+            SearchRowsBeside => (sized(&pipelines.search_rows_beside), &of_patches),
             KeepFactors => (&pipelines.keep_factors, &factors),
             SumTriangles => (&pipelines.sum_triangles, &summed),
             Candidates => (&pipelines.candidates, &factors),

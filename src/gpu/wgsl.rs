@@ -25,11 +25,15 @@ macro_rules! wgsl {
 pub(crate) use wgsl;
 
 // Files that several passes share. A file that only one pass has is declared where that pass is.
-pub(crate) static FACTORS: WgslFile = wgsl!("factors");
+pub(crate) static ROW_WIDTHS: WgslFile = wgsl!("row_widths");
+pub(crate) static FACTORS: WgslFile = wgsl!("factors", ROW_WIDTHS);
+pub(crate) static DOMAIN_ROW: WgslFile = wgsl!("domain_row", FACTORS);
 pub(crate) static RINGS: WgslFile = wgsl!("rings");
+/// A module has it beside [`DOMAIN`].
+pub(crate) static ROWS: WgslFile = wgsl!("rows", DOMAIN_ROW, FACTORS, ROW_WIDTHS);
 pub(crate) static SUBTRIANGULATION: WgslFile = wgsl!("subtriangulation", FACTORS);
 /// Beside it a module has [`CONNECTIVITY`] or [`CONNECTIVITY_TABLE`], which declare the same functions.
-pub(crate) static DOMAIN: WgslFile = wgsl!("domain", FACTORS, RINGS, SUBTRIANGULATION);
+pub(crate) static DOMAIN: WgslFile = wgsl!("domain", DOMAIN_ROW, FACTORS, RINGS, ROWS, SUBTRIANGULATION);
 pub(crate) static CONNECTIVITY: WgslFile = wgsl!("connectivity", DOMAIN, RINGS);
 pub(crate) static CONNECTIVITY_TABLE: WgslFile = wgsl!("connectivity_table", DOMAIN, RINGS);
 pub(crate) static CONVENTION: WgslFile = wgsl!("convention", FACTORS);
@@ -48,6 +52,7 @@ pub(crate) static SEARCH_GROUP: WgslFile = wgsl!("search_group");
 pub(crate) static SEARCH_STATE: WgslFile = wgsl!("search_state", DISPLACEMENT_FACTOR);
 pub(crate) static LEAST_FACTORS: WgslFile =
     wgsl!("least_factors", CONNECTIVITY, DOMAIN, FACTORS, LOD, PIECE_ERROR, SEARCH_GROUP);
+pub(crate) static LEAST_ROWS: WgslFile = wgsl!("least_rows", FACTORS, LEAST_FACTORS, PIECE_ERROR, SEARCH_GROUP);
 pub(crate) static DISPLACE: WgslFile = wgsl!("displace", NORMAL, TYPES);
 /// The module that has it declares the buffers that it reads.
 pub(crate) static DISPLACEMENT_SHARES: WgslFile = wgsl!("displacement_shares", TYPES);

@@ -54,7 +54,7 @@ fn levels(partitioning: Partitioning) -> Vec<u32> {
         Partitioning::FractionalOdd => (1..=63).step_by(2).collect(),
         Partitioning::FractionalEven => (2..=64).step_by(2).collect(),
         Partitioning::Pow2 => vec![1, 2, 4, 8, 16, 32, 64],
-        Partitioning::Integer | Partitioning::Subtriangulation => (1..=64).collect(),
+        Partitioning::Integer | Partitioning::Subtriangulation | Partitioning::Rows => (1..=64).collect(),
     }
 }
 
@@ -284,7 +284,8 @@ pub struct Compared {
 pub fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, searches: bool) -> Compared {
     let own = tessellate(mesh, topology, inputs, None);
     let triangles = own.triangles.len() as u64;
-    let capped = |factors: &HullFactors| factors.inside > 64.0 || factors.edges.iter().any(|&factor| factor > 64.0);
+    let capped =
+        |factors: &HullFactors| factors.inside_is_capped() || factors.edges.iter().any(|&factor| factor > 64.0);
     let error_px = (!hull_factors(mesh, topology, inputs).iter().any(capped)).then(|| {
         let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, triangles);
         measurement.take(&EmittedChunk::whole(&own.vertices, &own.triangles));

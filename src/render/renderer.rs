@@ -80,7 +80,7 @@ impl Renderer {
             draws.push(Draw::Source);
         }
         if settings.overlays.colors == Colors::Excess {
-            scene.tessellator.prepare_own_least()?;
+            scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
         if settings.overlays.normals {
             draws.extend([Occluded::Through, Occluded::InSight].map(Draw::Normals));

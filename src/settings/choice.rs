@@ -195,6 +195,13 @@ impl Choice for Partitioning {
                  4, where this is level of detail n - 1). Direct3D doesn't have it. All edges have the same factor, so \
                  that LOD is uniform.",
             ),
+            Self::Rows => (
+                "rows",
+                "Rows",
+                "Rounds factors up to whole numbers and cuts every patch into strips beside one of its edges. LOD by error \
+                 takes about half the triangles that Direct3D's patterns need. Hardware tessellators can't make it; \
+                 compute and mesh shaders can.",
+            ),
         };
         Description::new(name, label, text)
     }

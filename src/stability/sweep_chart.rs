@@ -11,7 +11,9 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use crate::measure::{Sweep, SweepStep};
-use crate::plot::{self, BLUE, BLUISH_GREEN, CHART_RANGE, ChartError, DENSITY, INK, REDDISH_PURPLE, VERMILION};
+use crate::plot::{
+    self, BLUE, BLUISH_GREEN, CHART_RANGE, ChartError, DENSITY, INK, REDDISH_PURPLE, SKY_BLUE, VERMILION,
+};
 use crate::settings::Choice;
 use crate::settings::options::FACTOR_RANGE;
 use crate::tessellate::Partitioning;
@@ -152,6 +154,7 @@ impl CurveStyle {
             Partitioning::FractionalOdd => (BLUISH_GREEN, Shape::Line),
             Partitioning::FractionalEven => (BLACK, Shape::Dashes),
             Partitioning::Subtriangulation => (REDDISH_PURPLE, Shape::Triangles),
+            Partitioning::Rows => (SKY_BLUE, Shape::Discs),
         };
         Self { color, shape }
     }

@@ -4,91 +4,22 @@
 //! The patch consists of an outline of three edge rows, and of rings inside. Rings are numbered inwards from 1; each
 //! has three sides of equal numbers of segments, which are all cut from one row, the inside row. A ring's side `k` ends
 //! on the first point of the next side. If the number of segments inside is even, the last ring is a single point, the
-//! centre. If it is odd, the last ring is a triangle. Subtriangulated patches have another pattern: see
-//! `subtriangulation.rs`.
+//! centre. If it is odd, the last ring is a triangle. Other patterns are in `subtriangulation.rs` and `rows.rs`.
 //!
 //! Source: D3D11.3 Functional Specification, sections 11.7.5 to 11.7.14. Coordinates are 16.16 fixed point.
 
 use super::connectivity::{regular_triangle, transition_before_middle};
+use super::domain_row::{DomainRow, domain_row, row_location};
 use super::factors::{
-    FIXED_HALF, FIXED_ONE, PatchFactors, half_factor, half_segments, inside_segments, odd_parity, patch_is_minimal,
+    FIXED_HALF, FIXED_ONE, PatchFactors, half_segments, inside_segments, odd_parity, patch_has_rows, patch_is_minimal,
     patch_is_subtriangulated, segments,
 };
 use super::rings::{TransitionStep, ring_point, rings_before};
+use super::rows::{row_plan, row_point, row_triangle};
 use super::subtriangulation::{subtriangulation_point, subtriangulation_triangle};
 
 /// Two thirds in 16.16 fixed point, rounded down as in the specification.
 pub(crate) const FIXED_TWO_THIRDS: u32 = 0xaaaa;
-
-/// A row of points, prepared for [`row_location`].
-///
-/// It is a blend of two uniform rows: the one with the whole part of `half_factor` segments in each half, and the one
-/// with one segment more in each half. `fraction` is the weight of the finer row, in 16.16 fixed point. Its new point
-/// grows out of point `split` of each half.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DomainRow {
-    /// Segments in half the row, rounded up.
-    half: u32,
-    /// 1 if the row has an odd number of segments, else 0.
-    odd: u32,
-    fraction: u32,
-    split: u32,
-    /// The lengths of a segment of both uniform rows, in 16.16 fixed point.
-    coarse_step: u32,
-    fine_step: u32,
-}
-
-/// Returns the length of one of `segments` equal segments in 16.16 fixed point: 1 / segments, rounded half up. There
-/// are at most 128 segments.
-///
-/// It is the integer part of an f32 quotient, since GPUs divide f32 numbers many times faster than integers. The 0.5
-/// that is added keeps the quotient further from integers than the 2.5 ULP by which WGSL lets it be wrong.
-fn segment_length(segments: u32) -> u32 {
-    (((2 * FIXED_ONE + segments) as f32 + 0.5) / (2 * segments) as f32) as u32
-}
-
-/// Clears the highest set bit of a number, which must not be zero.
-fn drop_top_bit(value: u32) -> u32 {
-    value ^ (1 << value.ilog2())
-}
-
-/// Returns the point of each half after which the next new point grows. New points come in the order of a breadth-first
-/// bisection.
-fn row_split(whole: u32, odd: u32) -> u32 {
-    let v = whole - odd;
-    if v == 0 { 0 } else { 2 * drop_top_bit(v) + 1 }
-}
-
-/// Prepares the row of a factor's word.
-pub(crate) fn domain_row(word: u32) -> DomainRow {
-    let factor = half_factor(word);
-    let whole = factor >> 16;
-    let odd = odd_parity(word);
-    let fraction = factor & 0xffff;
-    let half = half_segments(word);
-    DomainRow {
-        half,
-        odd,
-        fraction,
-        split: if fraction == 0 { u32::MAX } else { row_split(whole, odd) },
-        coarse_step: segment_length(2 * whole - odd),
-        fine_step: segment_length(2 * half - odd),
-    }
-}
-
-/// Returns where point `p` of a row lies, from 0 to 1 in 16.16 fixed point. Rows are symmetric to the last bit.
-pub(crate) fn row_location(row: DomainRow, p: u32) -> u32 {
-    if row.odd == 0 && p == row.half {
-        return FIXED_HALF;
-    }
-    let mirrored = p >= row.half;
-    let fine = if mirrored { 2 * row.half - row.odd - p } else { p };
-    let coarse = if fine > row.split { fine - 1 } else { fine };
-    let coarse_part = coarse * row.coarse_step * (FIXED_ONE - row.fraction);
-    let fine_part = fine * row.fine_step * row.fraction;
-    let x = (coarse_part + fine_part + FIXED_HALF) >> 16;
-    if mirrored { FIXED_ONE - x } else { x }
-}
 
 /// The pattern in which a patch is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +29,7 @@ enum PatternKind {
     /// One triangle.
     Minimal,
     Subtriangulated,
+    Rows,
 }
 
 /// A patch's factors, prepared for [`domain_point`] and [`domain_triangle`].
@@ -134,6 +66,9 @@ pub fn domain_plan(factors: PatchFactors) -> DomainPlan {
     if patch_is_subtriangulated(factors) {
         return DomainPlan { kind: PatternKind::Subtriangulated, n: segments(factors.inside), ..rings };
     }
+    if patch_has_rows(factors) {
+        return DomainPlan { kind: PatternKind::Rows, ..rings };
+    }
     if patch_is_minimal(factors) { DomainPlan { kind: PatternKind::Minimal, ..rings } } else { rings }
 }
 
@@ -142,7 +77,13 @@ pub fn domain_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     if plan.kind == PatternKind::Subtriangulated {
         return subtriangulation_point(plan.n, i);
     }
-    if i < plan.outer { outer_point(plan, i) } else { inner_point(plan.row, plan.n, i - plan.outer) }
+    if i < plan.outer {
+        return outer_point(plan, i);
+    }
+    if plan.kind == PatternKind::Rows {
+        return row_point(&row_plan(plan.factors), i - plan.outer);
+    }
+    inner_point(plan.row, plan.n, i - plan.outer)
 }
 
 /// Returns point `i` of the outline, which starts at V == 1 with the edge U == 0. Each edge's last point is the next
@@ -190,6 +131,7 @@ pub fn domain_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     match plan.kind {
         PatternKind::Minimal => return [0, 1, 2],
         PatternKind::Subtriangulated => return subtriangulation_triangle(plan.n, t),
+        PatternKind::Rows => return row_triangle(&row_plan(plan.factors), t),
         PatternKind::Rings => {}
     }
     let transition = plan.outer + 3 * (plan.n - 2);

@@ -2,7 +2,10 @@
 //! from the surface. It uses the functions with which factors are searched for.
 
 use super::control_nets::ControlNets;
-use super::factors::{inside_segments, patch_is_culled, patch_is_minimal, patch_is_subtriangulated, segments};
+use super::factors::{
+    ROW_BASE_STEP, inside_segments, patch_has_rows, patch_is_culled, patch_is_minimal, patch_is_subtriangulated,
+    row_width, segments,
+};
 use super::least_factors::{BEYOND_LAST, Chosen};
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::surface_tolerance;
@@ -106,6 +109,7 @@ impl PatternErrors {
 pub(crate) struct OwnLeast {
     /// The factors of sides 0, 1 and 2.
     pub sides: [f32; 3],
+    /// Of rows their width.
     pub inside: f32,
     pub triangles: u32,
 }
@@ -134,7 +138,7 @@ pub(crate) fn own_least_inputs(inputs: &Inputs) -> Inputs {
 /// Returns an own least with its number of triangles.
 fn own_least(partitioning: Partitioning, Chosen { edges: [u, v, w], inside, .. }: Chosen) -> OwnLeast {
     let triangles = triangle_count(process(partitioning, [u, v, w], inside));
-    OwnLeast { sides: [w, u, v], inside, triangles }
+    OwnLeast { sides: [w, u, v], inside: inside % ROW_BASE_STEP as f32, triangles }
 }
 
 /// Explains a patch (an index into [`Topology::patches`]) that is emitted with these factors. Without displacement it looks
@@ -248,13 +252,21 @@ fn used_factor(convention: Convention, used: PatchFactors, side: usize) -> f32 {
     if patch_is_culled(used) { 0.0 } else { segments(used.outside[index as usize]) as f32 }
 }
 
+/// Returns into how many segments a patch is cut inside; of rows to how many they widen.
+pub(crate) fn inside_cut(factors: PatchFactors) -> u32 {
+    if patch_has_rows(factors) {
+        return row_width(factors);
+    }
+    if patch_is_minimal(factors) { 1 } else { inside_segments(factors.inside) }
+}
+
 /// Returns how far the triangles of a pattern are from the surface; `None` if it has none.
 fn pattern_errors(seen: &SeenPatch, convention: Convention, factors: PatchFactors) -> Option<PatternErrors> {
     let all = triangle_count(factors);
     if all == 0 {
         return None;
     }
-    if patch_is_minimal(factors) || patch_is_subtriangulated(factors) {
+    if patch_is_minimal(factors) || patch_is_subtriangulated(factors) || patch_has_rows(factors) {
         return Some(PatternErrors { rows: None, inside: largest_error(seen, convention, factors, 0, all) });
     }
     // The rows of the three edges come first, one after another.
@@ -311,9 +323,9 @@ fn finest_bound(seen: &SeenPatch, at: [Vec2; 3]) -> f32 {
     within
 }
 
-/// Returns whether a factor is one that a partitioning has, and not [`BEYOND_LAST`].
+/// Returns whether a factor, or an inside factor of any partitioning, is one that there is, and not [`BEYOND_LAST`].
 pub(crate) fn is_enough(factor: f32) -> bool {
-    factor < BEYOND_LAST
+    factor % (ROW_BASE_STEP as f32) < BEYOND_LAST
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::row_widths::widths_through;
 use crate::names::every;
 
 /// 1.0 in 16.16 fixed point.
@@ -21,6 +22,14 @@ pub(crate) const FACTOR_ODD: u32 = 0x8000_0000;
 pub(crate) const FACTOR_VALUE: u32 = 0x7f_ffff;
 /// The bit of an inside factor's word that marks a subtriangulated patch: see `subtriangulation.rs`.
 pub(crate) const SUBTRIANGULATED: u32 = 0x4000_0000;
+/// The bit of an inside factor's word that marks a patch of rows: see `rows.rs`. The factor is the rows' width, and the two
+/// bits from [`ROW_BASE_SHIFT`] on say which edge is the base.
+pub(crate) const ROWS: u32 = 0x2000_0000;
+pub(crate) const ROW_BASE_SHIFT: u32 = 24;
+
+/// Under rows the inside factor is the width and this times 1, 2 or 3 if the base is the edge U == 0, V == 0 or W == 0. Without
+/// that the factors of the edges choose the base.
+pub(crate) const ROW_BASE_STEP: u32 = 128;
 
 /// Bit patterns of `f32` numbers. Those of positive numbers are in the order of the numbers; those of NaN and of
 /// negative numbers are greater than all of them.
@@ -28,6 +37,8 @@ pub(crate) const BITS_ONE: u32 = 0x3f80_0000;
 pub(crate) const BITS_TWO: u32 = 0x4000_0000;
 pub(crate) const BITS_63: u32 = 0x427c_0000;
 pub(crate) const BITS_64: u32 = 0x4280_0000;
+/// 512, from which on inside factors under rows name no base.
+pub(crate) const BITS_512: u32 = 0x4400_0000;
 pub(crate) const BITS_INFINITY: u32 = 0x7f80_0000;
 /// 1 + 2^-17, the largest edge factor that rounds to 1 in fixed point.
 pub(crate) const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
@@ -50,11 +61,15 @@ pub enum Partitioning {
     /// Not Direct3D's: rounded up to n, and the patch cut into n x n equal triangles (Vlachos et al. 2001, section 2, whose
     /// level of detail is n - 1). One number for all edges, since nothing joins rows of different ones.
     Subtriangulation = 4,
+    /// Not Direct3D's: factors are rounded up to whole numbers, and every patch is cut into rows beside one of its edges: see
+    /// `rows.rs`.
+    Rows = 5,
 }
 
 impl Partitioning {
     /// All values.
-    pub const ALL: [Self; 5] = every![Partitioning: Integer, Pow2, FractionalOdd, FractionalEven, Subtriangulation];
+    pub const ALL: [Self; 6] =
+        every![Partitioning: Integer, Pow2, FractionalOdd, FractionalEven, Subtriangulation, Rows];
     /// Those that Direct3D 11's tessellator has, which give every edge a factor of its own.
     pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 }
@@ -63,7 +78,8 @@ impl Partitioning {
 /// rounded, with bit 31 set if its parity is odd.
 ///
 /// In a culled patch the edges' words are 0, and the inside's word says why (see `cull.rs`): 0 if its own factors cull
-/// it. In a subtriangulated patch all four are the same number, and the inside's word has bit 30 set.
+/// it. In a subtriangulated patch all four are the same number, and the inside's word has bit 30 set. In a patch of rows it
+/// has bit 29 set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchFactors {
@@ -132,6 +148,9 @@ pub(crate) fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) 
         let word = factor_word(partitioning, largest);
         return PatchFactors { outside: [word; 3], inside: word | SUBTRIANGULATED };
     }
+    if partitioning == Partitioning::Rows {
+        return process_rows(clamped.map(|b| factor_word(partitioning, b)), inside.to_bits());
+    }
     // An odd patch with a divided edge needs a ring inside, though it may have collapsed to a point.
     let splits = partitioning == Partitioning::FractionalOdd && largest > BITS_ONE_AND_HALF_STEP;
     let inside_low = if splits { BITS_ONE_AND_STEP } else { low };
@@ -140,6 +159,35 @@ pub(crate) fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) 
         outside: clamped.map(|b| factor_word(partitioning, b)),
         inside: inside_word(partitioning, inside_bits.clamp(inside_low, high)),
     }
+}
+
+/// Returns what becomes of the words of a patch's edges and its inside factor under rows. The smallest width is 1, and the
+/// largest 64.
+fn process_rows(outside: [u32; 3], inside: u32) -> PatchFactors {
+    let positive = if positive_bits(inside) { inside.max(BITS_ONE) } else { BITS_ONE };
+    let rounded = factor_word(Partitioning::Rows, positive.min(BITS_512)) >> 16 & 0x7fff;
+    let (mut base, mut width) = (rounded / ROW_BASE_STEP, (rounded % ROW_BASE_STEP).clamp(1, 64));
+    if base > 3 {
+        (base, width) = (0, 64);
+    }
+    let base = if base == 0 { base_by_edges(outside) } else { base - 1 };
+    PatchFactors { outside, inside: width << 16 | width << 31 | ROWS | base << ROW_BASE_SHIFT }
+}
+
+/// Returns which edge is the base of rows if nothing else says so: the one whose neighbours have the most similar numbers of
+/// segments, so that the fewest rows share points; of several the one with the fewest segments, or the first.
+pub(crate) fn base_by_edges(outside: [u32; 3]) -> u32 {
+    let [u, v, w] = outside.map(segments);
+    // Numbers of segments are at most 64.
+    let unlike = [v.abs_diff(w) * 128 + u, w.abs_diff(u) * 128 + v, u.abs_diff(v) * 128 + w];
+    let least = unlike[0].min(unlike[1]).min(unlike[2]);
+    u32::from(unlike[0] != least) + u32::from(unlike[0] != least && unlike[1] != least)
+}
+
+/// Returns the factor of the edge that [`base_by_edges`] makes the base: the rows then widen to what the base has.
+pub(crate) fn base_factor(edges: [f32; 3]) -> f32 {
+    let factors = process(Partitioning::Rows, edges, 1.0);
+    if patch_is_culled(factors) { edges[0] } else { edges[row_base(factors) as usize] }
 }
 
 /// Returns the factor that a shader compiler passes to the tessellator under pow2: clamped to 1 to 64, then rounded up
@@ -162,6 +210,44 @@ pub(crate) fn patch_is_culled(factors: PatchFactors) -> bool {
 /// Returns whether the patch is cut by uniform subtriangulation instead of Direct3D's tessellator.
 pub(crate) fn patch_is_subtriangulated(factors: PatchFactors) -> bool {
     !patch_is_culled(factors) && factors.inside & SUBTRIANGULATED != 0
+}
+
+/// Returns whether the patch is cut into rows.
+pub(crate) fn patch_has_rows(factors: PatchFactors) -> bool {
+    !patch_is_culled(factors) && factors.inside & ROWS != 0
+}
+
+/// Returns which edge is the base of a patch's rows: 0, 1 or 2 for U == 0, V == 0 or W == 0.
+pub(crate) fn row_base(factors: PatchFactors) -> u32 {
+    factors.inside >> ROW_BASE_SHIFT & 3
+}
+
+/// Returns the number of rows of a patch: the larger number of segments of the edges beside the base.
+pub(crate) fn row_count(factors: PatchFactors) -> u32 {
+    let [u, v, w] = factors.outside.map(segments);
+    match row_base(factors) {
+        0 => v.max(w),
+        1 => w.max(u),
+        _ => u.max(v),
+    }
+}
+
+/// Returns the number of segments to which a patch's rows widen.
+pub(crate) fn row_width(factors: PatchFactors) -> u32 {
+    (factors.inside & FACTOR_VALUE) >> 16
+}
+
+/// Returns the inside factor in 16.16 fixed point, which says how far apart points inside are; of rows the lesser of their number
+/// and their width.
+pub(crate) fn inside_value(factors: PatchFactors) -> u32 {
+    let width = factors.inside & FACTOR_VALUE;
+    if patch_has_rows(factors) { width.min(row_count(factors) << 16) } else { width }
+}
+
+/// Returns the number of points inside a patch of rows: each row between the apex and the base has one less than segments.
+fn row_points(factors: PatchFactors) -> u32 {
+    let last = row_count(factors) - 1;
+    widths_through(last + 1, row_width(factors), last) - last
 }
 
 /// Returns whether all factors are 1, so that the patch is one triangle.
@@ -222,6 +308,9 @@ pub fn point_count(factors: PatchFactors) -> u32 {
         let n = segments(factors.inside);
         return ((n + 1) * (n + 2)) >> 1;
     }
+    if patch_has_rows(factors) {
+        return outer_count(factors) + row_points(factors);
+    }
     // With R = (n - 1) / 2 rounded down, the rings inside have 3 R^2 points if n is odd, and 3 R (R + 1) + 1 if it is even.
     let n = inside_segments(factors.inside);
     outer_count(factors) + ((3 * (n - 1) * (n - 1) + 1) >> 2)
@@ -238,6 +327,10 @@ pub fn triangle_count(factors: PatchFactors) -> u32 {
     if patch_is_subtriangulated(factors) {
         let n = segments(factors.inside);
         return n * n;
+    }
+    if patch_has_rows(factors) {
+        // By Euler's formula.
+        return outer_count(factors) + 2 * row_points(factors) - 2;
     }
     let inner = inside_segments(factors.inside) - 2;
     outer_count(factors) + 3 * inner + ((3 * inner * inner) >> 1)

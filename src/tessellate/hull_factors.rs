@@ -2,6 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::factors::ROW_BASE_STEP;
 use super::{Convention, Partitioning, PatchFactors, factor_side, patch_is_culled, process, round_pow2};
 
 /// A patch's tessellation factors before the tessellator clamps and rounds them.
@@ -10,7 +11,8 @@ use super::{Convention, Partitioning, PatchFactors, factor_side, patch_is_culled
 pub struct HullFactors {
     /// TessFactor[0..2]. Which side each one is for depends on the [`Convention`].
     pub edges: [f32; 3],
-    /// InsideTessFactor.
+    /// InsideTessFactor. Under rows it is the width, and [`ROW_BASE_STEP`] times 1, 2 or 3 more if the base is the edge of
+    /// factor 0, 1 or 2.
     pub inside: f32,
 }
 
@@ -39,9 +41,25 @@ impl HullFactors {
         self.culls() || self.edges.into_iter().all(|factor| factor == self.inside)
     }
 
+    /// Returns whether LOD by error found no inside factor that is enough.
+    pub fn inside_is_capped(self) -> bool {
+        self.inside % ROW_BASE_STEP as f32 > 64.0
+    }
+
     /// Returns whether the tessellator culls the patch: the factor of an edge isn't greater than zero.
     pub fn culls(self) -> bool {
         patch_is_culled(self.process(Partitioning::Integer))
+    }
+}
+
+/// Returns an inside factor under rows whose base is an edge in the order of a convention, for one whose base is the edge
+/// U == 0, V == 0 or W == 0 as LOD takes them: each is the edge opposite corner 0, 1 or 2.
+pub(crate) fn inside_of_base(convention: Convention, inside: f32) -> f32 {
+    let base = (inside / ROW_BASE_STEP as f32) as u32;
+    let side = base % 3;
+    match (0..3).find(|&i| factor_side(convention, i) == side) {
+        Some(written) if base > 0 => inside + (ROW_BASE_STEP * (written + 1)) as f32 - (ROW_BASE_STEP * base) as f32,
+        _ => inside,
     }
 }
 

@@ -13,8 +13,8 @@ use glam::{Vec2, Vec3};
 
 use super::domain::{DomainPlan, domain_plan, domain_point, domain_triangle};
 use super::factors::{
-    FIXED_ONE, Partitioning, PatchFactors, inside_segments, patch_is_minimal, process, round_pow2, segments,
-    triangle_count,
+    FIXED_ONE, Partitioning, PatchFactors, inside_segments, patch_has_rows, patch_is_minimal, process, round_pow2,
+    segments, triangle_count,
 };
 use super::lod::LodView;
 use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, near_depth, piece_error};
@@ -29,7 +29,7 @@ pub(crate) const BEYOND_LAST: f32 = 64.5;
 /// a power of two, or an odd or even number.
 pub(super) fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
     match partitioning {
-        Partitioning::Integer | Partitioning::Subtriangulation => least.ceil(),
+        Partitioning::Integer | Partitioning::Subtriangulation | Partitioning::Rows => least.ceil(),
         Partitioning::Pow2 => round_pow2(least),
         Partitioning::FractionalOdd => 2.0 * (0.5 * (least - 1.0)).ceil() + 1.0,
         Partitioning::FractionalEven => 2.0 * (0.5 * least).ceil(),
@@ -121,7 +121,7 @@ fn triangle_error_at(patch: &SeenPatch, tolerance: f32, plan: &DomainPlan, t: u3
 
 /// Returns whether one triangle is within the tolerance in place of the patch, with these least factors of its edges and of
 /// its inside.
-fn single_suffices(
+pub(super) fn single_suffices(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
@@ -140,15 +140,18 @@ pub(crate) const TOGETHER: u32 = 8;
 pub(crate) const SPREAD: u32 = 1009;
 
 /// Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
-/// W == 0, and its inner triangles, which lie along no edge.
+/// W == 0, and its inner triangles, which lie along no edge. Of rows all are counted as inner ones.
 fn part_counts(factors: PatchFactors) -> [u32; 4] {
+    if patch_has_rows(factors) {
+        return [0, 0, 0, triangle_count(factors)];
+    }
     let [u, v, w] = factors.outside.map(|word| segments(word) + inside_segments(factors.inside) - 2);
     [u, v, w, triangle_count(factors) - u - v - w]
 }
 
 /// Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. [`TOGETHER`] triangles are looked at
 /// in one turn, spread over all parts. That ends early with the first turn after which no part is within the tolerance.
-fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted: [bool; 4]) -> [f32; 4] {
+pub(super) fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFactors, wanted: [bool; 4]) -> [f32; 4] {
     let plan = domain_plan(factors);
     let all = part_counts(factors);
     let starts: [u32; 4] = from_fn(|part| all[..part].iter().sum());

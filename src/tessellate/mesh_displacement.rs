@@ -8,12 +8,13 @@ use super::displace::{
     Displacement, direction_slopes, height_at, height_slopes, raised_normal, segment_level, texel_length, uv_gradients,
 };
 use super::displacement_factor::{displacement_factor, edge_bounds};
+use super::factors::inside_value;
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
 use super::surface::{UNIT, linear_uv, outline_place, patch_tangents};
 use super::texel_lengths::{Maps, TexelLength, map_number, texel_lengths};
 use super::vertex::Vertex;
-use super::{Convention, FACTOR_VALUE, FIXED_ONE, HullFactors, PatchFactors, factor_side};
+use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
 use crate::mesh::{Dominance, HeightMap, Heights, Mesh, Topology};
 
 /// Returns the heights that displace a mesh with these inputs, if any.
@@ -213,7 +214,7 @@ impl<'a> MeshDisplacement<'a> {
     /// Displaces a vertex of a patch with these factors.
     pub(super) fn displaced(&self, nets: &ControlNets, factors: PatchFactors, vertex: Vertex) -> Vertex {
         let (patch, [u, v]) = (vertex.patch(), vertex.domain());
-        let segments = (factors.inside & FACTOR_VALUE) as f32 * UNIT;
+        let segments = inside_value(factors) as f32 * UNIT;
         let (position, normal) = (Vec3::from(vertex.position), unpack_normal(vertex.normal));
         let (own, shared) = self.lookups(patch, u, v, segments);
         let lookup = if self.mode == Displacement::PerPatch { own } else { shared };

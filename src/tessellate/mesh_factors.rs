@@ -4,11 +4,14 @@
 use glam::Vec3;
 
 use super::control_nets::ControlNets;
+use super::factors::base_factor;
 use super::flat_patch::{line_error, normals_agree, plane_error};
+use super::hull_factors::inside_of_base;
 use super::least_factors::{
-    Chosen, ROUNDS, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor, own_least_factors,
-    uniform_suffices, whole_segments,
+    BEYOND_LAST, Chosen, ROUNDS, asked_factors, asks_again, last_factor, least_edge_factor, least_inside_factor,
+    own_least_factors, uniform_suffices, whole_segments,
 };
+use super::least_rows::{asked_rows, own_least_rows, rows_ask_again, rows_beside};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
@@ -107,13 +110,17 @@ impl ControlNets<'_> {
                     continue;
                 }
                 let inside = self.inside_factor(inputs, displacement, patch, edges, chosen.inner);
-                let asks = surface != Surface::Flat && round < ROUNDS && asks_again(chosen.inside, inside);
+                let again = match partitioning {
+                    Partitioning::Rows => rows_ask_again(chosen, edges, inside),
+                    _ => asks_again(chosen.inside, inside),
+                };
+                let asks = surface != Surface::Flat && round < ROUNDS && again;
                 *chosen = Chosen { edges, inside, ..*chosen };
                 if asks {
                     let seen = self.seen_patch(inputs, displacement, patch);
                     let own = self.asked_by_patch(inputs, displacement, patch, &seen, edges, chosen.inner);
                     ask(patch, own.edges, &mut asked);
-                    if own.inside <= 64.0 {
+                    if own.inside != BEYOND_LAST {
                         *chosen = own;
                     }
                 }
@@ -210,7 +217,11 @@ impl ControlNets<'_> {
         if surface == Surface::Flat {
             return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
         }
-        asked_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside, inner)
+        let tolerance = surface_tolerance(inputs, displacement);
+        match partitioning {
+            Partitioning::Rows => asked_rows(seen, tolerance, least, inside),
+            _ => asked_factors(seen, tolerance, partitioning, least, inside, inner),
+        }
     }
 
     /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its *own least*. `least`
@@ -228,7 +239,11 @@ impl ControlNets<'_> {
         if surface == Surface::Flat {
             return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner: 0.0 };
         }
-        own_least_factors(seen, surface_tolerance(inputs, displacement), partitioning, least, inside)
+        let tolerance = surface_tolerance(inputs, displacement);
+        match partitioning {
+            Partitioning::Rows => own_least_rows(seen, tolerance, least, inside),
+            _ => own_least_factors(seen, tolerance, partitioning, least, inside),
+        }
     }
 
     /// Returns whether nothing on a patch depends on where its points slide.
@@ -300,16 +315,26 @@ impl ControlNets<'_> {
             return heights;
         }
         let seen = self.seen_patch(inputs, displacement, patch);
-        least_inside_factor(&seen, surface_tolerance(inputs, displacement), partitioning, edges, (heights, inner))
+        let tolerance = surface_tolerance(inputs, displacement);
+        match partitioning {
+            Partitioning::Rows => rows_beside(&seen, tolerance, edges, heights),
+            _ => least_inside_factor(&seen, tolerance, partitioning, edges, (heights, inner)),
+        }
     }
 
     /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
-    /// convention. The inside factor is the largest of the three, or that of LOD by error.
+    /// convention. The inside factor is the largest of the three, or that of LOD by error. Under rows it is that of the base.
     pub(super) fn hull_factors(&self, inputs: &Inputs, factors: &MeshFactors, patch: u32) -> HullFactors {
         let sides = [0, 1, 2].map(|side| factors.edges[self.patch_factor(patch, side) as usize]);
-        let inside = factors.insides.get(patch as usize).copied();
-        let largest = sides[0].max(sides[1]).max(sides[2]);
-        HullFactors::of_sides(inputs.tessellation.convention, sides, inside.unwrap_or(largest))
+        let Tessellation { convention, partitioning, .. } = inputs.tessellation;
+        let written = HullFactors::of_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
+        let found = factors.insides.get(patch as usize).copied();
+        let inside = match (partitioning, found) {
+            (Partitioning::Rows, Some(inside)) => inside_of_base(convention, inside),
+            (Partitioning::Rows, None) => base_factor(written.edges),
+            (_, found) => found.unwrap_or(written.inside),
+        };
+        HullFactors { inside, ..written }
     }
 }
 

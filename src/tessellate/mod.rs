@@ -19,12 +19,14 @@ mod deform;
 mod displace;
 mod displacement_factor;
 pub(crate) mod domain;
+mod domain_row;
 mod explained_patch;
 pub(crate) mod factors;
 mod flat_patch;
 pub(crate) mod hull_factors;
 mod inputs;
 mod least_factors;
+mod least_rows;
 mod limit_surface;
 mod lod;
 mod mesh_displacement;
@@ -35,6 +37,8 @@ mod octahedral_normal;
 mod piece_error;
 mod posed_mesh;
 mod rings;
+mod row_widths;
+mod rows;
 mod solid;
 mod subtriangulation;
 mod surface;
@@ -70,7 +74,7 @@ pub(crate) use domain::{domain_plan, domain_point, domain_triangle};
 #[cfg(test)]
 pub(crate) use explained_patch::own_least_triangles;
 pub(crate) use explained_patch::{
-    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, is_enough, own_least_inputs,
+    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, inside_cut, is_enough, own_least_inputs,
 };
 #[cfg(test)]
 pub(crate) use factors::FACTOR_ODD;
@@ -103,7 +107,7 @@ pub(crate) use vertex::pack_key;
 /// The constants of the mathematics that the shaders have too, for the test that compares them.
 #[cfg(test)]
 pub(crate) mod shared_constants {
-    pub(crate) use super::connectivity_table::{PATTERN_HALVES, PATTERN_STEPS};
+    pub(crate) use super::connectivity_table::{MOST_SEGMENTS, PATTERN_HALVES, PATTERN_STEPS};
     pub(crate) use super::control_points::PARALLEL;
     pub(crate) use super::coverage::ROW_SAMPLES;
     pub(crate) use super::cull::{
@@ -112,8 +116,8 @@ pub(crate) mod shared_constants {
     pub(crate) use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub(crate) use super::domain::FIXED_TWO_THIRDS;
     pub(crate) use super::factors::{
-        BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, FACTOR_ODD,
-        FACTOR_VALUE, FIXED_HALF, FIXED_ONE, SUBTRIANGULATED,
+        BITS_63, BITS_64, BITS_512, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,
+        FACTOR_ODD, FACTOR_VALUE, FIXED_HALF, FIXED_ONE, ROW_BASE_SHIFT, ROW_BASE_STEP, ROWS, SUBTRIANGULATED,
     };
     pub(crate) use super::flat_patch::{AGREEING, TWO_POINTS};
     pub(crate) use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, SPREAD, TOGETHER};

@@ -115,6 +115,33 @@ fn second_derivatives(view: &LodView, scale: f32, net: &ControlNet, i: usize) ->
     [clip_difference(view, aa * scale), clip_difference(view, ab * scale), clip_difference(view, bb * scale)]
 }
 
+/// A sixth of a patch's second derivatives at a place, along two directions a and b of the domain: on screen, in px.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SecondForms {
+    pub aa: Vec2,
+    pub ab: Vec2,
+    pub bb: Vec2,
+}
+
+/// Returns a difference on screen, in px, as an eye sees it that looks at a point in clip space.
+fn seen_at(at: Vec3, difference: Vec3) -> Vec2 {
+    (difference.truncate() - (at.truncate() / at.z) * difference.z) / at.z
+}
+
+/// Returns the second derivatives at a corner, as an eye sees them that looks at it; zeros if it isn't before the near plane.
+pub(super) fn second_forms(patch: &SeenPatch, corner: usize, a: Vec2, b: Vec2) -> SecondForms {
+    let at = patch.points[corner];
+    if !(at.z > patch.near && at.z > 0.0) {
+        return SecondForms { aa: Vec2::ZERO, ab: Vec2::ZERO, bb: Vec2::ZERO };
+    }
+    let [xx, xy, yy] = patch.second[corner];
+    SecondForms {
+        aa: seen_at(at, xx * (a.x * a.x) + xy * (2.0 * a.x * a.y) + yy * (a.y * a.y)),
+        ab: seen_at(at, xx * (a.x * b.x) + xy * (a.x * b.y + a.y * b.x) + yy * (a.y * b.y)),
+        bb: seen_at(at, xx * (b.x * b.x) + xy * (2.0 * b.x * b.y) + yy * (b.y * b.y)),
+    }
+}
+
 /// Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in
 /// clip space.
 fn turn_of(a: Vec3, b: Vec3, c: Vec3) -> f32 {
@@ -266,7 +293,7 @@ fn seen_depth(depths: [f32; 3], beyond: [Vec4; 3]) -> f32 {
 /// The error of a quadratic function is half the sum of its second derivatives along the sides, each multiplied by the
 /// weights of the side's ends. Its maximum is 3 times the squared radius of the smallest circle around a triangle whose
 /// squared sides are the second differences.
-fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
+pub(super) fn triangle_error(a: f32, b: f32, c: f32) -> f32 {
     let most = a.max(b).max(c);
     let least = a.min(b).min(c);
     let middle = a.min(b).max(a.max(b).min(c));

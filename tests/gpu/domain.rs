@@ -123,8 +123,11 @@ fn read(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
 fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
     let source = [
+        include_str!("../../shaders/row_widths.wgsl"),
         include_str!("../../shaders/factors.wgsl"),
+        include_str!("../../shaders/domain_row.wgsl"),
         include_str!("../../shaders/rings.wgsl"),
+        include_str!("../../shaders/rows.wgsl"),
         include_str!("../../shaders/domain.wgsl"),
         include_str!("../../shaders/connectivity.wgsl"),
         include_str!("../../shaders/subtriangulation.wgsl"),
@@ -242,6 +245,13 @@ fn all_cases() -> Vec<Factors> {
             add([n, 65.0 - n, 1.0], 33.0 - n / 2.0);
             add([1.0, n, 64.0], 1.0);
             add([64.0, 1.0, 17.3], n);
+        }
+    }
+    // Rows beside every edge, as wide as LOD by error may find.
+    for (n, base) in (1..=64).flat_map(|n| [1, 2, 3].map(|base| (n, base))) {
+        let width = (128 * base + 1 + n * 37 % 64) as f32;
+        for edges in [[n, 65 - n, 7], [9, n, 64], [n, 1, n]] {
+            cases.push(Factors { partitioning: Partitioning::Rows, edges: edges.map(|n| n as f32), inside: width });
         }
     }
     cases

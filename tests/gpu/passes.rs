@@ -201,7 +201,7 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
             let low = match partitioning {
                 Partitioning::FractionalOdd => factor < 2.0,
                 Partitioning::FractionalEven => false,
-                Partitioning::Integer | Partitioning::Pow2 | Partitioning::Subtriangulation => factor == 1.0,
+                _ => factor == 1.0,
             };
             assert_eq!(on_gpu.patches_low, if low { 256 } else { 0 }, "{what}");
             let mut sizes = Sizes::new(view);
@@ -242,26 +242,26 @@ fn every_shared_point_has_the_same_bits_from_all_sides() {
 }
 
 #[test]
-fn subtriangulation_is_watertight_at_every_factor() {
+fn equal_triangles_are_watertight_at_every_factor() {
     for shape in Shape::ALL {
         let (loaded, mut scene) = scene(shape);
-        for n in 1..=64 {
-            let settings = Settings::from(Tessellation {
-                partitioning: Partitioning::Subtriangulation,
-                factor: n as f32,
-                ..Tessellation::default()
-            });
+        let partitionings = [Partitioning::Subtriangulation, Partitioning::Rows];
+        for (n, partitioning) in (1..=64).flat_map(|n| partitionings.map(|partitioning| (n, partitioning))) {
+            let settings = Settings::from(Tessellation { partitioning, factor: n as f32, ..Tessellation::default() });
             engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
             let patches = loaded.topology.patches.len() as u64;
             assert_eq!(
                 scene.tessellator.totals(),
                 (patches * ((n + 1) * (n + 2) / 2), patches * n * n),
-                "{shape:?} {n}"
+                "{shape:?} {partitioning:?} {n}"
             );
             let cracks = engine().measure(&mut scene).expect("a readback").cracks;
-            assert_eq!(cracks.different_bits + cracks.different_factors, 0, "{shape:?} {n}");
+            assert_eq!(cracks.different_bits + cracks.different_factors, 0, "{shape:?} {partitioning:?} {n}");
             let inner = loaded.topology.edges.iter().filter(|edge| edge.kind != EdgeKind::Boundary).count() as u64;
-            assert!(cracks.edge_points >= inner * (n + 1), "{shape:?} {n}: every point of every inner edge");
+            assert!(
+                cracks.edge_points >= inner * (n + 1),
+                "{shape:?} {partitioning:?} {n}: every point of every inner edge"
+            );
         }
     }
 }

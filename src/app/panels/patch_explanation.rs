@@ -6,8 +6,9 @@ use egui::Ui;
 use crate::app::patch_names::ends_text;
 use crate::app::widgets::{dense, title};
 use crate::mesh::Topology;
-use crate::tessellate::factors::{inside_segments, patch_is_minimal};
-use crate::tessellate::{DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, is_enough, triangle_count};
+use crate::tessellate::{
+    DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, inside_cut, is_enough, triangle_count,
+};
 
 /// An explanation, and the patch that it is about.
 pub(super) struct ShownExplanation<'a> {
@@ -118,8 +119,7 @@ impl ShownExplanation<'_> {
         };
         let cut = match self.factors.filter(|_| errors.is_some()) {
             None => UNKNOWN.to_owned(),
-            Some(factors) if patch_is_minimal(factors) => "1".to_owned(),
-            Some(factors) => inside_segments(factors.inside).to_string(),
+            Some(factors) => inside_cut(factors).to_string(),
         };
         let px = errors.map(|errors| errors.inside);
         let seen = px.map_or_else(|| UNKNOWN.to_owned(), px_text);

@@ -16,10 +16,10 @@ use crate::measure::EdgeSide;
 use crate::mesh::{Mesh, Topology, adjacency};
 use crate::render::PickedTriangle;
 use crate::render::layout::FACTOR_COLORS;
-use crate::tessellate::factors::{inside_segments, patch_is_culled, patch_is_minimal};
+use crate::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count};
 use crate::tessellate::{
     Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh, Vertex, domain_plan,
-    domain_side, domain_triangle, factor_side, point_count, segments, triangle_count, weight_corner,
+    domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
 };
 
 /// What was clicked in the section.
@@ -166,11 +166,18 @@ impl SelectedPatch<'_> {
         let asked = match self.lod {
             // LOD by error asks for a whole number and doesn't keep it, so the used factor is shown.
             Lod::Error => self.factors.map(|factors| used(factors.inside) as f32),
+            _ if self.factors.is_some_and(patch_has_rows) => self.factors.and_then(|f| self.asked(row_base(f))),
             _ => (0..3).map(|i| self.asked(i)).reduce(|a, b| Some(a?.max(b?))).flatten(),
         };
-        let cut = |factors| if patch_is_minimal(factors) { 1 } else { inside_segments(factors.inside) };
-        let numbers = self.factor_numbers(asked, self.factors.map(|f| f.inside), self.factors.map(cut));
-        factor_row(ui, None, &format!("{:<8}{numbers}", "inside"), false).on_hover_text("InsideTessFactor");
+        let numbers = self.factor_numbers(asked, self.factors.map(|f| f.inside), self.factors.map(inside_cut));
+        let (name, hover) = match self.factors.filter(|factors| patch_has_rows(*factors)) {
+            Some(factors) => {
+                let base = row_base(factors);
+                ("rows", format!("{} rows beside edge [{base}], widening to so many segments", row_count(factors)))
+            }
+            None => ("inside", "InsideTessFactor".to_owned()),
+        };
+        factor_row(ui, None, &format!("{name:<8}{numbers}"), false).on_hover_text(hover);
         for text in (0..3).filter_map(|i| mistake(self.convention, i)) {
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
         }

@@ -11,7 +11,7 @@ use crate::gpu::readback::Readback;
 use crate::gpu::recorder::{RecordPasses, Recorder};
 use crate::gpu::search_passes::Each;
 use crate::gpu::slab::{SCAN_BLOCK, SlabPasses};
-use crate::tessellate::{Displacement, Lod, Tessellation, own_least_inputs};
+use crate::tessellate::{Displacement, Lod, Partitioning, Tessellation, own_least_inputs};
 
 impl Tessellator {
     /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
@@ -68,7 +68,7 @@ impl Tessellator {
         passes.centers(&on)?;
         passes.edge_factors(&on)?;
         if tessellation.used_lod() == Lod::Error {
-            passes.searches.steps(&on)?;
+            passes.searches.steps(&on, tessellation.partitioning == Partitioning::Rows)?;
         }
         if let Some((relief, images)) = self.buffers.relief.as_ref().zip(self.images.as_ref()) {
             passes.directions(&on, relief)?;
@@ -110,8 +110,8 @@ impl Tessellator {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub fn prepare_own_least(&self) -> Result<(), GpuError> {
-        own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count)
+    pub fn prepare_own_least(&self, partitioning: Partitioning) -> Result<(), GpuError> {
+        own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning == Partitioning::Rows)
     }
 
     /// What passes over the mesh and its slabs are bound to.
@@ -151,7 +151,11 @@ impl Tessellator {
             let by_error = self.params.lod == Lod::Error as u32;
             let by_heights = by_error && self.displacing_images().is_some();
             let heights_inside = if by_heights { Some(passes.heights_inside(&on)?) } else { None };
-            let asked = if by_error { Some(passes.searches.steps(&on)?) } else { None };
+            let asked = if by_error {
+                Some(passes.searches.steps(&on, self.params.partitioning == Partitioning::Rows as u32)?)
+            } else {
+                None
+            };
             recorder.compute("factors", |pass| {
                 edge_factors.dispatch(pass, grid(self.buffers.factor_count));
                 if let Some(heights_inside) = heights_inside {

@@ -18,17 +18,21 @@ use crate::render::layout::{
 use crate::render::scale::Scale;
 use crate::settings::{Colors, Overlays};
 use crate::tessellate::shared_constants::{
-    AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP,
-    BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD,
-    FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, NOT_CULLED, OUT_OF_VIEW, PARALLEL,
-    PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_REACH, ROW_SAMPLES, SPREAD,
-    SUBTRIANGULATED, SURFACE_SHARE, TOGETHER, TURN_SHARE, TWO_POINTS, UNIT,
+    AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_512, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
+    BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
+    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, MOST_SEGMENTS, NOT_CULLED,
+    OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT,
+    ROW_BASE_STEP, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER, TURN_SHARE,
+    TWO_POINTS, UNIT,
 };
 use crate::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
-    (&["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED"], "in Rust, an enum without numbers"),
+    (
+        &["PATTERN_RINGS", "PATTERN_MINIMAL", "PATTERN_SUBTRIANGULATED", "PATTERN_ROWS"],
+        "in Rust, an enum without numbers",
+    ),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
     (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass"),
@@ -147,6 +151,11 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("FACTOR_ODD", number(FACTOR_ODD)),
         ("FACTOR_VALUE", number(FACTOR_VALUE)),
         ("SUBTRIANGULATED", number(SUBTRIANGULATED)),
+        ("ROWS", number(ROWS)),
+        ("ROW_BASE_SHIFT", number(ROW_BASE_SHIFT)),
+        ("ROW_BASE_STEP", number(ROW_BASE_STEP)),
+        ("BITS_512", number(BITS_512)),
+        ("MOST_SEGMENTS", number(MOST_SEGMENTS)),
         ("BITS_ONE", number(BITS_ONE)),
         ("BITS_TWO", number(BITS_TWO)),
         ("BITS_63", number(BITS_63)),
@@ -193,6 +202,7 @@ fn of_enums() -> Vec<(&'static str, Expected)> {
         ("PARTITIONING_FRACTIONAL_ODD", number(Partitioning::FractionalOdd as u32)),
         ("PARTITIONING_FRACTIONAL_EVEN", number(Partitioning::FractionalEven as u32)),
         ("PARTITIONING_SUBTRIANGULATION", number(Partitioning::Subtriangulation as u32)),
+        ("PARTITIONING_ROWS", number(Partitioning::Rows as u32)),
         ("SURFACE_FLAT", number(Surface::Flat as u32)),
         ("SURFACE_PN", number(Surface::Pn as u32)),
         ("SURFACE_PN_AEN", number(Surface::PnAen as u32)),

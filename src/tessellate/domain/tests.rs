@@ -3,6 +3,7 @@ use std::collections::HashMap;
 use proptest::prelude::*;
 
 use super::*;
+use crate::tessellate::domain_row::segment_length;
 use crate::tessellate::factors::{
     FACTOR_VALUE, Partitioning, outer_count, patch_is_culled, point_count, process, triangle_count,
 };

@@ -146,7 +146,8 @@ impl Device {
         self.engine.count(scene, &inputs, &mut Timing::Off).expect("room for factors");
         let (_, triangles) = scene.tessellator.totals();
         let written = scene.tessellator.hull_factors().expect("factors");
-        let capped = |factors: &HullFactors| factors.inside > 64.0 || factors.edges.iter().any(|&factor| factor > 64.0);
+        let capped =
+            |factors: &HullFactors| factors.inside_is_capped() || factors.edges.iter().any(|&factor| factor > 64.0);
         let error_px = (!written.iter().any(capped)).then(|| {
             let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
             let measured = self.engine.measure_all(scene, &wanted).expect("room for what is emitted");

@@ -1,0 +1,250 @@
+// LOD by error under rows: how many rows of which width keep a patch within a tolerance, with the fewest triangles. Twin:
+// src/tessellate/least_rows.rs, which explains the search. Teams search as search_group.wgsl says.
+
+// What second derivatives say of rows beside a base.
+struct Expected {
+    // How many rows of which width may keep the tolerance. Neither is rounded.
+    rows: f32,
+    width: f32,
+    // A sixth of the largest second derivatives, in px: across the rows, if there is one, and along the base.
+    across: f32,
+    along: f32,
+}
+
+// Returns what second derivatives say of rows beside base `base`.
+fn expected_rows(seen: ptr<function, SeenPatch>, base: u32, tolerance: f32) -> Expected {
+    // Domain coordinates of the corners. The base leads from the corner after the apex to the one after that.
+    var corners = array<vec2<f32>, 3>(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), vec2<f32>(0.0, 0.0));
+    let start = corners[(base + 1u) % 3u];
+    let end = corners[(base + 2u) % 3u];
+    var forms: array<SecondForms, 3>;
+    var along = 1e-12;
+    var across = 1e-12;
+    for (var corner = 0u; corner < 3u; corner++) {
+        forms[corner] = second_forms(seen, corner, end - start, (start + end) * 0.5 - corners[base]);
+        along = max(along, length(forms[corner].aa));
+        across = max(across, length(forms[corner].bb));
+    }
+    // With this many times as many segments as rows, both parts are alike.
+    let ratio = sqrt(along / across);
+    var error = 0.0;
+    for (var corner = 0u; corner < 3u; corner++) {
+        let segment = forms[corner].aa * (1.0 / (ratio * ratio));
+        let mixed = forms[corner].ab * (1.0 / ratio);
+        let beside = forms[corner].bb + segment * 0.25;
+        error = max(error, triangle_error(length(segment), length(beside + mixed), length(beside - mixed)));
+    }
+    let rows = sqrt(error / tolerance);
+    return Expected(rows, ratio * rows, across, along);
+}
+
+// Rows that are tried: their base, number and width, and the base's number of segments.
+struct Tried {
+    base: u32,
+    rows: f32,
+    width: f32,
+    segments: f32,
+    // 0 while they grow; then which of the three numbers has just been lessened: of rows, their width, or the base's.
+    lessened: u32,
+}
+
+// What a search looks for.
+struct Sought {
+    // The least factors of the edges U == 0, V == 0 and W == 0.
+    least: vec3<f32>,
+    // The least number of rows and of segments of a row.
+    inside: f32,
+    // Whether the edges have these factors, so that only base and width are chosen.
+    is_given: bool,
+    // As how many triangles a segment of an edge counts.
+    segment: f32,
+}
+
+// Returns the least number of rows beside a base.
+fn least_rows(sought: Sought, base: u32) -> f32 {
+    let beside = max(sought.least[(base + 1u) % 3u], sought.least[(base + 2u) % 3u]);
+    return select(max(beside, sought.inside), beside, sought.is_given);
+}
+
+// Returns the least number of a base's segments with rows of some width.
+fn least_segments(sought: Sought, base: u32, width: f32) -> f32 {
+    return select(max(sought.least[base], width), sought.least[base], sought.is_given);
+}
+
+// Returns an expected number rounded down, or the least one.
+fn expected_at_least(number: f32, least: f32) -> f32 {
+    return select(least, floor(min(number, 64.0)), number > least);
+}
+
+// Returns the rows with which the search beside a base starts.
+fn first_rows(sought: Sought, base: u32, expected: Expected, slides: bool) -> Tried {
+    // Second derivatives bound the error from above, and say nothing of it where points may slide.
+    let share = select(0.8, 0.0, slides);
+    let least = least_rows(sought, base);
+    let rows = select(expected_at_least(share * expected.rows, least), least, sought.is_given);
+    let width = expected_at_least(share * expected.width, sought.inside);
+    return Tried(base, rows, width, least_segments(sought, base, width), 0u);
+}
+
+// Returns about how many triangles rows beside a base will have.
+fn expected_cost(sought: Sought, base: u32, expected: Expected) -> f32 {
+    let rows = max(expected.rows, least_rows(sought, base));
+    let width = max(expected.width, sought.inside);
+    let cost = rows * width + sought.segment * (rows + 0.5 * least_segments(sought, base, width));
+    // NaN comes last.
+    return select(3e38, cost, cost < 3e38);
+}
+
+// Returns the factors of the edges.
+fn edges_of_rows(sought: Sought, tried: Tried) -> vec3<f32> {
+    var edges = vec3<f32>(tried.rows);
+    edges[tried.base] = tried.segments;
+    return select(edges, sought.least, sought.is_given);
+}
+
+// Returns the inside factor that says which rows.
+fn inside_of_rows(tried: Tried) -> f32 {
+    return f32(ROW_BASE_STEP * (tried.base + 1u)) + tried.width;
+}
+
+// Returns rows that may be enough, after some that have this error; more than 64, if none will be.
+fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tolerance: f32) -> Tried {
+    let root = sqrt(error / tolerance);
+    let ratio = select(100.0, root, root < 100.0);
+    let across = expected.across / (tried.rows * tried.rows);
+    let along = expected.along / (tried.width * tried.width);
+    let more_rows = max(floor(0.8 * ratio * tried.rows), tried.rows + 1.0);
+    let more_width = max(floor(0.8 * ratio * tried.width), tried.width + 1.0);
+    var rows = tried.rows;
+    var width = tried.width;
+    if sought.is_given {
+        // There may be too few rows for any width.
+        width = select(more_width, BEYOND_LAST, 0.5 * across > tolerance);
+    } else if ratio > 1.5 {
+        // The part that is much smaller isn't what is missing.
+        rows = select(more_rows, rows, along > 4.0 * across);
+        width = select(more_width, width, across > 4.0 * along);
+    } else if across > along {
+        rows += 1.0;
+    } else {
+        width += 1.0;
+    }
+    return Tried(tried.base, rows, width, least_segments(sought, tried.base, width), 0u);
+}
+
+// Returns rows with fewer triangles than some that are enough, of which the number after `lessened` is one less; with a `lessened`
+// above 3, if there are none.
+fn lesser_rows(sought: Sought, enough: Tried, lessened: u32) -> Tried {
+    let is_free = !sought.is_given;
+    var less = enough;
+    if is_free && lessened < 1u && enough.rows > least_rows(sought, enough.base) {
+        less.rows -= 1.0;
+        less.lessened = 1u;
+    } else if is_free && lessened < 2u && enough.width > sought.inside {
+        // The base has as many segments as rows are wide, unless its edge needs more.
+        less.width -= 1.0;
+        if enough.segments == enough.width {
+            less.segments = least_segments(sought, enough.base, less.width);
+        }
+        less.lessened = 2u;
+    } else if is_free && lessened < 3u && enough.segments > sought.least[enough.base] {
+        less.segments -= 1.0;
+        less.lessened = 3u;
+    } else {
+        less.lessened = 4u;
+    }
+    return less;
+}
+
+// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
+fn cost_of_rows(factors: PatchFactors, segment: f32) -> f32 {
+    let outer = outer_count(factors);
+    return 2.0 * f32(point_count(factors) - outer) + segment * f32(outer);
+}
+
+// Returns the bases from the least expected cost to the largest.
+fn bases_by_cost(costs: vec3<f32>) -> vec3<u32> {
+    let after_first = select(2u, 1u, costs.y <= costs.z);
+    let first = select(after_first, 0u, costs.x <= costs.y && costs.x <= costs.z);
+    let next = (first + 1u) % 3u;
+    let after = (first + 2u) % 3u;
+    return select(vec3<u32>(first, after, next), vec3<u32>(first, next, after), costs[next] <= costs[after]);
+}
+
+// Returns the rows with which a patch is within the tolerance, and has the fewest triangles of those that are tried. If no rows
+// are enough, it returns the least factors and BEYOND_LAST. Not for patches of which one triangle suffices.
+fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -> Chosen {
+    let within = BOUND_SHARE * tolerance;
+    let slides = may_slide(seen, within);
+    var best = Chosen(sought.least, BEYOND_LAST, 0.0);
+    var all_expected: array<Expected, 3>;
+    var costs: vec3<f32>;
+    for (var base = 0u; base < 3u; base++) {
+        all_expected[base] = expected_rows(seen, base, within);
+        costs[base] = expected_cost(sought, base, all_expected[base]);
+    }
+    let order = bases_by_cost(costs);
+    var fewest = 3.4e38;
+    var at = 0u;
+    var tried = first_rows(sought, order.x, all_expected[order.x], slides);
+    var enough = tried;
+    var goes_on = max(max(max(sought.least.x, sought.least.y), sought.least.z), sought.inside) <= 64.0;
+    while any_team(goes_on) {
+        let edges = edges_of_rows(sought, tried);
+        let factors = process(PARTITIONING_ROWS, edges, inside_of_rows(tried));
+        let cost = cost_of_rows(factors, sought.segment);
+        let is_worth = goes_on && tried.rows <= 64.0 && tried.width <= 64.0 && cost < fewest;
+        let errors = part_errors(seen, within, factors, vec4<bool>(is_worth));
+        if !goes_on {
+            continue;
+        }
+        let error = max(max(errors.x, errors.y), max(errors.z, errors.w));
+        let lessened = tried.lessened;
+        if is_worth && error <= within {
+            fewest = cost;
+            enough = tried;
+            best = Chosen(edges, inside_of_rows(tried), 0.0);
+            tried = lesser_rows(sought, enough, lessened);
+        } else if lessened > 0u {
+            tried = lesser_rows(sought, enough, lessened);
+        } else {
+            tried = grown_rows(sought, tried, all_expected[tried.base], error, within);
+        }
+        if (!is_worth && lessened == 0u) || tried.lessened > 3u {
+            at += 1u;
+            goes_on = at < 3u;
+            let base = order[min(at, 2u)];
+            tried = first_rows(sought, base, all_expected[base], slides);
+        }
+    }
+    return best;
+}
+
+// Returns the factors that a patch asks its edges for, and the rows that it would take beside these. See fewest_rows.
+fn asked_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
+    // Every segment of an edge is a triangle's side in this patch and in its neighbour.
+    return fewest_rows(seen, tolerance, Sought(least, inside, false, 2.0));
+}
+
+// Returns the factors with which a patch has the fewest triangles if no neighbour asks for anything. See fewest_rows.
+fn own_least_rows(seen: ptr<function, SeenPatch>, tolerance: f32, least: vec3<f32>, inside: f32) -> Chosen {
+    return fewest_rows(seen, tolerance, Sought(least, inside, false, 1.0));
+}
+
+// Returns the inside factor of the rows with the fewest triangles that keep a patch within a tolerance beside these factors of its
+// edges; BEYOND_LAST if none do. See fewest_rows.
+fn rows_beside(seen: ptr<function, SeenPatch>, tolerance: f32, edges: vec3<f32>, inside: f32) -> f32 {
+    return fewest_rows(seen, tolerance, Sought(edges, inside, true, 1.0)).inside;
+}
+
+// Returns the number of points inside a patch.
+fn points_inside(edges: vec3<f32>, inside: f32) -> f32 {
+    let factors = process(PARTITIONING_ROWS, edges, inside);
+    return f32(point_count(factors) - outer_count(factors));
+}
+
+// Returns whether a patch asks its edges again: beside what other patches asked for, it has many more points inside than with
+// what it has chosen.
+fn rows_ask_again(chosen_edges: vec3<f32>, chosen_inside: f32, edges: vec3<f32>, inside: f32) -> bool {
+    return inside == BEYOND_LAST || points_inside(edges, inside) > 1.1 * points_inside(chosen_edges, chosen_inside) + 2.0;
+}

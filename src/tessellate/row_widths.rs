@@ -1,0 +1,40 @@
+//! The numbers of segments of the rows of `rows.rs`, added up. Twin: `shaders/row_widths.wgsl`.
+
+/// Returns how many segments rows 1 to `row` have together, of `rows` rows that widen evenly to `width` segments: the sum of
+/// ceil(width * i / rows) for i from 1 to `row`. `rows` and `width` are 1 to 64, and `row` is at most `rows`.
+///
+/// A sum of rounded-down fractions counts the points of a lattice below a line. As in Euclid's algorithm, the line's slope
+/// is reduced below 1, and then the axes are exchanged (Graham, Knuth and Patashnik, *Concrete Mathematics*, section 3.5).
+pub(super) fn widths_through(rows: u32, width: u32, row: u32) -> u32 {
+    // The sum of floor((slope * i + shift) / base) for i from 0 to count - 1, of which the first is floor((rows - 1) / rows).
+    let (mut count, mut base, mut slope, mut shift) = (row + 1, rows, width, rows - 1);
+    let mut sum = 0;
+    while count > 0 {
+        sum += count * (count - 1) / 2 * (slope / base) + count * (shift / base);
+        (slope, shift) = (slope % base, shift % base);
+        // The line's height at the end. Below it, columns are counted as rows.
+        let end = slope * count + shift;
+        count = end / base;
+        shift = end % base;
+        (base, slope) = (slope, base);
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sum_is_that_of_all_rows() {
+        for rows in 1..=64 {
+            for width in 1..=64 {
+                let mut sum = 0;
+                for row in 0..=rows {
+                    sum += u32::div_ceil(width * row, rows);
+                    assert_eq!(widths_through(rows, width, row), sum, "row {row} of {rows}, to {width}");
+                }
+            }
+        }
+    }
+}
