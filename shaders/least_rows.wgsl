@@ -44,7 +44,10 @@ struct Tried {
     rows: f32,
     width: f32,
     segments: f32,
-    // 0 while they grow; then which of the three numbers has just been lessened: of rows, their width, or the base's.
+    // How many segments less than rows the first and the second edge have.
+    fewer: vec2<f32>,
+    // 0 while they grow; then which number has just been made one less: of rows, of their segments, of the base's, or of the first
+    // or the second edge's.
     lessened: u32,
 }
 
@@ -83,7 +86,7 @@ fn first_rows(sought: Sought, base: u32, expected: Expected, slides: bool) -> Tr
     let least = least_rows(sought, base);
     let rows = select(expected_at_least(share * expected.rows, least), least, sought.is_given);
     let width = expected_at_least(share * expected.width, sought.inside);
-    return Tried(base, rows, width, least_segments(sought, base, width), 0u);
+    return Tried(base, rows, width, least_segments(sought, base, width), vec2<f32>(0.0), 0u);
 }
 
 // Returns about how many triangles rows beside a base will have.
@@ -97,8 +100,9 @@ fn expected_cost(sought: Sought, base: u32, expected: Expected) -> f32 {
 
 // Returns the factors of the edges.
 fn edges_of_rows(sought: Sought, tried: Tried) -> vec3<f32> {
-    var edges = vec3<f32>(tried.rows);
-    edges[tried.base] = tried.segments;
+    var edges = vec3<f32>(tried.segments);
+    edges[(tried.base + 2u) % 3u] = tried.rows - tried.fewer.x;
+    edges[(tried.base + 1u) % 3u] = tried.rows - tried.fewer.y;
     return select(edges, sought.least, sought.is_given);
 }
 
@@ -129,29 +133,39 @@ fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tole
     } else {
         width += 1.0;
     }
-    return Tried(tried.base, rows, width, least_segments(sought, tried.base, width), 0u);
+    return Tried(tried.base, rows, width, least_segments(sought, tried.base, width), vec2<f32>(0.0), 0u);
 }
 
-// Returns rows with fewer triangles than some that are enough, of which the number after `lessened` is one less; with a `lessened`
-// above 3, if there are none.
+// Returns rows with fewer triangles than some that are enough, of which the first possible number after `lessened` is one less; with a
+// `lessened` above 5, if there are none.
 fn lesser_rows(sought: Sought, enough: Tried, lessened: u32) -> Tried {
-    let is_free = !sought.is_given;
     var less = enough;
-    if is_free && lessened < 1u && enough.rows > least_rows(sought, enough.base) {
+    less.lessened = 6u;
+    if sought.is_given {
+        return less;
+    }
+    let base = enough.base;
+    if lessened < 1u && enough.rows > least_rows(sought, base) {
         less.rows -= 1.0;
         less.lessened = 1u;
-    } else if is_free && lessened < 2u && enough.width > sought.inside {
+    } else if lessened < 2u && enough.width > sought.inside {
         // The base has as many segments as rows are wide, unless its edge needs more.
         less.width -= 1.0;
         if enough.segments == enough.width {
-            less.segments = least_segments(sought, enough.base, less.width);
+            less.segments = least_segments(sought, base, less.width);
         }
         less.lessened = 2u;
-    } else if is_free && lessened < 3u && enough.segments > sought.least[enough.base] {
+    } else if lessened < 3u && enough.segments > sought.least[base] {
         less.segments -= 1.0;
         less.lessened = 3u;
-    } else {
+    } else if lessened < 4u && enough.fewer.y == 0.0
+        && enough.rows - enough.fewer.x > sought.least[(base + 2u) % 3u] {
+        less.fewer.x += 1.0;
         less.lessened = 4u;
+    } else if lessened < 5u && enough.fewer.x == 0.0
+        && enough.rows - enough.fewer.y > sought.least[(base + 1u) % 3u] {
+        less.fewer.y += 1.0;
+        less.lessened = 5u;
     }
     return less;
 }
@@ -204,13 +218,13 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
             fewest = cost;
             enough = tried;
             best = Chosen(edges, inside_of_rows(tried), 0.0);
-            tried = lesser_rows(sought, enough, lessened);
+            tried = lesser_rows(sought, enough, max(lessened, 1u) - 1u);
         } else if lessened > 0u {
             tried = lesser_rows(sought, enough, lessened);
         } else {
             tried = grown_rows(sought, tried, all_expected[tried.base], error, within);
         }
-        if (!is_worth && lessened == 0u) || tried.lessened > 3u {
+        if (!is_worth && lessened == 0u) || tried.lessened > 5u {
             at += 1u;
             goes_on = at < 3u;
             let base = order[min(at, 2u)];

@@ -53,7 +53,10 @@ struct Tried {
     rows: f32,
     width: f32,
     segments: f32,
-    /// 0 while they grow; then which of the three numbers has just been lessened: of rows, their width, or the base's.
+    /// How many segments less than rows the first and the second edge have.
+    fewer: [f32; 2],
+    /// 0 while they grow; then which number has just been made one less: of rows, of their segments, of the base's, or of the
+    /// first or the second edge's.
     lessened: u32,
 }
 
@@ -93,7 +96,7 @@ fn first_rows(sought: &Sought, base: usize, expected: &Expected, slides: bool) -
     let least = least_rows(sought, base);
     let rows = if sought.is_given { least } else { expected_at_least(share * expected.rows, least) };
     let width = expected_at_least(share * expected.width, sought.inside);
-    Tried { base, rows, width, segments: least_segments(sought, base, width), lessened: 0 }
+    Tried { base, rows, width, segments: least_segments(sought, base, width), fewer: [0.0; 2], lessened: 0 }
 }
 
 /// Returns about how many triangles rows beside a base will have.
@@ -110,8 +113,9 @@ fn edges_of_rows(sought: &Sought, tried: &Tried) -> [f32; 3] {
     if sought.is_given {
         return sought.least;
     }
-    let mut edges = [tried.rows; 3];
-    edges[tried.base] = tried.segments;
+    let mut edges = [tried.segments; 3];
+    edges[(tried.base + 2) % 3] = tried.rows - tried.fewer[0];
+    edges[(tried.base + 1) % 3] = tried.rows - tried.fewer[1];
     edges
 }
 
@@ -143,23 +147,31 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
     Tried { rows, width, segments: least_segments(sought, tried.base, width), ..tried }
 }
 
-/// Returns rows with fewer triangles than some that are enough, of which the number after `lessened` is one less; with a
-/// `lessened` above 3, if there are none.
+/// Returns rows with fewer triangles than some that are enough, of which the first possible number after `lessened` is one less;
+/// with a `lessened` above 5, if there are none.
 fn lesser_rows(sought: &Sought, enough: Tried, lessened: u32) -> Tried {
-    let Tried { base, rows, width, segments, .. } = enough;
-    let is_free = !sought.is_given;
-    if is_free && lessened < 1 && rows > least_rows(sought, base) {
+    let Tried { base, rows, width, segments, fewer: [first, second], .. } = enough;
+    if sought.is_given {
+        return Tried { lessened: 6, ..enough };
+    }
+    if lessened < 1 && rows > least_rows(sought, base) {
         return Tried { rows: rows - 1.0, lessened: 1, ..enough };
     }
-    if is_free && lessened < 2 && width > sought.inside {
+    if lessened < 2 && width > sought.inside {
         // The base has as many segments as rows are wide, unless its edge needs more.
         let less = if segments == width { least_segments(sought, base, width - 1.0) } else { segments };
         return Tried { width: width - 1.0, segments: less, lessened: 2, ..enough };
     }
-    if is_free && lessened < 3 && segments > sought.least[base] {
+    if lessened < 3 && segments > sought.least[base] {
         return Tried { segments: segments - 1.0, lessened: 3, ..enough };
     }
-    Tried { lessened: 4, ..enough }
+    if lessened < 4 && second == 0.0 && rows - first > sought.least[(base + 2) % 3] {
+        return Tried { fewer: [first + 1.0, second], lessened: 4, ..enough };
+    }
+    if lessened < 5 && first == 0.0 && rows - second > sought.least[(base + 1) % 3] {
+        return Tried { fewer: [first, second + 1.0], lessened: 5, ..enough };
+    }
+    Tried { lessened: 6, ..enough }
 }
 
 /// Returns the number of triangles of a pattern, if a segment of an edge counts as `segment` triangles.
@@ -213,14 +225,14 @@ fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
         let lessened = tried.lessened;
         if is_worth && error <= within {
             (fewest, enough) = (cost, tried);
-            best = Chosen { edges: edges, inside: inside_of_rows(&tried), inner: 0.0 };
-            tried = lesser_rows(sought, enough, lessened);
+            best = Chosen { edges, inside: inside_of_rows(&tried), inner: 0.0 };
+            tried = lesser_rows(sought, enough, lessened.saturating_sub(1));
         } else if lessened > 0 {
             tried = lesser_rows(sought, enough, lessened);
         } else {
             tried = grown_rows(sought, tried, &all[tried.base], error, within);
         }
-        if !is_worth && lessened == 0 || tried.lessened > 3 {
+        if !is_worth && lessened == 0 || tried.lessened > 5 {
             at += 1;
             goes_on = at < 3;
             let base = order[at.min(2)];

@@ -26,7 +26,7 @@ const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 
 /// Whether anything asks for more segments than there are, so that no promise is made.
 fn is_capped(written: &[HullFactors]) -> bool {
-    written.iter().any(|factors| factors.inside > 64.0 || factors.edges.iter().any(|&factor| factor > 64.0))
+    written.iter().any(|factors| factors.inside_is_capped() || factors.edges.iter().any(|&factor| factor > 64.0))
 }
 
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
@@ -245,6 +245,42 @@ fn a_mesh_of_many_patches_is_searched_to_its_end() {
     let differing = edge_factors(&scene).iter().zip(&here).filter(|(device, here)| device != here).count();
     assert_eq!(differing, 0, "of {} edges", here.len());
     assert!(here.iter().filter(|&&factor| factor > 1.0).count() > 1000, "many patches are searched");
+}
+
+#[test]
+fn rows_on_the_device_are_within_the_tolerance_and_fewer_than_rings() {
+    let (mut closest, mut rows, mut rings) = (0.0f64, 0, 0);
+    for shape in Shape::ALL {
+        let (loaded, mut scene) = scene(shape);
+        for (index, camera) in cameras(&scene).into_iter().enumerate() {
+            let surface = Surface::ALL[1 + (2 * index + shape as usize) % 7];
+            let tolerance = if index % 2 == 0 { 0.5 } else { 2.0 };
+            let with = |partitioning| {
+                by_error(Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() }), tolerance)
+            };
+            let triangles = on_device(&mut scene, &with(Partitioning::Integer), &camera).1.triangles.len();
+            let (inputs, out) = on_device(&mut scene, &with(Partitioning::Rows), &camera);
+            let what = format!("{shape:?} {surface:?}, camera {index}");
+            if is_capped(&scene.tessellator.hull_factors().expect("a readback")) {
+                continue;
+            }
+            let px = deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out);
+            let share = px / (f64::from(tolerance) + rounding_px(&loaded.mesh, &inputs));
+            assert!(share <= 1.0, "{what}: {px} px of {tolerance}");
+            assert!(out.triangles.len() <= triangles, "{what}: {} of {triangles}", out.triangles.len());
+            let here = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+            let differing = here.patch_factors.iter().zip(&out.patch_factors).filter(|(here, there)| here != there);
+            assert_eq!(differing.count(), 0, "{what}: patches whose factors differ from the CPU's");
+            let cracks = engine().measure(&mut scene).expect("a readback").cracks;
+            let torn = if surface.tears() { cracks.different_bits } else { 0 };
+            assert_eq!(cracks.different_bits + cracks.different_factors, torn, "{what}");
+            closest = closest.max(share);
+            rows += out.triangles.len();
+            rings += triangles;
+        }
+    }
+    assert!(closest > 0.9, "some tolerance is nearly used up: {closest}");
+    assert!(rows as f64 <= 0.6 * rings as f64, "{rows} triangles of rows, {rings} of rings");
 }
 
 /// Few similar patches, which together ask for more triangles than one factor for all edges takes. Without that choice not all edges
