@@ -175,7 +175,7 @@ pub(super) fn row_triangle(plan: &RowPlan, t: u32) -> [u32; 3] {
 
 /// Returns the number of segments of a row between the apex and the base: ceil(width * row / rows).
 fn row_segments(plan: &RowPlan, row: u32) -> u32 {
-    (plan.width * row + plan.n - 1) / plan.n
+    (plan.width * row).div_ceil(plan.n)
 }
 
 /// Returns the row of point `i` of those inside the patch, and the point's place in it.
@@ -222,5 +222,7 @@ fn whole_word(segments: u32) -> u32 {
     segments << 16 | segments << 31
 }
 
+#[cfg(test)]
+mod picture;
 #[cfg(test)]
 mod tests;

@@ -109,7 +109,7 @@ impl ShownExplanation<'_> {
                  where its points are within its plane. So all px of it are distances to the nearest point of the surface.",
             ),
             Some(errors) if errors.rows.is_none() => {
-                ("whole", "All triangles of the patch, which has no rows along its edges.")
+                ("whole", "All triangles of the patch: its pattern has no part that belongs to one edge.")
             }
             _ => (
                 "inside",

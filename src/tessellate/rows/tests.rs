@@ -121,6 +121,20 @@ fn very_unequal_numbers_cover_the_domain_once() {
 }
 
 #[test]
+fn the_manuals_table_is_right() {
+    let counts = |[a, b, c]: [u32; 3], width| {
+        let factors = rows([c, b, a], 0, width);
+        [point_count(factors) - a - b - c, triangle_count(factors)]
+    };
+    assert_eq!([counts([1; 3], 1), counts([1, 1, 5], 1), counts([1, 1, 5], 9)], [[0, 1], [0, 5], [0, 5]]);
+    assert_eq!([counts([5, 5, 1], 1), counts([2; 3], 2), counts([2, 2, 6], 6)], [[0, 9], [0, 4], [2, 12]]);
+    assert_eq!(counts([6, 3, 4], 4), [7, 25]);
+    for n in 1..=64 {
+        assert_eq!(counts([n; 3], n), [(n - 1) * n.saturating_sub(2) / 2, n * n]);
+    }
+}
+
+#[test]
 fn every_point_inside_is_found_in_its_row() {
     for (n, width) in (1..=64).flat_map(|n| (1..=64).map(move |width| (n, width))) {
         let plan = row_plan(rows([1, n, n], 0, width));

@@ -1,18 +1,20 @@
 //! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
 //! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; and
-//! `only=NAME`, which measures one mesh alone. With `search=no` no optimum is searched for: then all partitionings of Direct3D
-//! are measured, and what the table tells is whether the tolerance is kept. With `device=gpu` the same is told of what a GPU
+//! `only=NAME`, which measures one mesh alone. Rows are compared with the optimum of integer partitioning. With `search=no` no
+//! optimum is searched for: then all partitionings are measured that LOD by error has, and what the table tells is whether the
+//! tolerance is kept. With `device=gpu` the same is told of what a GPU
 //! emits.
 
 mod meshes;
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use glam::{Vec2, Vec3};
 use pnaen::internals::{
-    ARENA_BYTES, Camera, Compared, Engine, HullFactors, Limits, Measurements, Scene, Shape, Source, Timing,
+    ARENA_BYTES, Camera, Compared, Engine, HullFactors, Limits, Measurements, Optimum, Scene, Shape, Source, Timing,
     compare_with_optimum,
 };
 use pnaen::mesh::{Mesh, Topology};
@@ -121,7 +123,7 @@ fn inputs(mesh: &Mesh, case: &Case) -> Inputs {
 }
 
 fn measure(mesh: &Mesh, topology: &Topology, case: &Case, searches: bool) -> Row {
-    let searches = searches && topology.patches.len() <= MOST_PATCHES;
+    let searches = searches && topology.patches.len() <= MOST_PATCHES && case.partitioning != Partitioning::Rows;
     Row { case: *case, compared: compare_with_optimum(mesh, topology, &inputs(mesh, case), searches) }
 }
 
@@ -157,6 +159,30 @@ impl Device {
     }
 }
 
+/// The partitionings that LOD by error has.
+const BY_ERROR: [Partitioning; 5] = [
+    Partitioning::Integer,
+    Partitioning::Pow2,
+    Partitioning::FractionalOdd,
+    Partitioning::FractionalEven,
+    Partitioning::Rows,
+];
+
+/// Gives cases under rows the optimum of integer partitioning, and LOD by error under it in place of one factor for all edges.
+fn compare_rows_with_integer(rows: &mut [Row]) {
+    let key = |row: &Row| (row.case.mesh, row.case.number, row.case.tolerance.to_bits());
+    let under = |wanted: Partitioning| move |row: &&Row| row.case.partitioning == wanted;
+    let integer: HashMap<_, _> = rows
+        .iter()
+        .filter(under(Partitioning::Integer))
+        .filter_map(|row| Some((key(row), (row.compared.best.clone()?, row.compared.triangles))))
+        .collect();
+    for row in rows.iter_mut().filter(|row| row.case.partitioning == Partitioning::Rows) {
+        row.compared.best =
+            integer.get(&key(row)).cloned().map(|(best, triangles)| Optimum { uniform: Some((0, triangles)), ..best });
+    }
+}
+
 fn geometric_mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value.ln(), count + 1));
     (sum / f64::from(count.max(1))).exp()
@@ -180,7 +206,9 @@ const LISTED: f64 = 1.5;
 
 fn print_worst(meshes: &[(String, Arc<Mesh>)], rows: &[Row]) {
     println!("\nCases above {LISTED} times the optimum, above one factor for all, or capped\n");
-    println!("| mesh | camera | orthographic | partitioning | px | triangles | optimum | one factor for all |");
+    println!(
+        "| mesh | camera | orthographic | partitioning | px | triangles | optimum | one factor for all, or under rows integer |"
+    );
     println!("| --- | ---: | --- | --- | ---: | ---: | ---: | ---: |");
     let is_listed = |row: &&Row| {
         let is_capped = row.compared.error_px.is_none();
@@ -212,8 +240,8 @@ fn main() {
     let on_device = arguments.iter().any(|argument| argument == "device=gpu");
     let searches = !on_device && !arguments.iter().any(|argument| argument == "search=no");
     let partitionings: &[Partitioning] = match searches {
-        true => &[Partitioning::Integer, Partitioning::FractionalOdd],
-        false => &Partitioning::DIRECT3D,
+        true => &[Partitioning::Integer, Partitioning::FractionalOdd, Partitioning::Rows],
+        false => &BY_ERROR,
     };
     let cases = cases(&meshes, cameras_each, partitionings);
     let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
@@ -234,10 +262,15 @@ fn main() {
     });
     let mut rows = rows.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
     rows.sort_by_key(|row| (row.case.mesh, row.case.number));
+    compare_rows_with_integer(&mut rows);
     for &partitioning in partitionings {
         println!("\n{partitioning:?}, {}x{} px\n", VIEWPORT.x, VIEWPORT.y);
+        let more_than = match partitioning {
+            Partitioning::Rows => "integer partitioning",
+            _ => "one factor for all",
+        };
         println!(
-            "| mesh | cases | triangles over the optimum, geometric mean | largest | optimum over its lower bound | cases with more than one factor for all | largest error over the tolerance | capped cases |"
+            "| mesh | cases | triangles over the optimum, geometric mean | largest | optimum over its lower bound | cases with more than {more_than} | largest error over the tolerance | capped cases |"
         );
         println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
         for (index, (name, mesh)) in meshes.iter().enumerate() {
