@@ -4,7 +4,7 @@
 //! Each of the three edges may be the base. The error of a triangle of rows follows from the second derivatives along the base,
 //! divided by the square of the rows' width, and across the rows, divided by the square of their number. So the number and
 //! the width for which both parts are alike give the fewest triangles. They are where the search starts, at somewhat fewer;
-//! what a pattern lacks is then told by its triangles' errors, as [`piece_error`](super::piece_error) bounds them.
+//! what a pattern lacks is then told by its triangles' errors, as `piece_error.rs` bounds them.
 
 use glam::Vec2;
 
