@@ -173,7 +173,7 @@ impl SelectedPatch<'_> {
         let (name, hover) = match self.factors.filter(|factors| patch_has_rows(*factors)) {
             Some(factors) => {
                 let base = row_base(factors);
-                ("rows", format!("{} rows beside edge [{base}], widening to so many segments", row_count(factors)))
+                ("width", format!("{} rows beside edge [{base}] widen to so many segments.", row_count(factors)))
             }
             None => ("inside", "InsideTessFactor".to_owned()),
         };

@@ -1,4 +1,4 @@
-//! The manual's picture of rows, `docs/manual/images/rows.svg`. `PNAEN_UPDATE_PAGES=1` writes it again.
+//! The manual's picture of rows, `docs/manual/rows.svg`. `PNAEN_UPDATE_PAGES=1` writes it again.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -58,7 +58,7 @@ fn the_manuals_picture_shows_the_patterns() {
         2.0 * down,
         patterns.collect::<String>()
     );
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/images/rows.svg");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/rows.svg");
     if std::env::var_os("PNAEN_UPDATE_PAGES").is_some() {
         std::fs::write(&path, &picture).expect("a writable file");
     }
